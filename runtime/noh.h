@@ -42,6 +42,7 @@
 
 #include "stage/part.h"             /* what changes a pose before it is shown */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
+#include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */

@@ -9,6 +9,7 @@
 
 #include "base/compiler.h"
 #include "base/math_internal.h"
+#include "base/name_internal.h"
 #include "face/face_internal.h"
 
 NOH_STATIC_ASSERT(sizeof(noh_face) <= 256, face_bytes);
@@ -16,6 +17,24 @@ NOH_STATIC_ASSERT(sizeof(noh_face) <= 256, face_bytes);
 #define NEAREST_M 0.05f
 #define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less in one call is followed without a saccade */
 #define HOLD_MAX 0x7fffffffu
+
+/* ---- names ---- */
+
+static const char *const emotion_names[NOH_EMOTION_COUNT] = { "joy",   "sadness", "surprise", "fear",
+                                                              "anger", "disgust", "contempt" };
+
+noh_emotion noh_emotion_of_name(const char *name)
+{
+    uint32_t i = 0;
+    NOH_ASSERT(name);
+    while (i < NOH_EMOTION_COUNT && !noh_names_equal(emotion_names[i], name)) i++;
+    return (noh_emotion)i;
+}
+
+const char *noh_emotion_name(noh_emotion emotion)
+{
+    return (uint32_t)emotion < NOH_EMOTION_COUNT ? emotion_names[emotion] : NULL;
+}
 
 /* ---- descs ---- */
 
@@ -193,18 +212,78 @@ void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
     settle(face);
 }
 
+/* What was under way has arrived. */
+static void arrive(noh_face_spring *s, uint32_t now)
+{
+    s->from = s->goal;
+    s->speed = 0.0f;
+    s->start = now;
+}
+
+static void skip_feeling(noh_face_feeling *f, uint32_t now, int64_t ticks)
+{
+    const uint32_t left = f->end - (now - (uint32_t)ticks);
+    if (f->holds && ticks >= (int64_t)left) {
+        f->holds = 0;
+        f->amount.goal = 0.0f;
+    }
+    arrive(&f->amount, now);
+    if (!(f->amount.goal > 0.0f)) f->on = 0;
+}
+
+void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks)
+{
+    uint32_t now;
+    NOH_ASSERT(face && desc && ticks >= 0);
+    face->clock += ticks;
+    now = (uint32_t)face->clock;
+    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
+        if (face->feelings[i].on) skip_feeling(&face->feelings[i], now, ticks);
+    }
+    face->gaze = NOH_GAZE_HOLD;
+    face->blinking = 0;
+    memset(face->away, 0, sizeof face->away);
+    face->breath_start = face->next_tremor = now;
+    noh_face_head_follow(face, desc);
+    for (int i = 0; i < 2; i++) arrive(&face->head[i], now);
+    noh_face_blink_schedule(face, desc);
+    noh_face_glance_schedule(face);
+}
+
 /* ---- calls ---- */
 
-noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error)
+static noh_result check_point(const noh_face_desc *desc, const float point[3], noh_error *error)
 {
-    float before[3], goal[3], square = 0.0f;
-    NOH_ASSERT(face && desc);
-    for (int i = 0; point && i < 3; i++) {
+    float square = 0.0f;
+    for (int i = 0; i < 3; i++) {
         const float way = point[i] - 0.5f * (desc->eyes[0][i] + desc->eyes[1][i]);
         square += way * way;
     }
-    if (point && !(square >= NEAREST_M * NEAREST_M && square < 1e12f)) {
-        return noh_fail(error, NOH_ERR_ARG, "point to look at: not finite, or within 5 cm of the eyes", 0, 0);
+    return square >= NEAREST_M * NEAREST_M && square < 1e12f
+               ? NOH_OK
+               : noh_fail(error, NOH_ERR_ARG, "point to look at: not finite, or within 5 cm of the eyes", 0, 0);
+}
+
+noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error)
+{
+    noh_result result;
+    NOH_ASSERT(face && desc && point);
+    result = check_point(desc, point, error);
+    if (result == NOH_OK) {
+        memcpy(face->target, point, sizeof face->target);
+        if (face->gaze == NOH_GAZE_HOLD) noh_face_head_follow(face, desc);
+    }
+    return result;
+}
+
+noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error)
+{
+    float before[3], goal[3];
+    noh_result result;
+    NOH_ASSERT(face && desc);
+    result = point ? check_point(desc, point, error) : NOH_OK;
+    if (result != NOH_OK) {
+        return result;
     }
     noh_face_gaze_at(face, desc, before);
     if (point) {

@@ -1,8 +1,9 @@
 /* face.h: what makes a face alive: blinks, gaze, emotions, breath, small motions of the head.
  *
  *   noh_face_init          a face by seed: at rest, looking ahead
- *   noh_face_step          time moves on
- *   noh_face_look_at       turn the eyes, and the head where the eyes do not reach, to a point
+ *   noh_face_step          time moves on; noh_face_skip: unseen
+ *   noh_face_look_at       turn the eyes, and the head where the eyes do not reach, to a point; noh_face_follow: keep
+ *                          them on it
  *   noh_face_feel          an emotion comes, holds and goes
  *   noh_face_set_activity  resting, talking or reading: how often it blinks, how long it looks at what it looks at
  *   noh_face_phrase_end    a phrase ends: people often blink then
@@ -38,6 +39,10 @@ typedef enum noh_emotion {
     NOH_EMOTION_CONTEMPT,
     NOH_EMOTION_COUNT
 } noh_emotion;
+
+/* "joy", "sadness" and so on; NOH_EMOTION_COUNT: none of them. NULL past the last. */
+noh_emotion noh_emotion_of_name(const char *name);
+const char *noh_emotion_name(noh_emotion emotion);
 
 typedef enum noh_activity {
     NOH_ACTIVITY_REST = 0,
@@ -115,11 +120,20 @@ void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flag
 /* Move time on. Whatever falls due within the step happens at its own tick. */
 void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks);
 
+/* Time passes that nothing is seen of: it is still at rest, looks at what it looked at, feels what it felt, and blinks,
+ * breathes and glances at other times than it would have. Costs the same however long it is. */
+void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
+
 /* Look at a point from now on. A point nearby is followed; one further off is reached by a saccade, after the time that
  * people take to see it.
  * point   neck space, metres; NULL: ahead, at 2 m
  * errors  ARG not finite, or nearer than 5 cm to the middle of the eyes */
 noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error);
+
+/* The point that it looks at has moved, or the neck has: the eyes stay on it, without a saccade, as those of people do
+ * whose head is turned.
+ * errors  as noh_face_look_at */
+noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error);
 
 /* Begin an emotion, or change one that shows.
  * ranges  amount 0..1; hold_ticks 0: until it is changed; below 2^31. onset_ticks, fade_ticks: to 95 %; 0: 0.35 and

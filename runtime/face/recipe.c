@@ -76,37 +76,79 @@ void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, con
     }
 }
 
-/* ---- binding ---- */
+/* ---- ownership ---- */
 
-static uint32_t find(const char *const *names, uint32_t count, const char *name)
+/* What the emotions that show leave of something. */
+static float left_by(const uint8_t *overrides, const float *shows)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        if (names[i] && noh_names_equal(names[i], name)) return i;
+    float left = 1.0f;
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        if (overrides[i] == NOH_OVERRIDE_BLOCK && shows[i] > 0.0f) left = 0.0f;
+        if (overrides[i] == NOH_OVERRIDE_BLEND) left *= 1.0f - unit(shows[i]);
     }
-    return NOH_NONE;
+    return left;
 }
 
+static void scale(float *channels, uint32_t first, uint32_t count, float by)
+{
+    for (uint32_t i = 0; i < count; i++) channels[first + i] *= by;
+}
+
+void noh_face_share(const noh_face_rules *rules, float moves, float shut, float *channels)
+{
+    const float *visemes = channels + NOH_CHANNEL_VISEMES, *shows = channels + NOH_CHANNEL_UPPER;
+    const float closed = unit(visemes[NOH_VISEME_PP] + visemes[NOH_VISEME_FF]);
+    float spoken = 0.0f;
+    NOH_ASSERT(rules && channels);
+    scale(channels, NOH_CHANNEL_BLINK_LEFT, 2, left_by(rules->lids, shows));
+    scale(channels, NOH_CHANNEL_LIDS_UP, 2, left_by(rules->lids, shows));
+    scale(channels, NOH_CHANNEL_EYES, 8, left_by(rules->eyes, shows));
+    scale(channels, NOH_CHANNEL_VISEMES + NOH_VISEME_TH, NOH_VISEME_COUNT - NOH_VISEME_TH,
+          left_by(rules->speech, shows));
+    for (int v = NOH_VISEME_PP; v < NOH_VISEME_COUNT; v++) spoken += visemes[v];
+    spoken = unit(spoken > moves ? spoken : moves);
+    shut = closed > shut ? closed : unit(shut);
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        const uint8_t rule = rules->mouth[i];
+        float left = rule == NOH_MOUTH_NONE    ? 1.0f
+                     : rule == NOH_MOUTH_BLOCK ? (spoken > 0.0f ? 0.0f : 1.0f)
+                                               : 1.0f - spoken;
+        left = left < 1.0f - shut ? left : 1.0f - shut;
+        channels[NOH_CHANNEL_MOUTH + i] = shows[i] * left;
+    }
+}
+
+/* ---- binding ---- */
+
+typedef struct binding {
+    const noh_face_recipe *const *recipes;
+    uint32_t recipe_count;
+    noh_face_find_fn find;
+    const void *user;
+    noh_face_link *links;
+    uint32_t link_max, count;
+} binding;
+
 /* How many rows of a channel a recipe has, and how many of them the mesh has a target for. */
-static void count_rows(const noh_face_recipe *recipe, uint32_t channel, const char *const *names, uint32_t count,
-                       uint32_t *rows, uint32_t *found)
+static void count_rows(const binding *b, const noh_face_recipe *recipe, uint32_t channel, uint32_t *rows,
+                       uint32_t *found)
 {
     *rows = *found = 0;
     for (uint32_t i = 0; i < recipe->row_count; i++) {
         if (recipe->rows[i].channel != channel) continue;
         ++*rows;
-        *found += find(names, count, recipe->rows[i].target) != NOH_NONE;
+        *found += b->find(b->user, recipe->rows[i].target, 0) != NOH_NONE;
     }
 }
 
-static const noh_face_recipe *choose(const noh_face_recipe *const *recipes, uint32_t recipe_count, uint32_t channel,
-                                     const char *const *names, uint32_t count)
+static const noh_face_recipe *choose(const binding *b, uint32_t channel)
 {
     const noh_face_recipe *some = NULL;
-    for (uint32_t i = 0; i < recipe_count; i++) {
+    for (uint32_t i = 0; i < b->recipe_count; i++) {
         uint32_t rows, found;
-        count_rows(recipes[i], channel, names, count, &rows, &found);
-        if (rows && found == rows) return recipes[i];
-        if (found && !some) some = recipes[i];
+        count_rows(b, b->recipes[i], channel, &rows, &found);
+        if (rows && found == rows) return b->recipes[i];
+        if (found && !some) some = b->recipes[i];
     }
     return some;
 }
@@ -122,27 +164,23 @@ static uint32_t nearest(uint32_t channel)
     return to == NOH_VISEME_SIL ? NOH_NONE : NOH_CHANNEL_VISEMES + to;
 }
 
-typedef struct binding {
-    const noh_face_recipe *const *recipes;
-    uint32_t recipe_count;
-    const char *const *names;
-    uint32_t name_count;
-    noh_face_link *links;
-    uint32_t link_max, count;
-} binding;
+static void add_link(binding *b, uint32_t channel, uint32_t target, float weight)
+{
+    if (b->count < b->link_max) {
+        b->links[b->count].channel = (uint16_t)channel;
+        b->links[b->count].target = (uint16_t)target;
+        b->links[b->count].weight = weight;
+    }
+    b->count++;
+}
 
 static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, uint32_t channel)
 {
     for (uint32_t i = 0; i < recipe->row_count; i++) {
         const noh_face_row *row = &recipe->rows[i];
-        const uint32_t target = row->channel == from ? find(b->names, b->name_count, row->target) : NOH_NONE;
-        if (target == NOH_NONE) continue;
-        if (b->count < b->link_max) {
-            b->links[b->count].channel = (uint16_t)channel;
-            b->links[b->count].target = (uint16_t)target;
-            b->links[b->count].weight = row->weight;
-        }
-        b->count++;
+        uint32_t nth = 0, target;
+        if (row->channel != from) continue;
+        while ((target = b->find(b->user, row->target, nth++)) != NOH_NONE) add_link(b, channel, target, row->weight);
     }
 }
 
@@ -151,7 +189,7 @@ static void bind_channel(binding *b, uint32_t channel)
 {
     uint32_t from = channel;
     while (from != NOH_NONE) {
-        const noh_face_recipe *recipe = choose(b->recipes, b->recipe_count, from, b->names, b->name_count);
+        const noh_face_recipe *recipe = choose(b, from);
         if (recipe) {
             link_rows(b, recipe, from, channel);
             return;
@@ -160,20 +198,45 @@ static void bind_channel(binding *b, uint32_t channel)
     }
 }
 
-uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
-                              uint32_t target_count, noh_face_link *links, uint32_t link_max)
+uint32_t noh_face_recipe_bind_by(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
+                                 const void *user, noh_face_link *links, uint32_t link_max)
 {
     const noh_face_recipe *const built_in[3] = { &noh_face_recipe_arkit, &noh_face_recipe_vrm, &noh_face_recipe_units };
-    binding b = { NULL, 0, NULL, 0, NULL, 0, 0 };
-    NOH_ASSERT((names || !target_count) && (links || !link_max) && target_count <= NOH_FLOATS_MAX);
+    binding b = { NULL, 0, NULL, NULL, NULL, 0, 0 };
+    NOH_ASSERT(find && (links || !link_max));
     b.recipes = recipes ? recipes : built_in;
     b.recipe_count = recipes ? recipe_count : 3u;
-    b.names = names;
-    b.name_count = target_count;
+    b.find = find;
+    b.user = user;
     b.links = links;
     b.link_max = link_max;
     for (uint32_t channel = 0; channel < NOH_CHANNEL_COUNT; channel++) bind_channel(&b, channel);
     return b.count;
+}
+
+typedef struct name_list {
+    const char *const *names;
+    uint32_t count;
+} name_list;
+
+/* The first of a name alone. */
+static uint32_t find_listed(const void *user, const char *name, uint32_t nth)
+{
+    const name_list *list = user;
+    for (uint32_t i = 0; i < list->count && !nth; i++) {
+        if (list->names[i] && noh_names_equal(list->names[i], name)) return i;
+    }
+    return NOH_NONE;
+}
+
+uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
+                              uint32_t target_count, noh_face_link *links, uint32_t link_max)
+{
+    name_list list = { NULL, 0 };
+    NOH_ASSERT((names || !target_count) && target_count <= NOH_FLOATS_MAX);
+    list.names = names;
+    list.count = target_count;
+    return noh_face_recipe_bind_by(recipes, recipe_count, find_listed, &list, links, link_max);
 }
 
 /* ---- weights ---- */
@@ -188,7 +251,8 @@ static float most_of(const noh_face_link *links, uint32_t link_count, uint32_t t
     return most;
 }
 
-/* Rows of one target are added before the sum is held, so that their order does not matter. */
+/* Rows of one target are added before the sum is held, so that their order does not matter. What no channel moves is
+ * left as it is, beyond 0..1 too. */
 void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float *channels, float *weights)
 {
     NOH_ASSERT((links || !link_count) && channels && weights);
@@ -197,6 +261,7 @@ void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float
     }
     for (uint32_t i = 0; i < link_count; i++) {
         float *weight = &weights[links[i].target], most;
+        if (channels[links[i].channel] == 0.0f) continue;
         if (*weight < 0.0f) *weight = 0.0f;
         if (*weight <= 1.0f) continue;
         most = most_of(links, link_count, links[i].target);

@@ -1,7 +1,8 @@
 /* recipe.h: from what a face shows to the morph targets that it has.
  *
  *   noh_face_channels       a pose, and what it says, as one number for each thing that can show
- *   noh_face_recipe_bind    a recipe's rows to the targets of a mesh, by name
+ *   noh_face_share          who owns mouth, lids and eyes
+ *   noh_face_recipe_bind    a recipe's rows to the targets of a mesh, by name; noh_face_recipe_bind_by: by a function
  *   noh_face_apply          channels to weights
  *
  * A recipe is a table of rows (channel, target, weight). Three are built in: for ARKit's 52 names, for VRM's presets,
@@ -59,6 +60,26 @@ typedef enum noh_mouth_rule {
     NOH_MOUTH_NONE       /* nothing: both add up, but lips that must be shut */
 } noh_mouth_rule;
 
+/* What an expression does to what it shares the face with, as VRM's overrideBlink, overrideLookAt and overrideMouth. */
+typedef enum noh_override {
+    NOH_OVERRIDE_NONE = 0, /* both add up */
+    NOH_OVERRIDE_BLOCK,    /* it takes all of the other as soon as it shows */
+    NOH_OVERRIDE_BLEND     /* it takes as much of the other as it shows */
+} noh_override;
+
+/* Who owns mouth, lids and eyes. Zeros: speech takes the mouth from an emotion as much as it moves it, and an emotion
+ * leaves blinks, looks and speech as they are. Whatever the rules, lips that p, b, m, f or v shut stay shut. */
+typedef struct noh_face_rules {
+    uint8_t mouth[NOH_EMOTION_COUNT];  /* noh_mouth_rule: speech over the emotion's mouth */
+    uint8_t lids[NOH_EMOTION_COUNT];   /* noh_override: the emotion over blinks and lids, */
+    uint8_t eyes[NOH_EMOTION_COUNT];   /* over the eyes' targets, */
+    uint8_t speech[NOH_EMOTION_COUNT]; /* and over the mouth shapes of speech */
+} noh_face_rules;
+
+/* Share channels that were not shared yet (noh_face_channels with NOH_MOUTH_NONE). moves, shut: how much of the mouth
+ * speech moves and shuts beside the channels' own visemes, 0..1, as a clip tells it. */
+void noh_face_share(const noh_face_rules *rules, float moves, float shut, float *channels);
+
 /* pose    NULL: at rest; desc is not used then
  * shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: says nothing. channels[NOH_CHANNEL_COUNT]
  * The lips are shut for p, b and m, and the lower one is at the teeth for f and v, whatever the emotion and the other
@@ -93,6 +114,13 @@ typedef struct noh_face_link {
  * returns  how many links there are; those past link_max are not written */
 uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
                               uint32_t target_count, noh_face_link *links, uint32_t link_max);
+
+/* The same for names that are not in one list: find gives the nth target of a name, NOH_NONE past the last, and is
+ * called for one name any number of times. */
+typedef uint32_t (*noh_face_find_fn)(const void *user, const char *name, uint32_t nth);
+
+uint32_t noh_face_recipe_bind_by(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
+                                 const void *user, noh_face_link *links, uint32_t link_max);
 
 /* Add the channels to weights, and hold those that they move within 0..1, or up to the largest weight of a target's
  * links where that is more.

@@ -248,6 +248,9 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     a->alive = 1;
     be_at(a, &normal);
     *actor = id_of(stage, (uint32_t)(a - stage->actors));
+    if (stage->kinds[kind].face) {
+        noh_stage_begin_face(stage, &stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a), actor->id);
+    }
     return NOH_OK;
 }
 

@@ -34,7 +34,7 @@ static void shape_without_clips(const noh_kind_desc *d, uint32_t weight_count, n
     if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) == NOH_OK) {
         shape->joint_count = skeleton.joint_count;
     }
-    shape->float_count = d->part_count && weight_count ? weight_count : shape->joint_count ? 0 : 1;
+    shape->float_count = noh_stage_has_parts(d) && weight_count ? weight_count : shape->joint_count ? 0 : 1;
 }
 
 noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
@@ -157,6 +157,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
         return result;
     }
     needs->part_bytes = noh_stage_part_bytes(&d);
+    needs->face_link_max = d.face ? noh_stage_face_links(&d) : 0;
     for (uint32_t i = 0; i < d.part_count; i++) {
         const size_t bytes = d.parts[i].scratch_bytes;
         needs->part_scratch_bytes = bytes > needs->part_scratch_bytes ? bytes : needs->part_scratch_bytes;
@@ -352,11 +353,18 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
     const noh_kind_desc d = noh_stage_kind_desc(desc, i);
     noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
     size_t from = arena->used;
+    noh_face_link *face_links;
     memset(k, 0, sizeof *k);
     carve_shared(arena, &d, &plan->kinds[i], n, k);
     b->lods[i] = noh_arena_carve(arena, n->lod_bytes, 16);
     carve_frame(arena, &d, n, k);
     add(list, "kind", i, arena, &from);
+    if (d.face) {
+        k->face = CARVE(arena, 1, noh_stage_face_kind);
+        face_links = CARVE(arena, n->face_link_max, noh_face_link);
+        if (k->face) k->face->links = face_links;
+        add(list, "faces", i, arena, &from);
+    }
     b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
     if (n->graph_count) add(list, "graphs", i, arena, &from);
     b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);

@@ -13,6 +13,7 @@
  *   stage_graph.c    which graphs a kind plays, and their bytes
  *   stage_graph_play.c  the graph of an actor
  *   stage_part.c     what changes a pose before it is shown
+ *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
  *   stage_step.c     time, callback keys, root motion
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
@@ -38,6 +39,7 @@
 #include "graph/graph_pack.h"
 #include "mesh/mesh.h"
 #include "stage/part.h"
+#include "stage/stage_face.h"
 #include "stage/stage.h"
 
 #ifdef __cplusplus
@@ -81,6 +83,20 @@ typedef struct noh_stage_part_head {
     uint32_t reserved;
 } noh_stage_part_head;
 
+typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;
+
+/* Before the states of its parts, of a kind with faces. */
+typedef struct noh_stage_face {
+    noh_face face;
+    int64_t clock; /* tick of the stage's clock that it is at */
+    float point[3];
+    uint32_t target; /* id of an actor */
+    float visemes[NOH_VISEME_COUNT];
+    uint8_t looks, says, begun; /* noh_stage_looks */
+    uint8_t fresh;              /* 1: what it looks at is new: reached by a saccade */
+    uint32_t padding[2];
+} noh_stage_face;
+
 typedef struct noh_stage_free {
     uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
     uint32_t count;       /* actors that are there */
@@ -100,6 +116,7 @@ NOH_STATIC_ASSERT(sizeof(noh_look) == 28, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
+NOH_STATIC_ASSERT(sizeof(noh_stage_face) <= NOH_ACTOR_FACE_BYTES && sizeof(noh_stage_face) % 16 == 0, stage_face);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
@@ -150,6 +167,25 @@ typedef enum noh_stage_load {
     NOH_STAGE_LOADED
 } noh_stage_load;
 
+/* A joint that a face turns. */
+typedef struct noh_stage_face_joint {
+    uint32_t joint; /* NOH_NONE: none */
+    float axes[4];  /* from model space at rest to the joint's own axes */
+    float at[3];    /* at rest, model space */
+} noh_stage_face_joint;
+
+/* What the faces of a kind have in common. */
+typedef struct noh_stage_face_kind {
+    noh_face_desc desc; /* neck space */
+    noh_face_rules rules;
+    noh_stage_face_joint head, neck, chest, eyes[2];
+    float middle[3]; /* between the eyes at rest, model space */
+    uint32_t flags;
+    uint32_t speech, lips_shut; /* floats of clips; NOH_NONE: no clip has them */
+    noh_face_link *links;       /* to floats of the set */
+    uint32_t link_count;
+} noh_stage_face_kind;
+
 typedef struct noh_stage_kind {
     noh_kind_desc desc; /* defaults filled in; `layers` is NULL afterwards */
     const noh_kind_plan *plan;
@@ -191,6 +227,7 @@ typedef struct noh_stage_kind {
     uint32_t slot_bytes;
     noh_stage_part *parts; /* [desc.part_count] */
     size_t part_bytes;
+    noh_stage_face_kind *face; /* NULL: none */
     noh_stage_sampler sampler; /* of `set` */
     noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
     noh_transform rest_pose;
@@ -361,6 +398,7 @@ typedef struct noh_stage_needs {
     size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
     uint32_t graph_count;
     size_t part_bytes, part_scratch_bytes; /* 0 without parts */
+    uint32_t face_link_max;                /* 0 without faces */
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -483,6 +521,26 @@ noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_
 
 size_t noh_stage_part_bytes(const noh_kind_desc *kind); /* of an actor's states */
 noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error);
+/* Whether something changes poses before they are shown. */
+static inline int noh_stage_has_parts(const noh_kind_desc *kind)
+{
+    return kind->part_count || kind->face;
+}
+
+/* What is wrong with the face of a kind; NULL: nothing. */
+const char *noh_stage_bad_face(const noh_kind_desc *kind);
+uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
+uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
+void noh_stage_open_face(noh_stage_kind *k);
+/* Where a joint of a local pose stands in model space. */
+void noh_stage_face_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+                             float at[3]);
+/* The state of an actor's face; the kind has one. */
+noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index);
+void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed);
+const char *noh_stage_check_face(const noh_stage_face *face);
+/* Over the pose and the floats of the work. */
+void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
 /* Between the halves of an update of a character for a tick of the stage's clock. */
 void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
                          int64_t clock, noh_character_scratch *scratch);

@@ -26,7 +26,7 @@ static void open_rest(noh_stage_kind *k, const noh_stage_needs *n)
     k->set.clip_count = 1;
     k->set.joint_count = k->skeleton.joint_count;
     k->set.float_count = n->shape.float_count;
-    k->set.float_defaults = k->desc.part_count && n->weight_count ? k->defaults : NULL; /* filled in by open_floats */
+    k->set.float_defaults = noh_stage_has_parts(&k->desc) && n->weight_count ? k->defaults : NULL; /* filled in by open_floats */
     k->set.clips = &k->rest_clip;
     k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->rest_pose;
     k->set.sample = sample_rest;
@@ -387,6 +387,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     open_meshes(k);
     noh_stage_open_load(s, desc, kind);
     open_floats(k);
+    if (k->desc.face) noh_stage_open_face(k);
     result = noh_stage_open_layers(k, kind, error);
     if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);
     s->jobs[0].scratch = blocks->scratch;

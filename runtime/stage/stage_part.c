@@ -16,12 +16,13 @@ static size_t aligned(size_t bytes)
 
 size_t noh_stage_part_bytes(const noh_kind_desc *d)
 {
-    size_t bytes = d->part_count ? sizeof(noh_stage_part_head) : 0;
+    size_t bytes = noh_stage_has_parts(d) ? sizeof(noh_stage_part_head) : 0;
+    if (d->face) bytes += sizeof(noh_stage_face);
     for (uint32_t i = 0; i < d->part_count; i++) bytes += aligned(d->parts[i].state_bytes);
     return bytes;
 }
 
-/* The states of an actor: a head, then each part's. */
+/* The states of an actor: a head, its face, then each part's. */
 static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 {
     return k->part_states + (size_t)index * k->part_bytes;
@@ -29,7 +30,7 @@ static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 
 static size_t state_offset(const noh_stage_kind *k, uint32_t part)
 {
-    size_t at = sizeof(noh_stage_part_head);
+    size_t at = sizeof(noh_stage_part_head) + (k->face ? sizeof(noh_stage_face) : 0);
     for (uint32_t i = 0; i < part; i++) at += aligned(k->parts[i].state_bytes);
     return at;
 }
@@ -47,8 +48,12 @@ void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
 noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error)
 {
     const noh_stage_part_head *head = states;
-    if (k->desc.part_count && head->was_posed > 1u) {
+    if (noh_stage_has_parts(&k->desc) && head->was_posed > 1u) {
         return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
+    }
+    if (k->face && noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1))) {
+        return noh_fail(error, NOH_ERR_DATA, noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1)), 0,
+                        0);
     }
     for (uint32_t i = 0; i < k->desc.part_count; i++) {
         const noh_stage_part *part = &k->parts[i];
@@ -56,6 +61,11 @@ noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, no
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
     }
     return NOH_OK;
+}
+
+noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index)
+{
+    return (noh_stage_face *)(void *)(states_of(k, index) + sizeof(noh_stage_part_head));
 }
 
 /* ---- what a part may ask ---- */
@@ -135,6 +145,10 @@ void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, cons
     w.scratch = job->part_scratch;
     set_time(&w, (noh_stage_part_head *)(void *)states, clock, s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
     states += sizeof(noh_stage_part_head);
+    if (k->face) {
+        noh_stage_run_face(s, k, (noh_stage_face *)(void *)states, &w);
+        states += sizeof(noh_stage_face);
+    }
     for (uint32_t i = 0; i < k->desc.part_count; i++) {
         w.state = states;
         w.user = k->parts[i].user;

@@ -1,0 +1,363 @@
+/* Faces of actors: eyes that meet what is looked at, whatever clips do to head and body; nothing that stands still but
+ * what is calm; bytes, states and jobs. */
+#include "support/stage_fixture.h"
+
+#include <math.h>
+
+#define DEGREE 0.0174532925f
+#define CAST 6u
+
+static noh_error said;
+
+/* Of the puppet's mask: its head turns at 1.42 m. */
+static noh_kind_face alive(void)
+{
+    noh_kind_face face;
+    memset(&face, 0, sizeof face);
+    for (int e = 0; e < 2; e++) {
+        face.face.eyes[e][0] = e ? -0.035f : 0.035f;
+        face.face.eyes[e][1] = 1.55f;
+        face.face.eyes[e][2] = 0.11f;
+    }
+    return face;
+}
+
+static void open_cast(cast *c, uint32_t actors, const noh_kind_face *face, uint32_t jobs)
+{
+    memset(c, 0, sizeof *c);
+    cast_map(c, PUPPETS, "demo/puppet_levels.noh");
+    cast_map(c, MASKS, "mask_levels.noh");
+    c->kinds[0].mesh = &c->packs[PUPPETS];
+    c->kinds[0].actor_count = actors;
+    c->kinds[0].face = face;
+    c->desc.kinds = c->kinds;
+    c->desc.kind_count = 1;
+    c->desc.job_count = jobs;
+}
+
+static void close_cast(cast *c)
+{
+    cast_close_stage(c);
+    noh_file_unmap(&c->files[0]);
+    noh_file_unmap(&c->files[1]);
+}
+
+static noh_actor enter(const cast *c, const char *clip, const noh_place *place)
+{
+    static const noh_look posed = { .posed = 1 };
+    noh_actor actor;
+    assert_int_equal(noh_stage_spawn(c->stage, 0, place, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    if (clip) assert_int_equal(noh_actor_play(c->stage, actor, 0, clip, NULL, NULL), NOH_OK);
+    return actor;
+}
+
+static void run(const cast *c, uint32_t frames)
+{
+    for (uint32_t f = 0; f < frames; f++)
+        assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+}
+
+static float float_named(const cast *c, noh_actor actor, const char *name)
+{
+    const uint32_t at = noh_stage_find(c->stage, 0, NOH_NAME_FLOAT, name);
+    assert_true(at != NOH_NONE);
+    return noh_actor_floats(c->stage, actor)[at];
+}
+
+/* ---- looks ---- */
+
+/* The angle between where an eye looks, by its targets and the head as it was drawn, and the point. */
+static float miss(const cast *c, noh_actor actor, int eye, const float point[3])
+{
+    static const char *const names[2][4] = { { "eyeLookUpLeft", "eyeLookDownLeft", "eyeLookOutLeft", "eyeLookInLeft" },
+                                             { "eyeLookUpRight", "eyeLookDownRight", "eyeLookInRight",
+                                               "eyeLookOutRight" } };
+    const noh_kind_face face = alive();
+    const uint32_t joint = noh_stage_find(c->stage, 0, NOH_NAME_JOINT, "head");
+    static float rest[12u * NOH_JOINTS_MAX];
+    float m[12], v[4], local[3], yaw, pitch, to[3];
+    noh_skeleton skeleton;
+    (void)noh_pack_skeleton_at(&c->packs[0], 0, &skeleton, NULL, NULL);
+    noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+    assert_int_equal(noh_actor_joint(c->stage, actor, joint, m, NULL), NOH_OK);
+    for (int i = 0; i < 4; i++) v[i] = float_named(c, actor, names[eye][i]);
+    pitch = (v[0] * 25.0f - v[1] * 30.0f) * DEGREE;
+    yaw = (v[2] - v[3]) * 35.0f * DEGREE;
+    for (int i = 0; i < 3; i++) { /* the puppet's head has the model's axes at rest */
+        local[i] = face.face.eyes[eye][i] - rest[12u * joint + 4u * (uint32_t)i + 3u];
+    }
+    for (int i = 0; i < 3; i++) {
+        to[i] = point[i] - m[4 * i + 3];
+        for (int k = 0; k < 3; k++) to[i] -= m[4 * i + k] * local[k];
+    }
+    {
+        const float way[3] = { m[0] * to[0] + m[4] * to[1] + m[8] * to[2], m[1] * to[0] + m[5] * to[1] + m[9] * to[2],
+                               m[2] * to[0] + m[6] * to[1] + m[10] * to[2] };
+        const float wanted_yaw = atan2f(way[0], way[2]), wanted_pitch = atan2f(way[1], hypotf(way[0], way[2]));
+        return hypotf((yaw - wanted_yaw) * cosf(pitch), pitch - wanted_pitch) / DEGREE;
+    }
+}
+
+static void eyes_meet_a_point_whatever_the_body_does(void **state)
+{
+    static const char *const clips[] = { "idle", "walk", "bow", "dance" };
+    const noh_kind_face face = alive();
+    const noh_place place = { { 3.0f, 0.2f, -1.0f }, { 0.0f, 0.3826834f, 0.0f, 0.9238795f }, 1.5f };
+    (void)state;
+    for (uint32_t t = 0; t < 4; t++) {
+        static const float ways[4] = { 0.5f, 1.0f, 3.0f, 10.0f };
+        float point[3], worst = 0.0f;
+        uint32_t held = 0, met = 0;
+        noh_actor actor;
+        cast c;
+        open_cast(&c, 1, &face, 1);
+        cast_make(&c, NULL);
+        actor = enter(&c, clips[t], &place);
+        assert_int_equal(noh_actor_set_face_flags(c.stage, actor, NOH_FACE_NO_WANDER, NULL), NOH_OK);
+        point[0] = 3.0f + 0.7071f * ways[t] * 1.5f, point[2] = -1.0f + 0.9f * ways[t] * 1.5f;
+        point[1] = 0.2f + 1.5f * 1.5f;
+        assert_int_equal(noh_actor_look_at(c.stage, actor, point, NULL), NOH_OK);
+        run(&c, 90);
+        for (uint32_t f = 0; f < 120; f++) {
+            noh_face_pose pose;
+            float off[2];
+            run(&c, 1);
+            assert_int_equal(noh_actor_face(c.stage, actor, &pose, NULL), NOH_OK);
+            off[0] = miss(&c, actor, 0, point), off[1] = miss(&c, actor, 1, point);
+            if (fabsf(pose.eyes[0][0]) > 34.0f * DEGREE || fabsf(pose.eyes[0][1]) > 24.0f * DEGREE) continue;
+            held++; /* within the limits of the eyes */
+            met += off[0] < 0.1f && off[1] < 0.1f;
+            worst = fmaxf(worst, fmaxf(off[0], off[1]));
+        }
+        print_message("%s: both eyes within 0.1 degrees in %u of %u frames, at most %.3f off\n", clips[t], met, held,
+                      (double)worst);
+        assert_true(held > (t == 2 ? 20u : 100u) && met == held); /* a bow takes the eyes to their limits */
+        close_cast(&c);
+    }
+}
+
+static void two_actors_meet_each_others_eyes(void **state)
+{
+    const noh_kind_face face = alive();
+    const noh_place a = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 1 }, 1.0f },
+                    b = { { 0.2f, 0.3f, 1.2f }, { 0, 1, 0, 0 }, 1.0f };
+    const float eyes_of_b[3] = { 0.2f, 1.85f, 1.09f };
+    noh_actor first, second;
+    noh_face_pose pose;
+    cast c;
+    (void)state;
+    open_cast(&c, 2, &face, 1);
+    cast_make(&c, NULL);
+    first = enter(&c, "idle", &a);
+    second = enter(&c, "idle", &b);
+    assert_int_equal(noh_actor_set_face_flags(c.stage, first, NOH_FACE_NO_WANDER, NULL), NOH_OK);
+    assert_int_equal(noh_actor_look_at_actor(c.stage, first, second, NULL), NOH_OK);
+    run(&c, 120);
+    assert_true(miss(&c, first, 0, eyes_of_b) < 0.1f && miss(&c, first, 1, eyes_of_b) < 0.1f);
+    assert_int_equal(noh_stage_despawn(c.stage, second, NULL), NOH_OK);
+    run(&c, 120);
+    assert_int_equal(noh_actor_face(c.stage, first, &pose, NULL), NOH_OK);
+    assert_true(miss(&c, first, 0, eyes_of_b) > 4.0f); /* ahead again */
+    assert_int_equal(noh_actor_look_at_actor(c.stage, first, second, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_look_at(c.stage, second, NULL, NULL), NOH_ERR_NOT_FOUND);
+    close_cast(&c);
+}
+
+/* ---- never still ---- */
+
+/* What shows of an actor: floats, and where its head is. */
+static void picture(const cast *c, noh_actor actor, float *out)
+{
+    const uint32_t head = noh_stage_find(c->stage, 0, NOH_NAME_JOINT, "head");
+    const uint32_t floats = c->plan.kinds[0].float_count;
+    memcpy(out, noh_actor_floats(c->stage, actor), floats * sizeof *out);
+    assert_int_equal(noh_actor_joint(c->stage, actor, head, out + floats, NULL), NOH_OK);
+}
+
+/* No half second without motion in a face that is on, and none at all in one that is calm. Nothing else plays. */
+static void nothing_that_lives_stands_still(void **state)
+{
+    noh_kind_face face = alive();
+    (void)state;
+    for (int calm = 0; calm < 2; calm++) {
+        float now[128], last[128];
+        uint32_t still = 0, longest = 0;
+        noh_actor actor;
+        cast c;
+        face.flags = calm ? NOH_FACE_CALM : 0;
+        open_cast(&c, 1, &face, 1);
+        cast_make(&c, NULL);
+        actor = enter(&c, NULL, NULL);
+        run(&c, 1);
+        assert_true(c.plan.kinds[0].float_count + 12u <= 128u);
+        picture(&c, actor, last);
+        for (uint32_t f = 0; f < 3600; f++) {
+            run(&c, 1);
+            picture(&c, actor, now);
+            still = memcmp(now, last, (c.plan.kinds[0].float_count + 12u) * sizeof *now) ? 0 : still + 1u;
+            longest = still > longest ? still : longest;
+            memcpy(last, now, sizeof last);
+        }
+        if (calm) {
+            assert_int_equal(longest, 3600);
+        } else {
+            assert_true(longest < 30);
+        }
+        close_cast(&c);
+    }
+}
+
+/* ---- what it is told ---- */
+
+static void emotions_by_name_leave_the_mouth_to_speech(void **state)
+{
+    const noh_kind_face face = alive();
+    float visemes[NOH_VISEME_COUNT] = { 0 };
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &face, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, NULL, NULL);
+    assert_int_equal(noh_actor_feel(c.stage, actor, "surprise", 1.0f, 4800, 0, 0, NULL), NOH_OK);
+    assert_int_equal(noh_actor_feel(c.stage, actor, "hunger", 1.0f, 0, 0, 0, &said), NOH_ERR_ARG);
+    run(&c, 60);
+    assert_true(float_named(&c, actor, "jawOpen") > 0.2f && float_named(&c, actor, "browInnerUp") > 0.5f);
+    visemes[NOH_VISEME_PP] = 1.0f;
+    assert_int_equal(noh_actor_set_visemes(c.stage, actor, visemes, NULL), NOH_OK);
+    run(&c, 1);
+    assert_true(float_named(&c, actor, "jawOpen") == 0.0f && float_named(&c, actor, "browInnerUp") > 0.5f);
+    visemes[3] = 2.0f;
+    assert_int_equal(noh_actor_set_visemes(c.stage, actor, visemes, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_set_visemes(c.stage, actor, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_activity(c.stage, actor, NOH_ACTIVITY_TALK, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_activity(c.stage, actor, (noh_activity)7, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_set_face_flags(c.stage, actor, 99, NULL), NOH_ERR_ARG);
+    close_cast(&c);
+}
+
+/* Out of view nothing is lived through; an hour later a face goes on at once. */
+static void an_hour_unseen_is_skipped(void **state)
+{
+    static const noh_look unseen = { .posed = 0 }, posed = { .posed = 1 };
+    const noh_kind_face face = alive();
+    noh_face_pose pose;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &face, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, "idle", NULL);
+    assert_int_equal(noh_actor_feel(c.stage, actor, "joy", 1.0f, 0, 480000, 0, NULL), NOH_OK);
+    run(&c, 60);
+    assert_int_equal(noh_actor_set_look(c.stage, actor, &unseen, NULL), NOH_OK);
+    for (int i = 0; i < 60; i++)
+        assert_int_equal(noh_stage_frame(c.stage, 60 * NOH_TICKS_PER_SECOND, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
+    run(&c, 2);
+    assert_int_equal(noh_actor_face(c.stage, actor, &pose, NULL), NOH_OK);
+    assert_true(pose.emotions[NOH_EMOTION_JOY] == 0.0f && pose.blink == 0.0f);
+    close_cast(&c);
+}
+
+/* ---- bytes and states ---- */
+
+static void a_face_is_planned_to_the_byte(void **state)
+{
+    noh_kind_face face = alive();
+    noh_stage_bytes list[64];
+    uint64_t plain, sum = 0, faces = 0;
+    noh_stage *made = NULL;
+    cast c;
+    (void)state;
+    open_cast(&c, 3, NULL, 1);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    plain = c.plan.state_bytes;
+    c.kinds[0].face = &face;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    assert_true(c.plan.state_bytes > plain && c.plan.state_bytes <= plain + 3u * (16u + NOH_ACTOR_FACE_BYTES));
+    for (uint32_t i = noh_stage_plan_parts(&c.desc, NULL, &c.plan, list, 64); i-- > 0;) {
+        sum += list[i].cpu_bytes;
+        if (strcmp(list[i].what, "faces") == 0) faces += list[i].cpu_bytes;
+    }
+    assert_true(sum == c.plan.cpu_bytes && faces > 1000);
+    c.memory = test_aligned(NULL, (size_t)c.plan.cpu_bytes);
+    assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes - 1u, NULL, &c.desc, &c.plan, &made, NULL),
+                     NOH_ERR_MEMORY);
+    assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, NULL, &c.desc, &c.plan, &made, NULL), NOH_OK);
+    memset(face.face.eyes, 0, sizeof face.face.eyes); /* and the puppet has no joints for them */
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
+    assert_non_null(strstr(said.what, "eyes"));
+    face = alive();
+    face.head = "haed";
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
+    assert_non_null(strstr(said.what, "joint"));
+    face = alive();
+    face.rules.lids[3] = 9;
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
+    close_cast(&c);
+}
+
+static void crowd_frame(const cast *c, uint32_t f)
+{
+    const noh_actor actor = noh_stage_actor_at(c->stage, f % CAST);
+    const float point[3] = { 3.0f - 0.02f * (float)f, 1.5f, 2.0f };
+    const noh_stage_view view = cast_view(f, 3.0f + 0.4f * (float)(f % 80u));
+    if (f % 7u == 0) assert_int_equal(noh_actor_look_at(c->stage, actor, point, NULL), NOH_OK);
+    if (f % 11u == 0) {
+        assert_int_equal(noh_actor_look_at_actor(c->stage, actor, noh_stage_actor_at(c->stage, (f + 1) % CAST), NULL),
+                         NOH_OK);
+    }
+    if (f % 13u == 0) assert_int_equal(noh_actor_feel(c->stage, actor, "joy", 0.7f, 0, 9600, 0, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+}
+
+/* Jobs in any number give the same bits; a state put back is followed by the same; a bad one is refused. */
+static void states_of_faces_are_put_back(void **state)
+{
+    static const uint32_t jobs[] = { 1, 4 };
+    const noh_kind_face face = alive();
+    uint64_t hashes[120];
+    (void)state;
+    for (int j = 0; j < 2; j++) {
+        uint8_t *saved;
+        size_t bytes;
+        cast c;
+        open_cast(&c, CAST, &face, jobs[j]);
+        cast_make(&c, NULL);
+        for (uint32_t i = 0; i < CAST; i++) {
+            const noh_place place = { { 1.1f * (float)i - 3.0f, 0.0f, -0.7f * (float)i }, { 0, 0, 0, 0 }, 0.0f };
+            noh_actor actor;
+            assert_int_equal(noh_stage_spawn(c.stage, 0, &place, &actor, NULL), NOH_OK);
+            assert_int_equal(noh_actor_play(c.stage, actor, 0, i % 2u ? "walk" : "idle", NULL, NULL), NOH_OK);
+        }
+        for (uint32_t f = 0; f < 60; f++) crowd_frame(&c, f);
+        saved = test_aligned(noh_stage_state(c.stage, &bytes), (size_t)c.plan.state_bytes);
+        for (int again = 0; again < 2; again++) {
+            for (uint32_t f = 0; f < 120; f++) {
+                crowd_frame(&c, 60u + f);
+                if (j + again == 0) hashes[f] = noh_stage_hash(c.stage);
+                if (noh_stage_hash(c.stage) != hashes[f]) fail_msg("%u jobs: frame %u differs", jobs[j], (unsigned)f);
+            }
+            assert_int_equal(noh_stage_set_state(c.stage, saved, bytes, NULL), NOH_OK);
+        }
+        free(saved);
+        close_cast(&c);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(eyes_meet_a_point_whatever_the_body_does),
+        cmocka_unit_test(two_actors_meet_each_others_eyes),
+        cmocka_unit_test(nothing_that_lives_stands_still),
+        cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
+        cmocka_unit_test(an_hour_unseen_is_skipped),
+        cmocka_unit_test(a_face_is_planned_to_the_byte),
+        cmocka_unit_test(states_of_faces_are_put_back),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
