@@ -185,29 +185,43 @@ static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, 
 }
 
 /* The nearest shapes of shapes make a path that ends, at a vowel or at shut lips. */
+static void find_source(const binding *b, uint32_t channel, noh_face_source *source)
+{
+    memset(source, 0, sizeof *source);
+    for (uint32_t from = channel; from != NOH_NONE && !source->recipe; from = nearest(from)) {
+        source->channel = from;
+        source->recipe = choose(b, from);
+        if (source->recipe) count_rows(b, source->recipe, from, &source->row_count, &source->found_count);
+    }
+}
+
 static void bind_channel(binding *b, uint32_t channel)
 {
-    uint32_t from = channel;
-    while (from != NOH_NONE) {
-        const noh_face_recipe *recipe = choose(b, from);
-        if (recipe) {
-            link_rows(b, recipe, from, channel);
-            return;
-        }
-        from = nearest(from);
-    }
+    noh_face_source source;
+    find_source(b, channel, &source);
+    if (source.recipe) link_rows(b, source.recipe, source.channel, channel);
+}
+
+static const noh_face_recipe *const built_in[3] = { &noh_face_recipe_arkit, &noh_face_recipe_vrm,
+                                                    &noh_face_recipe_units };
+
+static binding binding_of(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
+                          const void *user)
+{
+    binding b = { NULL, 0, NULL, NULL, NULL, 0, 0 };
+    NOH_ASSERT(find);
+    b.recipes = recipes ? recipes : built_in;
+    b.recipe_count = recipes ? recipe_count : 3u;
+    b.find = find;
+    b.user = user;
+    return b;
 }
 
 uint32_t noh_face_recipe_bind_by(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
                                  const void *user, noh_face_link *links, uint32_t link_max)
 {
-    const noh_face_recipe *const built_in[3] = { &noh_face_recipe_arkit, &noh_face_recipe_vrm, &noh_face_recipe_units };
-    binding b = { NULL, 0, NULL, NULL, NULL, 0, 0 };
-    NOH_ASSERT(find && (links || !link_max));
-    b.recipes = recipes ? recipes : built_in;
-    b.recipe_count = recipes ? recipe_count : 3u;
-    b.find = find;
-    b.user = user;
+    binding b = binding_of(recipes, recipe_count, find, user);
+    NOH_ASSERT(links || !link_max);
     b.links = links;
     b.link_max = link_max;
     for (uint32_t channel = 0; channel < NOH_CHANNEL_COUNT; channel++) bind_channel(&b, channel);
@@ -237,6 +251,18 @@ uint32_t noh_face_recipe_bind(const noh_face_recipe *const *recipes, uint32_t re
     list.names = names;
     list.count = target_count;
     return noh_face_recipe_bind_by(recipes, recipe_count, find_listed, &list, links, link_max);
+}
+
+void noh_face_recipe_source(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
+                            uint32_t target_count, uint32_t channel, noh_face_source *source)
+{
+    name_list list = { NULL, 0 };
+    binding b;
+    NOH_ASSERT((names || !target_count) && channel < NOH_CHANNEL_COUNT && source);
+    list.names = names;
+    list.count = target_count;
+    b = binding_of(recipes, recipe_count, find_listed, &list);
+    find_source(&b, channel, source);
 }
 
 /* ---- weights ---- */

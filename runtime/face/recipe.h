@@ -3,6 +3,7 @@
  *   noh_face_channels       a pose, and what it says, as one number for each thing that can show
  *   noh_face_share          who owns mouth, lids and eyes
  *   noh_face_recipe_bind    a recipe's rows to the targets of a mesh, by name; noh_face_recipe_bind_by: by a function
+ *   noh_face_recipe_of_pack the recipe that an artist put into a pack
  *   noh_face_apply          channels to weights
  *
  * A recipe is a table of rows (channel, target, weight). Three are built in: for ARKit's 52 names, for VRM's presets,
@@ -14,6 +15,7 @@
 #define NOH_FACE_RECIPE_H
 
 #include "face/face.h"
+#include "pack/pack.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -103,6 +105,17 @@ extern const noh_face_recipe noh_face_recipe_arkit; /* browInnerUp, jawOpen, mou
 extern const noh_face_recipe noh_face_recipe_vrm;   /* aa, ih, ou, blinkLeft, happy, lookUp and so on */
 extern const noh_face_recipe noh_face_recipe_units; /* mouth-open, eye-left-closure, eyebrows-left-down and so on */
 
+/* The name of a channel, as recipes in packs and texts have it: blink-left, eye-right-out, joy-mouth, PP; "" past the
+ * last. And the channel of a name; NOH_NONE: there is none of it. */
+const char *noh_face_channel_name(uint32_t channel);
+uint32_t noh_face_channel_find(const char *name);
+
+/* The recipe that a pack brings (`noh build --recipe`). Rows of channels that this version does not know are left out.
+ * shapes  rows[row_max]; they refer to the pack's strings
+ * errors  NOT_FOUND the pack has none; MEMORY more rows than row_max (need: how many). *recipe is then untouched */
+noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
+                                   noh_error *error);
+
 typedef struct noh_face_link {
     uint16_t channel, target;
     float weight;
@@ -121,6 +134,18 @@ typedef uint32_t (*noh_face_find_fn)(const void *user, const char *name, uint32_
 
 uint32_t noh_face_recipe_bind_by(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
                                  const void *user, noh_face_link *links, uint32_t link_max);
+
+/* Where a channel's links come from. */
+typedef struct noh_face_source {
+    const noh_face_recipe *recipe;   /* NULL: the channel shows nothing */
+    uint32_t channel;                /* itself, or the mouth shape whose targets it takes */
+    uint32_t row_count, found_count; /* of that recipe and channel; and how many of these the mesh has targets for */
+} noh_face_source;
+
+/* As noh_face_recipe_bind chooses it.
+ * ranges  channel below NOH_CHANNEL_COUNT */
+void noh_face_recipe_source(const noh_face_recipe *const *recipes, uint32_t recipe_count, const char *const *names,
+                            uint32_t target_count, uint32_t channel, noh_face_source *source);
 
 /* Add the channels to weights, and hold those that they move within 0..1, or up to the largest weight of a target's
  * links where that is more.

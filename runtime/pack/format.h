@@ -30,6 +30,7 @@ extern "C" {
 #define NOH_CHUNK_CLIP NOH_FOURCC('M', 'O', 'T', 'N')
 #define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
 #define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
+#define NOH_CHUNK_RECIPE NOH_FOURCC('R', 'C', 'P', 'E')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 
 typedef struct noh_pack_header {
@@ -364,6 +365,21 @@ typedef struct noh_clip_marker {
     uint32_t tick;            /* increasing */
     uint32_t name, name_hash; /* the hash is its id */
 } noh_clip_marker;
+
+/* ---- CHUNK_RECIPE, none or one: header, rows. How a face shows what it shows (face/recipe.h): targets of its meshes
+ * by name, and what each is for. ---- */
+
+typedef struct noh_recipe_header {
+    uint32_t row_count, rows_offset;
+    uint32_t reserved[2];
+} noh_recipe_header;
+
+typedef struct noh_recipe_row {
+    uint32_t target, target_hash;
+    uint32_t channel, channel_hash; /* a name, as noh_face_channel_name has it */
+    float weight;                   /* -4..4 */
+    uint32_t reserved[3];
+} noh_recipe_row;
 
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
  * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened

@@ -21,6 +21,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_NODES: return 7;
     case NOH_CHUNK_CLIP: return 8;
     case NOH_CHUNK_GRAPH: return 9;
+    case NOH_CHUNK_RECIPE: return 10;
     default: return -1;
     }
 }
@@ -184,6 +185,14 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
         result = noh_check_clip(&check);
         count_chunk(&pack->clip_count, &pack->first_clip, index);
         break;
+    case NOH_CHUNK_RECIPE:
+        result = noh_check_recipe(&check);
+        if (!result) {
+            const noh_recipe_header *h = (const noh_recipe_header *)(const void *)check.bytes;
+            pack->recipe_row_count = h->row_count;
+            pack->recipe_rows = (const noh_recipe_row *)(const void *)(check.bytes + h->rows_offset);
+        }
+        break;
     default: /* a graph, which noh_pack_check_graph checks when it is opened */
         count_chunk(&pack->graph_count, &pack->first_graph, index);
         break;
@@ -212,7 +221,8 @@ static noh_result open_chunks(noh_pack *pack, noh_error *error)
         uint64_t table_at = sizeof(noh_pack_header) + (uint64_t)i * sizeof(noh_pack_chunk);
         uint32_t type = pack->chunks[i].type;
         int rank = chunk_rank(type);
-        int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES;
+        int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES ||
+                     type == NOH_CHUNK_RECIPE;
         noh_result result;
         if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0)) {
             return noh_fail(error, NOH_ERR_DATA, "chunk of an unknown type, or out of order", table_at, 0);

@@ -34,6 +34,8 @@ typedef struct noh_pack {
     const noh_node *nodes;
     const float *node_weights;
     uint32_t node_weight_count;
+    uint32_t recipe_row_count; /* of the face's own recipe; 0: it has none */
+    const noh_recipe_row *recipe_rows;
 } noh_pack;
 
 typedef struct noh_texture {

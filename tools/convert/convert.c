@@ -6,6 +6,7 @@
 #include "convert/clips/events_read.h"
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
+#include "convert/model/model_build.h"
 #include "convert/pack/pack_graph.h"
 #include "pack/pack.h"
 #include "sources.h"
@@ -46,6 +47,41 @@ static int read_graphs(const convert_options *options, const source *s, graph_fi
         graph_text_bind(*out, s->sets, s->set_count, &failure->line, &failure->error)) {
         return 1;
     }
+    failure->file = model_file;
+    return 0;
+}
+
+static int has_target(const model *m, const char *name)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
+            if (strcmp(m->meshes[i].targets[t].name, name) == 0) return 1;
+        }
+    }
+    return 0;
+}
+
+/* The recipe; *out NULL: there is none. A target that no mesh has is a warning: a recipe may serve several faces, and
+ * what is missing falls back. */
+static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    *out = NULL;
+    if (!options->recipe) {
+        return 0;
+    }
+    failure->file = options->recipe;
+    if (recipe_read(options->recipe, out, &failure->line, &failure->error)) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < (*out)->count; i++) {
+        const recipe_row *row = &(*out)->rows[i];
+        if (!has_target(s->m, row->target) &&
+            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->target)) {
+            return out_of_memory(&failure->error);
+        }
+    }
+    failure->line = 0;
     failure->file = model_file;
     return 0;
 }
@@ -202,8 +238,8 @@ static void report_warnings(FILE *report, const source *s)
     }
 }
 
-static int convert_source(const source *s, const graph_file *graphs, const convert_options *options, byte_buffer *out,
-                          model_error *error)
+static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
+                          const convert_options *options, byte_buffer *out, model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -226,6 +262,7 @@ static int convert_source(const source *s, const graph_file *graphs, const conve
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.graphs = graphs;
+        made.recipe = recipe;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -279,6 +316,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
 {
     source *all = calloc((size_t)input_count + 1u, sizeof *all);
     graph_file *graphs = NULL;
+    recipe_text *recipe = NULL;
     int failed, base;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
@@ -290,15 +328,17 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, all, failure) ||
                  apply_events(options, &all[base], &failure->error) ||
-                 read_graphs(options, &all[base], &graphs, failure);
+                 read_graphs(options, &all[base], &graphs, failure) ||
+                 read_recipe(options, &all[base], &recipe, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
-        failed = failed || convert_source(&all[base], graphs, options, out, &failure->error);
+        failed = failed || convert_source(&all[base], graphs, recipe, options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {
         source_free(&all[i]);
     }
     graph_text_free(graphs);
+    recipe_free(recipe);
     free(all);
     return failed;
 }

@@ -25,6 +25,7 @@ typedef struct convert_options {
     convert_only only;
     const char *events;    /* a text file of callback keys; NULL: none */
     const char *graph;     /* a text file of animation graphs; NULL: none */
+    const char *recipe;    /* a text file of what a face's targets are for; NULL: none */
     strip_levels lod_from; /* count 0: all levels stay */
     FILE *report;          /* NULL: quiet */
     FILE *progress;        /* a terminal, for progress; NULL: none */

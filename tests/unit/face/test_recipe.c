@@ -53,6 +53,41 @@ static void tables_are_in_range(void **state)
     }
 }
 
+static void channels_have_names(void **state)
+{
+    (void)state;
+    for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) {
+        assert_true(noh_face_channel_name(c)[0] != 0);
+        assert_int_equal(noh_face_channel_find(noh_face_channel_name(c)), c);
+    }
+    assert_string_equal(noh_face_channel_name(NOH_CHANNEL_COUNT), "");
+    assert_int_equal(noh_face_channel_find("wink"), NOH_NONE);
+    assert_int_equal(noh_face_channel_find("eye-right-out"), NOH_CHANNEL_EYES + 6);
+    assert_int_equal(noh_face_channel_find("joy-mouth"), NOH_CHANNEL_MOUTH + NOH_EMOTION_JOY);
+    assert_int_equal(noh_face_channel_find("contempt-upper"), NOH_CHANNEL_UPPER + NOH_EMOTION_CONTEMPT);
+    assert_int_equal(noh_face_channel_find("kk"), NOH_CHANNEL_VISEMES + NOH_VISEME_KK);
+}
+
+static void sources_tell_what_falls_back(void **state)
+{
+    static const noh_face_row rows[] = { { "jaw", NOH_CHANNEL_VISEMES + NOH_VISEME_AA, 0.5f },
+                                         { "gone", NOH_CHANNEL_VISEMES + NOH_VISEME_AA, 0.5f } };
+    static const noh_face_recipe mine = { "mine", rows, 2 };
+    const noh_face_recipe *const recipes[1] = { &mine };
+    const char *const names[1] = { "jaw" };
+    noh_face_source source;
+    (void)state;
+    noh_face_recipe_source(recipes, 1, names, 1, NOH_CHANNEL_VISEMES + NOH_VISEME_AA, &source);
+    assert_ptr_equal(source.recipe, &mine);
+    assert_true(source.channel == NOH_CHANNEL_VISEMES + NOH_VISEME_AA && source.row_count == 2 &&
+                source.found_count == 1);
+    noh_face_recipe_source(recipes, 1, names, 1, NOH_CHANNEL_VISEMES + NOH_VISEME_E, &source);
+    assert_ptr_equal(source.recipe, &mine); /* E falls back to ih, and that to aa */
+    assert_int_equal(source.channel, NOH_CHANNEL_VISEMES + NOH_VISEME_AA);
+    noh_face_recipe_source(recipes, 1, names, 1, NOH_CHANNEL_BREATH, &source);
+    assert_null(source.recipe);
+}
+
 static void each_naming_is_bound_by_its_own_recipe(void **state)
 {
     const noh_face_recipe *recipes[] = { &noh_face_recipe_arkit, &noh_face_recipe_vrm, &noh_face_recipe_units };
@@ -221,6 +256,8 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_are_in_range),
+        cmocka_unit_test(channels_have_names),
+        cmocka_unit_test(sources_tell_what_falls_back),
         cmocka_unit_test(each_naming_is_bound_by_its_own_recipe),
         cmocka_unit_test(missing_shapes_take_the_nearest),
         cmocka_unit_test(a_recipe_that_is_whole_goes_before_one_in_part),

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "convert/base/recipe_read.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/codec/clip_errors.h"
 #include "convert/codec/named_errors.h"
@@ -23,6 +24,7 @@ typedef struct encoded_clips {
     encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
     const graph_file *graphs; /* borrowed; NULL: none */
+    const recipe_text *recipe; /* likewise */
 } encoded_clips;
 
 typedef struct clips_settings {

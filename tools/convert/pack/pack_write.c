@@ -264,6 +264,29 @@ static void write_graphs(writer *w)
     }
 }
 
+static void write_recipe(writer *w)
+{
+    const recipe_text *recipe = w->clips->recipe;
+    noh_recipe_header h;
+    if (!recipe) return;
+    memset(&h, 0, sizeof h);
+    h.row_count = recipe->count;
+    h.rows_offset = sizeof h;
+    begin_chunk(w, NOH_CHUNK_RECIPE, "");
+    buffer_append(&w->out, &h, sizeof h);
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        noh_recipe_row row;
+        memset(&row, 0, sizeof row);
+        row.target = string_offset(&w->strings, recipe->rows[i].target);
+        row.target_hash = noh_hash_name(recipe->rows[i].target);
+        row.channel = string_offset(&w->strings, recipe->rows[i].channel);
+        row.channel_hash = noh_hash_name(recipe->rows[i].channel);
+        row.weight = recipe->rows[i].weight;
+        buffer_append(&w->out, &row, sizeof row);
+    }
+    end_chunk(w);
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -301,7 +324,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return (size_t)m->mesh_count + m->texture_count + m->skin_count + 3 +
+    return (size_t)m->mesh_count + m->texture_count + m->skin_count + 4 +
            (made ? (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
@@ -337,6 +360,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
         if (made) {
             write_clips(&w);
             write_graphs(&w);
+            write_recipe(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

@@ -17,7 +17,7 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe;
     int input_count, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
@@ -167,6 +167,7 @@ static int run(void *args)
         return status;
     }
     o.identity = a->identity;
+    o.recipe = a->recipe;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
@@ -346,6 +347,13 @@ static const option options[] = {
       .what = "animation graphs that play the clips, a text file (noh help FORMATS)",
       .example = "hero.graph",
       .excludes = "--only=mesh" },
+    { .name = "--recipe",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, recipe),
+      .value = "FILE",
+      .what = "what the face's targets are for: blinks, looks, emotions, mouth shapes, a text file (noh help FORMATS)",
+      .example = "hero.recipe",
+      .excludes = "--only=anim" },
     { .name = "--unit-cm",
       .kind = OPTION_NUMBER,
       .at = offsetof(build_args, unit_cm),

@@ -62,6 +62,22 @@ const char *const help_formats_text[] = {
     "   space move stand 0 walk 1.5 run 5 by=speed",
     "   clip greet wave",
     "   one-shot body move greet on=wave in=0.2 out=0.4",
+    "# recipes of faces (noh build --recipe FILE)",
+    "Which targets show a blink, a look, an emotion or a mouth shape. One row a line, words separated by blanks, names with blanks in "
+    "double quotes; # begins a comment:",
+    "   CHANNEL TARGET [WEIGHT]                     the target's weight where the channel is 1; -4 to 4 (1)",
+    "   blink-left, blink-right                     blink is both",
+    "   eye-left-up, -down, -out, -in; eye-right-   looks, where no joint turns the eyes; lids-up, lids-down: lids that follow",
+    "   joy-upper, joy-mouth                        brows, lids and nose of an emotion, and its mouth; as joy: sadness,",
+    "                                               surprise, fear, anger, disgust, contempt",
+    "   sil PP FF TH DD kk CH SS nn RR aa E ih oh ou  mouth shapes of speech",
+    "   breath                                      the chest",
+    "Channels without a row take the first of the built-in recipes that fits the targets' names (ARKit, VRM, facial units), and a mouth "
+    "shape without any that of the nearest other one. A row whose target no mesh has is a warning. noh face PACK shows what came out.",
+    "   blink lidsClosed",
+    "   aa jaw 0.8",
+    "   aa \"lips wide\" 0.2",
+    "   joy-mouth grin 0.9",
     "# masks",
     "An animation graph names the joints of its masks. Without a graph a mask is not a file: a game fills one byte for each joint and each float of the clip set, 255 for full weight, 0 for none "
     "(noh_mask_subtree, noh_mask_fill). Build clips that are played through masks with --for-masks, so that no joint relies on another's error.",

@@ -1,0 +1,225 @@
+/* cmd_face.c: what a pack's targets can show: each channel, the recipe that it takes, and what falls back. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/json.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "face/recipe.h"
+#include "file/pack_file.h"
+
+#define LINKS_MAX 4096u
+
+typedef struct face_args {
+    const char *pack;
+    int as_json;
+} face_args;
+
+/* How a channel is shown. */
+typedef enum coverage { COVERED, PARTLY, FALLS_BACK, NOTHING, COVERAGES } coverage;
+
+static const char *const coverage_names[COVERAGES] = { "covered", "partly", "falls_back", "nothing" };
+
+typedef struct face_report {
+    const pack_file *file;
+    noh_face_row rows[NOH_FACE_ROWS_MAX];
+    noh_face_recipe own;
+    const noh_face_recipe *recipes[4]; /* the best first */
+    uint32_t recipe_count;
+    /* of one mesh */
+    noh_mesh mesh;
+    const char *names[NOH_TARGETS_MAX];
+    uint8_t used[NOH_TARGETS_MAX];
+    noh_face_link links[LINKS_MAX];
+    uint32_t link_count, counts[COVERAGES];
+    noh_face_source sources[NOH_CHANNEL_COUNT];
+} face_report;
+
+static void list_recipes(face_report *r)
+{
+    if (noh_face_recipe_of_pack(&r->file->pack, r->rows, NOH_FACE_ROWS_MAX, &r->own, NULL) == NOH_OK) {
+        r->recipes[r->recipe_count++] = &r->own;
+    }
+    r->recipes[r->recipe_count++] = &noh_face_recipe_arkit;
+    r->recipes[r->recipe_count++] = &noh_face_recipe_vrm;
+    r->recipes[r->recipe_count++] = &noh_face_recipe_units;
+}
+
+static coverage coverage_of(const noh_face_source *source, uint32_t channel)
+{
+    return !source->recipe                           ? NOTHING
+           : source->channel != channel              ? FALLS_BACK
+           : source->found_count < source->row_count ? PARTLY
+                                                     : COVERED;
+}
+
+static void read_mesh(face_report *r)
+{
+    const uint32_t count = r->mesh.header->target_count;
+    memset(r->used, 0, sizeof r->used);
+    memset(r->counts, 0, sizeof r->counts);
+    for (uint32_t t = 0; t < count; t++) {
+        r->names[t] = noh_pack_string(r->mesh.pack, r->mesh.targets[t].name);
+        r->used[t] = (r->mesh.targets[t].flags & NOH_TARGET_IDENTITY) != 0;
+    }
+    r->link_count = noh_face_recipe_bind(r->recipes, r->recipe_count, r->names, count, r->links, LINKS_MAX);
+    r->link_count = r->link_count < LINKS_MAX ? r->link_count : LINKS_MAX;
+    for (uint32_t i = 0; i < r->link_count; i++) r->used[r->links[i].target] = 1;
+    for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) {
+        noh_face_recipe_source(r->recipes, r->recipe_count, r->names, count, c, &r->sources[c]);
+        r->counts[coverage_of(&r->sources[c], c)]++;
+    }
+}
+
+/* ---- text ---- */
+
+static void print_source(const noh_face_source *source, uint32_t channel)
+{
+    char text[64];
+    switch (coverage_of(source, channel)) {
+    case NOTHING: printf("-"); return;
+    case FALLS_BACK: (void)snprintf(text, sizeof text, "as %s", noh_face_channel_name(source->channel)); break;
+    case PARTLY:
+        (void)snprintf(text, sizeof text, "%s, %u of %u", source->recipe->name, source->found_count, source->row_count);
+        break;
+    default: (void)snprintf(text, sizeof text, "%s", source->recipe->name); break;
+    }
+    printf("%-16s", text);
+}
+
+static void print_channel(const face_report *r, uint32_t channel)
+{
+    printf("  %-16s", noh_face_channel_name(channel));
+    print_source(&r->sources[channel], channel);
+    for (uint32_t i = 0; i < r->link_count; i++) {
+        if (r->links[i].channel != channel) continue;
+        printf(" %s %g", r->names[r->links[i].target], (double)r->links[i].weight);
+    }
+    printf("\n");
+}
+
+static void print_mesh(const face_report *r)
+{
+    uint32_t unused = 0;
+    printf("mesh '%s': %u targets; of %u channels %u are covered, %u partly, %u fall back, %u show nothing\n",
+           r->mesh.name, r->mesh.header->target_count, (unsigned)NOH_CHANNEL_COUNT, r->counts[COVERED],
+           r->counts[PARTLY], r->counts[FALLS_BACK], r->counts[NOTHING]);
+    for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) print_channel(r, c);
+    for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
+        if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets of no channel: ", r->names[t]);
+    }
+    if (unused) printf("\n");
+}
+
+/* ---- JSON ---- */
+
+static void json_channel(json *j, const face_report *r, uint32_t channel)
+{
+    const noh_face_source *source = &r->sources[channel];
+    json_open(j, NULL, '{');
+    json_text(j, "channel", noh_face_channel_name(channel));
+    json_text(j, "coverage", coverage_names[coverage_of(source, channel)]);
+    if (source->recipe) {
+        json_text(j, "recipe", source->recipe->name);
+        json_text(j, "from", noh_face_channel_name(source->channel));
+    }
+    json_integer(j, "rows", source->row_count);
+    json_integer(j, "found", source->found_count);
+    json_open(j, "targets", '[');
+    for (uint32_t i = 0; i < r->link_count; i++) {
+        if (r->links[i].channel != channel) continue;
+        json_open(j, NULL, '{');
+        json_text(j, "name", r->names[r->links[i].target]);
+        json_number(j, "weight", (double)r->links[i].weight);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+    json_close(j, '}');
+}
+
+static void json_mesh(json *j, const face_report *r)
+{
+    json_open(j, NULL, '{');
+    json_text(j, "name", r->mesh.name);
+    json_integer(j, "target_count", r->mesh.header->target_count);
+    for (uint32_t i = 0; i < COVERAGES; i++) json_integer(j, coverage_names[i], r->counts[i]);
+    json_open(j, "channels", '[');
+    for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) json_channel(j, r, c);
+    json_close(j, ']');
+    json_open(j, "unused", '[');
+    for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
+        if (!r->used[t]) json_text(j, NULL, r->names[t]);
+    }
+    json_close(j, ']');
+    json_close(j, '}');
+}
+
+/* ---- all ---- */
+
+static int report_pack(face_report *r, int as_json)
+{
+    json j = { NULL, 0, 0, 0, 0, 0 };
+    uint32_t meshes = 0;
+    list_recipes(r);
+    if (as_json) {
+        j = json_begin();
+        json_text(&j, "pack", r->file->path);
+        json_integer(&j, "recipe_rows", r->file->pack.recipe_row_count);
+        json_open(&j, "meshes", '[');
+    } else if (r->own.row_count) {
+        printf("the pack's own recipe has %u rows\n", r->own.row_count);
+    }
+    for (uint32_t i = 0; noh_pack_mesh_at(&r->file->pack, i, &r->mesh, NULL) == NOH_OK; i++) {
+        if (!r->mesh.header->target_count) continue;
+        meshes++;
+        read_mesh(r);
+        if (as_json) {
+            json_mesh(&j, r);
+        } else {
+            print_mesh(r);
+        }
+    }
+    if (!meshes) {
+        json_drop(&j);
+        return tool_fail(r->file->path, "no mesh has morph targets");
+    }
+    if (!as_json) return 0;
+    json_close(&j, ']');
+    return json_end(&j);
+}
+
+static int run(void *args)
+{
+    const face_args *a = args;
+    pack_file file;
+    face_report *report = calloc(1, sizeof *report);
+    int status = report ? pack_file_open(&file, a->pack) : tool_fail(a->pack, "out of memory");
+    if (!status) {
+        report->file = &file;
+        status = report_pack(report, a->as_json);
+        pack_file_close(&file);
+    }
+    free(report);
+    return status;
+}
+
+static face_args arguments;
+
+static const option options[] = { OPTION_JSON(face_args, as_json) };
+
+const verb verb_face = {
+    .name = "face",
+    .files = "PACK",
+    .what = "what a face's targets show: blinks, looks, emotions, mouth shapes, and the recipe of each",
+    .more =
+        "Each channel takes the first recipe that fits the targets' names: the pack's own (noh build --recipe), then those for ARKit's names, VRM's and facial units. A mouth shape without any takes that of the nearest other one.",
+    .example = "head.noh\nhead.noh --json",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(face_args, pack),
+    .args = &arguments,
+    .run = run,
+};
