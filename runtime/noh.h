@@ -101,6 +101,7 @@
 
 #include "sim/ik.h"       /* two bones that reach a point, a head that looks at one */
 #include "sim/ik_chain.h" /* chains of any length, with limits */
+#include "sim/spring.h"   /* chains that swing: hair, sleeves, tails */
 
 /* ---- parts, for tools and engines of your own ---- */
 

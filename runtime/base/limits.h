@@ -64,7 +64,10 @@
 
 /* ---- bodies ---- */
 
-#define NOH_IK_JOINTS_MAX 32u /* of one chain */
+#define NOH_IK_JOINTS_MAX 32u        /* of one chain */
+#define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
+#define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */
+#define NOH_SPRING_STEPS_MAX 15u     /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- controllers and graphs ---- */
 

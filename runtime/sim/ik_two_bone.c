@@ -45,55 +45,74 @@ static float reachable(const noh_ik_limb *limb, const lengths *l, float wanted)
  * of half an angle by its sine and cosine, the one that loses no digits. */
 static void turn_about(const float axis[3], const float a[3], const float b[3], float q[4])
 {
-    static const float none[3] = { 0.0f, 0.0f, 0.0f };
     float from[3], to[3], normal[3];
     noh_reject3(a, axis, from);
     noh_reject3(b, axis, to);
-    noh_normalize3(from, none);
-    noh_normalize3(to, none);
     noh_cross3(from, to, normal);
+    const float size = noh_sqrt(noh_dot3(from, from) * noh_dot3(to, to));
     const float cosine = noh_dot3(from, to), sine = noh_dot3(normal, axis);
-    const float part = cosine < 0.0f ? 1.0f - cosine : sine;
+    const float part = cosine < 0.0f ? size - cosine : sine;
     for (int i = 0; i < 3; i++) q[i] = axis[i] * part;
-    q[3] = cosine < 0.0f ? sine : 1.0f + cosine;
+    q[3] = cosine < 0.0f ? sine : size + cosine;
     noh_quat_normalize(q);
 }
 
-/* Is what v has at right angles to the axis more than rounding? */
-static int leaves(const float v[3], const float axis[3])
+/* The quaternion of a rotation matrix: of its four forms the one with the largest divisor (Shepperd 1978). */
+static void quat_of_rows(float m[3][3], float q[4])
 {
-    float part[3];
-    noh_reject3(v, axis, part);
-    return noh_dot3(part, part) > 1e-10f * noh_dot3(v, v);
+    const float trace = m[0][0] + m[1][1] + m[2][2];
+    const int i = m[1][1] > m[0][0] ? (m[2][2] > m[1][1] ? 2 : 1) : m[2][2] > m[0][0] ? 2 : 0;
+    const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+    if (trace > m[i][i]) {
+        q[0] = m[2][1] - m[1][2];
+        q[1] = m[0][2] - m[2][0];
+        q[2] = m[1][0] - m[0][1];
+        q[3] = 1.0f + trace;
+    } else {
+        q[i] = 1.0f + m[i][i] - m[j][j] - m[k][k];
+        q[j] = m[i][j] + m[j][i];
+        q[k] = m[i][k] + m[k][i];
+        q[3] = m[k][j] - m[j][k];
+    }
+    noh_quat_normalize(q);
 }
 
-/* The rotation that turns the whole limb, bent in the plane of upper and lower, so that the upper bone lies along
- * new_upper and the lower bone on the side of new_lower. */
-static void turn_frame(const float upper[3], const float lower[3], const float new_upper[3], const float new_lower[3],
-                       const float normal[3], float q[4])
+/* The rotation that turns the whole limb so that the upper bone lies along new_upper, and the plane of its bend at
+ * right angles to `normal`: from the frame of bone, plane and what is left, to the new one. A straight limb has no
+ * plane. */
+static void turn_frame(const float upper[3], const float lower[3], const float new_upper[3], const float normal[3],
+                       float length, float q[4])
 {
-    static const float none[3] = { 0.0f, 0.0f, 0.0f };
-    float axis[3], turned[3], twist[4];
-    memcpy(axis, new_upper, sizeof axis);
-    noh_normalize3(axis, none);
-    noh_quat_between(upper, new_upper, normal, q);
-    noh_quat_rotate(q, lower, turned);
-    if (leaves(turned, axis) && leaves(new_lower, axis)) {
-        turn_about(axis, turned, new_lower, twist);
-        noh_quat_mul(twist, q, q);
-        noh_quat_normalize(q);
+    float plane[3], across[3], new_across[3], m[3][3];
+    noh_cross3(lower, upper, plane);
+    const float square = noh_dot3(plane, plane), inverse = length > 0.0f ? 1.0f / length : 0.0f;
+    if (square <= 1e-10f * noh_dot3(upper, upper) * noh_dot3(lower, lower)) {
+        noh_quat_between(upper, new_upper, normal, q);
+        return;
     }
+    const float unit = inverse / noh_sqrt(square); /* of the plane's normal, and of bones: both fit in one factor */
+    noh_cross3(plane, upper, across);
+    noh_cross3(normal, new_upper, new_across);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            m[r][c] = (new_upper[r] * upper[c] * inverse + new_across[r] * across[c] * unit) * inverse +
+                      normal[r] * plane[c] * unit * length;
+        }
+    }
+    quat_of_rows(m, q);
 }
 
 /* The rotation that turns the lower bone in the plane of the bend, and what the plane lacks. */
 static void turn_lower(const float lower[3], const float new_lower[3], const float normal[3], float q[4])
 {
-    float turned[3], rest[4];
+    float turned[3], off[3], rest[4];
     turn_about(normal, lower, new_lower, q);
     noh_quat_rotate(q, lower, turned);
-    noh_quat_between(turned, new_lower, normal, rest);
-    noh_quat_mul(rest, q, q);
-    noh_quat_normalize(q);
+    noh_sub3(turned, new_lower, off);
+    if (noh_dot3(off, off) > 1e-12f * noh_dot3(lower, lower)) {
+        noh_quat_between(turned, new_lower, normal, rest);
+        noh_quat_mul(rest, q, q);
+    }
 }
 
 /* The unit direction, at right angles to the target's, in which the middle joint shall lie. Of itself it stays in the
@@ -167,7 +186,7 @@ void noh_ik_two_bone(const noh_ik_limb *limb, const float target[3], const float
     noh_cross3(along, side, normal);
     place(&l, reachable(limb, &l, bend->missed), along, side, middle, end);
     noh_sub3(end, middle, rest);
-    turn_frame(upper, lower, middle, rest, normal, bend->start);
+    turn_frame(upper, lower, middle, normal, l.upper, bend->start);
     noh_quat_rotate(bend->start, lower, lower);
     turn_lower(lower, rest, normal, bend->middle);
     noh_sub3(end, wanted, rest);

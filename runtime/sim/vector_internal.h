@@ -9,13 +9,17 @@
 
 static inline void noh_sub3(const float a[3], const float b[3], float out[3])
 {
-    for (int i = 0; i < 3; i++) out[i] = a[i] - b[i];
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
 }
 
 /* a + s * b; out may be any of them. */
 static inline void noh_madd3(const float a[3], float s, const float b[3], float out[3])
 {
-    for (int i = 0; i < 3; i++) out[i] = a[i] + s * b[i];
+    out[0] = a[0] + s * b[0];
+    out[1] = a[1] + s * b[1];
+    out[2] = a[2] + s * b[2];
 }
 
 static inline void noh_cross3(const float a[3], const float b[3], float out[3])
@@ -59,25 +63,25 @@ NOH_UNUSED static inline void noh_perpendicular3(const float v[3], const float h
  * axis where they are opposed.
  * Past a right angle it is taken in two steps, half a turn about the axis and then what is left: the sum of nearly
  * opposed vectors has few digits, and the second step corrects what the axis lacks. */
-NOH_UNUSED static inline void noh_quat_between(const float from[3], const float to[3], const float hint[3], float q[4])
+NOH_UNUSED static inline void noh_quat_between(const float a[3], const float b[3], const float hint[3], float q[4])
 {
     static const float none[3] = { 0.0f, 0.0f, 0.0f };
-    float a[3], b[3], axis[3], half[4] = { 0.0f, 0.0f, 0.0f, 0.0f }, rest[4];
-    memcpy(a, from, sizeof a);
-    memcpy(b, to, sizeof b);
-    noh_normalize3(a, none);
-    noh_normalize3(b, none);
-    const float cosine = noh_dot3(a, b), sign = cosine < 0.0f ? -1.0f : 1.0f;
-    for (int i = 0; i < 3; i++) a[i] *= sign;
-    noh_cross3(a, b, rest);
-    rest[3] = 1.0f + noh_dot3(a, b);
-    noh_quat_normalize(rest);
-    if (cosine < 0.0f) {
-        noh_cross3(b, a, axis); /* a is the other way round by now */
-        noh_perpendicular3(a, noh_dot3(axis, axis) > 1e-12f ? axis : hint, half);
-        noh_quat_mul(rest, half, rest);
+    const float cosine = noh_dot3(a, b), size = noh_sqrt(noh_dot3(a, a) * noh_dot3(b, b));
+    if (cosine >= 0.0f || !(size > 0.0f)) {
+        noh_cross3(a, b, q);
+        q[3] = size + cosine;
+        noh_quat_normalize(q);
+    } else {
+        float from[3] = { -a[0], -a[1], -a[2] }, axis[3], half[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+        noh_cross3(a, b, axis);
+        const float *about = noh_dot3(axis, axis) > 1e-12f * size * size ? axis : hint;
+        noh_cross3(from, b, q);
+        q[3] = size - cosine;
+        noh_quat_normalize(q);
+        noh_normalize3(from, none);
+        noh_perpendicular3(from, about, half);
+        noh_quat_mul(q, half, q);
     }
-    memcpy(q, rest, sizeof rest);
 }
 
 #endif

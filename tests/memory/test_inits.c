@@ -234,6 +234,18 @@ INIT(identity_init)
     return noh_identity_init(memory, bytes, scratch, sizeof scratch, &s.mesh, NULL, &identity, error);
 }
 
+INIT(spring_init)
+{
+    static const noh_spring_joint joints[2] = {
+        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, 0.5f },
+        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, 0.5f }
+    };
+    const noh_spring_desc desc = { joints, 2, 3, { 0.0f, -1.0f, 0.0f } };
+    const noh_spring_carrier carrier = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *spring;
+    return noh_spring_init(memory, bytes, &desc, &carrier, &spring, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -354,6 +366,7 @@ static const struct {
     ROW(lod_pack_init),
     ROW(lod_pools_init),
     ROW(identity_init),
+    ROW(spring_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),

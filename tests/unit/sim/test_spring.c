@@ -1,0 +1,412 @@
+/* Tests of runtime/sim/spring.c against the reference of VRMC_springBone, written here in double as its text has it. */
+#include "sim/spring.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/quat.h"
+#include "support/support.h"
+
+#define JOINTS 5u
+#define SECOND 48000u
+
+static noh_spring_joint joints[JOINTS];
+
+/* Five bones of 100 mm that hang down, the last ones softer. */
+static noh_spring_desc hanging(float stiffness, float drag, float gravity)
+{
+    noh_spring_desc desc = { joints, JOINTS, 0, { 0.0f, 0.0f, 0.0f } };
+    for (uint32_t i = 0; i < JOINTS; i++) {
+        joints[i] = (noh_spring_joint){
+            { 0.0f, -0.1f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, stiffness, drag, 0.02f, gravity
+        };
+    }
+    return desc;
+}
+
+static noh_spring *made(const noh_spring_desc *desc, const noh_spring_carrier *carrier)
+{
+    const size_t bytes = noh_spring_size(desc);
+    noh_spring *spring;
+    void *memory = malloc(bytes);
+    assert_int_equal(noh_spring_init(memory, bytes, desc, carrier, &spring, NULL), NOH_OK);
+    return spring;
+}
+
+static double apart(const float a[3], const double b[3])
+{
+    return sqrt(pow((double)a[0] - b[0], 2) + pow((double)a[1] - b[1], 2) + pow((double)a[2] - b[2], 2));
+}
+
+/* ---- the reference: one frame of dt seconds, tails in world space ---- */
+
+static void rotate(const double q[4], const double v[3], double out[3])
+{
+    const double t[3] = { 2 * (q[1] * v[2] - q[2] * v[1]), 2 * (q[2] * v[0] - q[0] * v[2]),
+                          2 * (q[0] * v[1] - q[1] * v[0]) };
+    const double r[3] = { v[0] + q[3] * t[0] + q[1] * t[2] - q[2] * t[1],
+                          v[1] + q[3] * t[1] + q[2] * t[0] - q[0] * t[2],
+                          v[2] + q[3] * t[2] + q[0] * t[1] - q[1] * t[0] };
+    memcpy(out, r, sizeof r);
+}
+
+static void multiply(const double a[4], const double b[4], double out[4])
+{
+    const double r[4] = { a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+                          a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+                          a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+                          a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2] };
+    memcpy(out, r, sizeof r);
+}
+
+static void between(const double a[3], const double b[3], double q[4])
+{
+    double length = 0.0;
+    q[0] = a[1] * b[2] - a[2] * b[1];
+    q[1] = a[2] * b[0] - a[0] * b[2];
+    q[2] = a[0] * b[1] - a[1] * b[0];
+    q[3] = sqrt((a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2])) + a[0] * b[0] +
+           a[1] * b[1] + a[2] * b[2];
+    for (int i = 0; i < 4; i++) length += q[i] * q[i];
+    for (int i = 0; i < 4; i++) q[i] /= sqrt(length);
+}
+
+typedef struct reference {
+    double now[JOINTS][3], before[JOINTS][3];
+} reference;
+
+/* Out of a capsule, then back to length: once for each collider. */
+static void reference_push(const noh_spring_collider *c, double radius, const double head[3], double length,
+                           double tail[3])
+{
+    double axis[3], away[3], square = 0.0, along = 0.0, distance = 0.0;
+    for (int i = 0; i < 3; i++) {
+        axis[i] = (double)c->to[i] - (double)c->from[i];
+        square += axis[i] * axis[i];
+        along += (tail[i] - (double)c->from[i]) * axis[i];
+    }
+    along = square > 0.0 ? fmin(fmax(along / square, 0.0), 1.0) : 0.0;
+    for (int i = 0; i < 3; i++) {
+        away[i] = tail[i] - (double)c->from[i] - along * axis[i];
+        distance += away[i] * away[i];
+    }
+    distance = sqrt(distance);
+    if (distance >= (double)c->radius + radius) return;
+    square = 0.0;
+    for (int i = 0; i < 3; i++) {
+        tail[i] += away[i] / distance * ((double)c->radius + radius - distance);
+        square += (tail[i] - head[i]) * (tail[i] - head[i]);
+    }
+    for (int i = 0; i < 3; i++) tail[i] = head[i] + (tail[i] - head[i]) * length / sqrt(square);
+}
+
+static void reference_step(reference *r, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
+                           const noh_spring_collider *colliders, double dt)
+{
+    double head[3], rotation[4];
+    for (int i = 0; i < 3; i++) head[i] = (double)carrier->position[i];
+    for (int i = 0; i < 4; i++) rotation[i] = (double)carrier->rotation[i];
+    for (uint32_t j = 0; j < JOINTS; j++) {
+        const noh_spring_joint *joint = &desc->joints[j];
+        double bone[3], rest[4], world[4], pull[3], tail[3], length = 0.0, size = 0.0, swing[4];
+        for (int i = 0; i < 3; i++) bone[i] = (double)joint->bone[i], length += bone[i] * bone[i];
+        length = sqrt(length);
+        for (int i = 0; i < 4; i++) rest[i] = (double)joint->rest[i];
+        multiply(rotation, rest, world);
+        rotate(world, bone, pull);
+        for (int i = 0; i < 3; i++) {
+            tail[i] = r->now[j][i] + (r->now[j][i] - r->before[j][i]) * (1.0 - (double)joint->drag) +
+                      dt * (double)joint->stiffness * pull[i] / length - (i == 1 ? dt * (double)joint->gravity : 0.0);
+            size += (tail[i] - head[i]) * (tail[i] - head[i]);
+        }
+        for (int i = 0; i < 3; i++) tail[i] = head[i] + (tail[i] - head[i]) * length / sqrt(size);
+        for (uint32_t k = 0; k < desc->collider_count; k++) {
+            reference_push(&colliders[k], (double)joint->radius, head, length, tail);
+        }
+        for (int i = 0; i < 3; i++) {
+            r->before[j][i] = r->now[j][i];
+            r->now[j][i] = tail[i];
+            tail[i] -= head[i];
+        }
+        between(pull, tail, swing);
+        multiply(swing, world, rotation);
+        memcpy(head, r->now[j], sizeof head);
+    }
+}
+
+static reference reference_of(const noh_spring_desc *desc, const noh_spring_carrier *carrier)
+{
+    reference r;
+    for (uint32_t j = 0; j < JOINTS; j++) {
+        for (int i = 0; i < 3; i++) {
+            r.now[j][i] = (double)carrier->position[i] + (double)(j + 1) * (double)desc->joints[0].bone[i];
+            r.before[j][i] = r.now[j][i];
+        }
+    }
+    return r;
+}
+
+/* What carries the chain sways and turns. */
+static noh_spring_carrier swaying(double seconds)
+{
+    const float by[3] = { 0.3f * (float)sin(3.0 * seconds), 0.8f * (float)sin(2.0 * seconds), 0.2f };
+    noh_spring_carrier c = { { 0.2f * (float)sin(5.0 * seconds), 1.5f, 1.0f + 0.1f * (float)seconds }, { 0 } };
+    noh_quat_from_rotation(by, c.rotation);
+    return c;
+}
+
+/* The farthest from the reference in ten seconds at 60 Hz. What is shown is the step before, carried along: it is
+ * compared with that step as the carrier stood then. */
+static double off_reference(uint32_t collider_count, double *touched)
+{
+    const noh_spring_collider colliders[2] = { { { 0.1f, 1.15f, 0.9f }, { 0.1f, 1.15f, 0.9f }, 0.08f },
+                                               { { -0.2f, 1.2f, 0.0f }, { -0.1f, 1.25f, 3.0f }, 0.06f } };
+    noh_spring_desc desc = hanging(1.0f, 0.4f, 0.3f);
+    noh_spring_carrier at = { { 0.0f, 1.5f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    reference r, before, free_of_all;
+    noh_spring *spring;
+    double worst = 0.0;
+    desc.collider_count = collider_count;
+    spring = made(&desc, &at);
+    r = reference_of(&desc, &at);
+    *touched = 0.0;
+    for (int n = 1; n <= 600; n++) {
+        float ends[3 * JOINTS];
+        const noh_spring_carrier then = at;
+        noh_spring_desc without = desc;
+        without.collider_count = 0;
+        at = swaying(n / 60.0);
+        before = free_of_all = r;
+        reference_step(&r, &desc, &at, colliders, 1.0 / 60.0);
+        reference_step(&free_of_all, &without, &at, NULL, 1.0 / 60.0);
+        *touched += fabs(free_of_all.now[JOINTS - 1u][0] - r.now[JOINTS - 1u][0]) > 1e-3 ? 1.0 : 0.0;
+        assert_int_equal(noh_spring_step(spring, &desc, &at, collider_count ? colliders : NULL, SECOND / 60u), 0);
+        noh_spring_ends(spring, &desc, ends);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            float back[4], seen[3];
+            double there[3];
+            for (int i = 0; i < 3; i++) seen[i] = ends[3 * j + (uint32_t)i] - at.position[i];
+            noh_quat_conjugate(at.rotation, back);
+            noh_quat_rotate(back, seen, seen);
+            noh_quat_rotate(then.rotation, seen, seen);
+            for (int i = 0; i < 3; i++) there[i] = before.now[j][i] - (double)then.position[i];
+            worst = fmax(worst, apart(seen, there));
+        }
+    }
+    free(spring);
+    return worst;
+}
+
+static void sixty_hertz_is_the_reference(void **state)
+{
+    double touched, off = off_reference(0, &touched);
+    (void)state;
+    print_message("# off the reference by at most %.2g m in 10 s\n", off);
+    assert_true(off < 1e-5);
+    off = off_reference(2, &touched);
+    print_message("# with colliders, which push in %.0f of 600 steps, by %.2g m\n", touched, off);
+    assert_true(off < 1e-5 && touched > 30.0);
+}
+
+/* After a leap of 100 mm: how far the end overshoots, and when it is within 2 mm for good. */
+static void settle(uint32_t hertz, double *overshoot_mm, double *settle_s)
+{
+    const noh_spring_desc desc = hanging(1.0f, 0.4f, 0.0f);
+    noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *spring = made(&desc, &at);
+    *overshoot_mm = *settle_s = 0.0;
+    /* carried 100 mm aside within a fifteenth of a second, which every rate has as whole frames */
+    for (uint32_t n = 1; n <= 3u * hertz; n++) {
+        const double seconds = (double)n / hertz, share = fmin(seconds * 15.0, 1.0);
+        float ends[3 * JOINTS];
+        double off;
+        at.position[0] = (float)(0.1 * share);
+        assert_int_equal(noh_spring_step(spring, &desc, &at, NULL, SECOND / hertz), 0);
+        noh_spring_ends(spring, &desc, ends);
+        off = 1000.0 * ((double)ends[3 * (JOINTS - 1u)] - (double)at.position[0]);
+        *overshoot_mm = fmax(*overshoot_mm, off);
+        if (fabs(off) > 2.0) *settle_s = seconds;
+    }
+    free(spring);
+}
+
+static void every_rate_settles_alike(void **state)
+{
+    static const uint32_t rates[] = { 15, 30, 60, 120, 240 };
+    double at_60_mm, at_60_s;
+    (void)state;
+    settle(60, &at_60_mm, &at_60_s);
+    assert_true(at_60_s > 0.2 && at_60_mm > 5.0);
+    for (size_t i = 0; i < TEST_COUNT(rates); i++) {
+        double mm, s;
+        settle(rates[i], &mm, &s);
+        print_message("# %u Hz: overshoots by %.1f mm, settles in %.3f s\n", rates[i], mm, s);
+        assert_true(fabs(s - at_60_s) <= 0.03 * at_60_s + 1.0 / rates[i]);
+        assert_true(rates[i] < 60 || fabs(mm - at_60_mm) <= 0.03 * at_60_mm);
+    }
+}
+
+/* The reference, drag by the frame, settles in twice the time or more at 15 Hz than at 90. */
+static void errata_a_drag_by_the_frame_depends_on_frames(void **state)
+{
+    const noh_spring_desc desc = hanging(1.0f, 0.4f, 0.0f);
+    double settled[2] = { 0.0, 0.0 };
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const int hertz = k ? 90 : 15;
+        noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+        reference r = reference_of(&desc, &at);
+        at.position[0] = 0.1f;
+        for (int n = 1; n <= 3 * hertz; n++) {
+            reference_step(&r, &desc, &at, NULL, 1.0 / hertz);
+            if (fabs(r.now[JOINTS - 1u][0] - 0.1) > 0.002) settled[k] = (double)n / hertz;
+        }
+    }
+    assert_true(settled[0] > 2.0 * settled[1]);
+}
+
+static void time_may_be_cut_anywhere(void **state)
+{
+    const noh_spring_desc desc = hanging(2.0f, 0.2f, 0.5f);
+    const noh_spring_carrier start = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *one = made(&desc, &start), *many = made(&desc, &start);
+    float a[4 * JOINTS], b[4 * JOINTS];
+    (void)state;
+    for (int n = 1; n <= 100; n++) { /* 7,000 ticks at once, and as 1,000 at a time: a straight way in both */
+        noh_spring_carrier at = start;
+        const float from = n > 1 ? (float)(n - 1) * 0.1f : 0.0f;
+        for (int k = 1; k <= 7; k++) {
+            at.position[0] = from + 0.1f * (float)k / 7.0f;
+            (void)noh_spring_step(many, &desc, &at, NULL, 1000);
+        }
+        (void)noh_spring_step(one, &desc, &at, NULL, 7000);
+    }
+    noh_spring_rotations(one, &desc, a);
+    noh_spring_rotations(many, &desc, b);
+    for (uint32_t i = 0; i < 4 * JOINTS; i++) assert_true(fabs((double)a[i] - (double)b[i]) < 1e-3);
+    free(one);
+    free(many);
+}
+
+/* Its rotations put its ends where it says they are, and bones keep their lengths. */
+static void it_stays_whole(void **state)
+{
+    const noh_spring_desc desc = hanging(0.5f, 0.1f, 1.0f);
+    noh_spring_carrier at = { { 0.0f, 1.5f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *spring = made(&desc, &at);
+    double stretch = 0.0;
+    (void)state;
+    for (int n = 1; n <= 600; n++) {
+        float ends[3 * JOINTS], rotations[4 * JOINTS], rotation[4], head[3];
+        at = swaying(n / 60.0);
+        (void)noh_spring_step(spring, &desc, &at, NULL, SECOND / 75u);
+        noh_spring_ends(spring, &desc, ends);
+        noh_spring_rotations(spring, &desc, rotations);
+        memcpy(rotation, at.rotation, sizeof rotation);
+        memcpy(head, at.position, sizeof head);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            float bone[3];
+            double length = 0.0, there[3];
+            noh_quat_mul(rotation, rotations + 4 * j, rotation);
+            noh_quat_rotate(rotation, joints[j].bone, bone);
+            for (int i = 0; i < 3; i++) {
+                length += pow((double)ends[3 * j + (uint32_t)i] - (double)head[i], 2);
+                there[i] = (double)head[i] + (double)bone[i];
+            }
+            assert_true(apart(ends + 3 * j, there) < 1e-5);
+            stretch = fmax(stretch, fabs(sqrt(length) / 0.1 - 1.0));
+            memcpy(head, ends + 3 * j, sizeof head);
+        }
+    }
+    assert_true(stretch < 1e-4);
+    free(spring);
+}
+
+static void leaps_and_long_times_stay_finite(void **state)
+{
+    const noh_spring_desc desc = hanging(4.0f, 0.0f, 2.0f);
+    test_random random = test_random_from(5);
+    noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *spring = made(&desc, &at);
+    float q[4 * JOINTS];
+    (void)state;
+    for (int n = 0; n < 3000; n++) {
+        float by[3];
+        for (int i = 0; i < 3; i++) {
+            by[i] = test_random_float(&random, -3.0f, 3.0f);
+            at.position[i] += test_random_float(&random, -50.0f, 50.0f);
+        }
+        noh_quat_from_rotation(by, at.rotation);
+        (void)noh_spring_step(spring, &desc, &at, NULL, test_random_below(&random, 9000));
+        noh_spring_rotations(spring, &desc, q);
+        for (uint32_t i = 0; i < 4 * JOINTS; i++) assert_true(fabs((double)q[i]) <= 1.001);
+    }
+    /* a minute at once: a quarter of a second is done, the rest told */
+    assert_true(noh_spring_step(spring, &desc, &at, NULL, 60u * SECOND) >= 60u * SECOND - 13000u);
+    noh_spring_reset(spring, &desc, &at);
+    noh_spring_rotations(spring, &desc, q);
+    for (uint32_t j = 0; j < JOINTS; j++) assert_true(fabs((double)q[4 * j + 3]) > 0.99999);
+    free(spring);
+}
+
+static void a_copy_goes_on(void **state)
+{
+    const noh_spring_desc desc = hanging(1.0f, 0.3f, 0.5f);
+    noh_spring_carrier at = { { 0.0f, 1.5f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    const size_t bytes = noh_spring_size(&desc);
+    noh_spring *spring = made(&desc, &at), *copy = malloc(bytes);
+    (void)state;
+    for (int n = 1; n <= 200; n++) {
+        if (n == 100) memcpy(copy, spring, bytes);
+        at = swaying(n / 50.0);
+        (void)noh_spring_step(spring, &desc, &at, NULL, 960);
+        if (n >= 100) (void)noh_spring_step(copy, &desc, &at, NULL, 960);
+    }
+    assert_memory_equal(spring, copy, bytes);
+    free(spring);
+    free(copy);
+}
+
+static void bad_values_are_refused(void **state)
+{
+    noh_spring_desc desc = hanging(1.0f, 0.3f, 0.5f);
+    const noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    const size_t bytes = noh_spring_size(&desc);
+    void *memory = malloc(bytes);
+    noh_spring *spring = NULL;
+    noh_error error;
+    (void)state;
+    assert_int_equal(bytes, (104 + 28 * JOINTS + 15) / 16 * 16);
+    assert_int_equal(noh_spring_init(memory, bytes - 1, &desc, &at, &spring, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, bytes);
+    assert_int_equal(noh_spring_init(NULL, bytes, &desc, &at, &spring, &error), NOH_ERR_ARG);
+    joints[2].bone[1] = 0.0f;
+    assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, &error), NOH_ERR_ARG);
+    assert_int_equal(error.where, 2);
+    desc = hanging(NAN, 0.3f, 0.5f);
+    assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, &error), NOH_ERR_ARG);
+    desc = hanging(1.0f, 1.5f, 0.5f);
+    assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, &error), NOH_ERR_ARG);
+    desc.joint_count = NOH_SPRING_JOINTS_MAX + 1u;
+    assert_int_equal(noh_spring_size(&desc), 0);
+    assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, &error), NOH_ERR_LIMIT);
+    assert_null(spring);
+    free(memory);
+}
+
+int main(int argument_count, char **arguments)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sixty_hertz_is_the_reference),
+        cmocka_unit_test(every_rate_settles_alike),
+        cmocka_unit_test(errata_a_drag_by_the_frame_depends_on_frames),
+        cmocka_unit_test(time_may_be_cut_anywhere),
+        cmocka_unit_test(it_stays_whole),
+        cmocka_unit_test(leaps_and_long_times_stay_finite),
+        cmocka_unit_test(a_copy_goes_on),
+        cmocka_unit_test(bad_values_are_refused),
+    };
+    if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
