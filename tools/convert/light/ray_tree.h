@@ -2,18 +2,10 @@
 #ifndef NOH_CONVERT_LIGHT_RAY_TREE_H
 #define NOH_CONVERT_LIGHT_RAY_TREE_H
 
-#include <stdint.h>
+#include "convert/base/triangle_tree.h"
 
-typedef struct ray_node {
-    float low[3], high[3];
-    uint32_t first, count; /* leaf: triangles; else count is 0 and first is the left child, the right one follows it */
-} ray_node;
-
-/* A tree of boxes, halved at the median of the longest side: at most 4 triangles in a leaf. */
 typedef struct ray_tree {
-    uint32_t triangle_count, node_count;
-    ray_node *nodes;  /* parents before children */
-    uint32_t *order;  /* [triangle_count] the caller's number of each triangle */
+    triangle_tree boxes;
     float *triangles; /* [triangle_count][9] corners, in leaf order */
 } ray_tree;
 

@@ -2,19 +2,11 @@
 #ifndef NOH_CONVERT_LOD_LOD_TREE_H
 #define NOH_CONVERT_LOD_LOD_TREE_H
 
-#include <stdint.h>
-
-typedef struct lod_tree_node {
-    float low[3], high[3];
-    uint32_t first,
-        count; /* leaf: triangles in `order`; else count is 0 and first is the left child, the right one follows it */
-} lod_tree_node;
+#include "convert/base/triangle_tree.h"
 
 typedef struct lod_tree {
-    uint32_t triangle_count, node_count;
+    triangle_tree boxes;     /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
     const uint32_t *indices; /* the caller's, [triangle_count][3] */
-    lod_tree_node *nodes;    /* parents before children */
-    uint32_t *order;         /* [triangle_count] */
     float *triangles;        /* [triangle_count][9] in the pose of the last lod_tree_pose */
 } lod_tree;
 
