@@ -143,9 +143,9 @@ static void add_pane(const noh_window *w, uint32_t order, const float corner[2],
     float right[3], up[3], direction[3];
     window_axes(w, right, up);
     for (uint32_t i = 0; i < 64u; i++) { /* each half by a rule of its own */
-        const uint32_t a = i % 8u, b = i / 8u;
-        const float x = corner[0] + 0.5f * size[0] * (nodes[a % 4u] + (float)(a / 4u));
-        const float y = corner[1] + 0.5f * size[1] * (nodes[b % 4u] + (float)(b / 4u));
+        const uint32_t a = i % 8u, b = i / 8u, right_half = a / 4u, upper_half = b / 4u;
+        const float x = corner[0] + 0.5f * size[0] * (nodes[a % 4u] + (float)right_half);
+        const float y = corner[1] + 0.5f * size[1] * (nodes[b % 4u] + (float)upper_half);
         const float l2 = 1.0f + x * x + y * y;
         for (uint32_t k = 0; k < 3u; k++) direction[k] = w->direction[k] + x * right[k] + y * up[k];
         noh_normalize3(direction, w->direction);

@@ -111,8 +111,9 @@ static void sample_texel(const noh_reflection_desc *desc, uint32_t side, uint32_
     float sum[3] = { 0.0f, 0.0f, 0.0f };
     for (uint32_t i = 0; i < SAMPLES * SAMPLES; i++) {
         const float fine = (float)(side * SAMPLES);
-        const float s = (2.0f * (float)(x * SAMPLES + i % SAMPLES) + 1.0f) / fine - 1.0f;
-        const float t = (2.0f * (float)(y * SAMPLES + i / SAMPLES) + 1.0f) / fine - 1.0f;
+        const uint32_t column = x * SAMPLES + i % SAMPLES, row = y * SAMPLES + i / SAMPLES;
+        const float s = (2.0f * (float)column + 1.0f) / fine - 1.0f;
+        const float t = (2.0f * (float)row + 1.0f) / fine - 1.0f;
         float direction[3], one[3];
         face_direction(face, s, t, direction);
         desc->radiance(desc->user, direction, one);
