@@ -56,4 +56,12 @@ expect 1 'an empty recipe'
 check 'says so' grep -q 'the recipe has no row' "$work/err"
 noh build "$mask" -o "$work/bad.noh" --recipe "$work/none.recipe"
 expect 1 'no such file'
+
+noh build "$mask" -o "$work/eyes.noh" --eyes
+expect 0 'eyes of the mask'
+check 'both are reported' sh -c 'grep -q "left eye, a ball of radius 0.018" "$1" && grep -q "right eye" "$1"' - "$work/out"
+noh info "$work/eyes.noh"
+check 'their joints are there' grep -q "skin 'face': 3 joints" "$work/out"
+noh build "$build/demo_none.glb" -o "$work/bad.noh" --eyes
+expect 1 'no such model'
 finish

@@ -287,14 +287,18 @@ static int read_all(const char *const *inputs, int count, const convert_options 
                     convert_failure *failure)
 {
     source_options reading = { options->clip.sample_rate_hz, options->clip.unit_cm,     options->skin,
-                               options->two_streams,         options->two_stream_count, options->identity };
+                               options->two_streams,         options->two_stream_count, options->identity,
+                               options->split_eyes };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
         if (source_read(inputs[i], &reading, &all[i], &failure->error)) {
             return 1;
         }
-        if (all[i].m->mesh_count) reading.identity = NULL; /* people are made of the first model */
+        if (all[i].m->mesh_count) { /* people and eyes are made of the first model */
+            reading.identity = NULL;
+            reading.split_eyes = 0;
+        }
     }
     return 0;
 }

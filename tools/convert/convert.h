@@ -22,6 +22,7 @@ typedef struct convert_options {
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
     const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
+    int split_eyes;       /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;    /* a text file of callback keys; NULL: none */
     const char *graph;     /* a text file of animation graphs; NULL: none */

@@ -11,6 +11,7 @@
 #include "convert/clips/resample.h"
 #include "convert/model/identity_join.h"
 #include "convert/model/two_stream.h"
+#include "convert/skin/eye_split.h"
 
 static int out_of_memory(model_error *error)
 {
@@ -76,6 +77,9 @@ static int read_gltf_file(const char *path, const source_options *options, sourc
         }
     }
     if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
+        return 1;
+    }
+    if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {

@@ -24,6 +24,7 @@ typedef struct source_options {
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
     const char *identity; /* a file of targets that make people, see identity_join.h; NULL: none */
+    int split_eyes;       /* 1: eyeballs get joints, see eye_split.h */
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

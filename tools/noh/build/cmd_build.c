@@ -18,7 +18,7 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe;
-    int input_count, quiet, loop, mask, keep_parts, lod_fast;
+    int input_count, eyes, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
 } build_args;
@@ -167,6 +167,7 @@ static int run(void *args)
         return status;
     }
     o.identity = a->identity;
+    o.split_eyes = a->eyes;
     o.recipe = a->recipe;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
@@ -347,6 +348,12 @@ static const option options[] = {
       .what = "animation graphs that play the clips, a text file (noh help FORMATS)",
       .example = "hero.graph",
       .excludes = "--only=mesh" },
+    { .name = "--eyes",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, eyes),
+      .what =
+          "find the two eyeballs, islands of a mesh whose vertices lie on spheres, and give them the joints LeftEye and RightEye at their centres, so that a gaze turns them",
+      .excludes = "--only=anim" },
     { .name = "--recipe",
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, recipe),
