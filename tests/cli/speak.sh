@@ -50,7 +50,25 @@ noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.n
 expect 0 'a clip for the mask'
 check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test "$(wc -c <"$1")" -gt 40000' - "$work/line.wav"
 noh info "$work/line.noh"
-check 'one clip, a key for each word' grep -q "clip 'speech': .* 57 floats, .* 5 callback keys" "$work/out"
+check 'one clip, a key for each word' grep -q "clip 'speech': .* 59 floats, .* 5 callback keys" "$work/out"
+
+# a puppet that walks and speaks: two packs of clips, and a face that lives
+noh speak 'Papa bought me five boats.' --face "$build/demo/puppet_levels.noh" -o "$work/says.noh"
+expect 0 'a clip for the puppet'
+noh render "$build/demo/puppet_levels.noh" -o "$work/both.png" --anim "$build/demo/puppet_levels.noh" \
+    --anim "$work/says.noh" --clip walk --clip speech --time 0.5 --size 64x64
+expect 0 'two packs of clips'
+noh render "$build/demo/puppet_levels.noh" -o "$work/walk.png" --clip walk --time 0.5 --size 64x64
+check 'whoever walks speaks, too' sh -c '! cmp -s "$1" "$2"' - "$work/both.png" "$work/walk.png"
+noh render "$build/mask.noh" -o "$work/still.png" --anim "$work/line.noh" --clip speech --time 0.5 --size 64x64
+noh render "$build/mask.noh" -o "$work/joy.png" --anim "$work/line.noh" --clip speech --time 0.5 --size 64x64 \
+    --face on --feel joy=1
+expect 0 'a face that lives'
+check 'and feels' sh -c '! cmp -s "$1" "$2"' - "$work/still.png" "$work/joy.png"
+noh render "$build/mask.noh" -o "$work/x.png" --face maybe
+expect 2 '--face takes on or off'
+noh render "$build/mask.noh" -o "$work/x.png" --face on --feel hunger=1
+expect 2 'no such emotion'
 cp "$work/line.noh" "$work/first.noh"
 noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
 check 'the same bytes every time' cmp "$work/line.noh" "$work/first.noh"

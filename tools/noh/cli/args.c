@@ -62,6 +62,12 @@ static int parse_size(const char *text, uint32_t size[2])
     return 0;
 }
 
+int tool_switch(const char *name, const char *text, int *on)
+{
+    *on = strcmp(text, "on") == 0;
+    return *on || strcmp(text, "off") == 0 ? 0 : tool_usage("%s wants on or off, not '%s'", name, text);
+}
+
 static int add_item(const option *o, option_list *list, const char *text)
 {
     if (list->count == OPTION_LIST_MAX) {
@@ -84,6 +90,7 @@ static int set_value(const option *o, void *args, const char *text)
         return parse_size(text, (uint32_t *)value)
                    ? tool_usage("%s wants WIDTHxHEIGHT, 1 to 8192 each, not '%s'", o->name, text)
                    : 0;
+    case OPTION_INPUTS:
     case OPTION_LIST: return add_item(o, (option_list *)value, text);
     case OPTION_FLAG: *(int *)value = 1; break;
     }
@@ -184,7 +191,8 @@ static int check_output(const verb *v, const given *g, const option *o, const ch
         }
     }
     for (int i = 0; i < v->option_count; i++) {
-        if (v->options[i].kind == OPTION_INPUT && g->text[i] && same_file(path, g->text[i])) {
+        if ((v->options[i].kind == OPTION_INPUT || v->options[i].kind == OPTION_INPUTS) && g->text[i] &&
+            same_file(path, g->text[i])) {
             return tool_usage("%s would overwrite '%s', which %s reads", o->name, g->text[i], v->options[i].name);
         }
     }

@@ -13,6 +13,7 @@ typedef enum option_kind {
     OPTION_SIZE,   /* uint32_t[2], as 640x480 */
     OPTION_LIST,   /* option_list, may repeat */
     OPTION_INPUT,  /* a file that is read */
+    OPTION_INPUTS, /* option_list of such, may repeat */
     OPTION_OUTPUT  /* a file that is written; it must not be one that is read */
 } option_kind;
 
@@ -61,6 +62,8 @@ const option *args_find(const verb *v, const char *name);
 
 /* Parse text as a double. 0 if all of it is one finite number. */
 int tool_number(const char *text, double *value);
+/* *on: 1 for "on". Prints an error and returns an exit code; 0 on success. */
+int tool_switch(const char *name, const char *text, int *on);
 
 /* --lod: a whole number from 0, the full mesh. Returns an exit code. */
 int parse_level(double value, uint32_t *level);

@@ -17,6 +17,27 @@
         .what = "take the clips from another pack", .example = "body_anim.noh", __VA_ARGS__ \
     }
 
+#define OPTION_ANIMS(T, m, ...)                                                                    \
+    {                                                                                              \
+        .name = "--anim", .kind = OPTION_INPUTS, .at = offsetof(T, m), .value = "PACK",            \
+        .what = "take the clips from another pack; repeat it for several, of which a later one's " \
+                "clip replaces one of the same name",                                              \
+        .example = "body_anim.noh", __VA_ARGS__                                                    \
+    }
+
+#define OPTION_FACE(T, m, text)                                                                          \
+    {                                                                                                    \
+        .name = "--face", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \
+        .what = "whether faces blink, look about, breathe and are never still, beside what clips say"    \
+    }
+
+#define OPTION_FEEL(T, m)                                                                                              \
+    {                                                                                                                  \
+        .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT",                        \
+        .what = "an emotion of faces that are on: joy, sadness, surprise, fear, anger, disgust, contempt; may repeat", \
+        .example = "joy=0.7", .needs = "--face"                                                                        \
+    }
+
 #define OPTION_CLIP(T, m, ...)                                                                         \
     {                                                                                                  \
         .name = "--clip", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME",                  \

@@ -42,16 +42,18 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
                          NOH_STAGE_MESHES_MAX);
     }
     k->mesh = &d->file->pack;
-    k->clips = d->clips ? &d->clips->pack : NULL;
-    k->clip_packs = d->clips ? NULL : &f->kinds[0].mesh; /* none of them */
+    k->clips = d->clips && !d->more_clip_count ? &d->clips->pack : NULL;
+    k->clip_packs = d->more_clip_count ? f->packs : d->clips ? NULL : &f->kinds[0].mesh; /* none of them */
+    k->clip_pack_count = d->more_clip_count ? d->more_clip_count + 1u : 0;
     k->skeleton = k->mesh->skeleton_count ? skeleton : NOH_NONE;
     k->nodes = nodes;
     k->node_count = node_count;
     k->levels_by_number = 1;
     k->finest_level = d->level;
     k->actor_count = k->near_count = d->actor_count ? d->actor_count : 1u;
-    k->layers = d->layers ? d->layers : &f->layer;
-    k->layer_count = d->layers ? d->layer_count : 1u;
+    k->layers = d->layers ? d->layers : f->own_layers;
+    k->layer_count = d->layers ? d->layer_count : d->face_layer ? 2u : 1u;
+    if (f->faces_found >> f->stage_desc.kind_count & 1u) k->face = &f->faces[f->stage_desc.kind_count];
     k->inertia = d->inertia;
     k->graphs = d->graphs;
     k->root_axes = d->root_axes;
@@ -133,7 +135,9 @@ static int check_clips(const figure *f)
         bank.mesh = f->kinds[k].mesh;
         bank.clips = f->kinds[k].clips;
         bank.skeleton = f->kinds[k].skeleton;
-        if (f->plan.kinds[k].segment_count || noh_clip_bank_measure(&bank, &needs, &error) == NOH_OK) return 0;
+        if (f->desc.more_clip_count || f->plan.kinds[k].segment_count ||
+            noh_clip_bank_measure(&bank, &needs, &error) == NOH_OK)
+            return 0;
     }
     return tool_fail(f->desc.clips->path, "for %s: %s", f->desc.file->path, error.what);
 }
@@ -145,8 +149,12 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     int status;
     memset(f, 0, sizeof *f);
     f->desc = *desc;
-    f->layer.name = "body";
-    f->layer.track_count = desc->track_count;
+    f->own_layers[0] = (noh_layer_desc){ "body", NOH_LAYER_BASE, NULL, NULL, desc->track_count };
+    f->own_layers[1] = (noh_layer_desc){ "face", NOH_LAYER_OVER, "", NULL, desc->track_count };
+    for (uint32_t i = 0; desc->more_clip_count && i <= desc->more_clip_count; i++) {
+        f->packs[i] = i ? &desc->more_clips[i - 1u].pack : &desc->clips->pack;
+    }
+    if (desc->alive) f->faces_found = figure_find_faces(desc, f->faces);
     d->kinds = f->kinds;
     d->full_detail = !desc->by_error;
     d->lod = desc->lod;

@@ -5,6 +5,7 @@
  *   figure_play            a clip; figure_clip_seconds, figure_pause
  *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
  *   figure_pose            a frame that no view sees, for what follows
+ *   figure_find_faces      where the eyes are; figure_feel, figure_live: faces that live
  *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
  *   figure_look            a frame that a camera sees; figure_draw draws it; figure_view
  *
@@ -23,16 +24,22 @@
 #include "gpu/gpu.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
+#define FIGURE_ANIM_MAX 8u /* packs of clips */
 
 /* Zero is a good value for all but file. */
 typedef struct figure_desc {
     const pack_file *file;
-    const pack_file *clips; /* whose clips are played; may be `file`. NULL: none */
-    uint32_t level;         /* the finest LOD level that is there, as `noh info` counts them */
-    int by_error;           /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
-    noh_lod_settings lod;   /* by which they are chosen; zeros: as lod.h has them */
-    uint32_t actor_count;   /* of each kind; 0: 1. Only the first of each is there */
-    uint32_t track_count;   /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
+    const pack_file *clips;      /* whose clips are played; may be `file`. NULL: none */
+    const pack_file *more_clips; /* [more_clip_count] packs of clips beside `clips`; a later one's clip replaces one of
+                                  * the same name */
+    uint32_t more_clip_count;
+    int face_layer;       /* 1: clips that move no joint play over those that do, as a face does */
+    int alive;            /* 1: faces whose eyes are found blink, look, breathe and feel */
+    uint32_t level;       /* the finest LOD level that is there, as `noh info` counts them */
+    int by_error;         /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
+    noh_lod_settings lod; /* by which they are chosen; zeros: as lod.h has them */
+    uint32_t actor_count; /* of each kind; 0: 1. Only the first of each is there */
+    uint32_t track_count; /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
     const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */
     uint32_t layer_count;
     const char *graphs;        /* as in noh_kind_desc */
@@ -50,7 +57,10 @@ typedef struct figure {
     figure_desc desc;
     noh_stage_desc stage_desc;
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
-    noh_layer_desc layer; /* the one that all kinds have */
+    noh_layer_desc own_layers[2];                /* those that all kinds have */
+    const noh_pack *packs[FIGURE_ANIM_MAX + 1u]; /* of clips, where there are several */
+    noh_kind_face faces[NOH_STAGE_KINDS_MAX];
+    uint32_t faces_found; /* a bit for each kind */
     uint32_t *nodes;      /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
@@ -76,6 +86,16 @@ int figure_restore(figure *f);
 /* The pack of --anim; path NULL: `file` itself. */
 int figure_open_clips(pack_file *opened, const char *path, const pack_file *file, const pack_file **clips);
 void figure_close_clips(pack_file *opened, const pack_file *clips);
+
+/* The packs of several --anim. */
+typedef struct figure_anims {
+    pack_file files[FIGURE_ANIM_MAX];
+    uint32_t count;
+} figure_anims;
+
+/* Into desc->clips and desc->more_clips; none given: `file` itself. Close them in any case. */
+int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file *file, figure_desc *desc);
+void figure_close_anims(figure_anims *a);
 
 /* 1 where a pack has meshes to draw. */
 int figure_draws(const noh_pack *pack);
@@ -107,6 +127,13 @@ int figure_hold_options(figure *f, const option_list *assignments);
 int figure_check_target(const pack_file *file, const char *name);
 
 int figure_pose(figure *f);
+
+/* The faces of a figure's kinds by what blinks: a bit for each that has one. */
+uint32_t figure_find_faces(const figure_desc *desc, noh_kind_face *faces);
+/* --feel EMOTION=AMOUNT, of all its faces. */
+int figure_feel(figure *f, const option_list *emotions);
+/* Time moves on, clips and faces, 60 steps a second. */
+int figure_live(figure *f, double seconds);
 
 /* The world bounds of all meshes as posed, of their coarsest levels, whichever is shown: pictures of all levels can be
  * compared, also with those of a stripped pack. face: only of vertices that targets move. */

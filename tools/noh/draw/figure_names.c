@@ -39,18 +39,66 @@ void figure_close_clips(pack_file *opened, const pack_file *clips)
     if (clips == opened) pack_file_close(opened);
 }
 
+int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file *file, figure_desc *desc)
+{
+    a->count = 0;
+    desc->clips = file;
+    if (paths->count > (int)FIGURE_ANIM_MAX) {
+        return tool_usage("more than %u times --anim", FIGURE_ANIM_MAX);
+    }
+    for (int i = 0; i < paths->count; i++) {
+        const int status = pack_file_open(&a->files[a->count], paths->items[i]);
+        if (status) return status;
+        if (!a->files[a->count++].pack.clip_count) {
+            return tool_fail(paths->items[i], "the pack has no clips for %s", file->path);
+        }
+    }
+    if (a->count) desc->clips = &a->files[0];
+    desc->more_clips = a->files + 1;
+    desc->more_clip_count = a->count ? a->count - 1u : 0;
+    return 0;
+}
+
+void figure_close_anims(figure_anims *a)
+{
+    while (a->count) pack_file_close(&a->files[--a->count]);
+}
+
+/* The n-th pack that clips are taken from; NULL past the last. */
+static const pack_file *clips_of(const figure *f, uint32_t n)
+{
+    const pack_file *first = f->desc.clips ? f->desc.clips : f->desc.file;
+    return !n ? first : n <= f->desc.more_clip_count ? &f->desc.more_clips[n - 1u] : NULL;
+}
+
+/* The layer of a clip: a face's plays over a body's. */
+static uint32_t layer_of(const figure *f, uint32_t kind, const char *name)
+{
+    uint32_t layer = 0;
+    if (!f->desc.face_layer || !f->plan.kinds[kind].joint_count) return 0;
+    for (uint32_t n = 0; clips_of(f, n); n++) {
+        noh_pack_clip clip;
+        for (uint32_t i = 0; noh_pack_clip_at(&clips_of(f, n)->pack, i, &clip, NULL) == NOH_OK; i++) {
+            if (strcmp(clip.name, name) == 0) layer = clip.header->joint_count == 0;
+        }
+    }
+    return layer;
+}
+
 static int fail_clip(const figure *f, const char *name)
 {
-    const pack_file *from = f->desc.clips ? f->desc.clips : f->desc.file;
-    const uint32_t count = from->pack.clip_count;
-    const char **names = calloc(count + 1u, sizeof *names);
+    const pack_file *from = clips_of(f, 0);
+    uint32_t count = 0, total = 0;
+    const char **names;
     int status = 0;
-    for (uint32_t i = 0; names && i < count && !status; i++) {
+    for (uint32_t n = 0; clips_of(f, n); n++) total += clips_of(f, n)->pack.clip_count;
+    names = calloc(total + 1u, sizeof *names);
+    for (uint32_t n = 0; names && clips_of(f, n); n++) {
         noh_pack_clip clip;
-        noh_pack_clip_at(&from->pack, i, &clip, NULL);
-        names[i] = clip.name;
-        if (strcmp(clip.name, name) == 0) {
-            status = tool_fail(from->path,
+        for (uint32_t i = 0; !status && noh_pack_clip_at(&clips_of(f, n)->pack, i, &clip, NULL) == NOH_OK; i++) {
+            names[count++] = clip.name;
+            if (strcmp(clip.name, name) != 0) continue;
+            status = tool_fail(clips_of(f, n)->path,
                                "clip '%s' moves another skeleton than that of %s: names or parents of joints differ",
                                name, f->desc.file->path);
         }
@@ -71,7 +119,7 @@ int figure_play(figure *f, const char *clip, const noh_play *play)
     if (!how.fade_ticks) how.fade_ticks = 1;
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         if (noh_stage_find(f->stage, k, NOH_NAME_CLIP, clip) == NOH_NONE) continue;
-        if (noh_actor_play(f->stage, f->actors[k], 0, clip, &how, &error)) {
+        if (noh_actor_play(f->stage, f->actors[k], layer_of(f, k, clip), clip, &how, &error)) {
             return tool_fail_error(f->desc.clips->path, &error);
         }
         found = 1;

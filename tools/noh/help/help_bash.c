@@ -21,7 +21,7 @@ static void put_words(FILE *out, const char *value)
 
 static void bash_option(FILE *out, const verb *v, const option *o)
 {
-    if (o->kind == OPTION_FLAG || o->kind == OPTION_INPUT || o->kind == OPTION_OUTPUT) {
+    if (o->kind == OPTION_FLAG || o->kind == OPTION_INPUT || o->kind == OPTION_INPUTS || o->kind == OPTION_OUTPUT) {
         return; /* no value, or a file name: bash's default */
     }
     fprintf(out, "    '%s %s') words='", v->name, o->name);

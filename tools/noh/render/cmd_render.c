@@ -12,11 +12,11 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *anim, *path, *accumulate, *driver, *debug;
+    const char *pack, *output, *path, *accumulate, *driver, *debug, *face;
     uint32_t size[2];
     double time_s, lod;
     int show_bones;
-    option_list weights, clips;
+    option_list weights, clips, anims, emotions;
     view_options view;
     figure_desc figure;
 } render_args;
@@ -40,6 +40,7 @@ static int check_args(render_args *a)
     if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
     if (!status) status = parse_debug(a->debug, &a->figure.view);
     if (!status) status = parse_level(a->lod, &a->figure.level);
+    if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
     }
@@ -63,7 +64,10 @@ static void print_done(const render_args *a, const noh_gl_morph_plan *plan)
 static int draw(picture *p, const render_args *a, uint8_t *rgba)
 {
     noh_gl_camera camera;
-    int status = figure_play_options(&p->figure, &a->clips, a->time_s);
+    const int alive = a->figure.alive;
+    int status = figure_play_options(&p->figure, &a->clips, alive ? 0.0 : a->time_s);
+    if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
+    if (!status && alive) status = figure_live(&p->figure, a->time_s);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
@@ -94,20 +98,21 @@ static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
 
 static int render(render_args *a, const pack_file *file)
 {
-    pack_file anim;
+    figure_anims anims = { .count = 0 };
     gpu g;
     const int shows_bones = picture_shows_bones(file, a->show_bones);
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
     a->figure.file = file;
     a->figure.track_count = (uint32_t)a->clips.count;
+    a->figure.face_layer = a->clips.count > 1;
     a->figure.held_float_count = (uint32_t)a->weights.count;
-    if (!status && a->clips.count) status = figure_open_clips(&anim, a->anim, file, &a->figure.clips);
+    if (!status && a->clips.count) status = figure_open_anims(&anims, &a->anims, file, &a->figure);
     if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
         status = draw_and_write(&g, a, shows_bones);
         gpu_close(&g);
     }
-    if (a->figure.clips) figure_close_clips(&anim, a->figure.clips);
+    figure_close_anims(&anims);
     return status;
 }
 
@@ -146,7 +151,9 @@ static const option options[] = {
     OPTION_WEIGHT(render_args, weights, .excludes = "--bones"),
     OPTION_CLIP(render_args, clips, .needs = NULL),
     OPTION_TIME(render_args, time_s, .needs = "--clip"),
-    OPTION_ANIM(render_args, anim, .needs = "--clip"),
+    OPTION_ANIMS(render_args, anims, .needs = "--clip"),
+    OPTION_FACE(render_args, face, "off"),
+    OPTION_FEEL(render_args, emotions),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     { .name = "--bones",

@@ -26,7 +26,7 @@ typedef struct sheet {
 } sheet;
 
 typedef struct sheet_args {
-    const char *path, *accumulate, *transition;
+    const char *path, *accumulate, *transition, *face;
     double tile, tiles, columns, faces, seed;
     sheet s;
 } sheet_args;
@@ -147,16 +147,16 @@ static int lay_out(sheet *s)
 
 static int make_sheet(sheet *s, const pack_file *file)
 {
-    pack_file anim;
+    figure_anims anims = { .count = 0 };
     int status = sheet_tiles_open(&s->tiles, file);
     if (!status) {
         s->show_bones = picture_shows_bones(file, s->show_bones);
         status = s->show_bones < 0 ? EXIT_FAILED : lay_out(s);
     }
-    if (!status && s->tiles.clip) status = figure_open_clips(&anim, s->tiles.anim, file, &s->figure.clips);
+    if (!status && s->tiles.clip) status = figure_open_anims(&anims, &s->tiles.anims, file, &s->figure);
     if (!status) status = draw_sheet(s, file);
     if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
-    if (s->figure.clips) figure_close_clips(&anim, s->figure.clips);
+    figure_close_anims(&anims);
     free(s->rgba);
     sheet_tiles_close(&s->tiles);
     return status;
@@ -187,6 +187,8 @@ static int check_args(sheet_args *a)
         status = tool_usage("--faces wants a whole number from 1 to 1024, --seed one from 0 to 4294965999");
     }
     if (!status) status = check_clips(&s->tiles, a->transition);
+    if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
+    s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
@@ -244,7 +246,9 @@ static const option options[] = {
       .what = "show this clip over time; repeat it to play others along with the first",
       .example = "walk",
       .excludes = "--lods" },
-    OPTION_ANIM(sheet_args, s.tiles.anim, .needs = "--clip"),
+    OPTION_ANIMS(sheet_args, s.tiles.anims, .needs = "--clip"),
+    OPTION_FACE(sheet_args, face, "off"),
+    OPTION_FEEL(sheet_args, s.tiles.emotions),
     { .name = "--tiles",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, tiles),

@@ -170,6 +170,7 @@ void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
     desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
     desc->held_float_count = t->face_count ? FIGURE_HELD_ALL : 1u;
     desc->inertia = t->inertia;
+    desc->face_layer = t->clips.count > 1;
 }
 
 int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
@@ -223,7 +224,9 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
     } else if (t->to) {
         status = pose_transition(t, f, tile);
     } else if (t->clip) {
-        status = figure_play_options(f, &t->clips, tile_time(t, tile));
+        status = figure_play_options(f, &t->clips, t->alive ? 0.0 : tile_time(t, tile));
+        if (!status && t->alive) status = figure_feel(f, &t->emotions);
+        if (!status && t->alive) status = figure_live(f, tile_time(t, tile));
     } else if (tile) {
         status = figure_hold(f, t->targets[tile - 1].name, t->targets[tile - 1].weight);
     }

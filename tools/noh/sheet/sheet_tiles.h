@@ -16,10 +16,12 @@ typedef struct sheet_target {
 
 typedef struct sheet_tiles {
     const pack_file *file;
-    option_list clips;                    /* the first sets the time, the others play along */
-    const char *clip, *blend, *to, *anim; /* clip names; NULL: none */
-    int inertia;                          /* the transition to `to`: 1 inertialization, 0 a cross-fade */
-    double over_s;                        /* its duration */
+    option_list clips; /* the first sets the time, the others play along */
+    option_list anims, emotions;
+    int alive;                     /* faces live through the clip, from its beginning */
+    const char *clip, *blend, *to; /* clip names; NULL: none */
+    int inertia;                   /* the transition to `to`: 1 inertialization, 0 a cross-fade */
+    double over_s;                 /* its duration */
     double clip_seconds;
     uint32_t clip_tiles;   /* columns in time */
     option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */

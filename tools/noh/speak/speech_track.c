@@ -121,10 +121,28 @@ static int bind(const noh_pack *pack, face_node *n)
     return !names || !all;
 }
 
+static float shut_of(const float *visemes)
+{
+    return visemes[NOH_VISEME_PP] + visemes[NOH_VISEME_FF];
+}
+
+/* The shapes of a frame. Where lips are shut more a frame earlier or later, as they are then: what is played between
+ * two frames is then shut for as long as the lips are. */
+static void visemes_of(const speech_track *t, uint32_t frame, float *visemes)
+{
+    const int64_t step = NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND, tick = (int64_t)frame * step;
+    float other[NOH_VISEME_COUNT];
+    noh_speech_visemes(&t->speech, tick, visemes);
+    for (int64_t at = tick - step; at <= tick + step; at += 2 * step) {
+        noh_speech_visemes(&t->speech, at, other);
+        if (shut_of(other) > shut_of(visemes)) memcpy(visemes, other, sizeof other);
+    }
+}
+
 static void fill_frame(const speech_track *t, const face_node *n, uint32_t frame, float *weights)
 {
     float visemes[NOH_VISEME_COUNT], channels[NOH_CHANNEL_COUNT];
-    noh_speech_visemes(&t->speech, (int64_t)frame * NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND, visemes);
+    visemes_of(t, frame, visemes);
     noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, channels);
     memcpy(weights, n->mesh.weights, n->mesh.header->target_count * sizeof *weights);
     noh_face_apply(n->links, n->link_count, channels, weights);
@@ -172,12 +190,28 @@ static int add_words(const synthesis *said, const char *text, raw_clip *clip)
     return 0;
 }
 
+/* A named float that tells a face (stage/stage_face.h) how much of the mouth is taken: an emotion leaves it that. */
+static int add_float(const speech_track *t, const char *name, int shut_alone, raw_clip *clip)
+{
+    raw_floats *out = &clip->floats[clip->float_count++];
+    if (raw_floats_alloc(out, clip->frame_count, 1)) return 1;
+    out->name = model_string(name);
+    out->node = MODEL_NONE;
+    for (uint32_t f = 0; f < clip->frame_count; f++) {
+        float visemes[NOH_VISEME_COUNT], moves;
+        visemes_of(t, f, visemes);
+        moves = shut_alone ? shut_of(visemes) : 1.0f - visemes[NOH_VISEME_SIL];
+        out->values[f] = moves < 0.0f ? 0.0f : moves > 1.0f ? 1.0f : moves;
+    }
+    return !out->name;
+}
+
 /* The clip's floats: those of every node with mouth shapes. Returns 1 when out of memory. */
 static int add_faces(const speech_track *t, const noh_pack *pack, raw_clip *clip)
 {
     const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
     int failed = 0;
-    clip->floats = calloc(count + 1u, sizeof *clip->floats);
+    clip->floats = calloc(count + 2u, sizeof *clip->floats);
     failed = !clip->floats;
     for (uint32_t i = 0; i < count && !failed; i++) {
         face_node n;
@@ -187,6 +221,9 @@ static int add_faces(const speech_track *t, const noh_pack *pack, raw_clip *clip
             failed = fill_floats(t, pack, &n, clip->frame_count, &clip->floats[clip->float_count++]);
         }
         free(n.links);
+    }
+    if (!failed && clip->float_count) {
+        failed = add_float(t, "speech", 0, clip) || add_float(t, "lips-shut", 1, clip);
     }
     return failed;
 }
