@@ -93,7 +93,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -103,6 +103,7 @@ help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, looks round and dances'
+	@echo 'make demo-face  the puppet and the mask say a sentence: sound, strips, a film'
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
@@ -281,6 +282,10 @@ demo: deps-build
 demo-body: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
+
+demo-face: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/mask.noh
+	@sh tools/demo_face.sh $(BUILD)
 
 FILE    ?= $(BUILD)/demo/puppet.glb
 view: deps-view

@@ -9,7 +9,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *lod, *camera;
+    const char *path, *accumulate, *driver, *lod, *camera, *face;
     double frames;
     uint32_t size[2];
     view_run run;
@@ -46,6 +46,10 @@ static int run(void *args)
         return status;
     }
     a->run.frames = (uint32_t)a->frames;
+    a->run.desc.alive = !a->run.frames;
+    if (a->face && tool_switch("--face", a->face, &a->run.desc.alive)) {
+        return EXIT_USAGE;
+    }
     a->run.fixed_camera = strcmp(a->camera, "fixed") == 0;
     a->run.native = a->driver[0] == 'n';
     a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
@@ -58,6 +62,11 @@ static view_args arguments;
 
 static const option options[] = {
     OPTION_ANIM(view_args, run.desc.anim, .needs = NULL),
+    { .name = "--face",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, face),
+      .value = "on|off",
+      .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),

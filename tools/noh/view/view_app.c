@@ -1,6 +1,7 @@
 #include "view/view_app.h"
 #include "cli/message.h"
 #include "file/png_file.h"
+#include "stage/view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -217,6 +218,37 @@ static void log_event(void *user, const view_passed *event)
 
 /* ---- picking ---- */
 
+void view_point_window(view_app *a, float x, float y, int inside)
+{
+    float box[4];
+    view_app_stage(a, box);
+    a->has_pointer = inside;
+    a->pointer[0] = (x - box[0]) * a->scale;
+    a->pointer[1] = (y - box[1]) * a->scale;
+}
+
+/* Faces look at the pointer as if it hung in the air, two fifths of the way from the camera to them. */
+static void look_at_pointer(const view_app *a, const noh_gl_camera *camera)
+{
+    const figure *f = a->model->figure;
+    const noh_stage_view view = figure_view(camera, a->model->canvas.height);
+    float origin[3], way[3], length;
+    const int found = a->has_pointer && noh_view_ray(&view, a->pointer[0], a->pointer[1], a->model->canvas.width,
+                                                     a->model->canvas.height, origin, way);
+    length = found ? sqrtf(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) : 1.0f;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        float sphere[4], point[3], far;
+        if (!(f->faces_found >> k & 1u)) continue;
+        if (!found || noh_actor_sphere(f->stage, f->actors[k], sphere, NULL)) {
+            (void)noh_actor_look_at(f->stage, f->actors[k], NULL, NULL);
+            continue;
+        }
+        far = hypotf(hypotf(sphere[0] - camera->eye[0], sphere[1] - camera->eye[1]), sphere[2] - camera->eye[2]);
+        for (int i = 0; i < 3; i++) point[i] = camera->eye[i] + way[i] / length * 0.4f * far;
+        (void)noh_actor_look_at(f->stage, f->actors[k], point, NULL);
+    }
+}
+
 void view_pick_window(view_app *a, float x, float y)
 {
     char text[512];
@@ -295,6 +327,7 @@ static int animate(view_app *a, double seconds)
     follow(a);
     note_place(a);
     orbit_camera(&a->orbit, &camera);
+    look_at_pointer(a, &camera);
     status = view_model_pose(a->model, &camera, a->cut || stands);
     a->cut = 0;
     smooth(&a->times.animate, (double)(noh_clock_ns() - start) * 1e-6);
@@ -399,7 +432,7 @@ int view_app_frame(view_app *a, float scale, double seconds)
 
 int view_app_moves(const view_app *a)
 {
-    return a->lod.fading || (a->playing && view_plays(a->model));
+    return a->lod.fading || a->model->figure->faces_found || (a->playing && view_plays(a->model));
 }
 
 void view_app_after(view_app *a)

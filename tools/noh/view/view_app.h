@@ -67,6 +67,8 @@ typedef struct view_app {
     view_how how; /* the next clip */
     view_pad pad;
     view_pick pick;
+    float pointer[2]; /* pixels of the canvas that faces look at */
+    int has_pointer;
     view_marks marks;
     int show_floor;
     double floor; /* its height */
@@ -118,6 +120,9 @@ void view_graph_start(view_app *a, uint32_t n);
 /* Put a clip on the pad or take it off; play the pad, or stop. */
 void view_pad_choose(view_app *a, uint32_t clip);
 void view_pad_switch(view_app *a);
+/* Where the mouse is over the picture, for faces that look at it. inside: 0: it is elsewhere */
+void view_point_window(view_app *a, float x, float y, int inside);
+
 /* Pick, or let go where nothing is: prints what was picked. */
 void view_pick_window(view_app *a, float x, float y);
 /* Takes effect with view_app_after. */

@@ -77,6 +77,7 @@ static void on_move(GLFWwindow *window, double window_x, double window_y)
     w->mouse[1] = y;
     w->input.mouse[0] = (float)x;
     w->input.mouse[1] = (float)y;
+    view_point_window(&w->app, (float)x, (float)y, on_stage(w));
     w->dragged += fabs(dx) + fabs(dy);
     if (w->drag == GLFW_MOUSE_BUTTON_LEFT + 1) {
         view_turn(&w->app, dx, dy);
