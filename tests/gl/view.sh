@@ -160,7 +160,7 @@ open_viewer() { # SIZE [FILE OPTIONS]: sets $viewer, $window
     view_size=$1
     shift
     [ $# != 0 ] || set -- "$mask"
-    "$build/noh" view "$@" --size "$view_size" >"$work/out" 2>"$work/err" &
+    "$build/noh" view "$@" --face off --size "$view_size" >"$work/out" 2>"$work/err" &
     viewer=$!
     trap 'kill $viewer $xvfb 2>/dev/null; rm -rf "$work"' EXIT
     tries=0 # xdotool may trip over a window that is just being made
