@@ -233,7 +233,7 @@ void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_f
         turn_head(k, w, &n, pose.head, moved);
         for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i];
         noh_face_pose_of(&aimed, &k->face->desc, &pose);
-        turn_eyes(k, w, &pose);
     }
+    turn_eyes(k, w, &pose);
     move_targets(k, f, w, &pose);
 }

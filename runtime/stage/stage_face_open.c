@@ -109,17 +109,19 @@ static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above
     return joint == above;
 }
 
-/* A neck that the head does not hang on, or eyes that do not hang on the head, are left alone. */
+/* A neck that the head does not hang on, or eyes that do not hang on the head, are left alone. Without a head eyes turn
+ * by themselves. */
 static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
 {
-    noh_stage_face_joint *stray[] = { &f->neck, &f->chest, &f->eyes[0], &f->eyes[1] };
+    noh_stage_face_joint *others[] = { &f->neck, &f->chest, &f->eyes[0], &f->eyes[1] };
+    const uint32_t head = f->head.joint;
     for (int i = 0; i < 4; i++) {
-        const uint32_t head = f->head.joint, other = stray[i]->joint;
+        const uint32_t other = others[i]->joint;
+        const int is_eye = i >= 2;
+        int hangs = is_eye;
         if (other == NOH_NONE) continue;
-        if (head == NOH_NONE || other == head ||
-            !(i < 2 ? is_below(skeleton, head, other) : is_below(skeleton, other, head))) {
-            stray[i]->joint = NOH_NONE;
-        }
+        if (head != NOH_NONE) hangs = is_eye ? is_below(skeleton, other, head) : is_below(skeleton, head, other);
+        if (!hangs || other == head) others[i]->joint = NOH_NONE;
     }
     if (f->eyes[0].joint == NOH_NONE || f->eyes[1].joint == NOH_NONE) f->eyes[0].joint = f->eyes[1].joint = NOH_NONE;
 }

@@ -164,6 +164,50 @@ static void two_actors_meet_each_others_eyes(void **state)
     close_cast(&c);
 }
 
+/* An eye that is a joint turns to what is looked at, with a head that turns and without one. */
+static void eyes_with_joints_turn(void **state)
+{
+    static float rest[12u * NOH_JOINTS_MAX];
+    const float point[3] = { 0.9f, 0.6f, 2.5f };
+    (void)state;
+    for (int without_head = 0; without_head < 2; without_head++) {
+        noh_kind_face face;
+        noh_skeleton skeleton;
+        noh_actor actor;
+        float m[12], dot = 0.0f, length = 0.0f;
+        cast c;
+        memset(&face, 0, sizeof face);
+        cast_open(&c);
+        (void)noh_pack_skeleton_at(&c.packs[TUBES], 0, &skeleton, NULL, NULL);
+        noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+        face.head = without_head ? "" : noh_pack_joint_name(&c.packs[TUBES], 0, 0);
+        face.neck = face.chest = "";
+        face.flags = NOH_FACE_NO_WANDER;
+        for (uint32_t e = 0; e < 2; e++) {
+            face.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
+            for (uint32_t i = 0; i < 3; i++) face.face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
+        }
+        face.face.eyes[0][0] += 0.06f; /* the tube's joints stand above each other: the lower one is told exactly */
+        c.kinds[0] = c.kinds[TUBES];
+        c.kinds[0].face = &face;
+        c.desc.kind_count = 1;
+        cast_make(&c, NULL);
+        actor = enter(&c, NULL, NULL);
+        assert_int_equal(noh_actor_look_at(c.stage, actor, point, NULL), NOH_OK);
+        run(&c, 120);
+        assert_int_equal(noh_actor_joint(c.stage, actor, 1, m, NULL), NOH_OK);
+        for (int i = 0; i < 3; i++) {
+            const float to = point[i] - m[4 * i + 3];
+            float ahead = 0.0f; /* z at rest, now */
+            for (int k = 0; k < 3; k++) ahead += m[4 * i + k] * rest[12u + 8u + (uint32_t)k];
+            dot += ahead * to;
+            length += to * to;
+        }
+        if (!(dot > 0.9999f * sqrtf(length))) fail_msg("%d: cosine %g", without_head, (double)(dot / sqrtf(length)));
+        cast_close(&c);
+    }
+}
+
 /* ---- never still ---- */
 
 /* What shows of an actor: floats, and where its head is. */
@@ -352,6 +396,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(eyes_meet_a_point_whatever_the_body_does),
         cmocka_unit_test(two_actors_meet_each_others_eyes),
+        cmocka_unit_test(eyes_with_joints_turn),
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
         cmocka_unit_test(an_hour_unseen_is_skipped),
