@@ -38,7 +38,7 @@ typedef struct null_object {
 typedef enum null_buffer_slot { NULL_ARRAY, NULL_UNIFORM, NULL_FEEDBACK, NULL_BUFFER_SLOTS } null_buffer_slot;
 
 typedef struct null_unit {
-    GLuint flat, array; /* GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY */
+    GLuint flat, array, cube; /* GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP */
 } null_unit;
 
 /* Every function that the platform has: calls are counted by these. */

@@ -84,6 +84,7 @@ static void GL_APIENTRY null_DeleteTextures(GLsizei count, const GLuint *names)
     for (int unit = 0; unit < NULL_UNITS; unit++) {
         forget(&noh_null_current->units[unit].flat, count, names);
         forget(&noh_null_current->units[unit].array, count, names);
+        forget(&noh_null_current->units[unit].cube, count, names);
     }
 }
 
@@ -211,6 +212,7 @@ static GLuint *texture_binding(int call, GLenum target)
     noh_platform_context *c = noh_null_current;
     if (target == GL_TEXTURE_2D) return &c->units[c->unit].flat;
     if (target == GL_TEXTURE_2D_ARRAY) return &c->units[c->unit].array;
+    if (target == GL_TEXTURE_CUBE_MAP) return &c->units[c->unit].cube;
     noh_null_wrong(call, "the null platform has no texture target 0x%x", (unsigned)target);
     return NULL;
 }
@@ -258,7 +260,7 @@ static void set_storage(int call, GLenum target, GLenum format, const GLsizei si
     desc.format = format;
     desc.width = (uint32_t)size[0];
     desc.height = (uint32_t)size[1];
-    desc.layers = (uint32_t)size[2];
+    desc.layers = target == GL_TEXTURE_CUBE_MAP ? NOH_GL_CUBE : (uint32_t)size[2];
     desc.levels = (uint32_t)levels;
     if (!object) return;
     if (object->ready) noh_null_wrong(call, "the texture has its storage already");
@@ -315,7 +317,8 @@ static void GL_APIENTRY null_TexSubImage2D(GLenum target, GLint level, GLint x, 
     (void)format;
     (void)type;
     (void)pixels;
-    check_update(NULL_TexSubImage2D, target, level, at, count);
+    const int is_face = target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
+    check_update(NULL_TexSubImage2D, is_face ? GL_TEXTURE_CUBE_MAP : target, level, at, count);
 }
 
 static void GL_APIENTRY null_TexSubImage3D(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,

@@ -36,6 +36,7 @@
 #include "gl/gl_caps.h"        /* what this GPU can do, found by trying it */
 #include "gl/gl_morph.h"       /* morph targets of many instances, accumulated on the GPU */
 #include "gl/gl_skin.h"        /* joint palettes of many instances on the GPU */
+#include "gl/gl_light.h"       /* light for it: an environment, a shadow map */
 #include "gl/gl_draw.h"        /* meshes on the GPU, and a plain renderer */
 #include "gl/gl_shader_text.h" /* the library's GLSL, for your own shaders */
 

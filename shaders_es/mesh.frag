@@ -15,6 +15,18 @@ in vec3 v_model;
 layout(location = 0) out vec4 o_color;
 #endif
 
+#if NOH_DEBUG_VIEW == 5
+vec3 matte_light(noh_surface s)
+{
+#ifdef NOH_LIT
+    return noh_expose(noh_matte_light(s));
+#else
+    s.f0 = vec3(0.0);
+    return noh_light(s);
+#endif
+}
+#endif
+
 #if NOH_DEBUG_VIEW == 4
 vec3 level_color()
 {
@@ -45,6 +57,14 @@ void main()
     o_color = vec4(pow(t * 0.5 + 0.5, vec3(2.2)), 1.0);
 #elif NOH_DEBUG_VIEW == 4
     o_color = vec4(level_color(), 1.0);
+#elif NOH_DEBUG_VIEW == 5
+    noh_cut(base.a);
+    s.albedo = vec3(1.0);
+    s.metallic = 0.0;
+    o_color = vec4(matte_light(s), 1.0);
+#elif NOH_DEBUG_VIEW == 6
+    noh_cut(base.a);
+    o_color = vec4(vec3(s.occlusion), 1.0);
 #else
     noh_cut(base.a);
     o_color = vec4(noh_material.w > 0.5 ? base.rgb : noh_light(s), base.a);

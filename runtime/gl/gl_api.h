@@ -106,6 +106,7 @@ extern "C" {
     X(GenFramebuffers, GENFRAMEBUFFERS)                               \
     X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                         \
     X(BindFramebuffer, BINDFRAMEBUFFER)                               \
+    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                     \
     X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER)               \
     X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)                 \
     X(DrawBuffers, DRAWBUFFERS)                                       \
@@ -169,7 +170,6 @@ extern "C" {
     X(BindSampler, BINDSAMPLER)                           \
     X(SamplerParameteri, SAMPLERPARAMETERI)               \
     /* framebuffers */                                    \
-    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)         \
     X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)   \
     X(BlitFramebuffer, BLITFRAMEBUFFER)                   \
     X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)       \

@@ -33,6 +33,26 @@ void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
 
 /* ---- uniforms, attributes, textures ---- */
 
+void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting)
+{
+    NOH_ASSERT(renderer && renderer->lit && light && lighting);
+    renderer->light = light;
+    renderer->lighting = lighting;
+}
+
+static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    float rows[NOH_LIGHTING_ROWS][4];
+    NOH_ASSERT(r->light && r->lighting); /* noh_gl_renderer_light was called */
+    noh_lighting_pack(r->lighting, r->light->desc.shadow_px, rows);
+    r->gl->Uniform4fv(v->u_lighting, NOH_LIGHTING_ROWS, rows[0]);
+    r->gl->Uniform3fv(v->u_key, 1, r->lighting->key_direction);
+    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
+    r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, r->light->cube.name);
+    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);
+    r->gl->BindTexture(GL_TEXTURE_2D, r->light->shadow.name);
+}
+
 /* Use a variant's program, with the camera of this pass. */
 static void use_variant(noh_gl_renderer *r, const noh_gl_variant *v)
 {
@@ -43,6 +63,7 @@ static void use_variant(noh_gl_renderer *r, const noh_gl_variant *v)
         r->gl->UniformMatrix4fv(v->u_view_projection, 1, GL_FALSE, r->camera.view_projection);
         r->gl->Uniform3fv(v->u_camera, 1, r->camera.eye);
         r->gl->Uniform3fv(v->u_key, 1, r->camera.key);
+        if (v->key.lit) set_lighting(r, v);
     }
 }
 
@@ -291,6 +312,12 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
     r->gl->UseProgram(0);
     for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {
         r->gl->ActiveTexture(GL_TEXTURE0 + units[i]);
+        r->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    if (r->lit) {
+        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
+        r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
+        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
     }
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);

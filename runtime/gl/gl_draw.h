@@ -21,6 +21,7 @@
 #define NOH_GL_GL_DRAW_H
 
 #include "base/limits.h"
+#include "gl/gl_light.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_skin.h"
 #include "gl/gl_variants.h"
@@ -113,6 +114,7 @@ typedef struct noh_gl_renderer_desc {
     int fewer_influences;      /* bindings will lower `influences` */
     int fades;                 /* LOD levels will fade (noh_gl_lod): also compile variants that discard pixels */
     int encode_srgb;           /* the shader encodes to sRGB, for targets that do not, such as WebGL's canvas */
+    int lit;           /* shaders are lit by noh_gl_renderer_light */
     noh_gl_passes passes;
     const noh_gl_shader_desc *shaders; /* your own in place of the library's; copied, without its texts. NULL: none */
 } noh_gl_renderer_desc;
@@ -126,11 +128,13 @@ typedef struct noh_gl_camera {
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    int layers_uint, without_tangents, encode_srgb, fades;
+    int layers_uint, without_tangents, encode_srgb, fades, lit;
     noh_debug_view view;
     noh_gl_passes passes;
     noh_gl_shader_desc shaders; /* zeros: the library's */
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
+    const noh_gl_light *light;  /* of this pass; NULL where it is not lit */
+    const noh_lighting *lighting;
     noh_gl_camera camera;       /* of this pass */
     uint8_t tint[4];            /* of the next noh_gl_draw_mesh */
     uint32_t variant_count;
@@ -155,6 +159,9 @@ noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t 
 /* The variant of a key, whose encode_srgb and two_layers are taken from the renderer, 0 for depth. NULL: no mesh of the
  * renderer's desc needs it. */
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, noh_gl_variant_key key);
+
+/* Light what a renderer with `lit` draws from the next noh_gl_draw_begin on. Both are borrowed, and read at draws. */
+void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting);
 
 /* Turn the depth test on, set up blending, and open a debug group that noh_gl_draw_end closes. Bind your framebuffer
  * and set your viewport before. The camera is copied; each variant is given it when it is first drawn with. */

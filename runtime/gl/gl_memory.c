@@ -49,10 +49,10 @@ uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
     NOH_ASSERT(desc);
     uint64_t texel = noh_gl_texel_bytes(desc->format);
     uint32_t width = desc->width, height = desc->height;
-    uint64_t layers = desc->layers ? desc->layers : 1;
+    uint64_t layers = desc->layers == NOH_GL_CUBE ? 6 : desc->layers ? desc->layers : 1;
     uint32_t levels = desc->levels ? desc->levels : 1;
     if (!texel || !width || !height || width > SIDE_MAX || height > SIDE_MAX || layers > SIDE_MAX) return 0;
-    if (levels > levels_max(width, height)) return 0;
+    if (levels > levels_max(width, height) || (desc->layers == NOH_GL_CUBE && width != height)) return 0;
     uint64_t texels = 0;
     for (uint32_t level = 0; level < levels; level++) {
         texels += (uint64_t)width * height;
@@ -132,7 +132,8 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     if (bytes == 0)
         return noh_fail(error, NOH_ERR_ARG,
                         "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
-    GLenum target = desc->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    const int array = desc->layers && desc->layers != NOH_GL_CUBE;
+    GLenum target = array ? GL_TEXTURE_2D_ARRAY : desc->layers ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D;
     GLsizei width = (GLsizei)desc->width, height = (GLsizei)desc->height;
     GLsizei levels = desc->levels ? (GLsizei)desc->levels : 1;
     noh_gl_error_take(api);
@@ -140,7 +141,7 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->ActiveTexture(GL_TEXTURE0);
     api->GenTextures(1, &name);
     api->BindTexture(target, name);
-    if (desc->layers) {
+    if (array) {
         api->TexStorage3D(target, levels, desc->format, width, height, (GLsizei)desc->layers);
     } else {
         api->TexStorage2D(target, levels, desc->format, width, height);

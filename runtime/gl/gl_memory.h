@@ -49,11 +49,14 @@ typedef struct noh_gl_renderbuffer {
     uint64_t bytes;
 } noh_gl_renderbuffer;
 
+#define NOH_GL_CUBE UINT32_MAX
+
 typedef struct noh_gl_texture_desc {
     GLenum format;   /* a sized internal format that noh_gl_texel_bytes knows */
     uint32_t width;  /* texels, 1..65536 */
     uint32_t height; /* texels, 1..65536 */
-    uint32_t layers; /* 0: a GL_TEXTURE_2D; else a GL_TEXTURE_2D_ARRAY of 1..65536 layers */
+    uint32_t layers; /* 0: a GL_TEXTURE_2D; NOH_GL_CUBE: the six faces of a GL_TEXTURE_CUBE_MAP, as high as wide;
+                      * else a GL_TEXTURE_2D_ARRAY of 1..65536 layers */
     uint32_t levels; /* mip levels; 0: one; at most 1 + log2 of the longer side */
     GLenum filter;   /* for minifying and magnifying; 0: GL_NEAREST. GL_LINEAR with mip levels is trilinear */
     GLenum wrap;     /* 0: GL_CLAMP_TO_EDGE */

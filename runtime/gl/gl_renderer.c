@@ -28,6 +28,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 static noh_gl_variant_key completed(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
     key.encode_srgb = (uint8_t)(r->encode_srgb && !key.depth);
+    key.lit = (uint8_t)(r->lit && !key.depth);
     key.two_layers = (uint8_t)(r->without_tangents && !key.depth);
     return key;
 }
@@ -175,6 +176,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->without_tangents = desc->without_tangents != 0;
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
+    out->lit = desc->lit != 0;
     out->view = desc->view;
     out->passes = desc->passes;
     if (desc->shaders) {

@@ -21,7 +21,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 {
     const noh_mesh_header *h = mesh->header;
     noh_gl_variant_key key = { 0 };
-    NOH_ASSERT((unsigned)view <= NOH_VIEW_LOD);
+    NOH_ASSERT((unsigned)view <= NOH_VIEW_OCCLUSION);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -59,7 +59,7 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 {
     key.view = NOH_VIEW_LIT;
-    key.encode_srgb = key.two_layers = key.features = 0;
+    key.encode_srgb = key.two_layers = key.features = key.lit = 0;
     key.depth = 1;
     key.cut = cut != 0;
     return key;
@@ -87,7 +87,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
-    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_LOD);
+    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_OCCLUSION);
     NOH_ASSERT(key.depth || !key.cut);
     const struct {
         unsigned on;
@@ -102,6 +102,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
                   { key.two_layers, "#define NOH_TWO_LAYERS\n" },
                   { key.cut, "#define NOH_ALPHA_CUT\n" },
+                  { key.lit, "#define NOH_LIT\n" },
                   { key.features & NOH_FEATURE_NORMAL_MAP, "#define NOH_NORMAL_MAP\n" },
                   { key.features & NOH_FEATURE_SURFACE_MAP, "#define NOH_SURFACE_MAP\n" },
                   { key.features & NOH_FEATURE_EMISSIVE, "#define NOH_EMISSIVE\n" },
@@ -132,6 +133,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_fade_glsl;
         pieces[count++] = noh_shader_common_fragment_glsl;
         pieces[count++] = noh_shader_common_material_glsl;
+        pieces[count++] = noh_shader_common_environment_glsl;
         pieces[count++] = noh_shader_common_light_glsl;
     }
     pieces[count++] = own;
@@ -221,7 +223,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_blends", &v->u_blends },
                      { "noh_f0", &v->u_f0 },
                      { "noh_emissive", &v->u_emissive },
-                     { "noh_maps", &v->u_maps } };
+                     { "noh_maps", &v->u_maps },
+                     { "noh_lighting", &v->u_lighting } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
     }

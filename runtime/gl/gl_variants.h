@@ -27,8 +27,10 @@ typedef enum noh_debug_view {
     NOH_VIEW_POSITION,
     NOH_VIEW_NORMAL,
     NOH_VIEW_TANGENT,
-    NOH_VIEW_LOD /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
+    NOH_VIEW_LOD, /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
                   * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
+    NOH_VIEW_LIGHT,    /* the light on a white matte surface */
+    NOH_VIEW_OCCLUSION /* the share of the light from all around that reaches the surface */
 } noh_debug_view;
 
 typedef struct noh_gl_variant_key {
@@ -46,6 +48,7 @@ typedef struct noh_gl_variant_key {
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
     uint8_t features;        /* NOH_FEATURE_* of the material; with depth 0 */
+    uint8_t lit;             /* 1: light is that of gl_light.h; with depth 0 */
 } noh_gl_variant_key;
 
 /* What a material has: a variant pays for nothing else. */
@@ -60,7 +63,7 @@ typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
-        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps;
+        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

@@ -120,6 +120,7 @@ typedef struct noh_kind_desc {
     uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
 } noh_kind_desc;
 
+struct noh_gl_light_desc;
 typedef struct noh_stage_gpu noh_stage_gpu; /* stage_gl.h has the one there is */
 
 /* Zero is a good value for all but kinds. */
@@ -149,6 +150,9 @@ typedef struct noh_stage_desc {
     int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
     int without_shader;  /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
     uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
+    /* gl_light.h: what is mirrored, and the shadow map. Shaders are then lit by noh_stage_set_lighting. Must outlive the
+     * stage. Default (NULL) a plain light that needs neither */
+    const struct noh_gl_light_desc *light;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
 } noh_stage_desc;
 

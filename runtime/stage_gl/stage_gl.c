@@ -149,6 +149,9 @@ static void carve_head(measure *m)
     noh_gl_model *of = CARVE(m, models, noh_gl_model);
     noh_mesh *meshes = CARVE(m, models, noh_mesh);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
+    const size_t light_at = m->arena.used;
+    noh_gl_light *light = m->desc->light ? CARVE(m, 1, noh_gl_light) : NULL;
+    if (m->desc->light) add(m, "light", NOH_NONE, light_at, noh_gl_light_bytes(m->desc->light));
     if (m->gl) { /* carved for a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
@@ -158,6 +161,9 @@ static void carve_head(measure *m)
         gl->renderer = renderer;
         memset(of, 0, models * sizeof *of);
         memset(renderer, 0, sizeof *renderer);
+        gl->light = light;
+        gl->lighting = NULL;
+        if (light) memset(light, 0, sizeof *light);
     }
     carve_kinds(m);
     add(m, "renderer", NOH_NONE, 0, m->desc->without_shader ? 0 : NOH_GL_RENDERER_BYTES);
@@ -194,6 +200,9 @@ static noh_result visit(measure *m, noh_error *error)
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     noh_result result = NOH_OK;
     carve_head(m);
+    if (m->gl && m->desc->light) {
+        result = noh_gl_light_create(&m->gl->device, m->desc->light, m->gl->light, error);
+    }
     while (result == NOH_OK && noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
         result = visit_site(m, site, error);
     }
@@ -237,6 +246,7 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
     d.palettes = NOH_PALETTE_TEXTURE;
     d.without_tangents = !s->desc.tangents;
     d.encode_srgb = s->desc.encode_srgb;
+    d.lit = s->desc.light != NULL;
     d.passes = s->desc.without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
     d.shaders = own;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
@@ -263,6 +273,7 @@ static void destroy(noh_stage *stage)
     noh_stage_gl *gl = stage->gpu;
     const noh_gl_device *d = &gl->device;
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
+    if (gl->light && gl->light->gl) noh_gl_light_delete(gl->light);
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
         const noh_stage_kind *k = &stage->kinds[i];
         for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
@@ -339,6 +350,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);
     }
+    if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
     if (result == NOH_OK) result = noh_gl_pictures_restore(&desc, &gl->device, gl->kinds, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }

@@ -2,6 +2,8 @@
  *
  *   noh_stage_on_gl           its address goes into noh_stage_desc.gpu; noh_stage_init then takes a noh_gl_device
  *   noh_stage_draw            one pass of what a view of the last frame sees
+ *   noh_stage_set_lighting    the light of a stage with noh_stage_desc.light
+ *   noh_stage_draw_shadow     its shadow map
  *   noh_stage_shader_size     shaders of your own in place of the library's:
  *   noh_stage_shader_create   in every variant that the kinds of the stage need
  *   noh_stage_shader_delete, noh_stage_shader_restore
@@ -16,6 +18,7 @@
 #define NOH_STAGE_GL_STAGE_GL_H
 
 #include "gl/gl_draw.h"
+#include "gl/gl_light.h"
 #include "stage/stage.h"
 
 #ifdef __cplusplus
@@ -37,9 +40,21 @@ typedef struct noh_stage_shader noh_stage_shader;
  * height_px actors with no_shadow are left out.
  * shader  NULL: the library's
  * state   afterwards as noh_gl_draw_end leaves it
- * errors  ARG the last frame had no such view, or a frame has begun and not ended; or the desc is without_shader or
- *         without_depth, and this draw needs it */
+ * errors  ARG the stage is lit and no lighting was set; the last frame had no such view, or a frame has begun and not
+ * ended; or the desc is without_shader or without_depth, and this draw needs it */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
+
+/* What shaders are told of the light from now on; only in a stage with noh_stage_desc.light, which draws no colour
+ * without it. Borrowed, and read at each noh_stage_draw. NULL: none. */
+void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting);
+
+/* Its textures, for shaders of your own that show what is behind; NULL without noh_stage_desc.light. */
+const noh_gl_light *noh_stage_light_of(const noh_stage *stage);
+
+/* Draw what a view sees into the stage's shadow map: one without height_px, as noh_view_shadow makes it.
+ * state   afterwards as noh_gl_draw_end leaves it, framebuffer 0 bound, the viewport as large as the map
+ * errors  ARG as noh_stage_draw of NOH_PASS_DEPTH; the desc has no light with a shadow map */
+noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error);
 
 /* Shaders of your own (gl_variants.h; shaders_es/README.md says what they can call). They are made in memory of yours.
  * log     as in noh_gl_device: what the driver says of them

@@ -157,6 +157,9 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
         return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
                         stage->view_count);
     }
+    if (stage->desc.light && pass != NOH_PASS_DEPTH && !((const noh_stage_gl *)stage->gpu)->lighting) {
+        return noh_fail(error, NOH_ERR_ARG, "the stage is lit, and noh_stage_set_lighting was not called", 0, 0);
+    }
     memset(&d, 0, sizeof d);
     d.s = stage;
     d.gl = stage->gpu;
@@ -165,6 +168,7 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
     memcpy(camera.view_projection, stage->views[view].view_projection, sizeof camera.view_projection);
     memcpy(camera.eye, stage->views[view].eye, sizeof camera.eye);
     memcpy(camera.key, stage->views[view].light, sizeof camera.key);
+    if (stage->desc.light) noh_gl_renderer_light(d.renderer, d.gl->light, d.gl->lighting);
     noh_gl_draw_begin(d.renderer, &camera);
     if (pass == NOH_PASS_DEPTH) {
         draw_pass(&d, NOH_DRAW_DEPTH);
@@ -174,4 +178,30 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
     }
     noh_gl_draw_end(d.renderer);
     return NOH_OK;
+}
+
+void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting)
+{
+    NOH_ASSERT(stage && stage->gpu && stage->desc.light);
+    ((noh_stage_gl *)stage->gpu)->lighting = lighting;
+}
+
+const noh_gl_light *noh_stage_light_of(const noh_stage *stage)
+{
+    NOH_ASSERT(stage && stage->gpu);
+    return ((const noh_stage_gl *)stage->gpu)->light;
+}
+
+noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    noh_result result;
+    NOH_ASSERT(gl);
+    if (!gl->light || !gl->light->framebuffer) {
+        return noh_fail(error, NOH_ERR_ARG, "the desc of the stage has no light with a shadow map", 0, 0);
+    }
+    noh_gl_light_begin_shadow(gl->light);
+    result = noh_stage_draw(stage, NOH_PASS_DEPTH, view, NULL, error);
+    noh_gl_light_end_shadow(gl->light);
+    return result;
 }

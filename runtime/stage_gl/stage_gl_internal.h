@@ -59,6 +59,8 @@ typedef struct noh_stage_gl {
     uint32_t model_count;
     noh_mesh *meshes; /* [model_count] full, for renderers */
     noh_gl_renderer *renderer;
+    noh_gl_light *light; /* NULL: none */
+    const noh_lighting *lighting;
 } noh_stage_gl;
 
 struct noh_stage_shader {

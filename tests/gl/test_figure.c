@@ -215,12 +215,53 @@ static void without_a_gpu_it_is_posed(void **state)
     pack_file_close(&file);
 }
 
+/* A lit figure takes the bytes of its plan, light included; after a lost context its picture is the same. */
+static void light_is_counted_and_comes_back(void **state)
+{
+    const light_options o = { .light = "room" };
+    pack_file file = open_file("mask.noh");
+    const figure_desc plain = { .file = &file };
+    figure_desc d = plain;
+    char message[1024];
+    lighting light;
+    uint32_t *before, *after;
+    figure f, unlit;
+    gpu g;
+    (void)state;
+    if (gpu_open(&g, "egl")) test_skip("no context of EGL here");
+    assert_int_equal(lighting_open(&light, &o), 0);
+    d.light = &light;
+    assert_int_equal(figure_plan(&unlit, &plain, &g.caps), 0);
+    assert_int_equal(figure_open(&f, &d, &g), 0);
+    assert_int_equal(noh_gl_ledger_bytes(&g.ledger), f.plan.gpu_bytes);
+    assert_int_equal(f.plan.gpu_bytes - unlit.plan.gpu_bytes, noh_gl_light_bytes(&light.desc));
+    assert_int_equal(noh_gl_light_bytes(&light.desc), noh_reflection_size(0) + 2 * 1024 * 1024);
+    before = picture(&f, &g, "face");
+    for (int round = 0; round < 2; round++) {
+        g.platform->destroy(g.context);
+        assert_int_equal(g.platform->create(NULL, &g.context, message, sizeof message), NOH_OK);
+        assert_int_equal(noh_gl_api_load(&g.gl, g.platform->get_proc, g.context, NULL), NOH_OK);
+        assert_int_equal(figure_restore(&f), 0);
+        assert_int_equal(noh_gl_ledger_bytes(&g.ledger), f.plan.gpu_bytes);
+        after = picture(&f, &g, "face");
+        assert_int_equal(differing(before, after), 0);
+        free(after);
+    }
+    free(before);
+    figure_close(&f);
+    figure_plan_free(&unlit);
+    lighting_close(&light);
+    assert_int_equal(noh_gl_ledger_bytes(&g.ledger), 0);
+    gpu_close(&g);
+    pack_file_close(&file);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_takes_the_bytes_that_it_plans), cmocka_unit_test(clips_and_held_floats_show),
         cmocka_unit_test(debug_views_and_levels_show),      cmocka_unit_test(vertices_are_those_of_the_cpu),
-        cmocka_unit_test(without_a_gpu_it_is_posed),
+        cmocka_unit_test(without_a_gpu_it_is_posed),        cmocka_unit_test(light_is_counted_and_comes_back),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -83,6 +83,44 @@
         __VA_ARGS__                                                                                                    \
     }
 
+#define OPTION_LIGHT_NAME(T, m, text, ...)                                                                        \
+    {                                                                                                             \
+        .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text,      \
+        .what = "light from all around: none (a plain one), white, studio, room, sky, or a panorama: .hdr, .png", \
+        .example = "room", __VA_ARGS__                                                                            \
+    }
+
+#define OPTION_LIGHT_ROTATE(T, m, ...)                                                                   \
+    {                                                                                                    \
+        .name = "--rotate", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "DEG", .initial = "0", \
+        .what = "turn that light about the vertical axis, degrees", .example = "90", __VA_ARGS__         \
+    }
+
+#define OPTION_LIGHT_TONEMAP(T, m, ...)                                                                              \
+    {                                                                                                                \
+        .name = "--tonemap", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "filmic|none", .initial = "filmic", \
+        .what = "how bright light becomes colour: by a curve with a shoulder, or cut off", .example = "none",        \
+        __VA_ARGS__                                                                                                  \
+    }
+
+/* Rows of draw/lighting.h; m: the light_options; text: the light by default; more: what every row needs or excludes */
+#define OPTIONS_LIGHT(T, m, text, ...)                                                                                 \
+    OPTION_LIGHT_NAME(T, m.light, text, __VA_ARGS__), OPTION_LIGHT_ROTATE(T, m.rotate, __VA_ARGS__),                   \
+        OPTION_LIGHT_TONEMAP(T, m.tonemap, __VA_ARGS__),                                                               \
+        { .name = "--shadow",                                                                                          \
+          .kind = OPTION_TEXT,                                                                                         \
+          .at = offsetof(T, m.shadow),                                                                                 \
+          .value = "on|off",                                                                                           \
+          .initial = "on",                                                                                             \
+          .what = "whether the strongest part of that light casts shadows",                                            \
+          .example = "off",                                                                                            \
+          __VA_ARGS__ },                                                                                               \
+    {                                                                                                                  \
+        .name = "--background", .kind = OPTION_TEXT, .at = offsetof(T, m.background), .value = "light|gradient|plain", \
+        .initial = "light", .what = "what is behind: that light, blurred; its colours from below and above; grey",     \
+        .example = "plain", __VA_ARGS__                                                                                \
+    }
+
 #define OPTION_CAMERA(T, m, text)                                                                                    \
     {                                                                                                                \
         .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]",            \

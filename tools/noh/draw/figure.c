@@ -161,8 +161,9 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     d->tangents = desc->tangents || desc->view == NOH_VIEW_TANGENT;
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
-    d->without_depth = 1;
-    d->without_shader = desc->view != NOH_VIEW_LIT;
+    d->light = desc->light ? &desc->light->desc : NULL;
+    d->without_depth = !d->light || !d->light->shadow_px;
+    d->without_shader = desc->view != NOH_VIEW_LIT && d->without_depth; /* its own draws shadows */
     d->gpu = caps ? &noh_stage_on_gl : NULL;
     status = figure_check_level(desc->file, desc->level);
     if (!status) status = list_kinds(f, caps != NULL);
@@ -290,10 +291,17 @@ int figure_reset(figure *f)
 
 /* ---- frames ---- */
 
-static int frame(figure *f, const noh_stage_view *view)
+static int frame(figure *f, const noh_stage_view *views, uint32_t view_count)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    return noh_stage_frame(f->stage, 0, view, NULL, NULL, &error) ? tool_fail_error(f->desc.file->path, &error) : 0;
+    noh_result result = noh_stage_step(f->stage, 0, NULL, NULL, &error);
+    uint32_t jobs;
+    if (!result) result = noh_stage_frame_begin(f->stage, views, view_count, &error);
+    while (!result && (jobs = noh_stage_jobs(f->stage)) > 0) {
+        for (uint32_t i = 0; i < jobs; i++) noh_stage_job(f->stage, i);
+    }
+    if (!result) result = noh_stage_frame_end(f->stage, &error);
+    return result ? tool_fail_error(f->desc.file->path, &error) : 0;
 }
 
 int figure_pose(figure *f)
@@ -303,7 +311,7 @@ int figure_pose(figure *f)
     int status;
     posed.posed = 1;
     status = figure_set_look(f, &posed);
-    if (!status) status = frame(f, NULL);
+    if (!status) status = frame(f, NULL, 0);
     return status ? status : figure_set_look(f, &own);
 }
 
@@ -320,8 +328,18 @@ noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height)
 
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
 {
-    const noh_stage_view view = figure_view(camera, height);
-    return frame(f, &view);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    lighting *light = f->desc.light;
+    noh_stage_view views[2] = { figure_view(camera, height) };
+    if (light && f->g) noh_stage_set_lighting(f->stage, &light->told);
+    if (!light || !light->desc.shadow_px || !f->g) {
+        return frame(f, views, 1);
+    }
+    const bounds box = figure_bounds(f, 0);
+    views[1] = lighting_shadow_view(light, &box);
+    const int status = frame(f, views, 2);
+    if (status) return status;
+    return noh_stage_draw_shadow(f->stage, 1, &error) ? tool_fail_error(f->desc.file->path, &error) : 0;
 }
 
 int figure_draw(figure *f)

@@ -20,6 +20,7 @@
 
 #include "camera.h"
 #include "cli/args.h"
+#include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 
@@ -51,6 +52,7 @@ typedef struct figure_desc {
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_debug_view view;
+    lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
 typedef struct figure {
@@ -149,7 +151,8 @@ noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32
 
 /* A camera as a stage takes it. height: of the picture, pixels */
 noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height);
-/* height: of the picture, pixels. Accumulates: bind the framebuffer to draw into afterwards */
+/* height: of the picture, pixels. Accumulates, and draws the shadow map: bind the framebuffer to draw into afterwards
+ */
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height);
 int figure_draw(figure *f);
 

@@ -39,6 +39,9 @@ int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, u
         status = canvas_open(&p->canvas, g, width, height);
         p->has_canvas = !status;
     }
+    if (!status && !shows_bones && desc->light && desc->light->background != BACKGROUND_PLAIN) {
+        status = backdrop_open(&p->backdrop, g);
+    }
     if (status) picture_close(p);
     return status;
 }
@@ -46,6 +49,7 @@ int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, u
 void picture_close(picture *p)
 {
     for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) bones_close(&p->bones[k]);
+    if (p->backdrop.g) backdrop_close(&p->backdrop);
     if (p->has_canvas) canvas_close(&p->canvas);
     if (p->figure.stage) figure_close(&p->figure);
     memset(p, 0, sizeof *p);
@@ -84,6 +88,9 @@ int picture_paint(picture *p, const noh_gl_camera *camera)
     }
     canvas_begin(&p->canvas);
     if (!p->shows_bones) {
+        if (p->backdrop.g) {
+            backdrop_draw(&p->backdrop, p->figure.desc.light, noh_stage_light_of(p->figure.stage), camera);
+        }
         return figure_draw(&p->figure);
     }
     draw_bones(p, camera);

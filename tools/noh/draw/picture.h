@@ -11,6 +11,7 @@ typedef struct picture {
     int shows_bones;
     bones bones[NOH_STAGE_KINDS_MAX]; /* of kinds with joints */
     canvas canvas;
+    backdrop backdrop; /* zeros: none */
     int has_canvas;
 } picture;
 

@@ -18,20 +18,22 @@ typedef struct render_args {
     int show_bones;
     option_list weights, clips, anims, emotions;
     view_options view;
+    light_options light;
     figure_desc figure;
 } render_args;
 
 static int parse_debug(const char *text, noh_debug_view *view)
 {
-    static const char *const names[] = { "none", "position", "normal", "tangent", "lod" };
+    static const char *const names[] = { "none", "position", "normal", "tangent", "lod", "light", "occlusion" };
     *view = NOH_VIEW_LIT;
-    for (int i = 0; text && i < 5; i++) {
+    for (int i = 0; text && i < 7; i++) {
         if (strcmp(text, names[i]) == 0) {
             *view = (noh_debug_view)i;
             return 0;
         }
     }
-    return text ? tool_usage("--debug wants none, position, normal, tangent or lod, not '%s'", text) : 0;
+    return text ? tool_usage("--debug wants none, position, normal, tangent, lod, light or occlusion, not '%s'", text)
+                : 0;
 }
 
 static int check_args(render_args *a)
@@ -99,9 +101,15 @@ static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
 static int render(render_args *a, const pack_file *file)
 {
     figure_anims anims = { .count = 0 };
+    lighting light;
     gpu g;
     const int shows_bones = picture_shows_bones(file, a->show_bones);
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
+    if (!status && lighting_wanted(&a->light)) {
+        status = lighting_open(&light, &a->light);
+        if (status) return status;
+        a->figure.light = &light;
+    }
     a->figure.file = file;
     a->figure.track_count = (uint32_t)a->clips.count;
     a->figure.face_layer = a->clips.count > 1;
@@ -113,6 +121,7 @@ static int render(render_args *a, const pack_file *file)
         gpu_close(&g);
     }
     figure_close_anims(&anims);
+    if (a->figure.light) lighting_close(&light);
     return status;
 }
 
@@ -156,6 +165,7 @@ static const option options[] = {
     OPTION_FEEL(render_args, emotions),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
+    OPTIONS_LIGHT(render_args, light, "none", .excludes = "--bones"),
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(render_args, show_bones),
@@ -163,7 +173,7 @@ static const option options[] = {
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, debug),
-      .value = "none|position|normal|tangent|lod",
+      .value = "none|position|normal|tangent|lod|light|occlusion",
       .initial = "none",
       .what = "show this as colours instead of lighting",
       .excludes = "--bones" },

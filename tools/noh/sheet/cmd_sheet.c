@@ -23,6 +23,8 @@ typedef struct sheet {
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
     figure_desc figure;
+    light_options light;
+    lighting lit;
 } sheet;
 
 typedef struct sheet_args {
@@ -211,6 +213,10 @@ static int run(void *args)
     sheet_args *a = args;
     pack_file file;
     int status = check_args(a);
+    if (!status && lighting_wanted(&a->s.light)) {
+        status = lighting_open(&a->s.lit, &a->s.light);
+        if (!status) a->s.figure.light = &a->s.lit;
+    }
     if (!status) {
         status = pack_file_open(&file, a->s.pack);
         if (!status) {
@@ -218,6 +224,7 @@ static int run(void *args)
             pack_file_close(&file);
         }
     }
+    if (a->s.figure.light) lighting_close(&a->s.lit);
     return status;
 }
 
@@ -333,6 +340,7 @@ static const option options[] = {
       .example = "8",
       .excludes = "--lods --blend" },
     OPTION_CAMERA(sheet_args, s.camera, "face"),
+    OPTIONS_LIGHT(sheet_args, s.light, "none", .excludes = "--bones"),
     OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(sheet_args, accumulate, .initial = "auto", .excludes = "--bones"),
     OPTION_DRIVER(sheet_args, s.driver, .initial = "egl"),

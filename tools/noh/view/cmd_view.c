@@ -12,6 +12,8 @@ typedef struct view_args {
     const char *path, *accumulate, *driver, *lod, *camera, *face;
     double frames;
     uint32_t size[2];
+    light_options light;
+    lighting lit;
     view_run run;
 } view_args;
 
@@ -42,6 +44,11 @@ static int run(void *args)
 {
     view_args *a = args;
     int status = check_args(a);
+    a->light.shadow = "off";
+    if (!status && lighting_wanted(&a->light)) {
+        status = lighting_open(&a->lit, &a->light);
+        a->run.desc.light = &a->lit;
+    }
     if (status) {
         return status;
     }
@@ -55,7 +62,9 @@ static int run(void *args)
     a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
     a->run.desc.width = a->size[0];
     a->run.desc.height = a->size[1];
-    return view_window_run(&a->run);
+    status = view_window_run(&a->run);
+    if (a->run.desc.light) lighting_close(&a->lit);
+    return status;
 }
 
 static view_args arguments;
@@ -93,6 +102,9 @@ static const option options[] = {
       .value = "auto|N",
       .what = "number of LOD levels to convert a model with, with the full mesh, 1 to 8; auto: up to five, by error",
       .example = "4" },
+    OPTION_LIGHT_NAME(view_args, light.light, "none", .needs = NULL),
+    OPTION_LIGHT_ROTATE(view_args, light.rotate, .needs = NULL),
+    OPTION_LIGHT_TONEMAP(view_args, light.tonemap, .needs = NULL),
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
     { .name = "--driver",

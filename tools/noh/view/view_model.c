@@ -223,12 +223,14 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.path = desc->morph_path;
     d.accumulate = desc->accumulate;
     d.view = desc->view;
+    d.light = desc->light;
     d.graphs = m->clips_of->pack.graph_count && pack->skeleton_count == 1 ? "*" : NULL;
     status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     if (status && d.graphs) { /* such as graphs of clips that the pack of clips lacks: it has been told */
         d.graphs = NULL;
         status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     }
+    if (!status && d.light && !s->show_bones) noh_stage_set_lighting(s->figure->stage, &d.light->told);
     if (!status) status = open_bones(s, g, m->path);
     if (status) close_setting(s);
     return status;

@@ -48,6 +48,7 @@ typedef struct view_model_desc {
     int show_bones;
     int alive;              /* faces blink, breathe and look at the pointer */
     int root_motion;        /* clips move the figure over the ground */
+    lighting *light;        /* NULL: the plain renderer's own */
     const char *part;       /* the layer "part" moves this joint of the first skeleton and all below; NULL, "": none */
     uint32_t width, height; /* of the canvas */
 } view_model_desc;

@@ -1,0 +1,124 @@
+#include "lighting.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "file/light_file.h"
+
+#define PI 3.14159265358979323846
+
+int lighting_wanted(const light_options *o)
+{
+    return o->light && strcmp(o->light, "none") != 0;
+}
+
+/* One of two words; NULL: the first. */
+static int choose(const char *option, const char *text, const char *const words[], int count, int *chosen)
+{
+    *chosen = 0;
+    for (int i = 0; text && i < count; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            *chosen = i;
+            return 0;
+        }
+    }
+    if (!text) {
+        return 0;
+    }
+    return count == 3 ? tool_usage("%s wants %s, %s or %s, not '%s'", option, words[0], words[1], words[2], text)
+                      : tool_usage("%s wants %s or %s, not '%s'", option, words[0], words[1], text);
+}
+
+static int bake(lighting *l, noh_radiance radiance, const void *user)
+{
+    const noh_reflection_desc desc = { 0, radiance, user };
+    const size_t bytes = noh_reflection_size(0), scratch_bytes = noh_reflection_scratch_size(0);
+    void *scratch = malloc(scratch_bytes);
+    noh_error error = { NOH_ERR_MEMORY, "out of memory", 0, 0 };
+    l->texels = malloc(bytes);
+    if (!l->texels || !scratch ||
+        noh_reflection_init(l->texels, bytes, scratch, scratch_bytes, &desc, &l->reflection, &error)) {
+        free(scratch);
+        return tool_fail_error("light", &error);
+    }
+    free(scratch);
+    return 0;
+}
+
+static int read_light(lighting *l, const char *name)
+{
+    const uint32_t index = noh_environment_find(name);
+    light_file file;
+    int status;
+    if (index != NOH_NONE) {
+        noh_light_from_environment(noh_environment_at(index), NOH_SH_ORDER_MAX, &l->light);
+        return bake(l, noh_reflection_of_environment, noh_environment_at(index));
+    }
+    if (!strchr(name, '.') && !strchr(name, '/')) {
+        return tool_usage("--light wants none, white, studio, room, sky or a file (.hdr, .png), not '%s'", name);
+    }
+    status = light_file_open(&file, name);
+    if (!status) {
+        light_file_project(&file, NOH_SH_ORDER_MAX, &l->light);
+        status = bake(l, light_file_radiance, &file);
+        light_file_close(&file);
+    }
+    return status;
+}
+
+int lighting_open(lighting *l, const light_options *o)
+{
+    static const char *const tonemaps[] = { "filmic", "none" }, *const shadows[] = { "on", "off" };
+    static const char *const backgrounds[] = { "light", "gradient", "plain" };
+    int tonemap, shadow, background;
+    int status;
+    memset(l, 0, sizeof *l);
+    status = choose("--tonemap", o->tonemap, tonemaps, 2, &tonemap);
+    if (!status) status = choose("--shadow", o->shadow, shadows, 2, &shadow);
+    if (!status) status = choose("--background", o->background, backgrounds, 3, &background);
+    if (!status) status = read_light(l, o->light);
+    if (status) {
+        lighting_close(l);
+        return status;
+    }
+    l->has_shadow = !shadow;
+    l->background = background == 0 ? BACKGROUND_LIGHT : background == 1 ? BACKGROUND_GRADIENT : BACKGROUND_PLAIN;
+    l->told.tonemap = tonemap ? NOH_TONEMAP_NONE : NOH_TONEMAP_FILMIC;
+    l->desc.reflection = &l->reflection;
+    l->desc.shadow_px = l->has_shadow ? LIGHTING_SHADOW_PX : 0;
+    lighting_turn(l, o->rotate);
+    return 0;
+}
+
+void lighting_close(lighting *l)
+{
+    free(l->texels);
+    memset(l, 0, sizeof *l);
+}
+
+void lighting_turn(lighting *l, double degrees)
+{
+    const float s = (float)sin(degrees * PI / 180.0), c = (float)cos(degrees * PI / 180.0);
+    const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    const noh_tonemap tonemap = l->told.tonemap;
+    noh_lighting_make(&l->light, rotation, l->has_shadow, &l->told);
+    l->told.tonemap = tonemap;
+}
+
+noh_stage_view lighting_shadow_view(lighting *l, const bounds *box)
+{
+    noh_stage_view view;
+    float sphere[4];
+    double square = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const double half = 0.5 * (box->high[i] - box->low[i]);
+        sphere[i] = (float)(0.5 * (box->high[i] + box->low[i]));
+        square += half * half;
+    }
+    sphere[3] = (float)fmax(1.02 * sqrt(square), 1e-6);
+    noh_view_shadow(&view, sphere, l->told.key_direction);
+    noh_lighting_shadow(&l->told, view.view_projection, sphere[3], l->desc.shadow_px);
+    return view;
+}

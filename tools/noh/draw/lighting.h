@@ -1,0 +1,49 @@
+/* lighting.h: the light that pictures are drawn in, as the options say it. */
+#ifndef NOH_NOH_DRAW_LIGHTING_H
+#define NOH_NOH_DRAW_LIGHTING_H
+
+#include "camera.h"
+#include "gpu/gpu.h"
+
+typedef struct light_options {
+    const char *light, *tonemap, *shadow, *background; /* of OPTIONS_LIGHT; NULL: their defaults */
+    double rotate;                                     /* degrees about the vertical axis */
+} light_options;
+
+#define LIGHTING_SHADOW_PX 1024u
+
+/* Must not move once a figure is lit by it. */
+typedef struct lighting {
+    void *texels;
+    noh_reflection reflection;
+    noh_light light; /* not turned */
+    noh_gl_light_desc desc;
+    noh_lighting told;
+    int has_shadow;
+    enum { BACKGROUND_PLAIN, BACKGROUND_GRADIENT, BACKGROUND_LIGHT } background;
+} lighting;
+
+/* 1 where the options ask for light of an environment: not for "none". */
+int lighting_wanted(const light_options *o);
+/* Read or bake the environment. Prints an error and returns an exit code; 0 on success. */
+int lighting_open(lighting *l, const light_options *o);
+void lighting_close(lighting *l);
+/* Turn it. */
+void lighting_turn(lighting *l, double degrees);
+
+/* The view that the shadow map is drawn by, for what is in the box; told to shaders, too. */
+noh_stage_view lighting_shadow_view(lighting *l, const bounds *box);
+
+/* What is behind everything, into the framebuffer that is bound, whose target encodes to sRGB. */
+typedef struct backdrop {
+    gpu *g;
+    GLuint program, vertex_array;
+} backdrop;
+
+/* Prints an error and returns an exit code; 0 on success. */
+int backdrop_open(backdrop *b, gpu *g);
+void backdrop_close(backdrop *b);
+/* on_gl: of the stage. Depth is neither tested nor written. */
+void backdrop_draw(const backdrop *b, const lighting *l, const noh_gl_light *on_gl, const noh_gl_camera *camera);
+
+#endif

@@ -1,0 +1,24 @@
+/* light_file.h: a panorama: light from all around as a picture, x the azimuth, y the height (equirectangular). A
+ * Radiance .hdr file is linear; a PNG or JPEG is sRGB, and its white is radiance 1. The middle of the picture is in
+ * front of the viewer who sees a character from the front: towards -z. */
+#ifndef NOH_NOH_FILE_LIGHT_FILE_H
+#define NOH_NOH_FILE_LIGHT_FILE_H
+
+#include "noh.h"
+
+typedef struct light_file {
+    uint32_t width, height;
+    float *rgb; /* [height][width][3], the top row first */
+} light_file;
+
+/* Prints an error and returns an exit code; 0 on success. */
+int light_file_open(light_file *file, const char *path);
+void light_file_close(light_file *file);
+
+/* A noh_radiance: user is a const light_file *. Between texels it interpolates. */
+void light_file_radiance(const void *user, const float direction[3], float rgb[3]);
+
+/* Its spherical harmonics: the sum over all texels. */
+void light_file_project(const light_file *file, uint32_t order, noh_light *light);
+
+#endif
