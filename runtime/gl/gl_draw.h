@@ -114,7 +114,7 @@ typedef struct noh_gl_renderer_desc {
     int fewer_influences;      /* bindings will lower `influences` */
     int fades;                 /* LOD levels will fade (noh_gl_lod): also compile variants that discard pixels */
     int encode_srgb;           /* the shader encodes to sRGB, for targets that do not, such as WebGL's canvas */
-    int lit;           /* shaders are lit by noh_gl_renderer_light */
+    int lit;                   /* shaders are lit by noh_gl_renderer_light */
     noh_gl_passes passes;
     const noh_gl_shader_desc *shaders; /* your own in place of the library's; copied, without its texts. NULL: none */
 } noh_gl_renderer_desc;
@@ -135,8 +135,8 @@ typedef struct noh_gl_renderer {
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     const noh_gl_light *light;  /* of this pass; NULL where it is not lit */
     const noh_lighting *lighting;
-    noh_gl_camera camera;       /* of this pass */
-    uint8_t tint[4];            /* of the next noh_gl_draw_mesh */
+    noh_gl_camera camera; /* of this pass */
+    uint8_t tint[4];      /* of the next noh_gl_draw_mesh */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
     uint8_t has_camera[NOH_GL_VARIANTS_MAX]; /* 1: the variant was given it */

@@ -27,8 +27,8 @@ typedef enum noh_debug_view {
     NOH_VIEW_POSITION,
     NOH_VIEW_NORMAL,
     NOH_VIEW_TANGENT,
-    NOH_VIEW_LOD, /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
-                  * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
+    NOH_VIEW_LOD,      /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
+                        * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
     NOH_VIEW_LIGHT,    /* the light on a white matte surface */
     NOH_VIEW_OCCLUSION /* the share of the light from all around that reaches the surface */
 } noh_debug_view;

@@ -150,8 +150,8 @@ typedef struct noh_stage_desc {
     int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
     int without_shader;  /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
     uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
-    /* gl_light.h: what is mirrored, and the shadow map. Shaders are then lit by noh_stage_set_lighting. Must outlive the
-     * stage. Default (NULL) a plain light that needs neither */
+    /* gl_light.h: what is mirrored, and the shadow map. Shaders are then lit by noh_stage_set_lighting. Must outlive
+     * the stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of stage_gl.h; default (NULL) nothing is drawn */
 } noh_stage_desc;
