@@ -8,24 +8,33 @@
 #include "cli/options.h"
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
+#include "alignment.h"
+#include "labels.h"
+#include "platform.h"
 #include "speech_track.h"
 #include "wav_file.h"
 
 #define FRAME_RATE 100u
+#define TEXT_BYTES_MAX 65536u
 
 typedef struct speak_args {
-    const char *text, *output, *face, *language, *name, *wav;
+    const char *subject, *text, *text_file, *labels, *output, *face, *language, *name, *wav;
     int as_json;
 } speak_args;
 
-/* ---- what it found ---- */
+/* What is said, out of a text alone or out of a recording. */
+typedef struct spoken {
+    char *text;
+    synthesis said;
+    speech_track track;
+    int recorded;
+    double score; /* of the alignment */
+    size_t clipped;
+    int labelled;
+    label_score against;
+} spoken;
 
-static uint32_t strongest(const float *visemes)
-{
-    uint32_t best = 0;
-    for (uint32_t i = 1; i < NOH_VISEME_COUNT; i++) best = visemes[i] > visemes[best] ? i : best;
-    return best;
-}
+/* ---- what it found ---- */
 
 static void json_phones(json *j, const synthesis *said)
 {
@@ -43,9 +52,10 @@ static void json_phones(json *j, const synthesis *said)
     json_close(j, ']');
 }
 
-static void visemes_of_frame(const speech_track *t, uint32_t frame, float *visemes)
+/* The middle of a frame. */
+static int64_t tick_of(uint32_t frame)
 {
-    noh_speech_visemes(&t->speech, (int64_t)frame * NOH_TICKS_PER_SECOND / FRAME_RATE, visemes);
+    return (2 * (int64_t)frame + 1) * NOH_TICKS_PER_SECOND / (2 * FRAME_RATE);
 }
 
 static void json_curve(json *j, const char *key, const speech_track *t, uint32_t frames, float (*of)(uint32_t viseme))
@@ -53,7 +63,7 @@ static void json_curve(json *j, const char *key, const speech_track *t, uint32_t
     json_open(j, key, '[');
     for (uint32_t f = 0; f < frames; f++) {
         float visemes[NOH_VISEME_COUNT], sum = 0.0f;
-        visemes_of_frame(t, f, visemes);
+        noh_speech_visemes(&t->speech, tick_of(f), visemes);
         for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum += visemes[v] * of(v);
         json_number(j, NULL, (double)sum);
     }
@@ -67,9 +77,7 @@ static void json_frames(json *j, const speech_track *t)
     json_integer(j, "rate_hz", FRAME_RATE);
     json_open(j, "viseme", '[');
     for (uint32_t f = 0; f < frames; f++) {
-        float visemes[NOH_VISEME_COUNT];
-        visemes_of_frame(t, f, visemes);
-        json_text(j, NULL, viseme_name(strongest(visemes)));
+        json_text(j, NULL, viseme_name(speech_track_viseme(t, tick_of(f))));
     }
     json_close(j, ']');
     json_curve(j, "open", t, frames, viseme_open);
@@ -77,37 +85,161 @@ static void json_frames(json *j, const speech_track *t)
     json_close(j, '}');
 }
 
-static int print_json(const synthesis *said, const speech_track *t)
+static void json_labels(json *j, const label_score *l)
+{
+    json_open(j, "labels", '{');
+    json_integer(j, "frames", l->frames);
+    json_integer(j, "visemes_right", l->visemes_right);
+    json_integer(j, "lips_right", l->lips_right);
+    json_integer(j, "closures", l->closures);
+    json_integer(j, "closures_found", l->closures_found);
+    json_integer(j, "phones", l->phones);
+    json_integer(j, "onsets", l->onsets);
+    json_number(j, "onset_median_s", l->onset_median_s);
+    json_close(j, '}');
+}
+
+static int print_json(const spoken *s)
 {
     json j = json_begin();
-    json_number(&j, "seconds", t->seconds);
-    json_text(&j, "source", "text");
+    json_number(&j, "seconds", s->track.seconds);
+    json_text(&j, "source", s->recorded ? "recording and text" : "text");
     json_number(&j, "latency_ms", 0.0);
-    json_phones(&j, said);
-    json_frames(&j, t);
+    if (s->recorded) {
+        json_number(&j, "score", s->score);
+        json_bool(&j, "words_match", s->score >= ALIGNMENT_SCORE_POOR);
+        json_integer(&j, "clipped_samples", s->clipped);
+    }
+    if (s->labelled) json_labels(&j, &s->against);
+    json_phones(&j, &s->said);
+    json_frames(&j, &s->track);
     return json_end(&j);
 }
 
-static void print_text(const speak_args *a, const synthesis *said, const speech_track *t)
+static double part(uint32_t of, uint32_t all)
+{
+    return all ? (double)of / all : 0.0;
+}
+
+static void print_text(const speak_args *a, const spoken *s)
 {
     FILE *out = report_stream(a->output);
-    fprintf(out, "%.2f s, %zu words, %zu phones:", t->seconds, said->word_count, said->phone_count);
-    for (size_t i = 0; i < said->phone_count; i++) {
-        fprintf(out, " %s", said->phones[i].name[0] ? said->phones[i].name : "_");
+    fprintf(out, "%.2f s, %zu words, %zu phones:", s->track.seconds, s->said.word_count, s->said.phone_count);
+    for (size_t i = 0; i < s->said.phone_count; i++) {
+        fprintf(out, " %s", s->said.phones[i].name[0] ? s->said.phones[i].name : "_");
     }
     fprintf(out, "\n");
+    if (s->recorded)
+        fprintf(out, "alignment's score %.2f (%.2f and less: other words)\n", s->score, ALIGNMENT_SCORE_POOR);
+    if (s->labelled) {
+        const label_score *l = &s->against;
+        fprintf(out,
+                "against %s: visemes %.3f, lips %.3f of %u frames; p, b, m %u of %u; onsets %.1f ms (median of %u)\n",
+                a->labels, part(l->visemes_right, l->frames), part(l->lips_right, l->frames), l->frames,
+                l->closures_found, l->closures, 1000.0 * l->onset_median_s, l->onsets);
+    }
+}
+
+/* ---- the text ---- */
+
+static char *copy(const char *bytes, size_t count)
+{
+    char *text = malloc(count + 1u);
+    if (text) {
+        memcpy(text, bytes, count);
+        text[count] = 0;
+    }
+    return text;
+}
+
+static int read_text_file(const char *path, char **out)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_file file;
+    int status = 0;
+    if (noh_file_map(path, &file, &error)) return tool_fail(path, "cannot be read: %s", error.what);
+    if (!file.bytes) {
+        status = tool_fail(path, "is empty: there is nothing to say");
+    } else if (file.bytes > TEXT_BYTES_MAX) {
+        status = tool_fail(path, "is longer than %u bytes: say it in parts", TEXT_BYTES_MAX);
+    } else if (memchr(file.data, 0, file.bytes)) {
+        status = tool_fail(path, "is no text: it holds bytes of 0");
+    } else {
+        *out = copy(file.data, file.bytes);
+        status = *out ? 0 : tool_fail(path, "out of memory");
+    }
+    noh_file_unmap(&file);
+    return status;
+}
+
+static int is_sound_file(const char *name)
+{
+    static const char *const ends[] = { ".wav", ".WAV", ".flac", ".ogg", ".aiff", ".aif", ".au", ".caf" };
+    const size_t length = strlen(name);
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        const size_t n = strlen(ends[i]);
+        if (length > n && !strcmp(name + length - n, ends[i])) return 1;
+    }
+    return 0;
+}
+
+static int take_text(const speak_args *a, spoken *s)
+{
+    const char *text = a->text ? a->text : a->subject;
+    s->recorded = a->text || a->text_file;
+    if (!s->recorded && is_sound_file(a->subject)) {
+        return tool_usage("speak: what is said in %s? --text \"WORDS\" or --text-file FILE", a->subject);
+    }
+    if (s->recorded && a->wav) return tool_usage("speak: --wav has no effect with a recording");
+    if (!s->recorded && a->labels) return tool_usage("speak: --labels wants a recording, and --text or --text-file");
+    if (a->text_file) return read_text_file(a->text_file, &s->text);
+    if (strlen(text) > TEXT_BYTES_MAX) return tool_fail("speak", "the text is longer than %u bytes", TEXT_BYTES_MAX);
+    s->text = copy(text, strlen(text));
+    return s->text ? 0 : tool_fail("speak", "out of memory");
 }
 
 /* ---- running ---- */
 
-static int write_pack(const speak_args *a, const synthesis *said, const speech_track *t)
+static void warn(const speak_args *a, const spoken *s)
+{
+    if (s->score < ALIGNMENT_SCORE_POOR) {
+        fprintf(stderr,
+                "noh: %s: warning: these words do not seem to be those of the recording (the alignment's score is "
+                "%.2f, %.2f is wanted): is the text right, and the language (--lang)?\n",
+                a->subject, s->score, ALIGNMENT_SCORE_POOR);
+    }
+    if (s->clipped) {
+        fprintf(stderr, "noh: %s: warning: %zu samples at full scale: it is clipped, times are less exact\n",
+                a->subject, s->clipped);
+    }
+}
+
+static int align(const speak_args *a, spoken *s)
+{
+    sound recording;
+    alignment aligned;
+    int status = sound_read(a->subject, &recording);
+    if (status) return status;
+    status = alignment_make(&recording, s->text, a->language, &aligned);
+    s->clipped = recording.clipped;
+    sound_free(&recording);
+    if (status) return status;
+    s->said = aligned.said;
+    s->score = aligned.score;
+    warn(a, s);
+    if (a->labels) status = labels_score(a->labels, &s->said, &s->against);
+    s->labelled = a->labels != NULL;
+    return status;
+}
+
+static int write_pack(const speak_args *a, const spoken *s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     pack_file face;
     int status = pack_file_open(&face, a->face);
     if (status) return status;
-    status = speech_track_pack(t, said, a->text, &face, a->name, &out);
+    status = speech_track_pack(&s->track, &s->said, s->text, &face, a->name, &out);
     if (!status && noh_file_write(a->output, out.bytes, out.count, &error)) {
         status = tool_fail(a->output, "cannot write: %s", error.what);
     }
@@ -116,28 +248,55 @@ static int write_pack(const speak_args *a, const synthesis *said, const speech_t
     return status;
 }
 
+static int say(const speak_args *a, spoken *s)
+{
+    int status = take_text(a, s);
+    if (!status) status = s->recorded ? align(a, s) : synthesis_make(s->text, a->language, &s->said);
+    synthesis_end();
+    if (!status) status = speech_track_make(&s->said, &s->track);
+    return status;
+}
+
 static int run(void *args)
 {
     const speak_args *a = args;
-    synthesis said;
-    speech_track track;
-    int status = synthesis_make(a->text, a->language, &said);
-    if (status) return status;
-    status = speech_track_make(&said, &track);
-    if (!status) {
-        if (a->output) status = write_pack(a, &said, &track);
-        if (!status && a->wav) status = wav_write(a->wav, said.samples, said.sample_count, said.sample_rate);
-        if (!status && a->as_json) status = print_json(&said, &track);
-        if (!status && !a->as_json) print_text(a, &said, &track);
-        speech_track_free(&track);
-    }
-    synthesis_free(&said);
+    spoken s;
+    int status;
+    memset(&s, 0, sizeof s);
+    status = say(a, &s);
+    if (!status && a->output) status = write_pack(a, &s);
+    if (!status && a->wav) status = wav_write(a->wav, s.said.samples, s.said.sample_count, s.said.sample_rate);
+    if (!status && a->as_json) status = print_json(&s);
+    if (!status && !a->as_json) print_text(a, &s);
+    speech_track_free(&s.track);
+    synthesis_free(&s.said);
+    free(s.text);
     return status;
 }
 
 static speak_args arguments;
 
 static const option options[] = {
+    { .name = "--text",
+      .kind = OPTION_TEXT,
+      .at = offsetof(speak_args, text),
+      .value = "WORDS",
+      .what = "what is said in the recording IN.wav",
+      .example = "Hello.",
+      .excludes = "--text-file" },
+    { .name = "--text-file",
+      .kind = OPTION_INPUT,
+      .at = offsetof(speak_args, text_file),
+      .value = "FILE",
+      .what = "the same, in a file of UTF-8",
+      .example = "line.txt" },
+    { .name = "--labels",
+      .kind = OPTION_INPUT,
+      .at = offsetof(speak_args, labels),
+      .value = "FILE",
+      .what = "measure what was found against phones that are known: lines of start, end (s) and phone",
+      .example = "line.phones",
+      .needs = "--text --text-file" },
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(speak_args, output),
@@ -177,18 +336,21 @@ static const option options[] = {
 
 const verb verb_speak = {
     .name = "speak",
-    .files = "TEXT",
-    .what = "say a text: its sound, its phones, and a clip of the mouth for a face",
+    .files = "TEXT|IN.wav",
+    .what = "say a text, or find one in a recording: phones, and a clip of the mouth for a face",
     .more =
         "eSpeak NG says it (Debian: libespeak-ng1, espeak-ng-data); phones begin at its samples, to the sample. Mouth "
         "shapes run into each other as they do in speech, and lips meet for every p, b and m. Words are callback "
-        "keys of the clip.",
+        "keys of the clip. With --text the words are found in a recording (8 to 32 bits or floats, any rate, up to ten "
+        "minutes; Debian: libsndfile1): it is warped onto several voices of eSpeak NG that say them, in any of its "
+        "languages. A warning tells when the words do not seem to be in it.",
     .example =
-        "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json",
+        "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json\n"
+        "line.wav --text \"Hello.\" --face face.noh -o line.noh",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
-    .files_at = offsetof(speak_args, text),
+    .files_at = offsetof(speak_args, subject),
     .args = &arguments,
     .run = run,
 };

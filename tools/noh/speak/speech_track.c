@@ -82,6 +82,21 @@ void speech_track_free(speech_track *t)
     memset(t, 0, sizeof *t);
 }
 
+uint32_t speech_track_viseme(const speech_track *t, int64_t tick)
+{
+    uint32_t low = 0, high = t->speech.phone_count;
+    if (tick < (int64_t)t->phones[0].start || tick >= (int64_t)t->speech.end) return NOH_VISEME_SIL;
+    while (high - low > 1u) {
+        const uint32_t middle = low + (high - low) / 2u;
+        if ((int64_t)t->phones[middle].start <= tick) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return t->phones[low].viseme;
+}
+
 /* ---- a clip ---- */
 
 typedef struct face_node {

@@ -21,6 +21,9 @@ void speech_track_free(speech_track *t);
 int speech_track_pack(const speech_track *t, const synthesis *said, const char *text, const pack_file *face,
                       const char *name, byte_buffer *out);
 
+/* The shape of the sound that is made at a tick, without those before and behind it. */
+uint32_t speech_track_viseme(const speech_track *t, int64_t tick);
+
 const char *viseme_name(uint32_t viseme);
 float viseme_open(uint32_t viseme);  /* 0..1 how far the mouth opens */
 float viseme_round(uint32_t viseme); /* 0..1 how rounded the lips are */

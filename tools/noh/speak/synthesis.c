@@ -1,6 +1,7 @@
 #include "synthesis.h"
 
 #include <dlfcn.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,18 +26,31 @@ typedef struct event {
     } value;
 } event;
 
+typedef struct voice {
+    const char *name, *languages, *identifier;
+    unsigned char gender, age, variant, reserved;
+    int score;
+    void *spare;
+} voice;
+
 typedef int (*sound_fn)(short *samples, int count, event *events);
 
 typedef struct espeak {
     void *library;
     int (*initialize)(int output, int buffer_ms, const char *path, int options);
     int (*set_voice)(const char *name);
+    int (*set_properties)(voice *wanted);
+    voice *(*current_voice)(void);
     void (*set_callback)(sound_fn fn);
     int (*synth)(const void *text, size_t bytes, unsigned position, int unit, unsigned end, unsigned flags,
                  unsigned *id, void *user);
     int (*synchronize)(void);
     int (*terminate)(void);
 } espeak;
+
+/* Started once: after espeak_Terminate it would wait for ever in espeak_Synchronize. */
+static espeak engine;
+static int engine_rate;
 
 static int load(espeak *e)
 {
@@ -47,11 +61,14 @@ static int load(espeak *e)
     /* ISO C has no cast from an object's address to a function's: POSIX takes this one */
     *(void **)&e->initialize = dlsym(e->library, "espeak_Initialize");
     *(void **)&e->set_voice = dlsym(e->library, "espeak_SetVoiceByName");
+    *(void **)&e->set_properties = dlsym(e->library, "espeak_SetVoiceByProperties");
+    *(void **)&e->current_voice = dlsym(e->library, "espeak_GetCurrentVoice");
     *(void **)&e->set_callback = dlsym(e->library, "espeak_SetSynthCallback");
     *(void **)&e->synth = dlsym(e->library, "espeak_Synth");
     *(void **)&e->synchronize = dlsym(e->library, "espeak_Synchronize");
     *(void **)&e->terminate = dlsym(e->library, "espeak_Terminate");
-    if (!e->initialize || !e->set_voice || !e->set_callback || !e->synth || !e->synchronize || !e->terminate) {
+    if (!e->initialize || !e->set_voice || !e->set_properties || !e->current_voice || !e->set_callback || !e->synth ||
+        !e->synchronize || !e->terminate) {
         return tool_fail("speak", "libespeak-ng.so.1 lacks functions: is it eSpeak NG 1.50 or newer?");
     }
     return 0;
@@ -107,20 +124,42 @@ static int take(short *samples, int count, event *events)
     return current->failed;
 }
 
-static int say(const espeak *e, const char *text, const char *language, synthesis *out)
+static int start(void)
 {
-    const int rate = e->initialize(OUTPUT_SYNCHRONOUS, 200, NULL, WITH_PHONEMES | PHONEMES_IPA | DO_NOT_EXIT);
-    if (rate <= 0) {
-        return tool_fail("speak",
-                         "eSpeak NG does not start: its data may be missing (Debian: apt install espeak-ng-data)");
+    int status = load(&engine);
+    if (status) return status;
+    engine_rate = engine.initialize(OUTPUT_SYNCHRONOUS, 200, NULL, WITH_PHONEMES | PHONEMES_IPA | DO_NOT_EXIT);
+    if (engine_rate > 0) return 0;
+    return tool_fail("speak", "eSpeak NG does not start: its data may be missing (Debian: apt install espeak-ng-data)");
+}
+
+/* A voice's own name, or else that of the best voice for a language, and then its variant ("+f2"). */
+static int set_voice(const char *name)
+{
+    const char *variant = strchr(name, '+');
+    char language[64], full[256];
+    voice wanted;
+    const voice *found;
+    if (!engine.set_voice(name)) return 0;
+    memset(&wanted, 0, sizeof wanted);
+    snprintf(language, sizeof language, "%.*s", (int)(variant ? variant - name : (ptrdiff_t)strlen(name)), name);
+    wanted.languages = language;
+    if (engine.set_properties(&wanted)) return 1;
+    found = engine.current_voice();
+    if (!found || !found->languages || !strstr(found->languages, language)) return 1;
+    snprintf(full, sizeof full, "%s%s", found->identifier, variant ? variant : "");
+    return variant && engine.set_voice(full);
+}
+
+static int say(const char *text, const char *name, synthesis *out)
+{
+    if (set_voice(name)) {
+        return tool_fail("speak", "eSpeak NG has no language '%s' (`espeak-ng --voices` lists them)", name);
     }
-    if (e->set_voice(language)) {
-        return tool_fail("speak", "eSpeak NG has no language '%s' (`espeak-ng --voices` lists them)", language);
-    }
-    out->sample_rate = (uint32_t)rate;
+    out->sample_rate = (uint32_t)engine_rate;
     current = out;
-    e->set_callback(take);
-    if (e->synth(text, strlen(text) + 1u, 0, BY_CHARACTER, 0, IN_UTF8, NULL, NULL) || e->synchronize()) {
+    engine.set_callback(take);
+    if (engine.synth(text, strlen(text) + 1u, 0, BY_CHARACTER, 0, IN_UTF8, NULL, NULL) || engine.synchronize()) {
         return tool_fail("speak", "eSpeak NG cannot say this text");
     }
     if (out->failed) return tool_fail("speak", "out of memory");
@@ -129,19 +168,20 @@ static int say(const espeak *e, const char *text, const char *language, synthesi
                : tool_fail("speak", "there is nothing to say in this text");
 }
 
-int synthesis_make(const char *text, const char *language, synthesis *out)
+int synthesis_make(const char *text, const char *name, synthesis *out)
 {
-    espeak e;
     int status;
     memset(out, 0, sizeof *out);
-    memset(&e, 0, sizeof e);
-    status = load(&e);
-    if (!status) {
-        status = say(&e, text, language, out);
-        e.terminate();
-    }
-    if (status) synthesis_free(out); /* the library stays: it keeps memory that it would lose sight of */
+    status = engine_rate > 0 ? 0 : start();
+    if (!status) status = say(text, name, out);
+    if (status) synthesis_free(out);
     return status;
+}
+
+void synthesis_end(void)
+{
+    if (engine_rate > 0) engine.terminate(); /* the library stays: it keeps memory that it would lose sight of */
+    engine_rate = 0;
 }
 
 void synthesis_free(synthesis *s)

@@ -27,8 +27,11 @@ typedef struct synthesis {
     int failed; /* out of memory */
 } synthesis;
 
-/* Prints an error and returns an exit code; 0 on success. language: as `espeak-ng --voices` lists them. */
-int synthesis_make(const char *text, const char *language, synthesis *out);
+/* Prints an error and returns an exit code; 0 on success. voice: a language as `espeak-ng --voices` lists them, with
+ * one of its variants where it has a "+", such as "de+f2". */
+int synthesis_make(const char *text, const char *voice, synthesis *out);
+/* When all has been said: once a process. */
+void synthesis_end(void);
 void synthesis_free(synthesis *s);
 
 #endif

@@ -1,0 +1,195 @@
+#include "labels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "face/speech.h"
+
+#define RATE 100.0
+#define NEAR_S 0.15
+#define LABELS_MAX 20000u
+
+typedef struct label {
+    double start, end;
+    noh_viseme first, second; /* NOH_VISEME_COUNT: unknown; only one */
+} label;
+
+typedef struct label_list {
+    label *items;
+    size_t count;
+} label_list;
+
+static int add(label_list *l, double start, double end, const char *phone)
+{
+    label *more = l->count % 256u ? l->items : realloc(l->items, (l->count + 256u) * sizeof *more);
+    if (!more) return 1;
+    l->items = more;
+    more[l->count].start = start;
+    more[l->count].end = end;
+    more[l->count].first = noh_viseme_of_phone(phone, &more[l->count].second);
+    l->count++;
+    return 0;
+}
+
+/* ---- in ---- */
+
+static int read_line(const char *path, size_t number, const char *line, label_list *out)
+{
+    char phone[32];
+    double start, end;
+    if (sscanf(line, "%lf %lf %31s", &start, &end, phone) != 3 || !(start >= 0.0 && end >= start && end < 1e6)) {
+        return tool_fail(path, "line %zu: not \"start end phone\" in seconds: %.60s", number, line);
+    }
+    if (out->count >= LABELS_MAX) return tool_fail(path, "line %zu: more than %u phones", number, LABELS_MAX);
+    if (!strcmp(phone, "NS") || !strcmp(phone, "BREATH")) memcpy(phone, "SIL", 4); /* noise: shut lips */
+    return add(out, start, end, phone) ? tool_fail(path, "out of memory") : 0;
+}
+
+static int read_labels(const char *path, label_list *out)
+{
+    char line[256];
+    int status = 0;
+    FILE *file = fopen(path, "r");
+    if (!file) return tool_fail(path, "cannot be opened");
+    for (size_t number = 1; !status && fgets(line, sizeof line, file); number++) {
+        line[strcspn(line, "\r\n")] = 0;
+        if (line[strspn(line, " \t")]) status = read_line(path, number, line, out);
+    }
+    fclose(file);
+    return status || out->count ? status : tool_fail(path, "holds no phones");
+}
+
+static int of_synthesis(const synthesis *s, label_list *out)
+{
+    for (size_t i = 0; i < s->phone_count; i++) {
+        const size_t end = i + 1u < s->phone_count ? s->phones[i + 1u].sample : s->sample_count;
+        if (add(out, (double)s->phones[i].sample / s->sample_rate, (double)end / s->sample_rate, s->phones[i].name)) {
+            return tool_fail("speak", "out of memory");
+        }
+    }
+    return 0;
+}
+
+/* ---- by frame ---- */
+
+static noh_viseme viseme_at(const label_list *l, double seconds)
+{
+    for (size_t i = 0; i < l->count; i++) {
+        const label *p = &l->items[i];
+        if (seconds < p->start || seconds >= p->end) continue;
+        return p->second == NOH_VISEME_COUNT || seconds < p->start + 0.6 * (p->end - p->start) ? p->first : p->second;
+    }
+    return NOH_VISEME_COUNT;
+}
+
+static int lips_of(noh_viseme v)
+{
+    switch (v) {
+    case NOH_VISEME_SIL:
+    case NOH_VISEME_PP: return 0;
+    case NOH_VISEME_FF: return 1;
+    case NOH_VISEME_OH:
+    case NOH_VISEME_OU: return 2;
+    case NOH_VISEME_AA:
+    case NOH_VISEME_E: return 3;
+    default: return 4;
+    }
+}
+
+static void score_frames(const label_list *wanted, const label_list *got, double seconds, label_score *out)
+{
+    for (uint32_t t = 0; (t + 0.5) / RATE < seconds; t++) {
+        const noh_viseme w = viseme_at(wanted, (t + 0.5) / RATE), g = viseme_at(got, (t + 0.5) / RATE);
+        if (w == NOH_VISEME_COUNT) continue;
+        out->frames++;
+        out->visemes_right += w == g;
+        out->lips_right += g != NOH_VISEME_COUNT && lips_of(w) == lips_of(g);
+    }
+}
+
+static void score_closures(const label_list *wanted, const label_list *got, label_score *out)
+{
+    for (size_t i = 0; i < wanted->count; i++) {
+        int found = 0;
+        if (wanted->items[i].first != NOH_VISEME_PP) continue;
+        for (size_t k = 0; k < got->count; k++) {
+            found |= got->items[k].first == NOH_VISEME_PP &&
+                     fabs(got->items[k].start - wanted->items[i].start) <= NEAR_S;
+        }
+        out->closures++;
+        out->closures_found += (uint32_t)found;
+    }
+}
+
+/* ---- onsets ---- */
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Edits between the beginnings of both lists: a phone that is only in one costs 1. */
+static void fill_edits(const label_list *a, const label_list *b, uint32_t *edits)
+{
+    const size_t row = b->count + 1u;
+    for (size_t i = 0; i <= a->count; i++) {
+        for (size_t k = 0; k <= b->count; k++) {
+            uint32_t best = (uint32_t)(i + k);
+            if (i && k) {
+                const uint32_t up = edits[(i - 1u) * row + k] + 1u, left = edits[i * row + k - 1u] + 1u;
+                best = up < left ? up : left;
+                if (a->items[i - 1u].first == b->items[k - 1u].first && edits[(i - 1u) * row + k - 1u] < best) {
+                    best = edits[(i - 1u) * row + k - 1u];
+                }
+            }
+            edits[i * row + k] = best;
+        }
+    }
+}
+
+static int score_onsets(const label_list *a, const label_list *b, label_score *out)
+{
+    const size_t row = b->count + 1u;
+    uint32_t *edits = calloc((a->count + 1u) * row, sizeof *edits);
+    double *errors = malloc((a->count + 1u) * sizeof *errors);
+    if (edits && errors) {
+        size_t i = a->count, k = b->count;
+        fill_edits(a, b, edits);
+        while (i && k) {
+            const uint32_t here = edits[i * row + k];
+            if (a->items[i - 1u].first == b->items[k - 1u].first && here == edits[(i - 1u) * row + k - 1u]) {
+                errors[out->onsets++] = fabs(a->items[--i].start - b->items[--k].start);
+            } else if (here == edits[(i - 1u) * row + k] + 1u) {
+                i--;
+            } else {
+                k--;
+            }
+        }
+        qsort(errors, out->onsets, sizeof *errors, by_value);
+        out->onset_median_s = out->onsets ? errors[out->onsets / 2u] : 0.0;
+    }
+    free(edits);
+    free(errors);
+    return edits && errors ? 0 : tool_fail("speak", "out of memory");
+}
+
+int labels_score(const char *path, const synthesis *said, label_score *out)
+{
+    label_list wanted = { NULL, 0 }, got = { NULL, 0 };
+    int status = read_labels(path, &wanted);
+    memset(out, 0, sizeof *out);
+    if (!status) status = of_synthesis(said, &got);
+    if (!status) {
+        out->phones = (uint32_t)wanted.count;
+        score_frames(&wanted, &got, (double)said->sample_count / said->sample_rate, out);
+        score_closures(&wanted, &got, out);
+        status = score_onsets(&wanted, &got, out);
+    }
+    free(wanted.items);
+    free(got.items);
+    return status;
+}
