@@ -12,6 +12,7 @@
 #define TOP_PART 0.475f   /* of the recording's rate, where that is less */
 #define SPOKEN_PART 0.3f  /* from the quietest to the loudest: what is louder is speech */
 #define SPOKEN_GAP 12u    /* frames: a shorter silence is within speech, as before a p, t or k */
+#define RANGE_DB 45.0f    /* of speech in a room: what is quieter still tells nothing */
 #define QUIET_DB (-75.0f) /* a recording that nowhere is louder has no speech */
 #define RIDGE 0.2         /* on the diagonal of what voices differ by: people differ by more */
 #define PAUSE_COST 0.45f  /* of the quietest frame in a pause, where a frame that fits costs about 1 */
@@ -64,6 +65,7 @@ static int hear(const sound *recording, float top_hz, heard *h)
     if (status) return status;
     h->low = features_level(&h->f, 0.05f);
     h->high = features_level(&h->f, 0.95f);
+    if (h->low < h->high - RANGE_DB) h->low = h->high - RANGE_DB;
     h->pause_cost = malloc((h->f.frames + 1u) * sizeof *h->pause_cost);
     h->at = malloc((h->f.frames + 1u) * sizeof *h->at);
     if (!h->pause_cost || !h->at) return tool_fail("speak", "out of memory");
