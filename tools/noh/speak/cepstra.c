@@ -100,13 +100,16 @@ static void frame_make(const bank *b, const sound *in, size_t frame, float *ceps
 {
     const ptrdiff_t start = (ptrdiff_t)(frame * HOP + HOP / 2u) - (ptrdiff_t)(WINDOW / 2u);
     float re[FFT] = { 0 }, im[FFT] = { 0 }, power[FFT / 2u + 1u];
-    double energy = 0.0;
+    double sum = 0.0, energy = 0.0, bright = 0.0;
     for (uint32_t i = 0; i < WINDOW; i++) {
         const float now = sample(in, start + (ptrdiff_t)i), before = sample(in, start + (ptrdiff_t)i - 1);
         re[i] = b->window[i] * (now - PRE_EMPHASIS * before);
+        sum += (double)now;
         energy += (double)(now * now);
+        bright += (double)(re[i] * re[i]);
     }
-    *level = (float)(10.0 * log10(energy / WINDOW + 1e-10));
+    energy -= sum * sum / WINDOW;
+    *level = (float)(5.0 * log10(fmax(energy, 0.0) / WINDOW + 1e-10) + 5.0 * log10(bright / WINDOW + 1e-10));
     transform(b, re, im);
     for (uint32_t k = 0; k <= FFT / 2u; k++) power[k] = re[k] * re[k] + im[k] * im[k];
     memset(cepstra, 0, FEATURE_CEPSTRA * sizeof *cepstra);

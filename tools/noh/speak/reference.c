@@ -25,13 +25,21 @@ static double start_of(const synthesis *s, size_t phone)
 
 /* ---- states ---- */
 
-/* Whether a word begins with the phone. */
+static uint32_t apart(uint32_t a, uint32_t b)
+{
+    return a > b ? a - b : b - a;
+}
+
+/* Whether a word begins with the phone: it is the nearest to the word's own sample, which may lie somewhat before. */
 static int begins_word(const synthesis *s, size_t phone)
 {
-    const uint32_t near = s->sample_rate / 200u;
+    const uint32_t at = s->phones[phone].sample;
     for (size_t i = 0; i < s->word_count; i++) {
-        const uint32_t at = s->words[i].sample;
-        if (at + near > s->phones[phone].sample && at < s->phones[phone].sample + near) return 1;
+        const uint32_t word = s->words[i].sample, far = apart(word, at);
+        if ((!phone || apart(word, s->phones[phone - 1u].sample) > far) &&
+            (phone + 1u == s->phone_count || apart(word, s->phones[phone + 1u].sample) >= far)) {
+            return 1;
+        }
     }
     return 0;
 }

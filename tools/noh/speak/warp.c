@@ -10,6 +10,7 @@
 #define STAY 0.8f   /* for a second frame in one state */
 #define LEAP_1 1.0f /* over one state */
 #define LEAP_2 2.5f /* over two: no phone passes at more than thrice its pace */
+#define ENTER 20.0f /* for a pause: one shorter than some frames is a stop's closure */
 #define LEAPS 3
 #define REACH 6 /* states back that a step can come from, optional pauses among them */
 #define FAR 1e30f
@@ -50,7 +51,7 @@ static float step(const grid *g, size_t state, const float *costs, uint8_t *from
     int spoken = 0;
     *from = 0;
     for (int k = 1; k < REACH && (size_t)k <= state && spoken < LEAPS; k++) {
-        const float cost = costs[-k] + leap[spoken];
+        const float cost = costs[-k] + leap[spoken] + (pause ? ENTER : 0.0f);
         if (cost < best) {
             best = cost;
             *from = (uint8_t)k;
