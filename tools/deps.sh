@@ -39,6 +39,7 @@ libosmesa6:a second GL
 ?gcc-12-multilib:32 bits
 ?libespeak-ng1:noh speak
 ?espeak-ng-data:noh speak
+?libsndfile1:noh speak on recordings
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'

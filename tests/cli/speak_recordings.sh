@@ -117,7 +117,7 @@ says 'do not seem to be those'
 noh speak "$work/said.wav" --text 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
 expect 0 'a clip for the mask'
 noh info "$work/line.noh"
-check 'one clip, a key for each word' grep -q "clip 'speech': .* 57 floats, .* 5 callback keys" "$work/out"
+check 'one clip, a key for each word' grep -q "clip 'speech': .* floats, .* 5 callback keys" "$work/out"
 cp "$work/line.noh" "$work/first.noh"
 noh speak "$work/said.wav" --text 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
 check 'the same bytes every time' cmp "$work/line.noh" "$work/first.noh"

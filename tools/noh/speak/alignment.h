@@ -17,7 +17,7 @@ typedef struct alignment {
 } alignment;
 
 /* Words that are not in the recording come out below, words that are above (tools/noh/speak/README.md). */
-#define ALIGNMENT_SCORE_POOR 0.11
+#define ALIGNMENT_SCORE_POOR 0.10
 
 /* Prints an error and returns an exit code; 0 on success. */
 int alignment_make(const sound *recording, const char *text, const char *language, alignment *out);
