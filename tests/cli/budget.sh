@@ -226,4 +226,19 @@ says '--actors has no effect with --desc'
 noh budget --nominal
 expect 2 'neither a pack nor a text'
 says 'noh budget wants PACK or --desc'
+
+# faces and graphs in a text
+printf 'kind puppet\n mesh %s\n actor_count 2\n graphs "*"\n face 0.035 1.55 0.11 -0.035 1.55 0.11\n' \
+    "$puppet" >"$work/cast/face.txt"
+noh budget --desc "$work/cast/face.txt" --nominal
+expect 0 'a kind whose faces live'
+check 'which take bytes of their own' grep -q '^  faces  *puppet ' "$work/out"
+sed 's/face 0.*/face joints/' "$work/cast/face.txt" >"$work/cast/joints.txt"
+noh budget --desc "$work/cast/joints.txt" --nominal
+expect 1 'eyes by joints that are not there'
+says 'no joints for the eyes'
+sed 's/face 0.*/face 1 2/' "$work/cast/face.txt" >"$work/cast/joints.txt"
+noh budget --desc "$work/cast/joints.txt" --nominal
+expect 1 'eyes without all numbers'
+says "face wants 'joints'"
 finish

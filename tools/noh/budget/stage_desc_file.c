@@ -288,6 +288,9 @@ typedef enum setting_kind {
     SET_ROOT,
     SET_MESH,
     SET_CLIPS,
+    SET_FINER,
+    SET_GRAPHS,
+    SET_FACE,
     SET_LAYER
 } setting_kind;
 
@@ -318,6 +321,9 @@ static const setting settings[] = {
     { "held_float_count", SET_HELD, 1, 0, offsetof(noh_kind_desc, held_float_count), 0, NOH_FLOATS_MAX },
     { "root_axes", SET_ROOT, 1, 0, 0, 0, 0 },
     { "layer", SET_LAYER, 1, 1, 0, 0, 0 },
+    { "finer", SET_FINER, 1, 0, 0, 0, 0 },
+    { "graphs", SET_GRAPHS, 1, 0, 0, 0, 0 },
+    { "face", SET_FACE, 1, 0, 0, 0, 0 },
 };
 #define SETTING_COUNT (sizeof settings / sizeof settings[0])
 
@@ -347,6 +353,24 @@ static int set_number(reader *r, const setting *s, const char *text)
     return 0;
 }
 
+/* "joints", or the centres of the left and the right eye. */
+static int set_face(reader *r)
+{
+    noh_kind_face *face = &r->file->faces[r->kind - r->file->kinds];
+    r->kind->face = face;
+    if (r->word_count == 2 && strcmp(r->words[1].text, "joints") == 0) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < 6; i++) {
+        double value = 0.0;
+        if (r->word_count != 7 || tool_number(r->words[1 + i].text, &value) || !(value >= -1e6 && value <= 1e6)) {
+            return fail_at(r, r->line, "face wants 'joints', or x y z of the left eye and x y z of the right one");
+        }
+        face->face.eyes[i / 3][i % 3] = (float)value;
+    }
+    return 0;
+}
+
 static int set(reader *r, const setting *s)
 {
     char *text = r->words[1].text;
@@ -356,6 +380,9 @@ static int set(reader *r, const setting *s)
     case SET_MESH: return pack_beside(r, text, &r->kind->mesh);
     case SET_CLIPS: return add_clips(r, text);
     case SET_LAYER: return add_layer(r);
+    case SET_FINER: return pack_beside(r, text, &r->kind->finer);
+    case SET_GRAPHS: r->kind->graphs = text; return 0;
+    case SET_FACE: return set_face(r);
     default: return set_number(r, s, text);
     }
 }
@@ -387,7 +414,7 @@ static int read_setting(reader *r, const setting *s)
         return fail_at(r, r->line, "there is '%s' already, in line %u", s->name, *line);
     }
     *line = r->line;
-    return check_words(r, s->name, s->kind == SET_LAYER) || set(r, s) ? EXIT_FAILED : 0;
+    return check_words(r, s->name, s->kind == SET_LAYER || s->kind == SET_FACE) || set(r, s) ? EXIT_FAILED : 0;
 }
 
 static int unknown_key(const reader *r)
