@@ -42,8 +42,8 @@ def at_rate(r):
     step = rate / r
     if step <= 1:
         return [x[min(int(i * step), len(x) - 1)] for i in range(n)]
-    return [sum(x[int(i * step):max(int((i + 1) * step), int(i * step) + 1)]) // max(int((i + 1) * step) - int(i * step), 1)
-            for i in range(n)]
+    parts = [x[int(i * step):int((i + 1) * step)] for i in range(n)]
+    return [sum(p) // len(p) for p in parts]
 riff('u8.wav', 1, 8, 1, rate, bytes(128 + v // 256 for v in x))
 riff('s24.wav', 1, 24, 1, rate, b''.join(struct.pack('<i', v * 256)[:3] for v in x))
 riff('s32.wav', 1, 32, 1, rate, struct.pack('<%di' % len(x), *[v * 65536 for v in x]))
@@ -53,7 +53,8 @@ for r in (8000, 11025, 16000, 44100, 48000):
     y = at_rate(r)
     riff('r%d.wav' % r, 1, 16, 1, r, struct.pack('<%dh' % len(y), *y))
 random.seed(1)
-riff('noise.wav', 1, 16, 1, rate, struct.pack('<%dh' % len(x), *[max(-32768, min(32767, v + int(random.gauss(0, 200)))) for v in x]))
+noisy = [max(-32768, min(32767, v + int(random.gauss(0, 200)))) for v in x]
+riff('noise.wav', 1, 16, 1, rate, struct.pack('<%dh' % len(x), *noisy))
 riff('silent.wav', 1, 16, 1, rate, bytes(2 * len(x)))
 riff('loud.wav', 1, 16, 1, rate, struct.pack('<%dh' % len(x), *[max(-32768, min(32767, 20 * v)) for v in x]))
 riff('short.wav', 1, 16, 1, rate, struct.pack('<400h', *x[2000:2400]))
@@ -92,7 +93,8 @@ for kind in said u8 s24 s32 f32 stereo r8000 r11025 r16000 r44100 r48000 noise; 
     cp "$work/out" "$work/$kind.json"
     check 'its phones begin where they do, 20 ms' python3 "$work/near.py" "$work/text.json" "$work/$kind.json" 0.02
 done
-for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut.wav:' 'kinds.py:cannot be read as sound' \
+for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut.wav:' \
+    'kinds.py:cannot be read as sound' \
     'silent.wav:silent' 'nan.wav:silent' 'slow.wav:samples a second' 'short.wav:too short' 'missing.wav:'; do
     noh speak "$work/${broken%%:*}" --text 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/other.noh"
     expect 1 "${broken%%:*} is refused"
