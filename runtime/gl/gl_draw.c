@@ -1,7 +1,11 @@
 /* gl_draw.c: the plain renderer's draws.
  *
  * Everything opaque is drawn first and writes depth. What is blended follows: it is hidden by opaque surfaces but does
- * not write depth, so that two blended surfaces never hide each other, whatever their order. */
+ * not write depth, so that two blended surfaces never hide each other, whatever their order.
+ *
+ * Triangles are not sorted: their places are on the GPU alone. Where the texture of what blends is as good as opaque,
+ * as along strands of hair, its core is drawn with the opaque surfaces and hides what is behind it, so only the fringe
+ * around it, thin and mostly of one colour, is blended in stored order. */
 #include "gl/gl_draw.h"
 
 #include <string.h>
@@ -111,13 +115,12 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
     r->gl->BindTexture(GL_TEXTURE_2D, name);
 }
 
-static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)
 {
     bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
-    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, (m->flags & NOH_MATERIAL_MASK) ? m->alpha_cutoff : -1.0f,
-                     (m->flags & NOH_MATERIAL_UNLIT) ? 1.0f : 0.0f);
+    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, (m->flags & NOH_MATERIAL_UNLIT) ? 1.0f : 0.0f);
 }
 
 /* What the variant's features read. */
@@ -137,11 +140,11 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
-static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                          const noh_gl_texture *pictures)
 {
     if (!v->key.depth || v->key.cut) {
-        set_base_color(r, v, m, pictures);
+        set_base_color(r, v, m, cutoff, pictures);
     }
     if (!v->key.depth) {
         set_features(r, v, m, pictures);
@@ -175,10 +178,21 @@ typedef enum draw_part { PART_OPAQUE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_D
 static int is_in_part(const noh_material *m, draw_part part)
 {
     const int blended = (m->flags & NOH_MATERIAL_BLEND) != 0, cut = (m->flags & NOH_MATERIAL_MASK) != 0;
-    if (part == PART_OPAQUE || part == PART_BLENDED) {
-        return blended == (part == PART_BLENDED);
+    switch (part) {
+    case PART_OPAQUE: return !blended || noh_gl_has_core(m);
+    case PART_BLENDED: return blended;
+    case PART_SOLID_DEPTH: return !blended && !cut;
+    default: return (!blended && cut) || noh_gl_has_core(m);
     }
-    return !blended && cut == (part == PART_CUT_DEPTH);
+}
+
+/* Below it a pixel is not drawn; -1: all are. */
+static float cutoff_of(const noh_material *m, draw_part part)
+{
+    if (part != PART_BLENDED && noh_gl_has_core(m)) {
+        return NOH_GL_CORE_ALPHA;
+    }
+    return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff : -1.0f;
 }
 
 static int is_in_depth(draw_part part)
@@ -210,7 +224,7 @@ static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_f
 }
 
 /* Go on with another program. */
-static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t level, draw_part part)
+static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t level)
 {
     use_variant(j->r, v);
     set_mesh(j->r, v, j->mesh, j->morph);
@@ -219,14 +233,15 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     } else {
         j->r->gl->FrontFace(GL_CCW);
     }
-    j->r->gl->Uniform1i(v->u_blends, part == PART_BLENDED);
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
 
-static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first)
+static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,
+                          draw_part part)
 {
     const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
-    set_material(j->r, v, m, j->pictures);
+    set_material(j->r, v, m, cutoff_of(m, part), j->pictures);
+    j->r->gl->Uniform1i(v->u_blends, (m->flags & NOH_MATERIAL_BLEND) != 0);
     if (j->r->shaders.bind) {
         j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
     }
@@ -250,14 +265,14 @@ static void draw_part_of(const draw_job *j, draw_part part)
             v = variant_of(j, part, features);
             NOH_ASSERT(v); /* the renderer's desc asked for it */
             if (!v) return;
-            begin_variant(j, v, level.header->level, part);
+            begin_variant(j, v, level.header->level);
             palette = NOH_NONE;
         }
         if (j->skin && s->palette != palette) {
             palette = s->palette;
             noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
         }
-        draw_material(j, v, s, first);
+        draw_material(j, v, s, first, part);
     }
 }
 

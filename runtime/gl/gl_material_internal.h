@@ -7,4 +7,12 @@
 /* glTF's default material for a submesh without one. */
 const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh);
 
+/* What blends has a core where its alpha is at least this, which is drawn as if it were opaque. */
+#define NOH_GL_CORE_ALPHA 0.9f
+
+static inline int noh_gl_has_core(const noh_material *m)
+{
+    return (m->flags & NOH_MATERIAL_BLEND) && m->base_color_texture != NOH_NONE;
+}
+
 #endif

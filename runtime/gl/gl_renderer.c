@@ -79,8 +79,8 @@ static int has_cut_materials(const noh_mesh *mesh)
 {
     int cut = 0;
     for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
-        const uint32_t material = mesh->submeshes[i].material;
-        cut |= material != NOH_NONE && (mesh->pack->materials[material].flags & NOH_MATERIAL_MASK);
+        const noh_material *m = noh_gl_material_of(mesh, &mesh->submeshes[i]);
+        cut |= (m->flags & NOH_MATERIAL_MASK) || noh_gl_has_core(m);
     }
     return cut;
 }
