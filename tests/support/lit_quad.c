@@ -28,6 +28,7 @@ lit_quad lit_quad_of(void)
     q.camera.view_projection[10] = 0.1f;
     q.camera.view_projection[15] = 1.0f;
     q.camera.eye[2] = -4.0f;
+    q.normal_scale = q.occlusion_strength = 1.0f;
     q.metallic = 0.25f;
     q.roughness = 0.5f;
     q.cutoff = 0.5f;
@@ -58,7 +59,32 @@ static void fill_material(const lit_quad *q, model *m)
     material->alpha_cutoff = q->cutoff;
     material->double_sided = (uint8_t)(q->double_sided != 0);
     material->unlit = (uint8_t)(q->unlit != 0);
+    material->normal_scale = q->normal_scale;
+    material->occlusion_strength = q->occlusion_strength;
+    memcpy(material->emissive, q->emissive, sizeof q->emissive);
+    if (q->normal_map) material->normal_texture = 0;
+    if (q->surface_map) material->surface_texture = 1;
     m->meshes[0].submeshes[0].material = 0;
+}
+
+/* The normal map, and the surface map. */
+static void fill_maps(const lit_quad *q, model *m)
+{
+    static const uint8_t none[4] = { 128, 128, 255, 255 };
+    const uint8_t *const texels[2] = { q->normal_map ? q->normal_map : none, q->surface_map ? q->surface_map : none };
+    m->textures = test_zeros(2 * sizeof *m->textures);
+    m->texture_count = 2;
+    for (int i = 0; i < 2; i++) {
+        model_texture *t = &m->textures[i];
+        t->name = model_string(i ? "surface" : "normal");
+        t->width = t->height = 1;
+        t->rgba = test_zeros(4);
+        memcpy(t->rgba, texels[i], 4);
+        t->use = i ? MODEL_TEXTURE_DATA : MODEL_TEXTURE_NORMAL;
+    }
+    if (!q->normal_map) return;
+    m->meshes[0].tangent = test_zeros(16 * sizeof(float));
+    for (int v = 0; v < 4; v++) memcpy(m->meshes[0].tangent + 4 * v, q->tangent, sizeof q->tangent);
 }
 
 /* Two textures: a grey one that nothing uses, and the quad's. */
@@ -94,6 +120,7 @@ static uint8_t *quad_pack(const lit_quad *q, size_t *count)
     uint8_t *bytes;
     fill_material(q, m);
     if (q->picture) fill_textures(q, m);
+    if (q->normal_map || q->surface_map) fill_maps(q, m);
     if (q->uv) mesh->uv = copied(q->uv, 8);
     if (q->color) mesh->color = copied(q->color, 16);
     for (uint32_t v = 0; v < 4; v++) {
@@ -231,11 +258,16 @@ static double shade(const lit_quad *q, const cosines *c, int i)
 {
     static const double warm[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 },
                         above[3] = { 0.50, 0.54, 0.60 };
-    const double albedo = (double)q->base[i], metallic = (double)q->metallic, rough = (double)q->roughness;
-    const double f0 = 0.04 + (albedo - 0.04) * metallic, sky = ground[i] + (above[i] - ground[i]) * c->up;
+    static const uint8_t full[3] = { 255, 255, 255 };
+    const uint8_t *map = q->surface_map ? q->surface_map : full;
+    const double albedo = (double)q->base[i], metallic = (double)q->metallic * map[2] / 255.0;
+    const double rough = fmax((double)q->roughness * map[1] / 255.0, 0.08);
+    const double open = 1.0 + (double)q->occlusion_strength * (map[0] / 255.0 - 1.0);
+    const double f0 = 0.04 + (albedo - 0.04) * metallic, sky = open * (ground[i] + (above[i] - ground[i]) * c->up);
     double color = albedo * (1.0 - metallic) * (warm[i] * c->wrapped * fabs(c->wrapped) + 0.62 * sky);
     color += (f0 + (1.0 - f0) * c->edge) * highlight(c->nh, fmax(c->lit, 0.0), c->nv, rough) * c->lit * 2.6;
     color += f0 * sky * (0.7 - 0.4 * rough) * (0.15 + 0.85 * metallic);
+    color += (double)q->emissive[i];
     return color + 0.10 * sky * pow(1.0 - c->nv, 3.0) * (1.0 - 0.6 * rough);
 }
 
@@ -243,6 +275,27 @@ static float x_of(const lit_quad *q, uint32_t column)
 {
     const float screen = (2.0f * (float)column + 1.0f) / (float)LIT_QUAD_SIDE - 1.0f;
     return screen / (q->camera.view_projection[0] * q->world[0]);
+}
+
+/* The map's vector in the frame of a unit normal. */
+static void map_normal(const lit_quad *q, lit_quad_normals by, double n[3])
+{
+    const double determinant = (double)(q->world[0] * q->world[5] * q->world[10]);
+    const double hand = (double)q->tangent[3] * (determinant < 0.0 && by != FRAME_NOT_MIRRORED ? -1.0 : 1.0);
+    double t[3], b[3], v[3], along = 0.0;
+    for (int i = 0; i < 3; i++) {
+        v[i] = ((double)q->normal_map[i] - 128.0) / 127.0 * (i < 2 ? (double)q->normal_scale : 1.0);
+        t[i] = (double)(q->world[5 * i] * q->tangent[i]);
+        along += t[i] * n[i];
+    }
+    for (int i = 0; i < 3 && by != FRAME_AS_IT_IS; i++) t[i] -= along * n[i];
+    unit(t);
+    for (int i = 0; i < 3; i++) {
+        b[i] = hand * (n[(i + 1) % 3] * t[(i + 2) % 3] - n[(i + 2) % 3] * t[(i + 1) % 3]);
+    }
+    unit(v);
+    for (int i = 0; i < 3; i++) n[i] = v[0] * t[i] + v[1] * b[i] + v[2] * n[i];
+    unit(n);
 }
 
 void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, double n[3])
@@ -259,6 +312,7 @@ void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, do
     if (by != NORMALS_NOT_UNIT) {
         unit(n);
     }
+    if (q->normal_map) map_normal(q, by, n);
 }
 
 void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3])

@@ -23,6 +23,10 @@ typedef struct lit_quad {
     const float *color; /* [4][4] or NULL */
     /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
     const uint8_t *picture;
+    const uint8_t *normal_map;  /* [4] one texel, or NULL */
+    const uint8_t *surface_map; /* [4] one texel, or NULL */
+    float tangent[4];           /* of all vertices, with a normal map */
+    float emissive[3], normal_scale, occlusion_strength;
     const noh_gl_shader_desc *shaders; /* in place of the library's; NULL: none */
 } lit_quad;
 
@@ -43,7 +47,9 @@ typedef enum lit_quad_normals {
     NORMALS_BY_INVERSE_TRANSPOSE,
     NORMALS_BY_MATRIX,
     NORMALS_BY_NOTHING,
-    NORMALS_NOT_UNIT
+    NORMALS_NOT_UNIT,
+    FRAME_AS_IT_IS,    /* with a normal map: the tangent not made orthogonal to the normal again */
+    FRAME_NOT_MIRRORED /* the bitangent by the cross product alone, in a mirrored world too */
 } lit_quad_normals;
 
 /* The normal in the world at a column of the middle row. world must be diagonal. */
