@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "info/info_materials.h"
 #include "budget_args.h"
 #include "pack_budget.h"
 #include "gpu/gpu_args.h"
@@ -73,6 +74,7 @@ static void print_budget(const pack_budget *b, const char *device)
         printf("%s\n", b->morph.reason);
     }
     print_levels(b);
+    if (b->planned.kinds[0].mesh) info_print_textures(b->planned.kinds[0].mesh);
 }
 
 static int json_budget(const pack_budget *b, const char *device)
@@ -102,6 +104,7 @@ static int json_budget(const pack_budget *b, const char *device)
     }
     json_close(&j, ']');
     json_levels(&j, b);
+    if (b->planned.kinds[0].mesh) info_json_textures(&j, b->planned.kinds[0].mesh);
     return json_end(&j);
 }
 

@@ -4,6 +4,7 @@
 
 #include "info_graph.h"
 #include "info_joints.h"
+#include "info_materials.h"
 #include "info_transfer.h"
 #include "cli/args.h"
 #include "cli/message.h"
@@ -156,6 +157,8 @@ static int print_info(const pack_file *file)
     for (uint32_t i = 0; i < p->graph_count && !status; i++) {
         status = info_print_graph(file, i);
     }
+    info_print_materials(p);
+    info_print_textures(p);
     return status;
 }
 
@@ -329,6 +332,8 @@ static int json_info(const pack_file *file)
     json_integer(&j, "nodes", p->node_count);
     json_integer(&j, "materials", p->material_count);
     json_integer(&j, "textures", p->texture_count);
+    info_json_materials(&j, p);
+    info_json_textures(&j, p);
     if (status) {
         json_drop(&j);
     }

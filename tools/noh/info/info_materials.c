@@ -1,0 +1,105 @@
+#include "info/info_materials.h"
+
+#include <stdio.h>
+
+#include "noh_gl.h"
+
+#define MAPS 8u
+
+typedef struct material_map {
+    const char *name, *key;
+    uint32_t texture;
+} material_map;
+
+static void list_maps(const noh_material *m, material_map maps[MAPS])
+{
+    const material_map all[MAPS] = { { "base colour", "base_color", m->base_color_texture },
+                                     { "normal", "normal", m->normal_texture },
+                                     { "occlusion, roughness, metallic", "surface", m->surface_texture },
+                                     { "emissive", "emissive", m->emissive_texture },
+                                     { "wrinkles", "wrinkle", m->wrinkle_texture },
+                                     { "wrinkle weights 1-4", "wrinkle_weights_0", m->wrinkle_weights[0] },
+                                     { "wrinkle weights 5-8", "wrinkle_weights_1", m->wrinkle_weights[1] },
+                                     { "wrinkle weights 9-12", "wrinkle_weights_2", m->wrinkle_weights[2] } };
+    for (uint32_t i = 0; i < MAPS; i++) maps[i] = all[i];
+}
+
+static const char *alpha_of(const noh_material *m)
+{
+    return m->flags & NOH_MATERIAL_BLEND ? "blend" : m->flags & NOH_MATERIAL_MASK ? "mask" : "opaque";
+}
+
+static const char *surface_of(const noh_material *m)
+{
+    return m->surface == NOH_SURFACE_SKIN ? "skin" : m->surface == NOH_SURFACE_EYE ? "eye" : "plain";
+}
+
+void info_print_materials(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->material_count; i++) {
+        const noh_material *m = &pack->materials[i];
+        material_map maps[MAPS];
+        list_maps(m, maps);
+        printf("material '%s': %s, %s%s%s", noh_pack_string(pack, m->name), surface_of(m), alpha_of(m),
+               m->flags & NOH_MATERIAL_DOUBLE_SIDED ? ", two-sided" : "",
+               m->flags & NOH_MATERIAL_UNLIT ? ", unlit" : "");
+        for (uint32_t k = 0; k < MAPS; k++) {
+            if (maps[k].texture != NOH_NONE)
+                printf(", %s '%s'", maps[k].name, noh_pack_chunk_name(pack, pack->first_texture + maps[k].texture));
+        }
+        printf("\n");
+    }
+}
+
+void info_print_textures(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->texture_count; i++) {
+        noh_texture t;
+        (void)noh_pack_texture_at(pack, i, &t, NULL);
+        printf("texture '%s': %u x %u, %u mip level%s, %s, %llu bytes on the GPU\n", t.name, t.header->width,
+               t.header->height, t.header->level_count, t.header->level_count == 1 ? "" : "s",
+               t.header->flags & NOH_TEXTURE_LINEAR ? "data" : "sRGB", (unsigned long long)noh_gl_picture_bytes(&t));
+    }
+}
+
+static void json_material(json *j, const noh_pack *pack, const noh_material *m)
+{
+    material_map maps[MAPS];
+    list_maps(m, maps);
+    json_open(j, NULL, '{');
+    json_text(j, "name", noh_pack_string(pack, m->name));
+    json_text(j, "surface", surface_of(m));
+    json_text(j, "alpha", alpha_of(m));
+    json_bool(j, "double_sided", (m->flags & NOH_MATERIAL_DOUBLE_SIDED) != 0);
+    json_open(j, "maps", '{');
+    for (uint32_t k = 0; k < MAPS; k++) {
+        if (maps[k].texture != NOH_NONE) json_integer(j, maps[k].key, maps[k].texture);
+    }
+    json_close(j, '}');
+    json_close(j, '}');
+}
+
+void info_json_materials(json *j, const noh_pack *pack)
+{
+    json_open(j, "material_list", '[');
+    for (uint32_t i = 0; i < pack->material_count; i++) json_material(j, pack, &pack->materials[i]);
+    json_close(j, ']');
+}
+
+void info_json_textures(json *j, const noh_pack *pack)
+{
+    json_open(j, "texture_list", '[');
+    for (uint32_t i = 0; i < pack->texture_count; i++) {
+        noh_texture t;
+        (void)noh_pack_texture_at(pack, i, &t, NULL);
+        json_open(j, NULL, '{');
+        json_text(j, "name", t.name);
+        json_integer(j, "width", t.header->width);
+        json_integer(j, "height", t.header->height);
+        json_integer(j, "levels", t.header->level_count);
+        json_bool(j, "data", (t.header->flags & NOH_TEXTURE_LINEAR) != 0);
+        json_integer(j, "gpu_bytes", noh_gl_picture_bytes(&t));
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
