@@ -175,7 +175,7 @@ size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, si
 /* ---- programs ---- */
 
 /* A stage's text: what goes behind the key's defines. */
-#define SOURCE_PIECES_MAX 24u
+#define SOURCE_PIECES_MAX 14u
 typedef struct whole_source {
     noh_gl_source source;
     const char *pieces[SOURCE_PIECES_MAX];

@@ -93,7 +93,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
  * cut  1: of alpha-cut materials */
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 
-#define NOH_GL_DEFINES_BYTES 768u
+#define NOH_GL_DEFINES_BYTES 640u
 
 /* Write the key as lines of #define, zero-terminated. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
