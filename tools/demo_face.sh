@@ -25,7 +25,7 @@ mkdir -p "$out/film"
 frame=0
 while [ $frame -lt $((seconds * 25)) ]; do
     time=$(awk "BEGIN { printf \"%.3f\", $frame / 25 }")
-    "$noh" render "$out/puppet.noh" -o "$(printf '%s/film/%04d.png' "$out" $frame)" --size 384x384 --camera 20,4,0.9 \
+    "$noh" render "$out/puppet.noh" -o "$(printf '%s/film/%04d.png' "$out" $frame)" --size 384x384 --camera face \
         --anim "$out/puppet.noh" --anim "$out/says.noh" --clip idle --clip speech --face on --time "$time" >/dev/null
     frame=$((frame + 1))
 done
