@@ -63,8 +63,9 @@ static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc
                                           "the fragment shader does not compile" };
     static const char *const names[] = { "vertex", "geometry", "fragment" };
     static const GLenum types[] = { GL_VERTEX_SHADER, GL_GEOMETRY_SHADER, GL_FRAGMENT_SHADER };
-    const noh_gl_source *const sources[] = { desc->vertex, desc->geometry, desc->fragment };
-    const noh_gl_source *source = sources[stage];
+    const noh_gl_source *source = stage == STAGE_GEOMETRY            ? desc->geometry
+                                  : types[stage] == GL_VERTEX_SHADER ? desc->vertex
+                                                                     : desc->fragment;
     const GLchar *strings[NOH_GL_PIECES_MAX + 3];
     GLsizei count = 0;
     strings[count++] = desc->version ? desc->version : source->version;

@@ -104,10 +104,10 @@ typedef struct noh_kind_desc {
     /* Names of graphs in the packs of clips (noh build --graph) that its actors may play, one at a time, separated by
      * blanks; '*' at the end matches any rest. Default (NULL) none, at no cost. Read at init */
     const char *graphs;
+    const struct noh_kind_face *face; /* faces that live (stage/stage_face.h); default (NULL) none, at no cost */
     /* What changes its poses before they are shown (stage/part.h), in this order; default (NULL) nothing, at no cost */
     const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
     uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
-    const struct noh_kind_face *face;   /* faces that live (stage/stage_face.h); default (NULL) none, at no cost */
     uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * none */
