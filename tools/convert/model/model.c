@@ -88,6 +88,7 @@ void model_mesh_clear(model_mesh *mesh)
     free(mesh->weights);
     free(mesh->joints);
     free(mesh->joint_weights);
+    free(mesh->wrinkles);
 }
 
 void model_drop_mesh(model *m, uint32_t mesh)

@@ -1,0 +1,334 @@
+/* test_wrinkles.c: principal strains, generated creases, regions and their matrix. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/model_build.h"
+#include "convert/wrinkle/wrinkle_creases.h"
+#include "convert/wrinkle/wrinkle_regions.h"
+
+#define PI 3.14159265358979323846
+
+/* ---- strains ---- */
+
+/* A triangle in a random plane, stretched by known amounts along known directions, then turned and shifted. */
+static void strains_of_known_stretches(void **state)
+{
+    (void)state;
+    test_random r = test_random_from(5);
+    double worst = 0.0, worst_axis = 0.0;
+    for (int round = 0; round < 20000; ++round) {
+        double x[3], y[3], z[3], moved[3][3], rest[3][3], now[3][3], along = 0.0;
+        const double most = (double)test_random_float(&r, 0.9f, 1.6f),
+                     least = (double)test_random_float(&r, 0.2f, 0.85f);
+        for (int i = 0; i < 3; ++i) {
+            x[i] = (double)test_random_float(&r, -1, 1);
+            y[i] = (double)test_random_float(&r, -1, 1);
+        }
+        vec_normalize(x);
+        vec_reject(y, x);
+        vec_normalize(y);
+        vec_cross(x, y, z);
+        memcpy(moved[0], z, sizeof z); /* anything orthonormal */
+        memcpy(moved[1], x, sizeof x);
+        for (int k = 0; k < 3; ++k) {
+            const double a = (k == 1) + (double)test_random_float(&r, -0.2f, 0.2f);
+            const double b = (k == 2) + (double)test_random_float(&r, -0.2f, 0.2f);
+            for (int i = 0; i < 3; ++i) {
+                rest[k][i] = a * x[i] + b * y[i];
+                now[k][i] = most * a * moved[0][i] + least * b * moved[1][i] + 3.0;
+            }
+        }
+        wrinkle_strain s;
+        assert_int_equal(wrinkle_strain_of(rest, now, &s), 1);
+        worst = fmax(worst, fmax(fabs(s.most - most), fabs(s.least - least)));
+        along = fabs(vec_dot(s.axis, x));
+        worst_axis = fmax(worst_axis, 1.0 - along);
+    }
+    print_message("principal stretches: off by at most %.2g, axis 1 - cosine %.2g\n", worst, worst_axis);
+    assert_true(worst < 1e-9 && worst_axis < 1e-9);
+    double flat[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
+    wrinkle_strain s;
+    assert_int_equal(wrinkle_strain_of(flat, flat, &s), 0);
+}
+
+/* ---- a sheet ---- */
+
+#define SIDE 33
+#define VERTICES (SIDE * SIDE)
+#define TRIANGLES ((SIDE - 1) * (SIDE - 1) * 2)
+
+/* A square sheet, 1 by 1, that target 0 compresses along x in its left third, target 1 along y in its right third. */
+typedef struct sheet {
+    float position[VERTICES][3], normal[VERTICES][3], tangent[VERTICES][4], uv[VERTICES][2], deltas[2][VERTICES][3];
+    uint32_t indices[3 * TRIANGLES];
+    model_submesh sub;
+    model_target targets[2];
+    model_mesh mesh;
+} sheet;
+
+static float squeeze(float at, float first, float last, float least)
+{
+    const float inside = fminf(fmaxf(at, first), last);
+    return -(inside - first) * (1.0f - least); /* what lies behind moves along: it keeps its shape */
+}
+
+static void sheet_make(sheet *s)
+{
+    memset(s, 0, sizeof *s);
+    for (uint32_t v = 0; v < VERTICES; ++v) {
+        const float x = (float)(v % SIDE) / (SIDE - 1), y = (float)(v / SIDE) / (SIDE - 1);
+        s->position[v][0] = s->uv[v][0] = x;
+        s->position[v][1] = 1.0f - y; /* v runs down */
+        s->uv[v][1] = y;
+        s->normal[v][2] = s->tangent[v][0] = s->tangent[v][3] = 1.0f;
+        s->deltas[0][v][0] = squeeze(x, 0.0f, 0.34375f, 0.8f);
+        s->deltas[1][v][1] = squeeze(1.0f - y, 0.25f, 0.75f, 0.7f) * fminf(fmaxf(x - 0.65f, 0.0f) * 16.0f, 1.0f);
+    }
+    for (uint32_t i = 0; i < TRIANGLES; ++i) {
+        const uint32_t cell = i / 2, v = cell / (SIDE - 1) * SIDE + cell % (SIDE - 1);
+        const uint32_t corners[2][3] = { { v, v + SIDE, v + 1 }, { v + 1, v + SIDE, v + SIDE + 1 } };
+        memcpy(&s->indices[3 * i], corners[i % 2], sizeof corners[0]);
+    }
+    s->sub = (model_submesh){ .index_count = 3 * TRIANGLES, .vertex_count = VERTICES };
+    s->targets[0].position = s->deltas[0][0];
+    s->targets[1].position = s->deltas[1][0];
+    s->mesh = (model_mesh){ .vertex_count = VERTICES,
+                            .index_count = 3 * TRIANGLES,
+                            .submesh_count = 1,
+                            .target_count = 2,
+                            .position = s->position[0],
+                            .normal = s->normal[0],
+                            .tangent = s->tangent[0],
+                            .uv = s->uv[0],
+                            .indices = s->indices,
+                            .submeshes = &s->sub,
+                            .targets = s->targets };
+}
+
+/* Creases run along y where x is compressed, and the other way round: slopes are across them. */
+static void creases_lie_across_the_compression(void **state)
+{
+    (void)state;
+    static sheet s;
+    wrinkle_field f;
+    wrinkle_raster r;
+    double sums[2][2] = { { 0 } };
+    sheet_make(&s);
+    assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
+    assert_int_equal(wrinkle_raster_make(&f, 128, 128, &r), 0);
+    assert_int_equal(r.covered, 128 * 128);
+    assert_int_equal(r.overlapped, 0);
+    uint8_t *map = wrinkle_creases_make(&f, &r, 0.08), *again = wrinkle_creases_make(&f, &r, 0.08);
+    assert_non_null(map);
+    assert_memory_equal(map, again, 4 * 128 * 128);
+    for (int i = 0; i < 128 * 128; ++i) {
+        const int x = i % 128, y = i / 128, right = x > 90 && y > 40 && y<88, left = x> 4 && x < 40;
+        if (x > 48 && x < 76) assert_memory_equal(map + 4 * i, ((const uint8_t[4]){ 128, 128, 255, 255 }), 4);
+        for (int c = 0; c < 2 && (left || right); ++c) sums[right][c] += pow((map[4 * i + c] - 128) / 127.0, 2);
+    }
+    print_message("slopes squared where x shrinks: %.1f along x, %.1f along y; where y does: %.1f and %.1f\n",
+                  sums[0][0], sums[0][1], sums[1][0], sums[1][1]);
+    assert_true(sums[0][0] > 100 * sums[0][1] && sums[0][0] > 100);
+    assert_true(sums[1][1] > 100 * sums[1][0] && sums[1][1] > 50);
+    free(map);
+    free(again);
+    wrinkle_raster_free(&r);
+    wrinkle_field_free(&f);
+}
+
+static void regions_follow_targets(void **state)
+{
+    (void)state;
+    static sheet s;
+    wrinkle_field f;
+    sheet_make(&s);
+    assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
+    region_weights *regions = wrinkle_regions_make(&f);
+    assert_non_null(regions);
+    uint8_t *matrix = wrinkle_matrix_make(&f, regions);
+    assert_non_null(matrix);
+    for (uint32_t r = 0; r < REGION_COUNT; ++r) {
+        float covered[3] = { 0 };
+        for (uint32_t v = 0; v < VERTICES; ++v) {
+            const float x = s.uv[v][0];
+            covered[x < 0.4f ? 0 : x > 0.6f ? 2 : 1] += regions[v][r];
+            assert_true(regions[v][r] >= 0.0f && regions[v][r] <= 1.0f);
+        }
+        assert_true(covered[1] == 0.0f);                       /* nothing is compressed there */
+        assert_true(covered[0] == 0.0f || covered[2] == 0.0f); /* a region belongs to one target */
+        if (covered[0] > 0.0f) assert_true(matrix[r] == 255 && matrix[REGION_COUNT + r] == 0);
+        if (covered[2] > 0.0f) assert_true(matrix[REGION_COUNT + r] == 255 && matrix[r] == 0);
+    }
+    for (uint32_t v = 0; v < VERTICES; ++v) { /* inside both thirds some region is whole */
+        float most = 0.0f;
+        for (uint32_t r = 0; r < REGION_COUNT; ++r) most = fmaxf(most, regions[v][r]);
+        if (s.uv[v][0] > 0.1f && s.uv[v][0] < 0.3f) assert_true(most == 1.0f);
+    }
+    free(matrix);
+    free(regions);
+    wrinkle_field_free(&f);
+}
+
+/* A painted region's row of the matrix is what the targets do under its texels. */
+static void a_painted_mask_gets_its_matrix(void **state)
+{
+    (void)state;
+    static sheet s;
+    static uint8_t codes[64 * 64 * 4];
+    wrinkle_field f;
+    wrinkle_raster r;
+    uint8_t *maps[REGION_MAP_COUNT];
+    const region_mask mask = { 64, 64, codes };
+    sheet_make(&s);
+    for (int i = 0; i < 64 * 64; ++i) {
+        codes[4 * i] = i % 64 < 16 ? 75 : i % 64 > 50 ? 165 : 0; /* region 0 left, region 1 right */
+        codes[4 * i + 3] = 255;                                  /* region 11 everywhere */
+    }
+    assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
+    assert_int_equal(wrinkle_raster_make(&f, 64, 64, &r), 0);
+    assert_int_equal(region_maps_make(&mask, maps), 0);
+    uint8_t *matrix = wrinkle_matrix_of_mask(&f, &r, maps);
+    assert_non_null(matrix);
+    assert_int_equal(matrix[0], 255);
+    assert_int_equal(matrix[REGION_COUNT], 0);
+    assert_int_equal(matrix[1], 0);
+    assert_int_equal(matrix[REGION_COUNT + 1], 255);
+    assert_true(matrix[11] > 100 && matrix[REGION_COUNT + 11] > 100);
+    assert_int_equal(matrix[5], 0); /* an empty region */
+    free(matrix);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) free(maps[k]);
+    wrinkle_raster_free(&r);
+    wrinkle_field_free(&f);
+}
+
+/* ---- real faces ---- */
+
+static void slope_at(const wrinkle_field *f, const wrinkle_raster *r, const uint8_t *map, size_t at, double slope[3])
+{
+    double normal[3] = { 0 }, tangent[3] = { 0 }, bitangent[3], sign = 1;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const size_t v = wrinkle_corner(f, r->triangle[at], k);
+        for (size_t i = 0; i < 3; ++i) {
+            normal[i] += (double)(r->share[at][k] * f->mesh->normal[3 * v + i]);
+            tangent[i] += (double)(r->share[at][k] * f->mesh->tangent[4 * v + i]);
+        }
+        sign = (double)f->mesh->tangent[4 * v + 3];
+    }
+    vec_normalize(normal);
+    vec_reject(tangent, normal);
+    vec_normalize(tangent);
+    vec_cross(normal, tangent, bitangent);
+    for (int i = 0; i < 3; ++i) {
+        slope[i] = (map[4 * at] - 128) * tangent[i] + sign * (map[4 * at + 1] - 128) * bitangent[i];
+    }
+}
+
+/* The larger principal axis of a tensor, by the power method. */
+static void principal(const double t[6], double axis[3])
+{
+    double a[3] = { 1.0, 0.61, 0.37 };
+    for (int round = 0; round < 200; ++round) {
+        const double b[3] = { t[0] * a[0] + t[3] * a[1] + t[4] * a[2], t[3] * a[0] + t[1] * a[1] + t[5] * a[2],
+                              t[4] * a[0] + t[5] * a[1] + t[2] * a[2] };
+        memcpy(a, b, sizeof a);
+        if (!vec_normalize(a)) break;
+    }
+    memcpy(axis, a, sizeof a);
+}
+
+/* The axis of a texel: of the strain of the surface about the corners of its triangle (the mean of the triangles around
+ * each), or of its triangle alone. */
+static void axis_at(const wrinkle_field *f, const wrinkle_raster *r, size_t at, int of_triangle, double axis[3])
+{
+    double t[6] = { 0 };
+    for (uint32_t k = 0; k < 3; ++k) {
+        const double *corner = f->tensor[wrinkle_corner(f, r->triangle[at], k)];
+        for (int i = 0; i < 6; ++i) t[i] += (double)r->share[at][k] * corner[i];
+    }
+    principal(of_triangle ? f->demand[r->triangle[at]] : t, axis);
+}
+
+/* Shares of the texels that shrink by 3 % or more and whose mean slope within two texels is at right angles to the
+ * principal axis, to 15 degrees; turned: the same axis a quarter turn away, which creases must not follow. */
+typedef struct agreement {
+    size_t count, surface, triangle, turned;
+} agreement;
+
+static void compare_texel(const wrinkle_field *f, const wrinkle_raster *r, const uint8_t *map, size_t at, agreement *a)
+{
+    double sums[6] = { 0 }, across[3], axis[3];
+    for (int i = 0; i < 25; ++i) {
+        const size_t near = at + (size_t)(i % 5) - 2 + ((size_t)(i / 5) - 2) * r->width;
+        double s[3];
+        if (near >= (size_t)r->width * r->height || r->triangle[near] == MODEL_NONE) continue;
+        slope_at(f, r, map, near, s);
+        const double products[6] = { s[0] * s[0], s[1] * s[1], s[2] * s[2], s[0] * s[1], s[0] * s[2], s[1] * s[2] };
+        for (int k = 0; k < 6; ++k) sums[k] += products[k];
+    }
+    principal(sums, across);
+    ++a->count;
+    axis_at(f, r, at, 0, axis);
+    a->surface += vec_dot(across, across) > 0.5 && fabs(vec_dot(across, axis)) <= sin(15 * PI / 180);
+    a->turned += fabs(vec_dot(across, axis)) >= cos(15 * PI / 180);
+    axis_at(f, r, at, 1, axis);
+    a->triangle += vec_dot(across, across) > 0.5 && fabs(vec_dot(across, axis)) <= sin(15 * PI / 180);
+}
+
+static void check_face(const char *path, uint32_t size)
+{
+    model *m;
+    model_error error;
+    wrinkle_field f;
+    wrinkle_raster r;
+    agreement a = { 0, 0, 0, 0 };
+    assert_int_equal(model_read_gltf(path, &m, &error), 0);
+    assert_int_equal(wrinkle_field_make(&m->meshes[0], 0, &f), 0);
+    assert_int_equal(wrinkle_raster_make(&f, size, size, &r), 0);
+    uint8_t *map = wrinkle_creases_make(&f, &r, wrinkle_spacing(&f));
+    assert_non_null(map);
+    for (size_t at = 0; at < (size_t)size * size; ++at) {
+        const uint32_t triangle = r.triangle[at];
+        if (triangle != MODEL_NONE && f.largest[triangle] >= 0.03f) compare_texel(&f, &r, map, at, &a);
+    }
+    print_message(
+        "%s: of %zu texels that shrink by 3 %%, %.4f have creases within 15 degrees of the surface's axis, %.4f "
+        "of their triangle's alone, %.4f across it\n",
+        path, a.count, (double)a.surface / (double)a.count, (double)a.triangle / (double)a.count,
+        (double)a.turned / (double)a.count);
+    assert_true(a.count > 10000 && a.surface * 10 >= a.count * 9 && a.turned * 50 <= a.count);
+    free(map);
+    wrinkle_raster_free(&r);
+    wrinkle_field_free(&f);
+    model_free(m);
+}
+
+static void creases_follow_the_principal_axis(void **state)
+{
+    (void)state;
+    char path[1024];
+    snprintf(path, sizeof path, "%s/mask.glb", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build");
+    check_face(path, 256);
+}
+
+static void creases_of_a_human_head(void **state)
+{
+    (void)state;
+    check_face(test_asset("hero/head.glb"), 512);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(strains_of_known_stretches),
+        cmocka_unit_test(creases_lie_across_the_compression),
+        cmocka_unit_test(regions_follow_targets),
+        cmocka_unit_test(a_painted_mask_gets_its_matrix),
+        cmocka_unit_test(creases_follow_the_principal_axis),
+        cmocka_unit_test(creases_of_a_human_head),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

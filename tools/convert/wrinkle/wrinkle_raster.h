@@ -1,0 +1,30 @@
+/* wrinkle_raster.h: which triangle lies under each texel of a texture. */
+#ifndef NOH_CONVERT_WRINKLE_WRINKLE_RASTER_H
+#define NOH_CONVERT_WRINKLE_WRINKLE_RASTER_H
+
+#include "wrinkle_strain.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct wrinkle_raster {
+    uint32_t width, height;
+    uint32_t *triangle;  /* [height][width] of the field, MODEL_NONE where there is none */
+    float (*share)[3];   /* [height][width] barycentric coordinates of the texel's centre */
+    uint32_t covered;    /* texels with a triangle */
+    uint32_t overlapped; /* of those, inside a second one too */
+} wrinkle_raster;
+
+/* Texture coordinates outside 0..1 repeat. Returns 0, or 1: out of memory. Free in both cases. */
+int wrinkle_raster_make(const wrinkle_field *field, uint32_t width, uint32_t height, wrinkle_raster *out);
+void wrinkle_raster_free(wrinkle_raster *r);
+
+/* Fill texels without a triangle from their neighbours, `rounds` texels far: filters and mip levels reach over the
+ * border of a chart. */
+int wrinkle_raster_dilate(const wrinkle_raster *r, uint8_t *rgba, uint32_t rounds);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,307 @@
+#include "wrinkle_regions.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROUNDS 12         /* of assigning points to regions and moving the regions */
+#define SMOOTHINGS 3      /* rounds in which borders grow soft, one edge a round */
+#define FADE_FIRST 0.01f  /* compression at which a crease begins to show, */
+#define FADE_LAST 0.035f  /* and at which it shows in full */
+#define MATRIX_LEAST 0.04 /* a target that does less than this to a region leaves it alone */
+
+/* Regions as directions: how much each target compresses their points, unit length. */
+typedef struct clusters {
+    const wrinkle_field *field;
+    double (*direction)[REGION_COUNT]; /* [target_count] */
+    uint8_t *region;                   /* [vertex_count] of points that are compressed, else REGION_COUNT */
+    double *sum;                       /* [target_count] */
+} clusters;
+
+static float fade_of(float shrink)
+{
+    const float x = (shrink - FADE_FIRST) / (FADE_LAST - FADE_FIRST), t = x < 0.0f ? 0.0f : x < 1.0f ? x : 1.0f;
+    return t * t * (3.0f - 2.0f * t);
+}
+
+/* How much a point counts: its area, where a crease shows. */
+static double point_weight(const wrinkle_field *f, uint32_t vertex)
+{
+    return f->point_area[vertex] * (double)fade_of(f->point_largest[vertex]);
+}
+
+static double project(const clusters *c, uint32_t vertex, uint32_t region)
+{
+    const uint32_t targets = c->field->mesh->target_count;
+    const float *shrink = &c->field->point_shrink[(size_t)vertex * targets];
+    double sum = 0.0;
+    for (uint32_t t = 0; t < targets; t++) {
+        sum += (double)shrink[t] * c->direction[t][region];
+    }
+    return sum;
+}
+
+/* What of a point's compression no region so far explains: as a share, so that a slight crease of the brow counts
+ * beside the deep folds of a mouth, by its area. */
+static double unexplained(const clusters *c, uint32_t vertex, uint32_t regions)
+{
+    const uint32_t targets = c->field->mesh->target_count;
+    const float *shrink = &c->field->point_shrink[(size_t)vertex * targets];
+    double all = 0.0, best = 0.0;
+    for (uint32_t t = 0; t < targets; t++) {
+        all += (double)shrink[t] * (double)shrink[t];
+    }
+    for (uint32_t r = 0; r < regions; r++) {
+        const double along = project(c, vertex, r);
+        best = along > best ? along : best;
+    }
+    return all > 0.0 ? (1.0 - best * best / all) * point_weight(c->field, vertex) : 0.0;
+}
+
+/* Take the direction of a region from a point, or from c->sum; 0 where that is 0. */
+static int set_direction(clusters *c, uint32_t region, const float *shrink)
+{
+    const uint32_t targets = c->field->mesh->target_count;
+    double length = 0.0;
+    for (uint32_t t = 0; t < targets; t++) {
+        const double v = shrink ? (double)shrink[t] : c->sum[t];
+        length += v * v;
+    }
+    length = sqrt(length);
+    for (uint32_t t = 0; t < targets && length > 0.0; t++) {
+        c->direction[t][region] = (shrink ? (double)shrink[t] : c->sum[t]) / length;
+    }
+    return length > 0.0;
+}
+
+/* Each next region begins where most is left unexplained. */
+static void seed(clusters *c)
+{
+    const wrinkle_field *f = c->field;
+    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+        uint32_t worst = 0;
+        double most = 0.0;
+        for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
+            const double left = f->point[v] == v ? unexplained(c, v, r) : 0.0;
+            if (left > most) {
+                most = left;
+                worst = v;
+            }
+        }
+        if (most > 0.0) {
+            (void)set_direction(c, r, &f->point_shrink[(size_t)worst * f->mesh->target_count]);
+        }
+    }
+}
+
+static void assign(clusters *c)
+{
+    const wrinkle_field *f = c->field;
+    for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
+        double best = 0.0;
+        c->region[v] = REGION_COUNT;
+        for (uint32_t r = 0; r < REGION_COUNT && f->point_largest[v] >= FADE_FIRST; r++) {
+            const double along = project(c, v, r);
+            if (along > best) {
+                best = along;
+                c->region[v] = (uint8_t)r;
+            }
+        }
+    }
+}
+
+/* The weight of a point in its region's mean: along the region, of its compression made unit length. */
+static double point_share(const clusters *c, uint32_t vertex, uint32_t region)
+{
+    const uint32_t targets = c->field->mesh->target_count;
+    const float *shrink = &c->field->point_shrink[(size_t)vertex * targets];
+    double all = 0.0;
+    for (uint32_t t = 0; t < targets; t++) {
+        all += (double)shrink[t] * (double)shrink[t];
+    }
+    return all > 0.0 ? project(c, vertex, region) * point_weight(c->field, vertex) / all : 0.0;
+}
+
+/* Each region's direction becomes that of its points: one step of the power method. */
+static void move(clusters *c)
+{
+    const wrinkle_field *f = c->field;
+    const uint32_t targets = f->mesh->target_count;
+    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+        memset(c->sum, 0, targets * sizeof *c->sum);
+        for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
+            const double weight = c->region[v] == r && f->point[v] == v ? point_share(c, v, r) : 0.0;
+            for (uint32_t t = 0; t < targets && weight > 0.0; t++) {
+                c->sum[t] += weight * (double)f->point_shrink[(size_t)v * targets + t];
+            }
+        }
+        (void)set_direction(c, r, NULL);
+    }
+}
+
+/* ---- weights of vertices ---- */
+
+/* A step of smoothing over the edges of triangles: each point becomes the mean of itself and its neighbours. */
+static void smooth(const wrinkle_field *f, region_weights *weights, region_weights *sum, float *count)
+{
+    const uint32_t vertices = f->mesh->vertex_count;
+    memcpy(sum, weights, vertices * sizeof *sum);
+    for (uint32_t v = 0; v < vertices; v++) {
+        count[v] = 1.0f;
+    }
+    for (uint32_t i = 0; i < 3 * f->triangle_count; i++) {
+        const uint32_t a = f->point[wrinkle_corner(f, i / 3, i % 3)];
+        const uint32_t b = f->point[wrinkle_corner(f, i / 3, (i + 1) % 3)];
+        for (uint32_t r = 0; r < REGION_COUNT; r++) {
+            sum[a][r] += weights[b][r];
+            sum[b][r] += weights[a][r];
+        }
+        count[a] += 1.0f;
+        count[b] += 1.0f;
+    }
+    for (uint32_t i = 0; i < vertices * REGION_COUNT; i++) {
+        const uint32_t v = i / REGION_COUNT, r = i % REGION_COUNT, point = f->point[v];
+        weights[v][r] = sum[point][r] / count[point];
+    }
+}
+
+static int weigh(const clusters *c, region_weights *weights)
+{
+    const wrinkle_field *f = c->field;
+    const uint32_t vertices = f->mesh->vertex_count;
+    region_weights *sum = model_zeros(vertices, sizeof *sum);
+    float *count = model_zeros(vertices, sizeof *count);
+    const int failed = !sum || !count;
+    for (uint32_t v = 0; v < vertices; v++) {
+        if (c->region[v] < REGION_COUNT) weights[v][c->region[v]] = 1.0f;
+    }
+    for (int round = 0; round < SMOOTHINGS && !failed; round++) {
+        smooth(f, weights, sum, count);
+    }
+    for (uint32_t i = 0; i < vertices * REGION_COUNT; i++) {
+        float *weight = &weights[i / REGION_COUNT][i % REGION_COUNT];
+        *weight = *weight * 2.0f < 1.0f ? *weight * 2.0f : 1.0f; /* where two regions meet both are whole */
+        *weight *= fade_of(f->point_largest[i / REGION_COUNT]);
+    }
+    free(sum);
+    free(count);
+    return failed;
+}
+
+region_weights *wrinkle_regions_make(const wrinkle_field *field)
+{
+    const model_mesh *mesh = field->mesh;
+    region_weights *weights = model_zeros(mesh->vertex_count, sizeof *weights);
+    clusters c = { field, model_zeros(mesh->target_count, sizeof *c.direction), model_zeros(mesh->vertex_count, 1),
+                   model_zeros(mesh->target_count, sizeof *c.sum) };
+    int failed = !weights || !c.direction || !c.region || !c.sum;
+    if (!failed) {
+        seed(&c);
+        for (int round = 0; round < ROUNDS; round++) {
+            assign(&c);
+            move(&c);
+        }
+        assign(&c);
+        failed = weigh(&c, weights);
+    }
+    free(c.direction);
+    free(c.region);
+    free(c.sum);
+    if (failed) {
+        free(weights);
+        weights = NULL;
+    }
+    return weights;
+}
+
+/* ---- the matrix ---- */
+
+/* sums: [target_count][REGION_COUNT] of compression. The target that does most to a region gets 255. */
+static uint8_t *matrix_of(uint32_t targets, double (*sums)[REGION_COUNT])
+{
+    uint8_t *matrix = model_zeros(targets, REGION_COUNT);
+    for (uint32_t r = 0; r < REGION_COUNT && matrix; r++) {
+        double most = 0.0;
+        for (uint32_t t = 0; t < targets; t++) {
+            most = sums[t][r] > most ? sums[t][r] : most;
+        }
+        for (uint32_t t = 0; t < targets && most > 0.0; t++) {
+            const double share = sums[t][r] / most;
+            matrix[t * REGION_COUNT + r] = (uint8_t)(share < MATRIX_LEAST ? 0.0 : share * 255.0 + 0.5);
+        }
+    }
+    return matrix;
+}
+
+uint8_t *wrinkle_matrix_make(const wrinkle_field *field, region_weights *regions)
+{
+    const uint32_t targets = field->mesh->target_count;
+    double(*sums)[REGION_COUNT] = model_zeros(targets, sizeof *sums);
+    uint8_t *matrix = NULL;
+    for (uint32_t v = 0; v < field->mesh->vertex_count && sums; v++) {
+        for (uint32_t i = 0; i < targets * REGION_COUNT && field->point[v] == v; i++) {
+            const uint32_t t = i / REGION_COUNT, r = i % REGION_COUNT;
+            sums[t][r] += field->point_area[v] * (double)regions[v][r] *
+                          (double)field->point_shrink[(size_t)v * targets + t];
+        }
+    }
+    if (sums) matrix = matrix_of(targets, sums);
+    free(sums);
+    return matrix;
+}
+
+uint8_t *wrinkle_matrix_of_mask(const wrinkle_field *field, const wrinkle_raster *raster, uint8_t *const *maps)
+{
+    const uint32_t targets = field->mesh->target_count;
+    double(*sums)[REGION_COUNT] = model_zeros(targets, sizeof *sums);
+    uint8_t *matrix = NULL;
+    for (size_t at = 0; at < (size_t)raster->width * raster->height && sums; at++) {
+        for (uint32_t r = 0; r < REGION_COUNT && raster->triangle[at] != MODEL_NONE; r++) {
+            const float *shrink = &field->shrink[(size_t)raster->triangle[at] * targets];
+            const uint8_t weight = maps[r % REGION_MAP_COUNT][4 * at + r / REGION_MAP_COUNT];
+            for (uint32_t t = 0; t < targets && weight; t++) {
+                sums[t][r] += weight / 255.0 * (double)shrink[t];
+            }
+        }
+    }
+    if (sums) matrix = matrix_of(targets, sums);
+    free(sums);
+    return matrix;
+}
+
+/* ---- maps ---- */
+
+static void fill_maps(const wrinkle_field *f, region_weights *regions, const wrinkle_raster *raster,
+                      uint8_t *const *maps)
+{
+    for (size_t at = 0; at < (size_t)raster->width * raster->height; at++) {
+        const uint32_t triangle = raster->triangle[at];
+        for (uint32_t r = 0; r < REGION_COUNT && triangle != MODEL_NONE; r++) {
+            float weight = 0.0f;
+            for (uint32_t k = 0; k < 3; k++) {
+                weight += raster->share[at][k] * regions[wrinkle_corner(f, triangle, k)][r];
+            }
+            maps[r % REGION_MAP_COUNT][4 * at + r / REGION_MAP_COUNT] =
+                (uint8_t)((weight < 1.0f ? weight : 1.0f) * 255.0f + 0.5f);
+        }
+    }
+}
+
+int wrinkle_maps_make(const wrinkle_field *field, region_weights *regions, const wrinkle_raster *raster,
+                      uint8_t *maps[REGION_MAP_COUNT])
+{
+    int failed = 0;
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
+        maps[k] = model_zeros((size_t)raster->width * raster->height, 4);
+        failed |= !maps[k];
+    }
+    if (!failed) fill_maps(field, regions, raster, maps);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT && !failed; k++) {
+        failed = wrinkle_raster_dilate(raster, maps[k], 4);
+    }
+    for (uint32_t k = 0; k < REGION_MAP_COUNT && failed; k++) {
+        free(maps[k]);
+        maps[k] = NULL;
+    }
+    return failed;
+}
