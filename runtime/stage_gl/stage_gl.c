@@ -52,8 +52,8 @@ static uint32_t model_index(const measure *m, noh_gl_site owner)
 }
 
 /* A model whose finer levels come later. */
-NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse,
-                                       void *room, noh_gl_model *model)
+NOH_NEVER_INLINE NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh,
+                                                        const noh_mesh *coarse, void *room, noh_gl_model *model)
 {
     const noh_kind_desc kind = noh_stage_kind_desc(m->desc, site.kind);
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
