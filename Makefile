@@ -231,6 +231,12 @@ $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
+# Makes runtime/face/ear_tables.c out of synthetic speech (flite, libespeak-ng-dev), after a change of the ear only:
+# build/train_ear tools/train_ear/sentences.txt >build/ear_tables.c
+$(BUILD)/train_ear: $(BUILD)/tools/train_ear/train_ear.o $(BUILD)/libnoh.a
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lespeak-ng -lm
+
 # Our LOD levels against meshoptimizer's; for `make bench`.
 LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
 $(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
