@@ -91,21 +91,29 @@ static int32_t level(const ear *e, int32_t loud)
     return at > range ? ONE : at * ONE / range;
 }
 
+/* Drops the first `drop` bytes; there is no memmove in the library. */
+static void drop_first(void *bytes, size_t drop, size_t size)
+{
+    uint8_t rest[sizeof(int16_t) * EAR_WINDOW];
+    memcpy(rest, (const uint8_t *)bytes + drop, size - drop);
+    memcpy(bytes, rest, size - drop);
+}
+
 static void analyse(ear *e)
 {
     const ear_tables *t = &noh_ear_tables;
     int32_t c[EAR_COEFFICIENTS], loud;
     noh_ear_mfcc(t, e->samples, e->before, c, &loud);
     noh_ear_mean_take(&e->mean, c);
-    memmove(e->seen[0], e->seen[1], sizeof e->seen - sizeof e->seen[0]);
-    memmove(e->weights[0], e->weights[1], sizeof e->weights - sizeof e->weights[0]);
-    memmove(&e->loud[0], &e->loud[1], sizeof e->loud - sizeof e->loud[0]);
+    drop_first(e->seen, sizeof e->seen[0], sizeof e->seen);
+    drop_first(e->weights, sizeof e->weights[0], sizeof e->weights);
+    drop_first(e->loud, sizeof e->loud[0], sizeof e->loud);
     for (uint32_t i = 0; i < EAR_COEFFICIENTS; i++) e->seen[EAR_SEEN - 1][i] = (int16_t)c[i];
     e->loud[EAR_AFTER] = loud;
     hear_loudness(e, loud);
     weigh(t, e->seen[EAR_SEEN - 1], e->weights[EAR_SMOOTHED - 1]);
     e->before = e->samples[EAR_HOP - 1];
-    memmove(e->samples, e->samples + EAR_HOP, sizeof(int16_t) * (EAR_WINDOW - EAR_HOP));
+    drop_first(e->samples, sizeof(int16_t) * EAR_HOP, sizeof e->samples);
     e->filled = EAR_WINDOW - EAR_HOP;
     e->ready = ++e->heard > EAR_AFTER;
     if (e->heard > EAR_AFTER) e->heard = EAR_AFTER + 1;

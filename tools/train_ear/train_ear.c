@@ -4,6 +4,7 @@
  *
  * Voices are those of eSpeak NG and of flite; sound is made louder, quieter, duller, brighter and noisier at random,
  * always the same. No recording of a person is used: those are there to judge what has been learnt. */
+#define _POSIX_C_SOURCE 200809L /* popen */
 #include <espeak-ng/speak_lib.h>
 #include <math.h>
 #include <stdio.h>
@@ -164,7 +165,7 @@ static void learn(double rate)
     for (int i = 0; i < sound_count; i++) {
         double s = gain * (sound[i] + tilt * (i ? sound[i - 1] : 0));
         s += noise * (uniform(-1, 1) + uniform(-1, 1) + uniform(-1, 1));
-        heard[i] = (int16_t)fmax(-32768, fmin(32767, lrint(s)));
+        heard[i] = (int16_t)fmax(-32768, fmin(32767, rint(s)));
     }
     for (int i = 0; i + EAR_WINDOW <= sound_count && at < MAX_FRAMES; i += EAR_HOP, at++) {
         int32_t loud;
