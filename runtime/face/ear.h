@@ -32,7 +32,7 @@ enum {
 
 /* Private: only its size is of use. */
 typedef struct noh_ear {
-    uint32_t state[NOH_EAR_BYTES / 4];
+    uint64_t state[NOH_EAR_BYTES / 8];
 } noh_ear;
 
 typedef struct noh_ear_frame {
