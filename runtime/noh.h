@@ -48,6 +48,7 @@
 #include "base/result.h"            /* noh_result, noh_error */
 #include "base/limits.h"            /* every limit, in one place */
 #include "pack/pack.h"              /* open a pack; pack/format.h has its bytes */
+#include "mesh/wrinkles.h"          /* how much morph weights wrinkle regions of skin */
 #include "mesh/mesh.h"              /* its meshes and skins: vertices, triangles, targets, LOD levels */
 #include "clip/pack_clip.h"         /* its skeletons and clips */
 #include "bank/clip_bank.h"         /* a pack's clips, ready to be played: a set, and the cache behind it */

@@ -35,9 +35,10 @@ struct noh_surface {
     vec3 f0;         /* of what is no metal */
     float occlusion; /* 1: open */
     vec3 emissive;   /* linear */
+    vec3 wrinkles;   /* 0..1 by area, regions, channels; the largest counts */
 };
 
-#ifdef NOH_NORMAL_MAP
+#if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
 /* The unit vector of a normal map in tangent space. Bytes have no value for 0; 128 stands for it. */
 vec3 noh_unpack_normal(vec3 texel, float scale)
 {
@@ -70,10 +71,19 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.f0 = noh_f0;
     s.occlusion = 1.0;
     s.emissive = vec3(0.0);
+    s.wrinkles = vec3(0.0);
     s.geometric = normalize(normal);
     s.normal = s.geometric;
+#if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
+    vec3 mapped = vec3(0.0, 0.0, 1.0);
 #ifdef NOH_NORMAL_MAP
-    s.normal = noh_map_normal(noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x), s.geometric, tangent);
+    mapped = noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x);
+#endif
+#ifdef NOH_WRINKLES
+    s.wrinkles = noh_wrinkle_by_model(uv);
+    mapped = noh_wrinkled(mapped, texture(noh_wrinkle_texture, uv).rgb, s.wrinkles);
+#endif
+    s.normal = noh_map_normal(mapped, s.geometric, tangent);
 #endif
     s.geometric *= side;
     s.normal *= side;

@@ -21,6 +21,12 @@ layout(location = 3) in vec2 noh_a_uv;
 layout(location = 4) in vec4 noh_a_color;
 #endif
 
+#if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
+out vec3 noh_v_rest;
+out vec3 noh_v_moved;
+#endif
+
 /* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
 invariant gl_Position;
 
@@ -93,6 +99,10 @@ noh_vertex noh_fetch()
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
+#if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+    noh_v_rest = noh_a_position - noh_center;
+    noh_v_moved = v.model - noh_a_position;
+#endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
     p = vec4(v.model, 1.0);
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));

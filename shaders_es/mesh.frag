@@ -37,6 +37,15 @@ vec3 level_color()
 }
 #endif
 
+#if NOH_DEBUG_VIEW == 7
+/* The model whose weight is the largest: area orange, regions blue, channels green; as strong as its weight. */
+vec3 wrinkle_color(vec3 by)
+{
+    vec3 color = by.x > max(by.y, by.z) ? vec3(0.79, 0.35, 0.0) : by.y >= by.z ? vec3(0.09, 0.46, 0.81) : vec3(0.0, 0.55, 0.20);
+    return mix(vec3(0.80), color, max(by.x, max(by.y, by.z)));
+}
+#endif
+
 #ifdef NOH_DEPTH_ONLY
 void main()
 {
@@ -55,6 +64,8 @@ void main()
 #elif NOH_DEBUG_VIEW == 3
     vec3 t = dot(v_tangent.xyz, v_tangent.xyz) > 0.0 ? normalize(v_tangent.xyz) : vec3(-1.0);
     o_color = vec4(pow(t * 0.5 + 0.5, vec3(2.2)), 1.0);
+#elif NOH_DEBUG_VIEW == 7
+    o_color = vec4(wrinkle_color(s.wrinkles) * (0.35 + 0.65 * max(dot(s.normal, noh_key), 0.0)), 1.0);
 #elif NOH_DEBUG_VIEW == 4
     o_color = vec4(level_color(), 1.0);
 #elif NOH_DEBUG_VIEW == 5

@@ -25,6 +25,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     r->gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     r->camera = *camera;
     noh_gl_draw_tint(r, NULL);
+    noh_gl_draw_wrinkles(r, NULL);
     memset(r->has_camera, 0, sizeof r->has_camera);
 }
 
@@ -33,6 +34,15 @@ void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
     static const uint8_t white[4] = { 255, 255, 255, 255 };
     NOH_ASSERT(r);
     memcpy(r->tint, tint ? tint : white, sizeof r->tint);
+}
+
+void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_REGIONS])
+{
+    NOH_ASSERT(r);
+    memset(r->wrinkles, 0, sizeof r->wrinkles);
+    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* by map, then by channel */
+        r->wrinkles[4u * (i % 3u) + i / 3u] = regions[i];
+    }
 }
 
 /* ---- uniforms, attributes, textures ---- */
@@ -79,6 +89,10 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->Uniform3f(v->u_bounds_min, h->bounds_min[0], h->bounds_min[1], h->bounds_min[2]);
     r->gl->Uniform3f(v->u_bounds_size, h->bounds_max[0] - h->bounds_min[0], h->bounds_max[1] - h->bounds_min[1],
                      h->bounds_max[2] - h->bounds_min[2]);
+    if (v->key.features & NOH_FEATURE_WRINKLES) {
+        r->gl->Uniform3f(v->u_center, 0.5f * (h->bounds_min[0] + h->bounds_max[0]),
+                         0.5f * (h->bounds_min[1] + h->bounds_max[1]), 0.5f * (h->bounds_min[2] + h->bounds_max[2]));
+    }
     if (morph) {
         r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
         r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
@@ -140,6 +154,19 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
+/* An instance of a crowd has no weights of its own: its regions are at rest. */
+static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                         const noh_gl_texture *pictures)
+{
+    static const float none[NOH_WRINKLE_REGIONS] = { 0.0f };
+    bind_picture(r, NOH_UNIT_WRINKLE, m->wrinkle_texture, pictures);
+    for (uint32_t k = 0; k < 3u; k++) {
+        bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->wrinkle_weights[k], pictures);
+    }
+    r->gl->Uniform4fv(v->u_wrinkle_regions, 3, v->key.crowd ? none : r->wrinkles);
+    r->gl->Uniform1i(v->u_wrinkle_models, (GLint)m->wrinkle_models);
+}
+
 static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                          const noh_gl_texture *pictures)
 {
@@ -148,6 +175,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
     if (!v->key.depth) {
         set_features(r, v, m, pictures);
+        if (v->key.features & NOH_FEATURE_WRINKLES) set_wrinkles(r, v, m, pictures);
     }
     if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
         r->gl->Disable(GL_CULL_FACE);
@@ -321,7 +349,14 @@ void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl
 void noh_gl_draw_end(const noh_gl_renderer *r)
 {
     NOH_ASSERT(r && r->gl);
-    static const GLuint units[] = { NOH_UNIT_PALETTES, NOH_UNIT_NORMAL, NOH_UNIT_SURFACE, NOH_UNIT_EMISSIVE,
+    static const GLuint units[] = { NOH_UNIT_WRINKLE,
+                                    NOH_UNIT_WRINKLE_WEIGHTS,
+                                    NOH_UNIT_WRINKLE_WEIGHTS + 1u,
+                                    NOH_UNIT_WRINKLE_WEIGHTS + 2u,
+                                    NOH_UNIT_PALETTES,
+                                    NOH_UNIT_NORMAL,
+                                    NOH_UNIT_SURFACE,
+                                    NOH_UNIT_EMISSIVE,
                                     NOH_UNIT_BASE_COLOR };
     r->gl->BindVertexArray(0);
     r->gl->UseProgram(0);

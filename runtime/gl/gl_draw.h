@@ -8,7 +8,7 @@
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
- *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next
+ *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next; noh_gl_draw_wrinkles, its wrinkles
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the
  * textures of glTF's materials.
@@ -135,8 +135,9 @@ typedef struct noh_gl_renderer {
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     const noh_gl_light *light;  /* of this pass; NULL where it is not lit */
     const noh_lighting *lighting;
-    noh_gl_camera camera; /* of this pass */
-    uint8_t tint[4];      /* of the next noh_gl_draw_mesh */
+    noh_gl_camera camera;                /* of this pass */
+    uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
+    float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
     uint32_t variant_count;
     noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
     uint8_t has_camera[NOH_GL_VARIANTS_MAX]; /* 1: the variant was given it */
@@ -199,6 +200,11 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
  * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
  *         NULL: white */
 void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
+
+/* How much the regions of the meshes are wrinkled that noh_gl_draw_mesh draws next; noh_gl_draw_begin smooths them out.
+ * In a crowd regions stay smooth: its creases come by area alone.
+ * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
+void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
 
 /* The same for `count` successive instances of one mesh, the first of them with the binding `first`: one draw call per
  * submesh. Each instance stands where noh_gl_skin_set_place put it. Rigid meshes work too; palettes must be in a

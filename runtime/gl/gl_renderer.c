@@ -71,6 +71,7 @@ const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *
                                         .surface_texture = NOH_NONE,
                                         .emissive_texture = NOH_NONE,
                                         .wrinkle_texture = NOH_NONE,
+                                        .wrinkle_models = 0,
                                         .wrinkle_weights = { NOH_NONE, NOH_NONE, NOH_NONE } };
     return submesh->material == NOH_NONE ? &plain : &mesh->pack->materials[submesh->material];
 }

@@ -26,6 +26,7 @@ const char *noh_gl_shader_text(const char *name)
                   { "common_fade.glsl", noh_shader_common_fade_glsl },
                   { "common_fragment.glsl", noh_shader_common_fragment_glsl },
                   { "common_environment.glsl", noh_shader_common_environment_glsl },
+                  { "common_wrinkle.glsl", noh_shader_common_wrinkle_glsl },
                   { "common_material.glsl", noh_shader_common_material_glsl },
                   { "common_light.glsl", noh_shader_common_light_glsl } };
     NOH_ASSERT(name);

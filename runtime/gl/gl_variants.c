@@ -1,6 +1,7 @@
 /* gl_variants.c: from a mesh and its bindings to a key, from a key to its defines, from the defines to a program. */
 #include "gl/gl_variants.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "gl/gl_program.h"
@@ -21,7 +22,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 {
     const noh_mesh_header *h = mesh->header;
     noh_gl_variant_key key = { 0 };
-    NOH_ASSERT((unsigned)view <= NOH_VIEW_OCCLUSION);
+    NOH_ASSERT((unsigned)view <= NOH_VIEW_WRINKLE);
     if (skin && h->influence_count) {
         key.influences = (uint8_t)h->influence_count;
         key.drawn = drawn_of(h->influence_count, skin->influences);
@@ -87,7 +88,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
-    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_OCCLUSION);
+    NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_WRINKLE);
     NOH_ASSERT(key.depth || !key.cut);
     const struct {
         unsigned on;
@@ -132,6 +133,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
     } else {
         pieces[count++] = noh_shader_common_fade_glsl;
         pieces[count++] = noh_shader_common_fragment_glsl;
+        pieces[count++] = noh_shader_common_wrinkle_glsl;
         pieces[count++] = noh_shader_common_material_glsl;
         pieces[count++] = noh_shader_common_environment_glsl;
         pieces[count++] = noh_shader_common_light_glsl;
@@ -204,29 +206,33 @@ static void make_source(whole_source *to, GLenum stage, const noh_gl_source *lib
 
 static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 {
-    const struct {
+    static const struct {
         const char *name;
-        GLint *at;
-    } uniforms[] = { { "noh_view_projection", &v->u_view_projection },
-                     { "noh_world", &v->u_world },
-                     { "noh_normal", &v->u_normal },
-                     { "noh_uv", &v->u_uv },
-                     { "noh_morph", &v->u_morph },
-                     { "noh_skin", &v->u_skin },
-                     { "noh_camera", &v->u_camera },
-                     { "noh_key", &v->u_key },
-                     { "noh_base_color", &v->u_base_color },
-                     { "noh_material", &v->u_material },
-                     { "noh_bounds_min", &v->u_bounds_min },
-                     { "noh_bounds_size", &v->u_bounds_size },
-                     { "noh_lod", &v->u_lod },
-                     { "noh_blends", &v->u_blends },
-                     { "noh_f0", &v->u_f0 },
-                     { "noh_emissive", &v->u_emissive },
-                     { "noh_maps", &v->u_maps },
-                     { "noh_lighting", &v->u_lighting } };
+        size_t at;
+    } uniforms[] = { { "noh_view_projection", offsetof(noh_gl_variant, u_view_projection) },
+                     { "noh_world", offsetof(noh_gl_variant, u_world) },
+                     { "noh_normal", offsetof(noh_gl_variant, u_normal) },
+                     { "noh_uv", offsetof(noh_gl_variant, u_uv) },
+                     { "noh_morph", offsetof(noh_gl_variant, u_morph) },
+                     { "noh_skin", offsetof(noh_gl_variant, u_skin) },
+                     { "noh_camera", offsetof(noh_gl_variant, u_camera) },
+                     { "noh_key", offsetof(noh_gl_variant, u_key) },
+                     { "noh_base_color", offsetof(noh_gl_variant, u_base_color) },
+                     { "noh_material", offsetof(noh_gl_variant, u_material) },
+                     { "noh_bounds_min", offsetof(noh_gl_variant, u_bounds_min) },
+                     { "noh_bounds_size", offsetof(noh_gl_variant, u_bounds_size) },
+                     { "noh_lod", offsetof(noh_gl_variant, u_lod) },
+                     { "noh_blends", offsetof(noh_gl_variant, u_blends) },
+                     { "noh_f0", offsetof(noh_gl_variant, u_f0) },
+                     { "noh_emissive", offsetof(noh_gl_variant, u_emissive) },
+                     { "noh_maps", offsetof(noh_gl_variant, u_maps) },
+                     { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
+                     { "noh_center", offsetof(noh_gl_variant, u_center) },
+                     { "noh_wrinkle_regions", offsetof(noh_gl_variant, u_wrinkle_regions) },
+                     { "noh_wrinkle_models", offsetof(noh_gl_variant, u_wrinkle_models) } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
-        *uniforms[i].at = gl->GetUniformLocation(v->program, uniforms[i].name);
+        const GLint at = gl->GetUniformLocation(v->program, uniforms[i].name);
+        memcpy((char *)v + uniforms[i].at, &at, sizeof at);
     }
 }
 

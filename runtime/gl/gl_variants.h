@@ -27,10 +27,11 @@ typedef enum noh_debug_view {
     NOH_VIEW_POSITION,
     NOH_VIEW_NORMAL,
     NOH_VIEW_TANGENT,
-    NOH_VIEW_LOD,      /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
-                        * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
-    NOH_VIEW_LIGHT,    /* the light on a white matte surface */
-    NOH_VIEW_OCCLUSION /* the share of the light from all around that reaches the surface */
+    NOH_VIEW_LOD,       /* facets in the colour of the LOD level: from 0, white, orange, sky blue, green, yellow, blue,
+                         * vermilion, purple (the palette of Okabe and Ito, safe for colour-blind eyes, white for black) */
+    NOH_VIEW_LIGHT,     /* the light on a white matte surface */
+    NOH_VIEW_OCCLUSION, /* the share of the light from all around that reaches the surface */
+    NOH_VIEW_WRINKLE    /* which model wrinkles a pixel, and how much: area orange, regions blue, channels green */
 } noh_debug_view;
 
 typedef struct noh_gl_variant_key {
@@ -63,7 +64,8 @@ typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
-        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting;
+        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
+        u_wrinkle_models;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

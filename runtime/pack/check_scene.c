@@ -114,7 +114,11 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->surface > NOH_SURFACE_EYE) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
-    for (uint32_t i = 0; !result && i < 9u; i++) {
+    if (!result && (m->wrinkle_models > 7u || !m->wrinkle_models != (m->wrinkle_texture == NOH_NONE))) {
+        result = noh_check_fail(check, "material has unknown models of wrinkles, or models without a wrinkle map",
+                                at + offsetof(noh_material, wrinkle_models));
+    }
+    for (uint32_t i = 0; !result && i < 8u; i++) {
         if (m->reserved[i]) {
             result = noh_check_fail(check, "reserved field of a material is not zero",
                                     at + offsetof(noh_material, reserved) + 4u * i);

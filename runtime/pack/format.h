@@ -32,6 +32,7 @@ extern "C" {
 #define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
 #define NOH_CHUNK_RECIPE NOH_FOURCC('R', 'C', 'P', 'E')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
+#define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -218,6 +219,18 @@ typedef struct noh_transfer_header {
     uint32_t reserved[6];
 } noh_transfer_header;
 
+/* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the matrix. How much each target
+ * wrinkles each of twelve regions (mesh/wrinkles.h), which the wrinkle_weights of a material show. ---- */
+
+#define NOH_WRINKLE_REGIONS 12u
+
+typedef struct noh_wrinkles_header {
+    uint32_t mesh;          /* the n-th mesh chunk */
+    uint32_t target_count;  /* the mesh's */
+    uint32_t matrix_offset; /* uint8_t[target_count][NOH_WRINKLE_REGIONS], 255: all at weight 1 */
+    uint32_t reserved[5];
+} noh_wrinkles_header;
+
 /* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
 
 typedef struct noh_nodes_header {
@@ -250,6 +263,12 @@ typedef struct noh_node {
 #define NOH_SURFACE_SKIN 1u
 #define NOH_SURFACE_EYE 2u
 
+/* What shows a wrinkle map: the surface's change of area in the pose; twelve regions, weighted by the expression; the
+ * first weight map's red always, its green and blue as regions 3 and 6. */
+#define NOH_WRINKLE_BY_AREA 1u
+#define NOH_WRINKLE_BY_REGION 2u
+#define NOH_WRINKLE_BY_CHANNEL 4u
+
 /* Textures are indices of texture chunks, or NOH_NONE; those of colours are sRGB, the others LINEAR. Texture
  * coordinates are those of the mesh: a transform that the source had is in them. */
 typedef struct noh_material {
@@ -269,7 +288,8 @@ typedef struct noh_material {
     uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel */
     uint32_t surface;            /* NOH_SURFACE_* */
     float surface_values[4];     /* of that surface; zeros in a plain one */
-    uint32_t reserved[9];
+    uint32_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */
+    uint32_t reserved[8];
 } noh_material;
 
 /* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, each uint8_t[height][width][4], top row first.
@@ -506,6 +526,7 @@ NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 160, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 48, texture_header);
 NOH_STATIC_ASSERT(sizeof(noh_transfer_header) == 64, transfer_header);
+NOH_STATIC_ASSERT(sizeof(noh_wrinkles_header) == 32, wrinkles_header);
 
 #ifdef __cplusplus
 }

@@ -18,10 +18,11 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_SKIN: return 4;
     case NOH_CHUNK_MESH: return 5;
     case NOH_CHUNK_TRANSFER: return 6;
-    case NOH_CHUNK_NODES: return 7;
-    case NOH_CHUNK_CLIP: return 8;
-    case NOH_CHUNK_GRAPH: return 9;
-    case NOH_CHUNK_RECIPE: return 10;
+    case NOH_CHUNK_WRINKLES: return 7;
+    case NOH_CHUNK_NODES: return 8;
+    case NOH_CHUNK_CLIP: return 9;
+    case NOH_CHUNK_GRAPH: return 10;
+    case NOH_CHUNK_RECIPE: return 11;
     default: return -1;
     }
 }
@@ -162,6 +163,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
     case NOH_CHUNK_TRANSFER:
         result = noh_check_transfer(&check);
         count_chunk(&pack->transfer_count, &pack->first_transfer, index);
+        break;
+    case NOH_CHUNK_WRINKLES:
+        result = noh_check_wrinkles(&check);
+        count_chunk(&pack->wrinkles_count, &pack->first_wrinkles, index);
         break;
     case NOH_CHUNK_NODES:
         result = noh_check_nodes(&check);

@@ -1,6 +1,7 @@
 /* stage_gl_draw.c: one pass of a view. */
 #include <string.h>
 
+#include "mesh/wrinkles.h"
 #include "pose/local_to_model.h"
 #include "stage_gl/stage_gl_internal.h"
 
@@ -47,6 +48,21 @@ static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
     return d->k->plan->levels[level].mesh_levels[mesh];
 }
 
+/* What an actor's expression wrinkles on a mesh: set for the next draw. */
+static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    const noh_stage_mesh *m = &d->k->meshes[mesh];
+    const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
+    float regions[NOH_WRINKLE_REGIONS];
+    noh_wrinkles wrinkles;
+    if (noh_wrinkles_of(&m->mesh, &wrinkles, NULL) == NOH_OK) {
+        noh_wrinkles_weights(&wrinkles, weights, regions);
+        noh_gl_draw_wrinkles(d->renderer, regions);
+    } else {
+        noh_gl_draw_wrinkles(d->renderer, NULL);
+    }
+}
+
 /* One actor's mesh, at one level, with a share of the pixels. */
 static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
 {
@@ -63,6 +79,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
     noh_gl_draw_tint(d->renderer, noh_gl_tint_of(actor_at(d, place)));
+    set_wrinkles(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
                      &lod, pictures_of(d, place), d->pass);
 }

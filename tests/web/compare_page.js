@@ -91,7 +91,7 @@ void main()
 }`;
 
 async function fragmentShader() {
-    const names = ['common_fade.glsl', 'common_fragment.glsl', 'common_material.glsl', 'common_light.glsl', 'mesh.frag'];
+    const names = ['common_fade.glsl', 'common_fragment.glsl', 'common_wrinkle.glsl', 'common_material.glsl', 'common_light.glsl', 'mesh.frag'];
     const texts = await Promise.all(names.map(async (name) => (await fetch('/shaders/' + name)).text()));
     return '#define NOH_DEBUG_VIEW 0\n#define NOH_ENCODE_SRGB\n' + texts.join('\n').replace(/#version.*\n/, '');
 }

@@ -238,6 +238,13 @@ static void report_warnings(FILE *report, const source *s)
     }
 }
 
+static int make_wrinkles(const source *s, const convert_options *options, model_error *error)
+{
+    wrinkle_settings settings = options->wrinkles;
+    settings.report = options->report;
+    return options->only != CONVERT_CLIPS && wrinkles_make(s->m, &settings, error);
+}
+
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
                           const convert_options *options, byte_buffer *out, model_error *error)
 {
@@ -255,10 +262,11 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
+    failed = make_wrinkles(s, options, error);
     if (options->report) {
         report_warnings(options->report, s);
     }
-    failed = pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
+    failed = failed || pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.graphs = graphs;

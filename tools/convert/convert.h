@@ -10,6 +10,7 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
 #include "convert/skin/skins.h"
+#include "convert/wrinkle/wrinkle_make.h"
 
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
 
@@ -18,6 +19,7 @@ typedef struct convert_options {
     lod_settings lod;
     clips_settings clip;
     skin_options skin;
+    wrinkle_settings wrinkles;      /* zeros: none; report is filled in by convert_files */
     transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;

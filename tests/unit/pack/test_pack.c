@@ -408,7 +408,8 @@ static float nan_value(void)
     X(material_values_nan, DATA, "not finite", f->materials[1].surface_values[3] = nan_value())                      \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
-    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved[8] = 1)                      \
+    X(material_wrinkles, DATA, "unknown models of wrinkles", f->materials[0].wrinkle_models = 1)                     \
+    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved[7] = 1)                      \
     X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
     X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE)                         \
     X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u)                                \

@@ -43,7 +43,8 @@ typedef struct model_material {
     float normal_scale, occlusion_strength, emissive[3], f0[3];
     /* as noh_material has them: indices into textures or MODEL_NONE */
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
-    uint32_t surface; /* NOH_SURFACE_* of pack/format.h */
+    uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
+    uint32_t surface;        /* NOH_SURFACE_* of pack/format.h */
     float surface_values[4];
 } model_material;
 
@@ -58,7 +59,7 @@ typedef struct model_target {
     float *normal;                                 /* [vertex_count][3]; never NULL after model_complete */
     float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
     uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
-    uint8_t identity; /* makes one face differ from another: NOH_TARGET_IDENTITY */
+    uint8_t identity;                              /* makes one face differ from another: NOH_TARGET_IDENTITY */
     /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */
     uint8_t *missing;
 } model_target;

@@ -92,6 +92,7 @@ static void write_maps(const model_material *from, noh_material *to)
     to->surface_texture = from->surface_texture;
     to->emissive_texture = from->emissive_texture;
     to->wrinkle_texture = from->wrinkle_texture;
+    to->wrinkle_models = from->wrinkle_models;
     memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
     to->surface = from->surface;
     memcpy(to->surface_values, from->surface_values, sizeof to->surface_values);
@@ -226,6 +227,20 @@ static void write_skins(writer *w)
     }
 }
 
+static void write_wrinkles(writer *w, uint32_t index)
+{
+    const model_mesh *mesh = &w->m->meshes[index];
+    noh_wrinkles_header h;
+    memset(&h, 0, sizeof h);
+    h.mesh = index;
+    h.target_count = mesh->target_count;
+    h.matrix_offset = sizeof h;
+    begin_chunk(w, NOH_CHUNK_WRINKLES, mesh->name);
+    buffer_append(&w->out, &h, sizeof h);
+    buffer_append(&w->out, mesh->wrinkles, (size_t)mesh->target_count * NOH_WRINKLE_REGIONS);
+    end_chunk(w);
+}
+
 static void write_content(writer *w, morph_encoding *const *encodings)
 {
     for (uint32_t i = 0; i < w->m->texture_count; i++) {
@@ -240,6 +255,9 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
         write_mesh(w, i, encodings[i]);
+    }
+    for (uint32_t i = 0; i < w->m->mesh_count; i++) {
+        if (w->m->meshes[i].wrinkles) write_wrinkles(w, i);
     }
     if (w->m->node_count) {
         write_nodes(w);
@@ -324,7 +342,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return (size_t)m->mesh_count + m->texture_count + m->skin_count + 4 +
+    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 4 +
            (made ? (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 

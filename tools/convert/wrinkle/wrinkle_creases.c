@@ -15,10 +15,8 @@
 #define ROUNDS 8          /* of the filter */
 #define REACH 0.8         /* of the filter, in distances from crease to crease */
 #define GAIN 4.0          /* what is left of noise grows, what has grown stays */
-#define SLOPE_MOST 0.75   /* of a crease's side */
-#define SLOPE_BY_ROOT                                                                               \
-    2.2 /* slope of a sine that hides a share c of a length: 2 sqrt(c), and its valleys are steeper \
-         */
+#define SLOPE_MOST 0.42   /* of a crease's side */
+#define SLOPE_BY_ROOT 1.1 /* a sine that hides a share c of a length has the slope 2 sqrt(c); skin hides less */
 
 /* A texel that is compressed. */
 typedef struct crease {

@@ -17,7 +17,8 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
+        *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
@@ -124,6 +125,30 @@ static int set_transfer(const build_args *a, convert_options *o)
                : 0;
 }
 
+static int set_wrinkles(const build_args *a, convert_options *o)
+{
+    static const struct {
+        const char *name;
+        uint32_t bits;
+    } models[] = { { "auto", NOH_WRINKLE_BY_AREA | NOH_WRINKLE_BY_REGION },
+                   { "area", NOH_WRINKLE_BY_AREA },
+                   { "region", NOH_WRINKLE_BY_REGION },
+                   { "channel", NOH_WRINKLE_BY_CHANNEL } };
+    if (a->wrinkles && strcmp(a->wrinkles, "auto") != 0) {
+        return tool_usage("--wrinkles wants auto, not '%s'", a->wrinkles);
+    }
+    for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
+        if (strcmp(a->wrinkle_models, models[i].name) == 0) o->wrinkles.models = models[i].bits;
+    }
+    if (!o->wrinkles.models) {
+        return tool_usage("--wrinkle-model wants auto, area, region or channel, not '%s'", a->wrinkle_models);
+    }
+    o->wrinkles.automatic = a->wrinkles != NULL;
+    o->wrinkles.map = a->wrinkle_map;
+    o->wrinkles.mask = a->region_mask;
+    return 0;
+}
+
 static int set_options(const build_args *a, convert_options *o)
 {
     int status;
@@ -138,6 +163,7 @@ static int set_options(const build_args *a, convert_options *o)
     if (!status) status = set_lod(a, o);
     if (!status) status = set_rects(a, o);
     if (!status) status = set_transfer(a, o);
+    if (!status) status = set_wrinkles(a, o);
     return status;
 }
 
@@ -242,6 +268,37 @@ static const option options[] = {
       .what =
           "precompute how each vertex answers to light from all around, with occlusion that follows the targets, by spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
       .example = "4",
+      .excludes = "--only=anim" },
+    { .name = "--wrinkles",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, wrinkles),
+      .value = "auto",
+      .what =
+          "give each mesh wrinkles, out of what its targets compress: a normal map of creases, twelve regions, and how much each target wrinkles each of them",
+      .example = "auto",
+      .excludes = "--only=anim" },
+    { .name = "--wrinkle-map",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, wrinkle_map),
+      .value = "FILE",
+      .what = "a painted normal map of wrinkles, PNG or JPEG, in place of a generated one",
+      .example = "wrinkles.png",
+      .excludes = "--only=anim" },
+    { .name = "--region-mask",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, region_mask),
+      .value = "FILE",
+      .what = "a painted mask of twelve wrinkle regions (noh mask looks it over), in place of generated regions",
+      .example = "regions.png",
+      .excludes = "--only=anim" },
+    { .name = "--wrinkle-model",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, wrinkle_models),
+      .value = "auto|area|region|channel",
+      .initial = "auto",
+      .what =
+          "what shows the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
+      .example = "area",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,

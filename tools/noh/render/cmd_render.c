@@ -24,15 +24,18 @@ typedef struct render_args {
 
 static int parse_debug(const char *text, noh_debug_view *view)
 {
-    static const char *const names[] = { "none", "position", "normal", "tangent", "lod", "light", "occlusion" };
+    static const char *const names[] = {
+        "none", "position", "normal", "tangent", "lod", "light", "occlusion", "wrinkle"
+    };
     *view = NOH_VIEW_LIT;
-    for (int i = 0; text && i < 7; i++) {
+    for (int i = 0; text && i < 8; i++) {
         if (strcmp(text, names[i]) == 0) {
             *view = (noh_debug_view)i;
             return 0;
         }
     }
-    return text ? tool_usage("--debug wants none, position, normal, tangent, lod, light or occlusion, not '%s'", text)
+    return text ? tool_usage(
+                      "--debug wants none, position, normal, tangent, lod, light, occlusion or wrinkle, not '%s'", text)
                 : 0;
 }
 
@@ -173,7 +176,7 @@ static const option options[] = {
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, debug),
-      .value = "none|position|normal|tangent|lod|light|occlusion",
+      .value = "none|position|normal|tangent|lod|light|occlusion|wrinkle",
       .initial = "none",
       .what = "show this as colours instead of lighting",
       .excludes = "--bones" },

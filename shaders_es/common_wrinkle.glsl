@@ -1,0 +1,73 @@
+/* common_wrinkle.glsl: noh_wrinkle_weight, how much a pixel is wrinkled, and normals blended by it. It goes in front of
+ * common_material.glsl, with NOH_WRINKLES only.
+ *
+ * Three models, of which the largest counts. A material chooses by bits of noh_wrinkle_models:
+ *   1  area: how far the surface has shrunk in the pose, by derivatives
+ *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
+ *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6 */
+#if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k, channel c of map k */
+uniform int noh_wrinkle_models;
+uniform mediump sampler2D noh_wrinkle_texture;
+uniform mediump sampler2D noh_wrinkle_weights_0;
+uniform mediump sampler2D noh_wrinkle_weights_1;
+uniform mediump sampler2D noh_wrinkle_weights_2;
+
+in vec3 noh_v_rest;  /* about the middle of the mesh, before targets and joints */
+in vec3 noh_v_moved; /* what targets add to it */
+
+/* Area in the pose over area at rest: of the triangle, in bind space, whatever the camera and the joints do. Both areas
+ * are spanned by the same two pixels, so their ratio is exact for a plane triangle. */
+float noh_area_ratio()
+{
+    vec3 x = dFdx(noh_v_rest), y = dFdy(noh_v_rest);
+    float rest = length(cross(x, y));
+    float now = length(cross(x + dFdx(noh_v_moved), y + dFdy(noh_v_moved)));
+    return rest > 1e-18 ? now / rest : 1.0;
+}
+
+/* The response of the SparseMorphTargets sample: 0.3 at rest, more where the surface shrinks, hardly less where it
+ * grows. Beside regions, which say where creases are at rest, the 0.3 is left out. */
+float noh_wrinkle_by_area(float ratio)
+{
+    float shrunk = 1.0 - ratio;
+    return clamp(((noh_wrinkle_models & 6) == 0 ? 0.3 : 0.0) + (shrunk < 0.0 ? 0.005 * shrunk : shrunk), 0.0, 1.0);
+}
+
+/* One value by each model: area, regions, channels. */
+vec3 noh_wrinkle_by_model(vec2 uv)
+{
+    vec3 by = vec3(0.0);
+    if ((noh_wrinkle_models & 6) != 0) {
+        vec4 first = texture(noh_wrinkle_weights_0, uv);
+        if ((noh_wrinkle_models & 2) != 0) {
+            vec4 all = max(first * noh_wrinkle_regions[0], max(texture(noh_wrinkle_weights_1, uv) * noh_wrinkle_regions[1],
+                                                               texture(noh_wrinkle_weights_2, uv) * noh_wrinkle_regions[2]));
+            by.y = max(max(all.x, all.y), max(all.z, all.w));
+        }
+        if ((noh_wrinkle_models & 4) != 0) {
+            by.z = min(dot(first.rgb, vec3(1.0, noh_wrinkle_regions[0].yz)), 1.0);
+        }
+    }
+    if ((noh_wrinkle_models & 1) != 0) {
+        by.x = noh_wrinkle_by_area(noh_area_ratio());
+    }
+    return by;
+}
+
+/* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail turned as the base turns
+ * its plane, so that neither flattens the other. Both unit, tangent space. */
+vec3 noh_blend_normals(vec3 base, vec3 detail)
+{
+    vec3 t = base + vec3(0.0, 0.0, 1.0), u = detail * vec3(-1.0, -1.0, 1.0);
+    return normalize(t * (dot(t, u) / t.z) - u);
+}
+
+/* A normal in tangent space with its wrinkles. */
+vec3 noh_wrinkled(vec3 base, vec3 texel, vec3 by)
+{
+    vec3 detail = (texel * 255.0 - 128.0) / 127.0;
+    float weight = max(by.x, max(by.y, by.z));
+    return noh_blend_normals(base, normalize(vec3(detail.xy * weight, max(detail.z, 1e-3))));
+}
+#endif

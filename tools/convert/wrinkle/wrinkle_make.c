@@ -1,0 +1,327 @@
+#include "wrinkle_make.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/base/image_file.h"
+#include "convert/model/model_build.h"
+#include "wrinkle_creases.h"
+#include "wrinkle_regions.h"
+
+#define MAP_SIZE_LEAST 256u /* of a generated normal map, */
+#define MAP_SIZE_MOST 1024u /* by how many texels lie from crease to crease */
+#define WAVE_TEXELS 8.0
+#define WEIGHTS_SIZE 256u /* of generated weight maps */
+#define OVERLAP_MOST 0.25 /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
+#define SHRINKING_LEAST 0.002 /* mean compression of a material's area by all of a mesh's targets together */
+
+/* The textures and the matrix of one mesh, before the model has them. */
+typedef struct wrinkles {
+    uint8_t *map, *weights[REGION_MAP_COUNT], *matrix;
+    uint32_t map_width, map_height, weights_width, weights_height;
+} wrinkles;
+
+static void wrinkles_free(wrinkles *w)
+{
+    free(w->map);
+    free(w->matrix);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
+        free(w->weights[k]);
+    }
+    memset(w, 0, sizeof *w);
+}
+
+static int out_of_memory(model_error *error)
+{
+    return model_fail(error, "", "out of memory while making wrinkles");
+}
+
+/* ---- which surface ---- */
+
+/* Cards of hair and lashes, and what is not lit, have no creases. */
+static int can_wrinkle(const model *m, uint32_t material)
+{
+    return material != MODEL_NONE && m->materials[material].alpha == MODEL_ALPHA_OPAQUE &&
+           !m->materials[material].unlit;
+}
+
+static double area_of(const wrinkle_field *f)
+{
+    double area = 0.0;
+    for (uint32_t i = 0; i < f->triangle_count; i++) {
+        area += f->area[i];
+    }
+    return area;
+}
+
+/* The material of a mesh on which most surface is compressed; *best is freed by the caller in all cases. */
+static int choose_surface(const model *m, const model_mesh *mesh, wrinkle_field *best)
+{
+    memset(best, 0, sizeof *best);
+    for (uint32_t i = 0; i < m->material_count && mesh->target_count; i++) {
+        wrinkle_field f;
+        int failed;
+        if (!can_wrinkle(m, i)) continue;
+        failed = wrinkle_field_make(mesh, i, &f);
+        if (!failed && f.shrinking > best->shrinking && f.shrinking >= SHRINKING_LEAST * area_of(&f)) {
+            const wrinkle_field swap = *best;
+            *best = f;
+            f = swap;
+        }
+        wrinkle_field_free(&f);
+        if (failed) return 1;
+    }
+    return 0;
+}
+
+/* Why a surface cannot have wrinkles, as a sentence; NULL where it can. */
+static const char *objection(const model_mesh *mesh, const wrinkle_field *f)
+{
+    if (!mesh->target_count) return "it has no morph targets";
+    if (!mesh->uv) return "it has no texture coordinates: unwrap it first";
+    if (!mesh->tangent) return "it has no tangents";
+    if (!f->triangle_count) return "no target compresses an opaque, lit material of it";
+    return NULL;
+}
+
+/* The smallest size whose texels show creases, by the mean edge of a texel where the surface is compressed. */
+static int choose_size(const wrinkle_field *f, wrinkle_raster *out)
+{
+    double area = 0.0, spacing = wrinkle_spacing(f);
+    for (uint32_t i = 0; i < f->triangle_count; i++) {
+        area += f->largest[i] >= 0.03f ? f->area[i] : 0.0;
+    }
+    for (uint32_t size = MAP_SIZE_LEAST;; size *= 2) {
+        uint32_t texels = 0;
+        if (wrinkle_raster_make(f, size, size, out)) return 1;
+        for (size_t at = 0; at < (size_t)size * size; at++) {
+            texels += out->triangle[at] != MODEL_NONE && f->largest[out->triangle[at]] >= 0.03f;
+        }
+        if (size == MAP_SIZE_MOST || spacing * spacing * texels >= WAVE_TEXELS * WAVE_TEXELS * area) return 0;
+        wrinkle_raster_free(out);
+    }
+}
+
+static int overlaps(const wrinkle_raster *r)
+{
+    return (double)r->overlapped > OVERLAP_MOST * (double)r->covered;
+}
+
+/* ---- painted ---- */
+
+/* A picture's file, not the model's, is at fault. */
+static int blame(const char *path, model_error *error)
+{
+    (void)snprintf(error->where, sizeof error->where, "%s", path);
+    return 1;
+}
+
+static int read_map(const char *path, wrinkles *w, model_error *error)
+{
+    image_file image;
+    if (image_read(path, &image, error)) {
+        return blame(path, error);
+    }
+    w->map = image.rgba;
+    w->map_width = image.width;
+    w->map_height = image.height;
+    return 0;
+}
+
+static int read_mask(const char *path, wrinkles *w, model_error *error)
+{
+    region_mask mask;
+    int failed;
+    if (region_mask_read(path, &mask, error)) {
+        return blame(path, error);
+    }
+    w->weights_width = mask.width;
+    w->weights_height = mask.height;
+    failed = region_maps_make(&mask, w->weights);
+    region_mask_free(&mask);
+    return failed ? out_of_memory(error) : 0;
+}
+
+static int matrix_of_mask(const wrinkle_field *f, wrinkles *w)
+{
+    wrinkle_raster r;
+    const int failed = wrinkle_raster_make(f, w->weights_width, w->weights_height, &r);
+    if (!failed) w->matrix = wrinkle_matrix_of_mask(f, &r, w->weights);
+    wrinkle_raster_free(&r);
+    return !w->matrix;
+}
+
+/* ---- generated ---- */
+
+static int generate_map(const wrinkle_field *f, const wrinkle_raster *r, wrinkles *w)
+{
+    w->map = wrinkle_creases_make(f, r, wrinkle_spacing(f));
+    w->map_width = r->width;
+    w->map_height = r->height;
+    return !w->map;
+}
+
+static int generate_weights(const wrinkle_field *f, wrinkles *w)
+{
+    region_weights *regions = wrinkle_regions_make(f);
+    wrinkle_raster r;
+    int failed = wrinkle_raster_make(f, WEIGHTS_SIZE, WEIGHTS_SIZE, &r) || !regions;
+    w->weights_width = w->weights_height = WEIGHTS_SIZE;
+    if (!failed) {
+        w->matrix = wrinkle_matrix_make(f, regions);
+        failed = wrinkle_maps_make(f, regions, &r, w->weights) || !w->matrix;
+    }
+    wrinkle_raster_free(&r);
+    free(regions);
+    return failed;
+}
+
+/* Paint what there is a file for, generate the rest. */
+static int fill(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_settings *settings, wrinkles *w,
+                model_error *error)
+{
+    if (settings->map ? read_map(settings->map, w, error) : generate_map(f, r, w) && out_of_memory(error)) {
+        return 1;
+    }
+    if (settings->mask) {
+        return read_mask(settings->mask, w, error) || (matrix_of_mask(f, w) && out_of_memory(error));
+    }
+    return generate_weights(f, w) && out_of_memory(error);
+}
+
+/* ---- into the model ---- */
+
+static int add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
+                       model_texture_use use)
+{
+    model_texture *grown = realloc(m->textures, (m->texture_count + 1u) * sizeof *grown);
+    const size_t bytes = strlen(mesh) + strlen(what) + 2;
+    model_texture *t;
+    if (!grown) return 1;
+    m->textures = grown;
+    t = &grown[m->texture_count];
+    memset(t, 0, sizeof *t);
+    t->name = malloc(bytes);
+    if (!t->name) return 1;
+    (void)snprintf(t->name, bytes, "%s %s", mesh, what);
+    t->width = width;
+    t->height = height;
+    t->rgba = *rgba;
+    t->wrap_s = t->wrap_t = 10497;
+    t->use = use;
+    *rgba = NULL;
+    m->texture_count++;
+    return 0;
+}
+
+/* Other meshes may use the material: this one gets a copy of its own. */
+static int own_material(model *m, model_mesh *mesh, uint32_t material, uint32_t *own)
+{
+    model_material *grown = realloc(m->materials, (m->material_count + 1u) * sizeof *grown);
+    char *name = grown ? model_string(grown[material].name ? grown[material].name : "") : NULL;
+    if (grown) m->materials = grown;
+    if (!name) return 1;
+    *own = m->material_count++;
+    grown[*own] = grown[material];
+    grown[*own].name = name;
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        if (mesh->submeshes[s].material == material) mesh->submeshes[s].material = *own;
+    }
+    return 0;
+}
+
+static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count && &m->meshes[i] != mesh; s++) {
+            if (m->meshes[i].submeshes[s].material == material) return 1;
+        }
+    }
+    return 0;
+}
+
+static int add_to_model(model *m, model_mesh *mesh, uint32_t material, uint32_t models, wrinkles *w)
+{
+    static const char *const names[REGION_MAP_COUNT] = { "wrinkle weights 0", "wrinkle weights 1",
+                                                         "wrinkle weights 2" };
+    const char *name = mesh->name ? mesh->name : "";
+    uint32_t own = material;
+    if (is_shared(m, mesh, material) && own_material(m, mesh, material, &own)) return 1;
+    if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, MODEL_TEXTURE_NORMAL)) return 1;
+    m->materials[own].wrinkle_texture = m->texture_count - 1u;
+    m->materials[own].wrinkle_models = models;
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
+        if (add_texture(m, name, names[k], &w->weights[k], w->weights_width, w->weights_height, MODEL_TEXTURE_DATA)) {
+            return 1;
+        }
+        m->materials[own].wrinkle_weights[k] = m->texture_count - 1u;
+    }
+    mesh->wrinkles = w->matrix;
+    w->matrix = NULL;
+    return 0;
+}
+
+static void report(const wrinkle_settings *settings, const model *m, const model_mesh *mesh, uint32_t material,
+                   const wrinkles *w)
+{
+    uint32_t used = 0;
+    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+        int any = 0;
+        for (uint32_t t = 0; t < mesh->target_count; t++) {
+            any |= w->matrix[t * REGION_COUNT + r];
+        }
+        used += any != 0;
+    }
+    if (settings->report) {
+        fprintf(settings->report,
+                "wrinkles of mesh '%s', material '%s': normals %u x %u%s, weights %u x %u%s, %u region%s\n", mesh->name,
+                m->materials[material].name, w->map_width, w->map_height, settings->map ? " painted" : "",
+                w->weights_width, w->weights_height, settings->mask ? " painted" : "", used, used == 1 ? "" : "s");
+    }
+}
+
+/* One mesh; *made counts those that have wrinkles now. */
+static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *settings, uint32_t *made, model_error *error)
+{
+    wrinkle_field f;
+    wrinkle_raster r = { 0 };
+    wrinkles w = { 0 };
+    const char *why;
+    int failed = choose_surface(m, mesh, &f) && out_of_memory(error);
+    why = failed ? NULL : objection(mesh, &f);
+    if (!failed && !why) {
+        failed = choose_size(&f, &r) && out_of_memory(error);
+        if (!failed && overlaps(&r)) {
+            why =
+                "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
+        }
+    }
+    if (!failed && why) {
+        failed = model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) && out_of_memory(error);
+    } else if (!failed) {
+        failed = fill(&f, &r, settings, &w, error);
+        if (!failed) report(settings, m, mesh, f.material, &w);
+        failed = failed || (add_to_model(m, mesh, f.material, settings->models, &w) && out_of_memory(error));
+        *made += !failed;
+    }
+    wrinkles_free(&w);
+    wrinkle_raster_free(&r);
+    wrinkle_field_free(&f);
+    return failed;
+}
+
+int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error)
+{
+    uint32_t made = 0;
+    if (!settings->automatic && !settings->map && !settings->mask) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (make_mesh(m, &m->meshes[i], settings, &made, error)) return 1;
+    }
+    if (!made) {
+        return model_fail(error, "", "no mesh can have wrinkles: %s",
+                          m->warning_count ? m->warnings[m->warning_count - 1u] : "there is none");
+    }
+    return 0;
+}

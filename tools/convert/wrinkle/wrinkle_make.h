@@ -1,0 +1,30 @@
+/* wrinkle_make.h: gives meshes wrinkles: a normal map, three maps of twelve regions, and how much each target wrinkles
+ * each of them; out of the targets themselves, or painted. */
+#ifndef NOH_CONVERT_WRINKLE_WRINKLE_MAKE_H
+#define NOH_CONVERT_WRINKLE_WRINKLE_MAKE_H
+
+#include <stdio.h>
+
+#include "convert/model/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct wrinkle_settings {
+    int automatic;    /* generate what is not painted */
+    const char *map;  /* a painted normal map, tangent space, +y up; NULL: generated */
+    const char *mask; /* a painted region mask (region_mask.h); NULL: generated */
+    uint32_t models;  /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
+    FILE *report;     /* NULL: quiet */
+} wrinkle_settings;
+
+/* Add wrinkles to one material of each mesh that targets compress: that with most of it. Meshes that can have none are
+ * told about in the model's warnings; that none can have any is an error. Does nothing where the settings ask for
+ * nothing. Returns 0, or 1 and *error. */
+int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
