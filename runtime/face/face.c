@@ -12,7 +12,7 @@
 #include "base/name_internal.h"
 #include "face/face_internal.h"
 
-NOH_STATIC_ASSERT(sizeof(noh_face) <= 256, face_bytes);
+NOH_STATIC_ASSERT(sizeof(noh_face) == 240, face_bytes);
 
 #define NEAREST_M 0.05f
 #define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less in one call is followed without a saccade */

@@ -97,6 +97,7 @@ typedef struct noh_face {
     noh_face_spring head[2]; /* yaw, pitch */
     noh_face_feeling feelings[NOH_FACE_EMOTIONS_MAX];
     uint8_t activity, flags, gaze, blinking;
+    uint32_t reserved; /* the same size wherever int64_t is aligned to 4 bytes */
 } noh_face;
 
 /* What shows in one frame. */

@@ -28,7 +28,7 @@
 extern "C" {
 #endif
 
-#define NOH_ACTOR_FACE_BYTES 384u
+#define NOH_ACTOR_FACE_BYTES 336u
 
 /* Zero is a good value for all where the kind has joints for its eyes. Strings and recipes are read at init. */
 typedef struct noh_kind_face {

@@ -116,7 +116,7 @@ NOH_STATIC_ASSERT(sizeof(noh_look) == 28, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
-NOH_STATIC_ASSERT(sizeof(noh_stage_face) <= NOH_ACTOR_FACE_BYTES && sizeof(noh_stage_face) % 16 == 0, stage_face);
+NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
