@@ -228,7 +228,8 @@ int noh_ear_next(noh_ear *memory, noh_ear_frame *frame)
         round += weights[v] * rounds[v] / 100;
     }
     loudness = loudness * 6 < ONE * 2 / 5 + loudness / 5 * 3 ? loudness * 6 : ONE * 2 / 5 + loudness / 5 * 3;
-    frame->open = (float)((int64_t)open * loudness / ONE) * (1.0f / ONE);
+    const int64_t loud_open = (int64_t)open * loudness / ONE;
+    frame->open = (float)loud_open * (1.0f / ONE);
     frame->round = (float)round * (1.0f / ONE);
     frame->closed = e->shut_left ? 1.0f : frame->visemes[NOH_VISEME_PP];
     return 1;

@@ -170,7 +170,8 @@ static void learn(double rate)
     for (int i = 0; i + EAR_WINDOW <= sound_count && at < MAX_FRAMES; i += EAR_HOP, at++) {
         int32_t loud;
         noh_ear_mfcc(&tables, heard + i, i ? heard[i - 1] : 0, raw[at], &loud);
-        label[at] = (signed char)viseme_at((i + EAR_WINDOW / 2) / (double)EAR_RATE);
+        const int middle = i + EAR_WINDOW / 2;
+        label[at] = (signed char)viseme_at(middle / (double)EAR_RATE);
     }
     if (utterances + 1 >= MAX_UTTERANCES) die("too many utterances");
     first_frame[++utterances] = at;

@@ -59,7 +59,8 @@ float region_maps_weight(const uint8_t *const texels[REGION_MAP_COUNT], const fl
 {
     float largest = 0.0f;
     for (uint32_t i = 0; i < REGION_COUNT; i++) {
-        const float weight = (float)texels[i % 3][i / 3] * (1.0f / 255.0f) * weights[i];
+        const uint32_t map = i % 3, channel = i / 3;
+        const float weight = (float)texels[map][channel] * (1.0f / 255.0f) * weights[i];
         largest = weight > largest ? weight : largest;
     }
     return largest;

@@ -227,7 +227,8 @@ static double height_step(const canvas *c, uint32_t x, uint32_t y, int down)
     const int before = down ? y > 0 : x > 0, after = down ? y + 1 < c->raster->height : x + 1 < width;
     const size_t a = before && c->creases[at - step].reach ? at - step : at;
     const size_t b = after && c->creases[at + step].reach ? at + step : at;
-    return b > a ? (height_at(c, b) - height_at(c, a)) / (double)((b - a) / step) : 0.0;
+    const size_t steps = (b - a) / step;
+    return b > a ? (height_at(c, b) - height_at(c, a)) / (double)steps : 0.0;
 }
 
 static void frame_at(const canvas *c, size_t at, double tangent[3], double bitangent[3])
