@@ -77,7 +77,7 @@ expect 2 'an unknown driver'
 says "no driver 'vulkan'"
 noh render "$pack" -o "$work/out.png" --debug bones
 expect 2 'an unknown debug view'
-says "--debug wants none, position, normal, tangent, lod, light or occlusion, not 'bones'"
+says "--debug wants none, position, normal, tangent, lod, light, occlusion or wrinkle, not 'bones'"
 noh render "$pack" -o "$work/out.png" --camera sideways
 expect 2 'an unknown camera'
 for value in smile smile= =1 smile=much smile=nan; do
