@@ -26,7 +26,8 @@ static void open_rest(noh_stage_kind *k, const noh_stage_needs *n)
     k->set.clip_count = 1;
     k->set.joint_count = k->skeleton.joint_count;
     k->set.float_count = n->shape.float_count;
-    k->set.float_defaults = noh_stage_has_parts(&k->desc) && n->weight_count ? k->defaults : NULL; /* filled in by open_floats */
+    /* filled in by open_floats */
+    k->set.float_defaults = noh_stage_has_parts(&k->desc) && n->weight_count ? k->defaults : NULL;
     k->set.clips = &k->rest_clip;
     k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->rest_pose;
     k->set.sample = sample_rest;

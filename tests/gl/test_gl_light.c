@@ -313,6 +313,17 @@ static void a_key_light_falls_by_the_cosine(void **state)
 
 #define SHADOW_PX 256u
 
+/* Light from nowhere but the key. */
+static void key_alone(const float to_light[3], noh_lighting *lighting)
+{
+    noh_light none;
+    memset(&none, 0, sizeof none);
+    none.order = 3;
+    noh_lighting_make(&none, NULL, 1, lighting);
+    memcpy(lighting->key_direction, to_light, sizeof lighting->key_direction);
+    for (int c = 0; c < 3; c++) lighting->key[c] = 0.9f;
+}
+
 /* A square of half a side 0.3 floats 0.8 above one that fills the picture; the light comes aslant. */
 static void a_square_casts_its_shadow(void **state)
 {
@@ -322,18 +333,13 @@ static void a_square_casts_its_shadow(void **state)
     const double shift[2] = { -0.8 * 0.48 / 0.8, -0.8 * 0.36 / 0.8 }, texel = 2.0 * 1.6 / SHADOW_PX;
     noh_stage_view view;
     noh_gl_camera from_light = front();
-    noh_light none;
     noh_lighting lighting;
     uint32_t dark = 0, lit = 0;
     uint8_t *rgba;
     scene s;
     (void)state;
     open_scene(&s, &black, SHADOW_PX, flat);
-    memset(&none, 0, sizeof none);
-    none.order = 3;
-    noh_lighting_make(&none, NULL, 1, &lighting);
-    memcpy(lighting.key_direction, to_light, sizeof to_light);
-    for (int c = 0; c < 3; c++) lighting.key[c] = 0.9f;
+    key_alone(to_light, &lighting);
     noh_view_shadow(&view, sphere, to_light);
     noh_lighting_shadow(&lighting, view.view_projection, sphere[3], SHADOW_PX);
     memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
@@ -368,17 +374,12 @@ static void no_surface_shadows_itself(void **state)
     const float to_light[3] = { 0.6f, 0.0f, 0.8f };
     noh_stage_view view;
     noh_gl_camera from_light = front();
-    noh_light none;
     noh_lighting lighting;
     scene s;
     uint8_t *with, *without;
     (void)state;
     open_scene(&s, &black, SHADOW_PX, flat);
-    memset(&none, 0, sizeof none);
-    none.order = 3;
-    noh_lighting_make(&none, NULL, 1, &lighting);
-    memcpy(lighting.key_direction, to_light, sizeof to_light);
-    for (int c = 0; c < 3; c++) lighting.key[c] = 0.9f;
+    key_alone(to_light, &lighting);
     without = draw(&s, SPHERE, identity, &lighting);
     noh_view_shadow(&view, all, to_light);
     noh_lighting_shadow(&lighting, view.view_projection, all[3], SHADOW_PX);
