@@ -32,6 +32,7 @@
 /* ---- what a game calls first ---- */
 
 #include "stage_gl/stage_gl.h" /* a stage, drawn */
+#include "stage_gl/backdrop.h" /* what is behind it, where it is lit */
 #include "gl/gl_api.h"         /* the functions that noh calls */
 #include "gl/gl_caps.h"        /* what this GPU can do, found by trying it */
 #include "gl/gl_morph.h"       /* morph targets of many instances, accumulated on the GPU */

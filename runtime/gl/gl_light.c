@@ -75,16 +75,12 @@ uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc)
     return noh_gl_texture_bytes(&cube) + noh_gl_texture_bytes(&shadow);
 }
 
-static noh_result create_cube(noh_gl_light *l, noh_error *error)
+noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error)
 {
+    const noh_gl_light *l = light;
     const noh_reflection *r = l->desc.reflection;
-    const noh_gl_texture_desc desc = cube_desc(&l->desc);
-    const noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->cube, error);
-    if (result != NOH_OK) {
-        return result;
-    }
+    NOH_ASSERT(l->gl && r && l->cube.name);
     l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, l->cube.name);
-    noh_gl_label(l->gl, GL_TEXTURE, l->cube.name, "reflection", NULL);
     l->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     for (uint32_t i = 0; i < 6u * NOH_REFLECTION_LEVELS; i++) {
         const uint32_t level = i / 6u, face = i % 6u, n = r->side >> level;
@@ -94,6 +90,18 @@ static noh_result create_cube(noh_gl_light *l, noh_error *error)
     }
     l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     return noh_gl_error_check(l->gl, "the driver refuses a reflection's texels", l->cube.bytes, error);
+}
+
+static noh_result create_cube(noh_gl_light *l, noh_error *error)
+{
+    const noh_gl_texture_desc desc = cube_desc(&l->desc);
+    const noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->cube, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, l->cube.name);
+    noh_gl_label(l->gl, GL_TEXTURE, l->cube.name, "reflection", NULL);
+    return noh_gl_light_upload(l, error);
 }
 
 static noh_result create_shadow(noh_gl_light *l, noh_error *error)

@@ -5,6 +5,7 @@
  *   noh_lighting_shadow     where a shadow map looks
  *   noh_gl_light_bytes      exact GPU bytes of the textures
  *   noh_gl_light_create     upload the reflection, make the shadow map; noh_gl_light_delete, noh_gl_light_restore
+ *   noh_gl_light_upload     the reflection is another one now
  *   noh_gl_light_begin_shadow  bind and clear the shadow map; noh_gl_light_end_shadow
  *   noh_gl_renderer_light   light what the renderer draws from now on
  *
@@ -83,6 +84,10 @@ void noh_gl_light_delete(noh_gl_light *light);
 /* Make its GL objects again in a new context (gl_lost.h).
  * errors  MEMORY, GL as noh_gl_light_create: it then has no GL objects */
 noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error);
+
+/* Its reflection was made anew in place (noh_reflection_init in the same memory, of the same side): upload the texels.
+ * errors  GL the driver refuses them */
+noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error);
 
 /* Bind the shadow map's framebuffer, set its viewport, clear it. Draw what casts shadows, depth alone, from the light;
  * then end, which binds framebuffer 0. The viewport stays. Not without shadows. */

@@ -1,6 +1,7 @@
 /* stage_face.h: faces of actors: they blink, look, feel, breathe, and are never still.
  *
  *   noh_kind_desc.face        what faces of a kind have in common: one line makes its actors alive
+ *   noh_kind_find_eyes        where its eyes are, where no joints say so
  *   noh_actor_look_at         a point of the world; noh_actor_look_at_actor: another actor's eyes
  *   noh_actor_feel            an emotion by name: comes, holds and goes
  *   noh_actor_set_activity    resting, talking, reading
@@ -42,6 +43,17 @@ typedef struct noh_kind_face {
     uint32_t flags; /* NOH_FACE_* of new actors */
     noh_face_rules rules;
 } noh_kind_face;
+
+/* Where the eyes of a kind are at rest, for noh_kind_face.face.eyes: the joints of the eyes; without these behind what
+ * its recipes blink with: the middle of what moves on each side, 0.19 of their distance further in.
+ * kind     mesh, skeleton, nodes and face (NULL: as zeros) as a stage would be given them
+ * scratch  [scratch_bytes] aligned to NOH_MEMORY_ALIGN, yours again afterwards; noh_kind_find_eyes_size tells how much
+ * shapes   eyes: centres of the left and the right one, model space
+ * errors   NOT_FOUND nothing tells: no face; ARG scratch is NULL or misaligned; MEMORY it is too small (need: its
+ *          bytes). *eyes is then untouched */
+noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t scratch_bytes, float eyes[2][3],
+                              noh_error *error);
+size_t noh_kind_find_eyes_size(const noh_kind_desc *kind);
 
 /* Look at a point from now on, wherever the actor goes.
  * point  world; NULL: ahead

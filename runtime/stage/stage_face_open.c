@@ -159,6 +159,29 @@ static const char *bad_rules(const noh_face_rules *r)
     return NULL;
 }
 
+/* 0: one that is named is not there. */
+static int open_joints(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
+{
+    const noh_kind_face *from = d->face;
+    return open_joint(d, skeleton, from ? from->head : NULL, heads, &f->head) &&
+           open_joint(d, skeleton, from ? from->neck : NULL, necks, &f->neck) &&
+           open_joint(d, skeleton, from ? from->chest : NULL, chests, &f->chest) &&
+           open_joint(d, skeleton, from ? from->eyes[0] : NULL, left_eyes, &f->eyes[0]) &&
+           open_joint(d, skeleton, from ? from->eyes[1] : NULL, right_eyes, &f->eyes[1]);
+}
+
+int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3])
+{
+    noh_skeleton skeleton;
+    noh_stage_face_kind f;
+    if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &skeleton, NULL, NULL) != NOH_OK ||
+        !open_joints(kind, &skeleton, &f))
+        return 0;
+    drop_strays(&skeleton, &f);
+    for (int e = 0; e < 2 && f.eyes[0].joint != NOH_NONE; e++) memcpy(eyes[e], f.eyes[e].at, sizeof f.eyes[e].at);
+    return f.eyes[0].joint != NOH_NONE;
+}
+
 /* All but links and floats. Returns what is wrong. */
 static const char *open_shared(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
 {
@@ -169,12 +192,7 @@ static const char *open_shared(const noh_kind_desc *d, const noh_skeleton *skele
     f->desc = from->face;
     f->rules = from->rules;
     f->flags = from->flags;
-    if (!open_joint(d, skeleton, from->head, heads, &f->head) ||
-        !open_joint(d, skeleton, from->neck, necks, &f->neck) ||
-        !open_joint(d, skeleton, from->chest, chests, &f->chest) ||
-        !open_joint(d, skeleton, from->eyes[0], left_eyes, &f->eyes[0]) ||
-        !open_joint(d, skeleton, from->eyes[1], right_eyes, &f->eyes[1]))
-        return "face of a kind: its skeleton has no joint of a name that is given";
+    if (!open_joints(d, skeleton, f)) return "face of a kind: its skeleton has no joint of a name that is given";
     drop_strays(skeleton, f);
     for (int i = 0; i < 6; i++) square += f->desc.eyes[i / 3][i % 3] * f->desc.eyes[i / 3][i % 3];
     if (square == 0.0f && f->eyes[0].joint == NOH_NONE)

@@ -529,6 +529,8 @@ static inline int noh_stage_has_parts(const noh_kind_desc *kind)
 
 /* What is wrong with the face of a kind; NULL: nothing. */
 const char *noh_stage_bad_face(const noh_kind_desc *kind);
+/* Where the joints of its eyes are at rest, model space; 0: there are none. */
+int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
 uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
 uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
 void noh_stage_open_face(noh_stage_kind *k);

@@ -215,6 +215,54 @@ static void without_a_gpu_it_is_posed(void **state)
     pack_file_close(&file);
 }
 
+/* The mean of a backdrop, 0..1. */
+static double backdrop_mean(gpu *g, const figure *f, noh_backdrop *b, noh_backdrop_kind kind)
+{
+    const lighting *l = f->desc.light;
+    const noh_stage_view view = { .view_projection = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2f, 0 } };
+    static uint8_t rgba[64 * 64 * 4];
+    double sum = 0.0;
+    canvas c;
+    assert_int_equal(canvas_open(&c, g, 64, 64), 0);
+    canvas_begin(&c);
+    noh_backdrop_draw(b, kind, noh_stage_light_of(f->stage), &l->told, &view);
+    assert_int_equal(canvas_read(&c, rgba), 0);
+    canvas_close(&c);
+    for (uint32_t i = 0; i < 64u * 64u; i++) {
+        for (uint32_t k = 0; k < 3u; k++) sum += rgba[4u * i + k] / (255.0 * 3.0 * 64.0 * 64.0);
+    }
+    return sum;
+}
+
+/* A backdrop shows the light: another one once the reflection is made anew; the same after a lost context. */
+static void what_is_behind_is_the_light(gpu *g, figure *f, lighting *light)
+{
+    static __attribute__((aligned(16))) uint8_t scratch[1024 * 1024];
+    const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, NULL, 0 };
+    const noh_reflection_desc white = { 0, noh_reflection_of_environment,
+                                        noh_environment_at(noh_environment_find("white")) };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_reflection again;
+    noh_backdrop b;
+    double room, after;
+    assert_true(noh_reflection_scratch_size(0) <= sizeof scratch);
+    assert_int_equal(noh_backdrop_create(&device, 0, &b, &error), NOH_OK);
+    room = backdrop_mean(g, f, &b, NOH_BACKDROP_LIGHT);
+    assert_true(fabs(room - backdrop_mean(g, f, &b, NOH_BACKDROP_GRADIENT)) > 0.005);
+    assert_int_equal(
+        noh_reflection_init(light->texels, noh_reflection_size(0), scratch, sizeof scratch, &white, &again, &error),
+        NOH_OK);
+    assert_true(fabs(room - backdrop_mean(g, f, &b, NOH_BACKDROP_LIGHT)) < 1e-9); /* not uploaded yet */
+    assert_int_equal(noh_gl_light_upload(noh_stage_light_of(f->stage), &error), NOH_OK);
+    after = backdrop_mean(g, f, &b, NOH_BACKDROP_LIGHT);
+    assert_true(fabs(room - after) > 0.02);
+    assert_int_equal(noh_backdrop_restore(&b, NULL, 0, &error), NOH_OK);
+    assert_true(fabs(after - backdrop_mean(g, f, &b, NOH_BACKDROP_LIGHT)) < 1e-9);
+    noh_backdrop_delete(&b);
+    noh_backdrop_delete(&b);
+    assert_int_equal(noh_gl_error_take(&g->gl), 0);
+}
+
 /* A lit figure takes the bytes of its plan, light included; after a lost context its picture is the same. */
 static void light_is_counted_and_comes_back(void **state)
 {
@@ -248,6 +296,7 @@ static void light_is_counted_and_comes_back(void **state)
         free(after);
     }
     free(before);
+    what_is_behind_is_the_light(&g, &f, &light);
     figure_close(&f);
     figure_plan_free(&unlit);
     lighting_close(&light);

@@ -208,6 +208,43 @@ static void eyes_with_joints_turn(void **state)
     }
 }
 
+/* Behind the lids, in a mask without joints and on a puppet's head; at joints, where there are some; nowhere in a tube
+ * without lids. */
+static void eyes_are_found_by_lids_and_by_joints(void **state)
+{
+    static __attribute__((aligned(16))) uint8_t scratch[65536];
+    const float at_1m[3] = { 0.035f, 1.55f, 0.11f };
+    float eyes[2][3], on_mask[2][3];
+    noh_kind_face joints;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, NULL, 1);
+    for (uint32_t k = 0; k < 2; k++) {
+        noh_kind_desc kind = c.kinds[0];
+        size_t bytes;
+        kind.mesh = &c.packs[k ? MASKS : PUPPETS];
+        bytes = noh_kind_find_eyes_size(&kind);
+        assert_true(bytes > 0 && bytes <= sizeof scratch);
+        assert_int_equal(noh_kind_find_eyes(&kind, scratch, bytes - 1u, eyes, &said), NOH_ERR_MEMORY);
+        assert_int_equal(said.need, bytes);
+        assert_int_equal(noh_kind_find_eyes(&kind, scratch, bytes, eyes, &said), NOH_OK);
+        assert_true(fabsf(eyes[0][0] + eyes[1][0]) < 2e-3f && eyes[0][0] > 0.02f && eyes[0][0] < 0.05f);
+        if (k) memcpy(on_mask, eyes, sizeof eyes);
+        for (int i = 0; i < 3 && !k; i++) assert_true(fabsf(eyes[0][i] - at_1m[i]) < 0.04f);
+    }
+    assert_true(fabsf(on_mask[0][1] - on_mask[1][1]) < 2e-3f && fabsf(on_mask[0][2] - on_mask[1][2]) < 2e-3f);
+    close_cast(&c);
+    cast_open(&c);
+    assert_int_equal(noh_kind_find_eyes(&c.kinds[TUBES], scratch, sizeof scratch, eyes, &said), NOH_ERR_NOT_FOUND);
+    memset(&joints, 0, sizeof joints);
+    joints.head = noh_pack_joint_name(&c.packs[TUBES], 0, 0);
+    for (uint32_t e = 0; e < 2; e++) joints.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
+    c.kinds[TUBES].face = &joints;
+    assert_int_equal(noh_kind_find_eyes(&c.kinds[TUBES], scratch, sizeof scratch, eyes, &said), NOH_OK);
+    assert_true(eyes[0][1] != eyes[1][1]); /* the tube's joints stand above each other */
+    cast_close(&c);
+}
+
 /* ---- never still ---- */
 
 /* What shows of an actor: floats, and where its head is. */
@@ -397,6 +434,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(eyes_meet_a_point_whatever_the_body_does),
         cmocka_unit_test(two_actors_meet_each_others_eyes),
         cmocka_unit_test(eyes_with_joints_turn),
+        cmocka_unit_test(eyes_are_found_by_lids_and_by_joints),
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
         cmocka_unit_test(an_hour_unseen_is_skipped),

@@ -53,7 +53,6 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->actor_count = k->near_count = d->actor_count ? d->actor_count : 1u;
     k->layers = d->layers ? d->layers : f->own_layers;
     k->layer_count = d->layers ? d->layer_count : d->face_layer ? 2u : 1u;
-    if (f->faces_found >> f->stage_desc.kind_count & 1u) k->face = &f->faces[f->stage_desc.kind_count];
     k->inertia = d->inertia;
     k->graphs = d->graphs;
     k->root_axes = d->root_axes;
@@ -122,6 +121,14 @@ static void set_held(figure *f)
     }
 }
 
+static void add_faces(figure *f)
+{
+    f->faces_found = figure_find_faces(f->kinds, f->stage_desc.kind_count, f->faces);
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        if (f->faces_found >> k & 1u) f->kinds[k].face = &f->faces[k];
+    }
+}
+
 /* ---- its bytes ---- */
 
 /* Clips that no kind can play: why. */
@@ -154,7 +161,6 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     for (uint32_t i = 0; desc->more_clip_count && i <= desc->more_clip_count; i++) {
         f->packs[i] = i ? &desc->more_clips[i - 1u].pack : &desc->clips->pack;
     }
-    if (desc->alive) f->faces_found = figure_find_faces(desc, f->faces);
     d->kinds = f->kinds;
     d->full_detail = !desc->by_error;
     d->lod = desc->lod;
@@ -169,6 +175,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     if (!status) status = list_kinds(f, caps != NULL);
     if (!status) {
         set_held(f);
+        if (desc->alive) add_faces(f);
         status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
     }
     if (!status && desc->clips && desc->clips->pack.clip_count) status = check_clips(f);

@@ -130,8 +130,8 @@ int figure_check_target(const pack_file *file, const char *name);
 
 int figure_pose(figure *f);
 
-/* The faces of a figure's kinds by what blinks: a bit for each that has one. */
-uint32_t figure_find_faces(const figure_desc *desc, noh_kind_face *faces);
+/* The faces of kinds whose eyes can be found: a bit for each that has one. */
+uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces);
 /* --feel EMOTION=AMOUNT, of all its faces. */
 int figure_feel(figure *f, const option_list *emotions);
 /* Time moves on, clips and faces, 60 steps a second. */

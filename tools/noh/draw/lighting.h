@@ -34,16 +34,4 @@ void lighting_turn(lighting *l, double degrees);
 /* The view that the shadow map is drawn by, for what is in the box; told to shaders, too. */
 noh_stage_view lighting_shadow_view(lighting *l, const bounds *box);
 
-/* What is behind everything, into the framebuffer that is bound, whose target encodes to sRGB. */
-typedef struct backdrop {
-    gpu *g;
-    GLuint program, vertex_array;
-} backdrop;
-
-/* Prints an error and returns an exit code; 0 on success. */
-int backdrop_open(backdrop *b, gpu *g);
-void backdrop_close(backdrop *b);
-/* on_gl: of the stage. Depth is neither tested nor written. */
-void backdrop_draw(const backdrop *b, const lighting *l, const noh_gl_light *on_gl, const noh_gl_camera *camera);
-
 #endif
