@@ -10,19 +10,19 @@ static void open_actors(noh_stage *s, uint32_t kind)
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_free *f = &s->head->kinds[kind];
     k->actors = s->actors + k->first_actor;
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         k->actors[i].generation = 1;
-        k->actors[i].next_free = i + 1u < k->desc.actor_count ? i + 2u : 0;
+        k->actors[i].next_free = i + 1u < k->desc->actor_count ? i + 2u : 0;
     }
     f->first = 1;
-    f->last = k->desc.actor_count;
+    f->last = k->desc->actor_count;
 }
 
 static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error)
 {
     noh_stage_kind *k = &s->kinds[kind];
     uint32_t slots[NOH_LOD_LEVELS_MAX];
-    noh_lod_pools_desc desc = { k->desc.actor_count, 0, k->pool_levels, slots, k->desc.seen_max };
+    noh_lod_pools_desc desc = { k->desc->actor_count, 0, k->pool_levels, slots, k->desc->seen_max };
     desc.pool_count = k->pool_count = noh_stage_pools(k->plan, k->pool_levels, slots);
     return noh_lod_pools_init(memory, noh_lod_pools_size(&desc), &desc, &k->pools, error);
 }
@@ -60,6 +60,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->desc.halves = noh_stage_halves(desc, plan);
     s->plan = plan;
     s->kinds = b->kinds;
+    s->kind_descs = b->kind_descs;
     s->head = b->head;
     s->state = (uint8_t *)b->head;
     s->state_bytes = b->state_bytes;
@@ -75,6 +76,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->inertia_scratch = b->inertia_scratch;
     s->inertia_bytes = b->inertia_bytes;
     for (uint32_t i = 0; i < desc->kind_count; i++) {
+        s->kinds[i].desc = &s->kind_descs[i];
         s->kinds[i].first_actor = s->actor_count;
         s->actor_count += desc->kinds[i].actor_count;
     }
@@ -102,7 +104,7 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     noh_result result;
     adopt(desc, plan, b);
     result = open_kinds(s, desc, b, error);
-    s->desc.kinds = NULL;
+    s->desc.kinds = s->kind_descs;
     if (result == NOH_OK) result = open_views(s, b, error);
     if (result == NOH_OK) {
         result = noh_schedule_init(b->schedule, noh_schedule_size(s->actor_count), s->actor_count, &s->schedule, error);
@@ -161,7 +163,7 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
         const size_t from = (arena.used + 15u) & ~(size_t)15u;
         result = desc->gpu->init((uint8_t *)memory + from, (size_t)plan->cpu_bytes - from, device, b.stage, error);
     }
-    for (uint32_t i = 0; i < desc->kind_count; i++) b.kinds[i].desc.finer = NULL; /* not kept */
+    for (uint32_t i = 0; i < desc->kind_count; i++) b.kind_descs[i].finer = NULL; /* not kept */
     if (result == NOH_OK) {
         *stage = b.stage;
     }

@@ -21,7 +21,7 @@ noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index)
 noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index)
 {
     uint32_t k = 0;
-    while (index - s->kinds[k].first_actor >= s->kinds[k].desc.actor_count) k++;
+    while (index - s->kinds[k].first_actor >= s->kinds[k].desc->actor_count) k++;
     return &s->kinds[k];
 }
 
@@ -234,7 +234,7 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     f = &stage->head->kinds[kind];
     if (!f->first) {
         return noh_fail(error, NOH_ERR_LIMIT, "all actors of the kind are there", kind,
-                        stage->kinds[kind].desc.actor_count);
+                        stage->kinds[kind].desc->actor_count);
     }
     a = &stage->kinds[kind].actors[f->first - 1u];
     result = make_character(&stage->kinds[kind], f->first - 1u, stage->head->clock, error);
@@ -315,7 +315,7 @@ static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
 {
     noh_stage_free *f = &s->head->kinds[k - s->kinds];
     const uint32_t own = noh_stage_index(k, a) + 1u, generation = a->generation;
-    memset(k->held + (size_t)(own - 1u) * k->desc.held_float_count, 0, k->desc.held_float_count * sizeof *k->held);
+    memset(k->held + (size_t)(own - 1u) * k->desc->held_float_count, 0, k->desc->held_float_count * sizeof *k->held);
     memset(k->part_states + (size_t)(own - 1u) * k->part_bytes, 0, k->part_bytes);
     memset(k->graph_slots + (size_t)(own - 1u) * k->slot_bytes, 0, k->slot_bytes);
     memset(a, 0, sizeof *a);
@@ -359,9 +359,9 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     if (!(look->pixels >= 0.0f) || !noh_is_finite(look->pixels)) {
         return noh_fail(error, NOH_ERR_ARG, "pixels of a look is negative or not finite", actor.id & 0xffffu, 0);
     }
-    if (look->texture_set > k->desc.texture_set_count) {
+    if (look->texture_set > k->desc->texture_set_count) {
         return noh_fail(error, NOH_ERR_ARG, "texture_set of a look is none of the kind's", actor.id & 0xffffu,
-                        k->desc.texture_set_count);
+                        k->desc->texture_set_count);
     }
     a->look = *look;
     return NOH_OK;

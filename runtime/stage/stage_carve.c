@@ -271,6 +271,7 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
 {
     b->stage = CARVE(arena, 1, noh_stage);
     b->kinds = CARVE(arena, filled->kind_count, noh_stage_kind);
+    b->kind_descs = CARVE(arena, filled->kind_count, noh_kind_desc);
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
     b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);

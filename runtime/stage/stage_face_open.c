@@ -278,14 +278,14 @@ void noh_stage_open_face(noh_stage_kind *k)
 {
     noh_stage_face_kind *f = k->face;
     noh_face_link *links = f->links;
-    const uint32_t most = noh_stage_face_links(&k->desc);
+    const uint32_t most = noh_stage_face_links(k->desc);
     const char *what;
     memset(f, 0, sizeof *f);
-    what = open_shared(&k->desc, &k->skeleton, f);
+    what = open_shared(k->desc, &k->skeleton, f);
     NOH_ASSERT(!what); /* the plan was made of it */
     (void)what;
     f->links = links;
-    f->link_count = noh_face_recipe_bind_by(k->desc.face->recipes, k->desc.face->recipe_count, find_in_kind, k, links,
+    f->link_count = noh_face_recipe_bind_by(k->desc->face->recipes, k->desc->face->recipe_count, find_in_kind, k, links,
                                             most);
     f->link_count = f->link_count < most ? f->link_count : most;
     f->speech = find_float(k, "speech");

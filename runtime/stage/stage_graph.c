@@ -200,15 +200,15 @@ noh_result noh_stage_open_graphs(noh_stage_kind *k, uint32_t number, void *memor
     uint8_t *at = memory;
     graph_list list;
     tables t;
-    noh_result result = list_graphs(&k->desc, number, &list, error);
+    noh_result result = list_graphs(k->desc, number, &list, error);
     if (result != NOH_OK || !list.count) {
         return result;
     }
-    at += carve_tables(&arena, list.count, k->bank->clips.clip_count, k->desc.root_axes != 0, &t);
+    at += carve_tables(&arena, list.count, k->bank->clips.clip_count, k->desc->root_axes != 0, &t);
     k->graph_count = list.count;
     join_tables(k, &t);
     for (uint32_t i = 0; i < list.count && result == NOH_OK; i++) {
-        const noh_graph_pack_desc desc = graph_desc(&k->desc, &list, i, &k->bank->clips);
+        const noh_graph_pack_desc desc = graph_desc(k->desc, &list, i, &k->bank->clips);
         const size_t bytes = noh_graph_pack_size(&desc, error);
         result = noh_graph_pack_init(at, bytes, &desc, &k->graphs[i], error);
         at += aligned(bytes);

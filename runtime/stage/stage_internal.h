@@ -187,7 +187,7 @@ typedef struct noh_stage_face_kind {
 } noh_stage_face_kind;
 
 typedef struct noh_stage_kind {
-    noh_kind_desc desc; /* defaults filled in; `layers` is NULL afterwards */
+    noh_kind_desc *desc; /* defaults filled in; `layers` is NULL afterwards */
     const noh_kind_plan *plan;
     uint32_t first_actor;
     uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
@@ -290,7 +290,8 @@ typedef struct noh_view_planes {
 } noh_view_planes;
 
 struct noh_stage {
-    noh_stage_desc desc; /* defaults filled in; `kinds` is NULL afterwards */
+    noh_stage_desc desc;       /* defaults filled in; `kinds` are those below */
+    noh_kind_desc *kind_descs; /* [desc.kind_count] */
     const noh_stage_plan *plan;
     noh_stage_kind *kinds; /* [desc.kind_count] */
     uint32_t actor_count;  /* of all kinds */
@@ -417,6 +418,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
 typedef struct noh_stage_blocks {
     noh_stage *stage;
     noh_stage_kind *kinds;
+    noh_kind_desc *kind_descs;
     noh_stage_head *head;
     size_t state_bytes;
     noh_stage_actor *actors;

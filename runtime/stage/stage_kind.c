@@ -27,7 +27,7 @@ static void open_rest(noh_stage_kind *k, const noh_stage_needs *n)
     k->set.joint_count = k->skeleton.joint_count;
     k->set.float_count = n->shape.float_count;
     /* filled in by open_floats */
-    k->set.float_defaults = noh_stage_has_parts(&k->desc) && n->weight_count ? k->defaults : NULL;
+    k->set.float_defaults = noh_stage_has_parts(k->desc) && n->weight_count ? k->defaults : NULL;
     k->set.clips = &k->rest_clip;
     k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->rest_pose;
     k->set.sample = sample_rest;
@@ -45,7 +45,7 @@ static noh_result open_clips(noh_stage *s, const noh_stage_desc *desc, uint32_t 
     if (n->bank_bytes) {
         result = noh_clip_bank_init(memory, n->bank_bytes, &k->bank_desc, &k->bank, error);
     }
-    (void)noh_pack_skeleton_at(k->desc.mesh, k->desc.skeleton, &k->skeleton, NULL, NULL);
+    (void)noh_pack_skeleton_at(k->desc->mesh, k->desc->skeleton, &k->skeleton, NULL, NULL);
     k->skeleton.inverse_bind = NULL; /* characters keep model-space matrices: skins differ, sockets want joints */
     if (k->bank) {
         k->set = k->bank->clips;
@@ -75,22 +75,22 @@ static uint32_t place_floats(const noh_stage_kind *k, const noh_stage_item *item
 static void open_meshes(noh_stage_kind *k)
 {
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
-    const uint32_t count = noh_stage_items(&k->desc, items);
+    const uint32_t count = noh_stage_items(k->desc, items);
     uint32_t next = k->bank ? k->set.float_count : 0;
     for (uint32_t i = 0; i < count; i++) {
         noh_stage_mesh *m = &k->meshes[i];
         noh_mesh whole;
         memset(m, 0, sizeof *m);
         m->item = items[i];
-        (void)noh_pack_mesh_at(k->desc.mesh, items[i].mesh, &m->mesh, NULL);
-        m->skinned = noh_pack_skin_at(k->desc.mesh, m->mesh.header->skin, &m->skin, NULL) == NOH_OK;
-        m->node_world = items[i].node == NOH_NONE ? NULL : k->desc.mesh->nodes[items[i].node].world;
-        m->defaults = default_weights(k->desc.mesh, &items[i], &m->mesh);
+        (void)noh_pack_mesh_at(k->desc->mesh, items[i].mesh, &m->mesh, NULL);
+        m->skinned = noh_pack_skin_at(k->desc->mesh, m->mesh.header->skin, &m->skin, NULL) == NOH_OK;
+        m->node_world = items[i].node == NOH_NONE ? NULL : k->desc->mesh->nodes[items[i].node].world;
+        m->defaults = default_weights(k->desc->mesh, &items[i], &m->mesh);
         m->first_float = place_floats(k, &items[i], &next);
         if (m->first_float == next) next += m->mesh.header->target_count;
         m->first_weight = k->weight_count;
         k->weight_count += m->mesh.header->target_count;
-        whole = noh_stage_whole_mesh(&k->desc, items[i].mesh);
+        whole = noh_stage_whole_mesh(k->desc, items[i].mesh);
         noh_lod_target_radii(&whole, k->target_radii + m->first_weight);
     }
     k->float_count = next;
@@ -166,7 +166,7 @@ static void open_levels(noh_stage_kind *k)
         to->triangle_count = from->triangle_count;
         to->error_m = from->error_m;
         for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-            const noh_mesh whole = noh_stage_whole_mesh(&k->desc, k->meshes[m].item.mesh);
+            const noh_mesh whole = noh_stage_whole_mesh(k->desc, k->meshes[m].item.mesh);
             const noh_mesh mesh = noh_mesh_at_lod(&whole, from->mesh_levels[m]);
             to->vertex_count += mesh.header->vertex_count;
             if (mesh.header->influence_count > to->influence_count) to->influence_count = mesh.header->influence_count;
@@ -313,7 +313,7 @@ static void open_rigid(noh_stage_kind *k)
     noh_box_empty(box);
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        const noh_mesh whole = noh_stage_whole_mesh(&k->desc, mesh->item.mesh);
+        const noh_mesh whole = noh_stage_whole_mesh(k->desc, mesh->item.mesh);
         float own[6];
         if (mesh->skinned) continue;
         noh_mesh_box(&whole, mesh->node_world, NULL, own);
@@ -354,8 +354,8 @@ noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t
     memset(&d, 0, sizeof d);
     d.controller.set = &kind->set;
     d.controller.track_count = kind->plan->track_count;
-    d.controller.change_count = kind->desc.change_count;
-    d.controller.flags = noh_stage_controller_flags(&kind->desc);
+    d.controller.change_count = kind->desc->change_count;
+    d.controller.flags = noh_stage_controller_flags(kind->desc);
     d.instance = instance;
     return d;
 }
@@ -379,7 +379,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_needs needs;
     noh_result result = noh_stage_measure_kind(desc, s->plan, kind, &needs, error);
-    k->desc = noh_stage_kind_desc(desc, kind);
+    *k->desc = noh_stage_kind_desc(desc, kind);
     k->plan = &s->plan->kinds[kind];
     if (result == NOH_OK) result = open_clips(s, desc, kind, blocks->banks[kind], &needs, error);
     if (result != NOH_OK) {
@@ -388,15 +388,15 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     open_meshes(k);
     noh_stage_open_load(s, desc, kind);
     open_floats(k);
-    if (k->desc.face) noh_stage_open_face(k);
+    if (k->desc->face) noh_stage_open_face(k);
     result = noh_stage_open_layers(k, kind, error);
     if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);
     s->jobs[0].scratch = blocks->scratch;
     if (result == NOH_OK) result = open_bounds(s, k, error);
     if (result == NOH_OK) result = noh_stage_open_graphs(k, kind, blocks->graphs[kind], &needs, error);
-    if (k->desc.part_count) memcpy(k->parts, k->desc.parts, k->desc.part_count * sizeof *k->parts);
-    k->desc.parts = NULL;
-    k->desc.layers = NULL;
-    k->desc.graphs = NULL;
+    if (k->desc->part_count) memcpy(k->parts, k->desc->parts, k->desc->part_count * sizeof *k->parts);
+    k->desc->parts = NULL;
+    k->desc->layers = NULL;
+    k->desc->graphs = NULL;
     return result;
 }

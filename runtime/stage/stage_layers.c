@@ -42,7 +42,7 @@ static int mask_joints(const noh_stage_kind *k, const word *w, uint8_t *mask)
 {
     int found = 0;
     for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
-        if (noh_stage_word_matches(w, noh_pack_joint_name(k->desc.mesh, k->desc.skeleton, j))) {
+        if (noh_stage_word_matches(w, noh_pack_joint_name(k->desc->mesh, k->desc->skeleton, j))) {
             noh_mask_subtree(mask, &k->skeleton, j, w->takes_out ? 0 : 255);
             found = 1;
         }
@@ -56,7 +56,7 @@ static int mask_joints(const noh_stage_kind *k, const word *w, uint8_t *mask)
 static int group_mesh(const noh_stage_kind *k, const noh_clip_group *group, noh_mesh *mesh)
 {
     return group->node != NOH_NONE &&
-           noh_pack_mesh_at(k->desc.mesh, k->desc.mesh->nodes[group->node].mesh, mesh, NULL) == NOH_OK;
+           noh_pack_mesh_at(k->desc->mesh, k->desc->mesh->nodes[group->node].mesh, mesh, NULL) == NOH_OK;
 }
 
 /* A named float of clips has a hash alone, so no '*' matches it. */
@@ -138,11 +138,11 @@ noh_result noh_stage_open_layers(noh_stage_kind *k, uint32_t kind, noh_error *er
 {
     noh_result result = NOH_OK;
     uint32_t tracks = 0;
-    k->layer_count = k->desc.layer_count;
+    k->layer_count = k->desc->layer_count;
     k->set.mask_count = 0;
     k->set.masks = k->masks;
     for (uint32_t i = 0; i < k->layer_count && result == NOH_OK; i++) {
-        const noh_layer_desc *d = &k->desc.layers[i];
+        const noh_layer_desc *d = &k->desc->layers[i];
         noh_stage_layer *layer = &k->layers[i];
         memset(layer, 0, sizeof *layer);
         layer->name = d->name;

@@ -87,7 +87,7 @@ void noh_stage_open_load(const noh_stage *s, const noh_stage_desc *desc, uint32_
     while (k->first_there + 1u < k->plan->level_count && !is_there(k, k->first_there)) k->first_there++;
     k->load_kind = desc->kinds[kind].finer ? noh_stage_load_kind(desc, kind) : NOH_NONE;
     for (uint32_t m = 0; m < k->plan->mesh_count && desc->kinds[kind].finer; m++) {
-        const noh_mesh whole = noh_stage_whole_mesh(&k->desc, k->meshes[m].item.mesh);
+        const noh_mesh whole = noh_stage_whole_mesh(k->desc, k->meshes[m].item.mesh);
         k->meshes[m].finer_hash = noh_stage_hash_levels(&whole, k->plan->levels[k->plan->finest_level].mesh_levels[m]);
     }
 }

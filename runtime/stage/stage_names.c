@@ -9,7 +9,7 @@
 
 static const noh_pack *clip_pack(const noh_stage_kind *k, uint32_t clip)
 {
-    return k->desc.clip_packs ? k->desc.clip_packs[k->bank->packs[clip]] : k->desc.clips;
+    return k->desc->clip_packs ? k->desc->clip_packs[k->bank->packs[clip]] : k->desc->clips;
 }
 
 noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out)
@@ -36,8 +36,8 @@ static const char *float_name(const noh_stage_kind *k, uint32_t index)
 
 static const char *set_name(const noh_stage_kind *k, uint32_t index)
 {
-    if (index > k->desc.texture_set_count) return NULL;
-    return index && k->desc.texture_sets[index - 1u].name ? k->desc.texture_sets[index - 1u].name : "";
+    if (index > k->desc->texture_set_count) return NULL;
+    return index && k->desc->texture_sets[index - 1u].name ? k->desc->texture_sets[index - 1u].name : "";
 }
 
 const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what, uint32_t index)
@@ -50,7 +50,7 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
     case NOH_NAME_LAYER: return index < k->layer_count ? k->layers[index].name : NULL;
     case NOH_NAME_FLOAT: return float_name(k, index);
     case NOH_NAME_JOINT:
-        return index < k->skeleton.joint_count ? noh_pack_joint_name(k->desc.mesh, k->desc.skeleton, index) : NULL;
+        return index < k->skeleton.joint_count ? noh_pack_joint_name(k->desc->mesh, k->desc->skeleton, index) : NULL;
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return noh_stage_graph_name(k, what, index);
@@ -71,7 +71,7 @@ static uint32_t count_of(const noh_stage_kind *k, noh_name what)
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return noh_stage_graph_names(k, what);
-    case NOH_NAME_TEXTURE_SET: return k->desc.texture_set_count + 1u;
+    case NOH_NAME_TEXTURE_SET: return k->desc->texture_set_count + 1u;
     }
     return 0;
 }

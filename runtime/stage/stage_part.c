@@ -39,7 +39,7 @@ void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
-    if (!a || part >= k->desc.part_count || stage->phase > NOH_STAGE_STEPPING) {
+    if (!a || part >= k->desc->part_count || stage->phase > NOH_STAGE_STEPPING) {
         return NULL;
     }
     return states_of(k, noh_stage_index(k, a)) + state_offset(k, part);
@@ -48,14 +48,14 @@ void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
 noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error)
 {
     const noh_stage_part_head *head = states;
-    if (noh_stage_has_parts(&k->desc) && head->was_posed > 1u) {
+    if (noh_stage_has_parts(k->desc) && head->was_posed > 1u) {
         return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
     }
     if (k->face && noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1))) {
         return noh_fail(error, NOH_ERR_DATA, noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1)), 0,
                         0);
     }
-    for (uint32_t i = 0; i < k->desc.part_count; i++) {
+    for (uint32_t i = 0; i < k->desc->part_count; i++) {
         const noh_stage_part *part = &k->parts[i];
         const char *what = part->check ? part->check(part->user, (const uint8_t *)states + state_offset(k, i)) : NULL;
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
@@ -149,7 +149,7 @@ void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, cons
         noh_stage_run_face(s, k, (noh_stage_face *)(void *)states, &w);
         states += sizeof(noh_stage_face);
     }
-    for (uint32_t i = 0; i < k->desc.part_count; i++) {
+    for (uint32_t i = 0; i < k->desc->part_count; i++) {
         w.state = states;
         w.user = k->parts[i].user;
         k->parts[i].modify(&w);

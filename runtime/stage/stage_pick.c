@@ -92,7 +92,7 @@ noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float d
     for (uint32_t i = 0; i < stage->actor_count; i++) {
         noh_stage_kind *k = noh_stage_kind_of(stage, i);
         float sphere[4];
-        if (!stage->actors[i].alive || k->desc.unpickable || stage->actors[i].look.hidden || !stage->shown[i].views ||
+        if (!stage->actors[i].alive || k->desc->unpickable || stage->actors[i].look.hidden || !stage->shown[i].views ||
             stage->shown[i].frame != stage->frame)
             continue;
         if (noh_actor_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {

@@ -349,7 +349,7 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
     if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
         return NOH_OK;
     }
-    if ((how->flags & NOH_PLAY_INERTIA) && !p.k->desc.inertia) {
+    if ((how->flags & NOH_PLAY_INERTIA) && !p.k->desc->inertia) {
         return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia", (uint64_t)(p.k - stage->kinds), 0);
     }
     return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
@@ -361,7 +361,7 @@ static const char *bad_graph_play(const player *p, const noh_play *play)
     if (play->speed || play->start_ticks || play->loop || play->sync_group)
         return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
     if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
-    if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc.inertia) return "the kind has no room for inertia";
+    if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc->inertia) return "the kind has no room for inertia";
     return p->s->callback_of_graph ? "within a key of a graph no graph begins: set a parameter of it, or play after "
                                      "the step"
                                    : NULL;
@@ -424,8 +424,8 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
     if (value - value != 0.0f || !(amount >= 0.0f && amount <= 1.0f)) {
         return noh_fail(error, NOH_ERR_ARG, "a held float is not finite, or its amount is not in 0..1", index, 0);
     }
-    held = k->held + (size_t)noh_stage_index(k, a) * k->desc.held_float_count;
-    for (uint32_t i = 0; i < k->desc.held_float_count; i++) {
+    held = k->held + (size_t)noh_stage_index(k, a) * k->desc->held_float_count;
+    for (uint32_t i = 0; i < k->desc->held_float_count; i++) {
         if (held[i].amount > 0.0f && held[i].index == index) {
             at = &held[i];
             break;
@@ -433,7 +433,7 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
         if (!at && !(held[i].amount > 0.0f)) at = &held[i];
     }
     if (!at && amount > 0.0f) {
-        return noh_fail(error, NOH_ERR_LIMIT, "held_float_count floats are held", index, k->desc.held_float_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "held_float_count floats are held", index, k->desc->held_float_count);
     }
     if (at) {
         at->index = index;

@@ -23,7 +23,7 @@ static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind 
  * the value of its namesake. */
 static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
 {
-    const uint32_t own = k->bank || (noh_stage_has_parts(&k->desc) && k->float_count) ? k->set.float_count : 0;
+    const uint32_t own = k->bank || (noh_stage_has_parts(k->desc) && k->float_count) ? k->set.float_count : 0;
     if (own) {
         const float *shown = noh_character_floats(ch, floats);
         if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
@@ -34,8 +34,8 @@ static void take_floats(const noh_stage_kind *k, const noh_character *ch, float 
 
 static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
 {
-    const noh_stage_held *held = k->held + (size_t)index * k->desc.held_float_count;
-    for (uint32_t h = 0; h < k->desc.held_float_count; h++) {
+    const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
+    for (uint32_t h = 0; h < k->desc->held_float_count; h++) {
         if (!(held[h].amount > 0.0f)) continue;
         for (uint32_t f = 0; f < k->float_count; f++) {
             if (f == held[h].index || (k->name_hashes[f] == k->name_hashes[held[h].index] && k->name_hashes[f])) {
@@ -113,7 +113,7 @@ static void update(const noh_stage *s, const noh_stage_job_part *job, poser *p, 
         noh_stage_pose_graph(s, job, k, i, clock - noh_character_clock(ch), 0, &p->sampler);
     }
     noh_character_update_begin(ch, &p->set, &p->scratch);
-    if (noh_stage_has_parts(&k->desc)) {
+    if (noh_stage_has_parts(k->desc)) {
         noh_stage_run_parts(s, job, k, i, clock, &p->scratch);
     }
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);

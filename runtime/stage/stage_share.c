@@ -14,7 +14,7 @@ static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f }; /* as `noh 
 static void ask(noh_stage *s, noh_stage_kind *k)
 {
     noh_lod_pools_begin(k->pools);
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         const noh_stage_shown *shown = &s->shown[k->first_actor + i];
         if (shown->views) {
             const uint32_t level = noh_lod_finest(&noh_stage_character(k, i)->lod), first = k->table.mesh_level_first;
@@ -76,7 +76,7 @@ static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
 /* The next place in its run for each seen actor of a texture set. */
 static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t set, uint32_t *next)
 {
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_shown *shown = &s->shown[k->first_actor + i];
         if (shown->views && k->actors[i].look.texture_set == set) {
             shown->place = next[run_of(s, k, i)]++;
@@ -90,7 +90,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
 {
     const uint32_t runs = noh_stage_run_count(k);
     uint32_t next[NOH_LOD_LEVELS_MAX * 4u + 1u] = { 0 }, count = 0;
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         if (s->shown[k->first_actor + i].views) next[run_of(s, k, i)]++;
     }
     for (uint32_t r = 0; r <= runs; r++) {
@@ -99,7 +99,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
         next[r] = k->runs[r];
     }
     k->runs[runs + 1u] = count;
-    for (uint32_t set = 0; set <= k->desc.texture_set_count; set++) take_places(s, k, set, next);
+    for (uint32_t set = 0; set <= k->desc->texture_set_count; set++) take_places(s, k, set, next);
 }
 
 /* ---- updates ---- */
@@ -128,7 +128,7 @@ static void choose_updates(noh_stage *s)
     uint32_t index;
     noh_schedule_begin(&s->schedule, s->head->step_ticks, s->desc.update_budget_ns);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        for (uint32_t a = 0; a < s->kinds[i].desc.actor_count; a++) offer(s, &s->kinds[i], a);
+        for (uint32_t a = 0; a < s->kinds[i].desc->actor_count; a++) offer(s, &s->kinds[i], a);
     }
     while (noh_schedule_next(&s->schedule, &index)) s->shown[index].updates = 1;
     s->todo_count = 0;
@@ -249,7 +249,7 @@ void noh_stage_share(noh_stage *s)
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
         ask(s, k);
-        for (uint32_t a = 0; a < k->desc.actor_count; a++) {
+        for (uint32_t a = 0; a < k->desc->actor_count; a++) {
             if (s->shown[k->first_actor + a].views) take_slot(s, k, a);
         }
         put_in_order(s, k);

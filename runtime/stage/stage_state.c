@@ -52,13 +52,13 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     const char *what;
     if (a->generation == 0 || a->generation > 0xffffu) return "state: bad generation of an actor";
     if (a->alive > 1u || a->was_seen > 1u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
-    if (a->next_free > k->desc.actor_count) return "state: bad list of free actors";
+    if (a->next_free > k->desc->actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     if (what) return what;
     if (!(a->look.pixels >= 0.0f) || !noh_is_finite(a->look.pixels)) return "state: an actor's look is not finite";
-    if (a->look.texture_set > k->desc.texture_set_count) return "state: a texture set out of range";
+    if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
     for (uint32_t l = 0; l < k->layer_count; l++) {
         if ((a->started[l / 8u] >> 4u * (l % 8u) & 15u) >= k->layers[l].track_count)
@@ -69,7 +69,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
 
 static const char *bad_held(const noh_stage_kind *k, const noh_stage_held *held)
 {
-    for (uint32_t i = 0; i < k->desc.held_float_count; i++) {
+    for (uint32_t i = 0; i < k->desc->held_float_count; i++) {
         if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !noh_is_finite(held[i].value))
             return "state: a held float is not finite";
         if (held[i].amount > 0.0f && held[i].index >= k->float_count) return "state: a held float out of range";
@@ -82,15 +82,15 @@ static const char *bad_list(const reader *r, const noh_stage_kind *k, const noh_
 {
     const noh_stage_actor *actors = in_copy(r, k->actors);
     uint32_t at = f->first, last = 0, met = 0, gone = 0;
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) gone += !actors[i].alive;
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) gone += !actors[i].alive;
     while (at && met <= gone) {
-        if (at > k->desc.actor_count || actors[at - 1u].alive) return "state: bad list of free actors";
+        if (at > k->desc->actor_count || actors[at - 1u].alive) return "state: bad list of free actors";
         last = at;
         at = actors[at - 1u].next_free;
         met++;
     }
-    return met != gone || f->last != last || f->count != k->desc.actor_count - gone ? "state: bad list of free actors"
-                                                                                    : NULL;
+    return met != gone || f->last != last || f->count != k->desc->actor_count - gone ? "state: bad list of free actors"
+                                                                                     : NULL;
 }
 
 static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
@@ -100,10 +100,10 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
     const noh_stage_head *head = (const void *)r->state;
     const char *what = NULL;
     noh_result result = NOH_OK;
-    for (uint32_t i = 0; i < k->desc.actor_count && result == NOH_OK; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count && result == NOH_OK; i++) {
         const uint8_t *character = in_copy(r, k->characters + (size_t)i * k->character_bytes);
         what = bad_actor(r, k, &actors[i]);
-        if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc.held_float_count));
+        if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc->held_float_count));
         if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
         if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);
         if (actors[i].alive && result == NOH_OK) {

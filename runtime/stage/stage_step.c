@@ -35,8 +35,8 @@ static void describe(const stepper *t, const noh_event *from, noh_stage_event *o
     out->name = "";
     if (t->k->bank && noh_stage_pack_clip(t->k, from->clip, &clip) == NOH_OK &&
         from->index < clip.header->event_count) {
-        out->name = noh_pack_string(t->k->desc.clip_packs ? t->k->desc.clip_packs[t->k->bank->packs[from->clip]]
-                                                          : t->k->desc.clips,
+        out->name = noh_pack_string(t->k->desc->clip_packs ? t->k->desc->clip_packs[t->k->bank->packs[from->clip]]
+                                                           : t->k->desc->clips,
                                     clip.events[from->index].name);
     }
     out->name_hash = from->key->name_hash;
@@ -101,7 +101,7 @@ static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
         given.moved = noh_graph_root_motion(p.state, &p.graph->graph, &p.graph->clips);
     }
     a->moved = noh_controller_root_motion_given(c, &k->set, p.graph ? &given : NULL);
-    if (!k->desc.root_told && !a->parent) drive(a, &a->moved, k->desc.root_up);
+    if (!k->desc->root_told && !a->parent) drive(a, &a->moved, k->desc->root_up);
 }
 
 /* ---- graphs ---- */
@@ -209,7 +209,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
     stage->stats.events = 0;
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
         noh_stage_kind *k = &stage->kinds[i];
-        for (uint32_t a = 0; a < k->desc.actor_count; a++) {
+        for (uint32_t a = 0; a < k->desc->actor_count; a++) {
             if (k->actors[a].alive) step_actor(stage, k, a, ticks);
         }
     }

@@ -52,8 +52,8 @@ static uint32_t model_index(const measure *m, noh_gl_site owner)
 }
 
 /* A model whose finer levels come later. */
-NOH_NEVER_INLINE NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh,
-                                                        const noh_mesh *coarse, void *room, noh_gl_model *model)
+NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse,
+                                       void *room, noh_gl_model *model)
 {
     const noh_kind_desc kind = noh_stage_kind_desc(m->desc, site.kind);
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
@@ -257,19 +257,8 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
     return noh_gl_renderer_create(device, &d, out, error);
 }
 
-/* The desc of a stage, with kinds: those that it keeps. */
-static noh_stage_desc whole_desc(const noh_stage *s, noh_kind_desc kinds[NOH_STAGE_KINDS_MAX])
-{
-    noh_stage_desc d = s->desc;
-    for (uint32_t i = 0; i < d.kind_count; i++) kinds[i] = s->kinds[i].desc;
-    d.kinds = kinds;
-    return d;
-}
-
 static void destroy(noh_stage *stage)
 {
-    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
-    const noh_stage_desc desc = whole_desc(stage, kinds);
     noh_stage_gl *gl = stage->gpu;
     const noh_gl_device *d = &gl->device;
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
@@ -280,7 +269,7 @@ static void destroy(noh_stage *stage)
             if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
         }
     }
-    noh_gl_pictures_delete(&desc, d, gl->kinds);
+    noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) noh_gl_morph_delete(gl->models[i].morph);
         if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
@@ -301,9 +290,7 @@ static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
 
 static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
 {
-    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
-    const noh_stage_desc desc = whole_desc(stage, kinds);
-    measure m = { &desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0 };
+    measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
@@ -314,7 +301,7 @@ static noh_result init(void *memory, size_t bytes, const void *device, noh_stage
     stage->gpu = m.gl;
     if (result == NOH_OK) {
         find_mirrored(m.gl, stage);
-        if (!desc.without_shader) {
+        if (!stage->desc.without_shader) {
             result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->renderer, error);
         }
     }
@@ -339,8 +326,6 @@ static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *err
 
 static noh_result restore(noh_stage *stage, noh_error *error)
 {
-    noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
-    const noh_stage_desc desc = whole_desc(stage, kinds);
     noh_stage_gl *gl = stage->gpu;
     noh_result result = NOH_OK;
     for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
@@ -351,7 +336,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
         result = restore_kind(stage, i, error);
     }
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
-    if (result == NOH_OK) result = noh_gl_pictures_restore(&desc, &gl->device, gl->kinds, error);
+    if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 

@@ -28,7 +28,7 @@ static const noh_stage_actor *actor_at(const drawing *d, uint32_t place)
 /* The textures that an actor wears. */
 static const noh_gl_texture *pictures_of(const drawing *d, uint32_t place)
 {
-    return d->on_gl->pictures + (size_t)actor_at(d, place)->look.texture_set * d->k->desc.mesh->texture_count;
+    return d->on_gl->pictures + (size_t)actor_at(d, place)->look.texture_set * d->k->desc->mesh->texture_count;
 }
 
 static int is_seen(const drawing *d, uint32_t place)

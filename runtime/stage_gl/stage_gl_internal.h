@@ -70,7 +70,7 @@ struct noh_stage_shader {
 /* Kinds of one actor are drawn by the programs of single instances. */
 static inline int noh_gl_is_crowd(const noh_stage_kind *kind)
 {
-    return kind->desc.actor_count > 1u;
+    return kind->desc->actor_count > 1u;
 }
 
 /* ---- who shares what ---- */

@@ -235,7 +235,7 @@ static void run_by_hand(void *self, uint32_t frame)
     const noh_stage_kind *k = h->kind;
     (void)frame;
     noh_clip_cache_begin_frame(k->bank->cache);
-    for (uint32_t i = 0; i < k->desc.actor_count; i++) {
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_character *ch = noh_stage_character(k, i);
         const noh_place *place = &k->actors[i].place;
         float world[12], scale;
@@ -276,9 +276,9 @@ static int check(cast *c, by_hand *h)
     for (uint32_t f = 0; f < CHECK_FRAMES; f++) {
         run_stage(c, f);
         run_by_hand(h, f);
-        if (noh_stage_seen(k) != k->desc.actor_count) return -1;
+        if (noh_stage_seen(k) != k->desc->actor_count) return -1;
         if (!equal_skins(c->stage, h->of->stage) ||
-            memcmp(k->weights, h->kind->weights, (size_t)k->desc.actor_count * k->weight_count * sizeof *k->weights) !=
+            memcmp(k->weights, h->kind->weights, (size_t)k->desc->actor_count * k->weight_count * sizeof *k->weights) !=
                 0)
             return tool_fail("bench", "stage: frame %u differs from that joined by hand", f);
     }
