@@ -59,8 +59,9 @@
 /* ---- faces ---- */
 
 #define NOH_SPEECH_PHONES_MAX 65536u
-#define NOH_FACE_ROWS_MAX 1024u  /* of a recipe in a pack */
-#define NOH_FACE_EMOTIONS_MAX 3u /* emotions that a face shows at once; one more takes the place of the weakest */
+#define NOH_FACE_ROWS_MAX 1024u       /* of a recipe in a pack */
+#define NOH_CORRECTIVE_DRIVERS_MAX 8u /* targets that drive one corrective */
+#define NOH_FACE_EMOTIONS_MAX 3u      /* emotions that a face shows at once; one more takes the place of the weakest */
 
 /* ---- bodies ---- */
 

@@ -129,15 +129,31 @@ typedef struct binding {
     uint32_t link_max, count;
 } binding;
 
+/* A row of a recipe. 0: it is of another channel. */
+static int row_of(const noh_face_recipe *recipe, uint32_t i, uint32_t channel, noh_face_row *row)
+{
+    const noh_recipe_row *from;
+    if (!recipe->pack) {
+        *row = recipe->rows[i];
+        return row->channel == channel;
+    }
+    from = &recipe->pack->recipe_rows[i];
+    row->target = noh_pack_string(recipe->pack, from->target);
+    row->channel = (uint16_t)channel;
+    row->weight = from->weight;
+    return noh_names_equal(noh_pack_string(recipe->pack, from->channel), noh_face_channel_name(channel));
+}
+
 /* How many rows of a channel a recipe has, and how many of them the mesh has a target for. */
 static void count_rows(const binding *b, const noh_face_recipe *recipe, uint32_t channel, uint32_t *rows,
                        uint32_t *found)
 {
+    noh_face_row row;
     *rows = *found = 0;
     for (uint32_t i = 0; i < recipe->row_count; i++) {
-        if (recipe->rows[i].channel != channel) continue;
+        if (!row_of(recipe, i, channel, &row)) continue;
         ++*rows;
-        *found += b->find(b->user, recipe->rows[i].target, 0) != NOH_NONE;
+        *found += b->find(b->user, row.target, 0) != NOH_NONE;
     }
 }
 
@@ -177,10 +193,10 @@ static void add_link(binding *b, uint32_t channel, uint32_t target, float weight
 static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, uint32_t channel)
 {
     for (uint32_t i = 0; i < recipe->row_count; i++) {
-        const noh_face_row *row = &recipe->rows[i];
+        noh_face_row row;
         uint32_t nth = 0, target;
-        if (row->channel != from) continue;
-        while ((target = b->find(b->user, row->target, nth++)) != NOH_NONE) add_link(b, channel, target, row->weight);
+        if (!row_of(recipe, i, from, &row)) continue;
+        while ((target = b->find(b->user, row.target, nth++)) != NOH_NONE) add_link(b, channel, target, row.weight);
     }
 }
 

@@ -3,7 +3,7 @@
  *   noh_face_channels       a pose, and what it says, as one number for each thing that can show
  *   noh_face_share          who owns mouth, lids and eyes
  *   noh_face_recipe_bind    a recipe's rows to the targets of a mesh, by name; noh_face_recipe_bind_by: by a function
- *   noh_face_recipe_of_pack the recipe that an artist put into a pack
+ *   noh_face_recipe_in_pack the recipe that an artist put into a pack; noh_face_recipe_of_pack: as a table
  *   noh_face_apply          channels to weights
  *
  * A recipe is a table of rows (channel, target, weight). Three are built in: for ARKit's 52 names, for VRM's presets,
@@ -97,8 +97,9 @@ typedef struct noh_face_row {
 
 typedef struct noh_face_recipe {
     const char *name;
-    const noh_face_row *rows;
+    const noh_face_row *rows; /* [row_count] */
     uint32_t row_count;
+    const noh_pack *pack; /* not NULL: the rows are those of this pack, and `rows` is not used */
 } noh_face_recipe;
 
 extern const noh_face_recipe noh_face_recipe_arkit; /* browInnerUp, jawOpen, mouthSmileLeft and so on */
@@ -110,9 +111,12 @@ extern const noh_face_recipe noh_face_recipe_units; /* mouth-open, eye-left-clos
 const char *noh_face_channel_name(uint32_t channel);
 uint32_t noh_face_channel_find(const char *name);
 
-/* The recipe that a pack brings (`noh build --recipe`). Rows of channels that this version does not know are left out.
- * shapes  rows[row_max]; they refer to the pack's strings
- * errors  NOT_FOUND the pack has none; MEMORY more rows than row_max (need: how many). *recipe is then untouched */
+/* The recipe that a pack brings, read where it lies in the pack. Without any row where the pack brings none. */
+noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
+
+/* The recipe that a pack brings (`noh build --recipe`) as a table. Rows of channels that this version does not know are
+ * left out. shapes  rows[row_max]; they refer to the pack's strings errors  NOT_FOUND the pack has none; MEMORY more
+ * rows than row_max (need: how many). *recipe is then untouched */
 noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
                                    noh_error *error);
 

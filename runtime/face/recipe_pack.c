@@ -64,6 +64,15 @@ uint32_t noh_face_channel_find(const char *name)
     return NOH_NONE;
 }
 
+noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack)
+{
+    noh_face_recipe recipe = { "pack", NULL, 0, NULL };
+    NOH_ASSERT(pack);
+    recipe.row_count = pack->recipe_row_count;
+    recipe.pack = pack;
+    return recipe;
+}
+
 noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
                                    noh_error *error)
 {
@@ -88,5 +97,6 @@ noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uin
     recipe->name = "pack";
     recipe->rows = rows;
     recipe->row_count = count;
+    recipe->pack = NULL;
     return NOH_OK;
 }

@@ -223,8 +223,8 @@ static const noh_face_row units[] = {
     { "mouth-protusion", NOH_CHANNEL_VISEMES + NOH_VISEME_OU, 0.4f },
 };
 
-const noh_face_recipe noh_face_recipe_arkit = { "arkit", arkit, sizeof arkit / sizeof arkit[0] };
+const noh_face_recipe noh_face_recipe_arkit = { "arkit", arkit, sizeof arkit / sizeof arkit[0], NULL };
 
-const noh_face_recipe noh_face_recipe_vrm = { "vrm", vrm, sizeof vrm / sizeof vrm[0] };
+const noh_face_recipe noh_face_recipe_vrm = { "vrm", vrm, sizeof vrm / sizeof vrm[0], NULL };
 
-const noh_face_recipe noh_face_recipe_units = { "units", units, sizeof units / sizeof units[0] };
+const noh_face_recipe noh_face_recipe_units = { "units", units, sizeof units / sizeof units[0], NULL };

@@ -396,8 +396,10 @@ typedef struct noh_recipe_header {
 
 typedef struct noh_recipe_row {
     uint32_t target, target_hash;
-    uint32_t channel, channel_hash; /* a name, as noh_face_channel_name has it */
-    float weight;                   /* -4..4 */
+    /* a name, as noh_face_channel_name has it; or '+' and the name of a target that drives a corrective
+     * (face/corrective.h): rows of one corrective follow each other */
+    uint32_t channel, channel_hash;
+    float weight; /* -4..4; of a corrective's driver its peak, above 0, at most 1 */
     uint32_t reserved[3];
 } noh_recipe_row;
 

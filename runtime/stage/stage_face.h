@@ -35,7 +35,8 @@ extern "C" {
 typedef struct noh_kind_face {
     /* `eyes`: their centres in model space at rest, whatever the joints; both zero: where the joints of the eyes are */
     noh_face_desc face;
-    const noh_face_recipe *const *recipes; /* [recipe_count] the best first; default (NULL) the three built in */
+    const noh_face_recipe *const *recipes; /* [recipe_count] the best first; default (NULL) the pack's own, if it
+                                            * brings one, then the three built in */
     uint32_t recipe_count;
     /* Joints; default (NULL) looked for under the names that they usually have, "": none. Without a head the eyes turn
      * alone */

@@ -236,9 +236,21 @@ static uint32_t find_in_pack(const void *user, const char *name, uint32_t nth)
     return NOH_NONE;
 }
 
+/* By the recipes of the desc, or else the pack's own and those that are built in. */
+static uint32_t bind_links(const noh_kind_desc *d, noh_face_find_fn find, const void *user, noh_face_link *links,
+                           uint32_t link_max)
+{
+    const noh_face_recipe own = noh_face_recipe_in_pack(d->mesh);
+    const noh_face_recipe *const usual[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
+                                              &noh_face_recipe_units };
+    const int given = d->face->recipes != NULL;
+    return noh_face_recipe_bind_by(given ? d->face->recipes : usual, given ? d->face->recipe_count : 4u, find, user,
+                                   links, link_max);
+}
+
 uint32_t noh_stage_face_links(const noh_kind_desc *d)
 {
-    return noh_face_recipe_bind_by(d->face->recipes, d->face->recipe_count, find_in_pack, d, NULL, 0);
+    return bind_links(d, find_in_pack, d, NULL, 0);
 }
 
 /* Floats of the set that the name moves, each once: one that takes its value from a namesake is the namesake. */
@@ -285,8 +297,7 @@ void noh_stage_open_face(noh_stage_kind *k)
     NOH_ASSERT(!what); /* the plan was made of it */
     (void)what;
     f->links = links;
-    f->link_count = noh_face_recipe_bind_by(k->desc->face->recipes, k->desc->face->recipe_count, find_in_kind, k, links,
-                                            most);
+    f->link_count = bind_links(k->desc, find_in_kind, k, links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     f->speech = find_float(k, "speech");
     f->lips_shut = find_float(k, "lips-shut");
@@ -315,7 +326,7 @@ static int is_sound(const noh_face *f)
         if (e->emotion >= NOH_EMOTION_COUNT || e->on > 1u || e->holds > 1u) return 0;
     }
     return noh_is_finite(sum) && noh_is_finite(f->head[0].omega + f->head[1].omega) && f->clock >= 0 &&
-           f->activity < NOH_ACTIVITY_COUNT && f->flags < NOH_FACE_NO_IDLE << 1 && f->gaze <= 2u && f->blinking <= 2u &&
+           f->activity < NOH_ACTIVITY_COUNT && f->flags <= NOH_FACE_FLAGS && f->gaze <= 2u && f->blinking <= 2u &&
            (f->gaze != 2u || f->gaze_ticks);
 }
 
@@ -416,7 +427,7 @@ noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t 
     noh_result result;
     noh_stage_face *f = face_for(stage, actor, &k, &result, error);
     if (!f) return result;
-    if (flags >= NOH_FACE_NO_IDLE << 1) return noh_fail(error, NOH_ERR_ARG, "flags of a face: unknown bits", 0, 0);
+    if (flags > NOH_FACE_FLAGS) return noh_fail(error, NOH_ERR_ARG, "flags of a face: unknown bits", 0, 0);
     noh_face_set_flags(&f->face, &k->face->desc, flags);
     return NOH_OK;
 }

@@ -36,6 +36,7 @@
 #include "character/lod_pack.h"
 #include "character/lod_pools.h"
 #include "character/scheduler.h"
+#include "face/corrective.h"
 #include "graph/graph_pack.h"
 #include "mesh/mesh.h"
 #include "stage/part.h"
@@ -227,7 +228,9 @@ typedef struct noh_stage_kind {
     uint32_t slot_bytes;
     noh_stage_part *parts; /* [desc.part_count] */
     size_t part_bytes;
-    noh_stage_face_kind *face; /* NULL: none */
+    noh_stage_face_kind *face;        /* NULL: none */
+    noh_corrective_term *correctives; /* [corrective_count] to the kind's floats */
+    uint32_t corrective_count;
     noh_stage_sampler sampler; /* of `set` */
     noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
     noh_transform rest_pose;
@@ -400,6 +403,7 @@ typedef struct noh_stage_needs {
     uint32_t graph_count;
     size_t part_bytes, part_scratch_bytes; /* 0 without parts */
     uint32_t face_link_max;                /* 0 without faces */
+    uint32_t corrective_count;
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -528,6 +532,10 @@ static inline int noh_stage_has_parts(const noh_kind_desc *kind)
 {
     return kind->part_count || kind->face;
 }
+
+/* Bind those of all meshes; k->correctives has room for term_max. */
+void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
+void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
 
 /* What is wrong with the face of a kind; NULL: nothing. */
 const char *noh_stage_bad_face(const noh_kind_desc *kind);

@@ -72,6 +72,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     }
     take_floats(k, ch, floats);
     hold(k, i, floats);
+    if (k->corrective_count) noh_stage_correct(k, i, floats);
     take_weights(s, k, &s->actors[index], ch, floats, k->weights + (size_t)i * k->weight_count);
     s->shown[index].frame = s->frame;
     if (s->gpu && s->shown[index].views) s->desc.gpu->pose(s, k, i, job->matrices);

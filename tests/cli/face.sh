@@ -64,4 +64,52 @@ noh info "$work/eyes.noh"
 check 'their joints are there' grep -q "skin 'face': 3 joints" "$work/out"
 noh build "$build/demo_none.glb" -o "$work/bad.noh" --eyes
 expect 1 'no such model'
+
+# Correctives: by a text, by names, by glTF extras; a triangle, one corner of which each target moves by 1 along x.
+triangle=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0' | base64 | tr -d '\n')
+cat >"$work/both.gltf" <<END
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},
+"targets":[{"POSITION":1},{"POSITION":1},{"POSITION":1},{"POSITION":1}]}],
+"extras":{"targetNames":["jaw","grin","jaw_grin","jaw50"],"recipe":["aa jaw 0.8","wink jaw","PP grin"]}}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,$triangle"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}
+END
+printf 'PP jaw_grin 0.25\ncorrective grin jaw 0.5 jaw50\n' >"$work/both.recipe"
+noh build "$work/both.gltf" -o "$work/both.noh"
+expect 0 'correctives by name'
+check 'they are counted' grep -q '^2 correctives by the names' "$work/out"
+check 'a line of extras that is none is a warning' grep -q "'wink jaw' was left out: 'wink' is no channel" "$work/out"
+noh face "$work/both.noh"
+expect 0 'face of that'
+check 'extras give a recipe' grep -q '^  aa  *pack  *jaw 0.8$' "$work/out"
+check 'a combination' grep -q '^  corrective jaw_grin: jaw grin$' "$work/out"
+check 'an in-between' grep -q '^  corrective jaw50: jaw at 0.5 (0 to 1)$' "$work/out"
+noh face "$work/both.noh" --json
+check 'in JSON' sh -c 'tr -d " \n" <"$1" | grep -q "{\"target\":\"jaw_grin\",\"drivers\":\[{\"name\":\"jaw\",\"from\":0,\"peak\":1"' - "$work/out"
+shown() { # X WEIGHT...
+    want=$1
+    shift
+    noh dump "$work/both.noh" -o "$work/both.obj" "$@"
+    expect 0 "dump $*"
+    check "the corner is at $want" test "$(awk '/^v /{ if ($2 > x) x = $2 } END { printf "%.3g", x }' "$work/both.obj")" = "$want"
+}
+shown 2 --weight jaw=1
+shown 4 --weight jaw=1 --weight grin=1
+shown 2.5 --weight jaw=0.5
+shown 3 --weight jaw=1 --weight grin=1 --weight jaw_grin=0
+noh build "$work/both.gltf" -o "$work/plain.noh" --no-correctives
+check 'none by name where they are not wanted' sh -c '! grep -q "correctives by" "$1"' - "$work/out"
+noh build "$work/both.gltf" -o "$work/both.noh" --recipe "$work/both.recipe"
+expect 0 'a text beside extras'
+noh face "$work/both.noh"
+check 'the text goes first' grep -q '^  PP  *pack  *jaw_grin 0.25$' "$work/out"
+check 'what it lacks is of extras' grep -q '^  aa  *pack  *jaw 0.8$' "$work/out"
+check 'its correctives' grep -q '^  corrective grin: jaw at 0.5 (0 to 1) jaw50$' "$work/out"
+refused 'corrective smile' 'corrective TARGET DRIVER'
+refused 'corrective smile smile' 'does not drive itself'
+refused 'corrective smile blink 1.5' 'not above 0 and at most 1'
+
 finish

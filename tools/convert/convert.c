@@ -7,6 +7,7 @@
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/model/model_build.h"
+#include "convert/model/recipe_make.h"
 #include "convert/pack/pack_graph.h"
 #include "pack/pack.h"
 #include "sources.h"
@@ -61,15 +62,12 @@ static int has_target(const model *m, const char *name)
     return 0;
 }
 
-/* The recipe; *out NULL: there is none. A target that no mesh has is a warning: a recipe may serve several faces, and
- * what is missing falls back. */
-static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
+/* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and what is missing
+ * falls back. */
+static int read_recipe_text(const convert_options *options, const source *s, recipe_text **out,
+                            convert_failure *failure)
 {
     const char *model_file = failure->file;
-    *out = NULL;
-    if (!options->recipe) {
-        return 0;
-    }
     failure->file = options->recipe;
     if (recipe_read(options->recipe, out, &failure->line, &failure->error)) {
         return 1;
@@ -80,9 +78,40 @@ static int read_recipe(const convert_options *options, const source *s, recipe_t
             model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->target)) {
             return out_of_memory(&failure->error);
         }
+        if (row->channel[0] == '+' && !has_target(s->m, row->channel + 1) &&
+            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->channel + 1)) {
+            return out_of_memory(&failure->error);
+        }
     }
     failure->line = 0;
     failure->file = model_file;
+    return 0;
+}
+
+/* The recipe: of a text, of extras, of names; *out NULL: there is none. */
+static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
+{
+    uint32_t named = 0;
+    *out = NULL;
+    if (options->only == CONVERT_CLIPS) {
+        return 0;
+    }
+    if (options->recipe && read_recipe_text(options, s, out, failure)) {
+        return 1;
+    }
+    if (!*out) *out = recipe_new();
+    if (!*out || recipe_add_extras(*out, s->m) || (!options->no_correctives && recipe_add_named(*out, s->m, &named))) {
+        (void)snprintf(failure->error.what, sizeof failure->error.what,
+                       "there is no memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
+        return 1;
+    }
+    if (named && options->report) {
+        fprintf(options->report, "%u correctives by the names of their targets (--no-correctives: none)\n", named);
+    }
+    if (!(*out)->count) {
+        recipe_free(*out);
+        *out = NULL;
+    }
     return 0;
 }
 

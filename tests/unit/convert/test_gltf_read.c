@@ -681,6 +681,27 @@ static void target_names_of_a_primitive(void **state)
     model_free(m);
 }
 
+static void recipes_in_extras(void **state)
+{
+    (void)state;
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->mesh_rest, ",\"extras\":{\"targetNames\":[\"blink\"],\"recipe\":[\"blink blink\",\"aa blink 0.5\"]}");
+    model *m = load(s);
+    assert_string_equal(m->meshes[0].recipe, "blink blink\naa blink 0.5\n");
+    model_free(m);
+    s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->mesh_rest, ",\"extras\":{\"recipe\":\"aa blink; PP blink\"}");
+    m = load(s);
+    assert_string_equal(m->meshes[0].recipe, "aa blink; PP blink");
+    model_free(m);
+    s = morphing(up_deltas, ONE_TARGET);
+    APPEND(s->mesh_rest, ",\"extras\":{\"recipe\":{\"aa\":1}}");
+    m = load(s);
+    assert_null(m->meshes[0].recipe);
+    assert_true(has_warning(m, "the recipe in its extras was skipped"));
+    model_free(m);
+}
+
 /* --- normals --- */
 
 static void check_unit(const float *v)
@@ -1695,6 +1716,7 @@ int main(void)
         cmocka_unit_test(primitives_are_concatenated),
         cmocka_unit_test(target_names_are_made_unique),
         cmocka_unit_test(target_names_of_a_primitive),
+        cmocka_unit_test(recipes_in_extras),
         cmocka_unit_test(normals_of_a_triangle),
         cmocka_unit_test(normals_below_the_crease_angle_are_smooth),
         cmocka_unit_test(normals_above_the_crease_angle_are_hard),

@@ -72,7 +72,7 @@ static void sources_tell_what_falls_back(void **state)
 {
     static const noh_face_row rows[] = { { "jaw", NOH_CHANNEL_VISEMES + NOH_VISEME_AA, 0.5f },
                                          { "gone", NOH_CHANNEL_VISEMES + NOH_VISEME_AA, 0.5f } };
-    static const noh_face_recipe mine = { "mine", rows, 2 };
+    static const noh_face_recipe mine = { "mine", rows, 2, NULL };
     const noh_face_recipe *const recipes[1] = { &mine };
     const char *const names[1] = { "jaw" };
     noh_face_source source;
@@ -141,7 +141,7 @@ static void a_recipe_that_is_whole_goes_before_one_in_part(void **state)
 static void an_artists_rows_come_first(void **state)
 {
     static const noh_face_row rows[] = { { "grin", NOH_CHANNEL_MOUTH + NOH_EMOTION_JOY, 0.5f } };
-    static const noh_face_recipe own = { "own", rows, 1 };
+    static const noh_face_recipe own = { "own", rows, 1, NULL };
     const noh_face_recipe *recipes[] = { &own, &noh_face_recipe_arkit };
     const char *names[] = { "mouthSmileLeft", "mouthSmileRight", "mouthDimpleLeft", "mouthDimpleRight", "grin" };
     noh_face_link links[LINKS];

@@ -318,6 +318,57 @@ static void emotions_by_name_leave_the_mouth_to_speech(void **state)
     close_cast(&c);
 }
 
+/* The puppet's pack with a recipe: its strings with some more behind them. */
+static noh_pack with_recipe(const noh_pack *pack, noh_recipe_row rows[2], char **strings)
+{
+    static const char more[] = "joy-mouth\0+jawOpen\0jawOpen\0mouthFunnel";
+    static const uint32_t channel_at[2] = { 0, 10 }, target_at[2] = { 19, 27 };
+    noh_pack out = *pack;
+    *strings = test_zeros(pack->string_bytes + sizeof more);
+    memcpy(*strings, pack->strings, pack->string_bytes);
+    memcpy(*strings + pack->string_bytes, more, sizeof more);
+    memset(rows, 0, 2 * sizeof *rows);
+    for (int i = 0; i < 2; i++) {
+        rows[i].channel = pack->string_bytes + channel_at[i];
+        rows[i].target = pack->string_bytes + target_at[i];
+        rows[i].weight = 0.5f;
+    }
+    out.strings = *strings;
+    out.string_bytes += (uint32_t)sizeof more;
+    out.recipe_rows = rows;
+    out.recipe_row_count = 2;
+    return out;
+}
+
+static void a_pack_brings_its_own_recipe_and_correctives(void **state)
+{
+    const noh_kind_face face = alive();
+    noh_recipe_row rows[2];
+    noh_pack own;
+    noh_actor actor;
+    uint32_t funnel;
+    char *strings;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &face, 1);
+    own = with_recipe(&c.packs[PUPPETS], rows, &strings);
+    c.kinds[0].mesh = &own;
+    c.kinds[0].held_float_count = 1;
+    cast_make(&c, NULL);
+    actor = enter(&c, NULL, NULL);
+    assert_int_equal(noh_actor_feel(c.stage, actor, "joy", 1.0f, 4800, 0, 0, NULL), NOH_OK);
+    run(&c, 60);
+    assert_true(fabsf(float_named(&c, actor, "jawOpen") - 0.5f) < 1e-3f);
+    assert_true(float_named(&c, actor, "mouthSmileLeft") == 0.0f);            /* the built-in row gives way */
+    assert_true(fabsf(float_named(&c, actor, "mouthFunnel") - 1.0f) < 2e-3f); /* an in-between at its peak */
+    funnel = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "mouthFunnel");
+    assert_int_equal(noh_actor_hold_float(c.stage, actor, funnel, 0.25f, 1.0f, NULL), NOH_OK);
+    run(&c, 1);
+    assert_true(float_named(&c, actor, "mouthFunnel") == 0.25f);
+    close_cast(&c);
+    free(strings);
+}
+
 /* Out of view nothing is lived through; an hour later a face goes on at once. */
 static void an_hour_unseen_is_skipped(void **state)
 {
@@ -437,6 +488,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(eyes_are_found_by_lids_and_by_joints),
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
+        cmocka_unit_test(a_pack_brings_its_own_recipe_and_correctives),
         cmocka_unit_test(an_hour_unseen_is_skipped),
         cmocka_unit_test(a_face_is_planned_to_the_byte),
         cmocka_unit_test(states_of_faces_are_put_back),

@@ -40,25 +40,49 @@ static uint32_t find_channels(text_word word, uint32_t channels[2])
     return count;
 }
 
-static int add_row(text_scan *s, recipe_text *recipe, const recipe_row *row, text_word target)
+static char *copy_of(const char *text)
 {
-    recipe_row *rows;
+    char *copy = malloc(strlen(text) + 1u);
+    return copy ? strcpy(copy, text) : NULL;
+}
+
+int recipe_add_row(recipe_text *recipe, const char *target, const char *channel, float weight, uint32_t line)
+{
+    recipe_row *rows, *row;
+    if (recipe->count == NOH_FACE_ROWS_MAX) return 1;
+    rows = realloc(recipe->rows, (recipe->count + 1u) * sizeof *rows);
+    if (!rows) return 1;
+    recipe->rows = rows;
+    row = &rows[recipe->count++];
+    row->target = copy_of(target);
+    row->channel = copy_of(channel);
+    row->weight = weight;
+    row->line = line;
+    return !row->target || !row->channel;
+}
+
+static int add_row(text_scan *s, recipe_text *recipe, uint32_t line, const char *channel, text_word word, float weight)
+{
+    char target[NOH_NAME_BYTES_MAX];
+    memcpy(target, word.text, word.size);
+    target[word.size] = '\0';
     for (uint32_t i = 0; i < recipe->count; i++) {
         const recipe_row *other = &recipe->rows[i];
-        if (strcmp(other->channel, row->channel) == 0 && strlen(other->target) == target.size &&
-            memcmp(other->target, target.text, target.size) == 0) {
-            return text_fail(s, row->line, "%s has this target already, in line %u", row->channel, other->line);
+        if (strcmp(other->channel, channel) == 0 && strcmp(other->target, target) == 0) {
+            return text_fail(s, line, "%s has this target already, in line %u", channel, other->line);
         }
     }
     if (recipe->count == NOH_FACE_ROWS_MAX) {
-        return text_fail(s, row->line, "there are more than %u rows, which is the limit", NOH_FACE_ROWS_MAX);
+        return text_fail(s, line, "there are more than %u rows, which is the limit", NOH_FACE_ROWS_MAX);
     }
-    rows = realloc(recipe->rows, (recipe->count + 1u) * sizeof *rows);
-    if (!rows) return text_fail(s, row->line, "out of memory");
-    recipe->rows = rows;
-    rows[recipe->count] = *row;
-    rows[recipe->count].target = text_copy(target);
-    return rows[recipe->count++].target ? 0 : text_fail(s, row->line, "out of memory");
+    return recipe_add_row(recipe, target, channel, weight, line) ? text_fail(s, line, "out of memory") : 0;
+}
+
+static int check_target(text_scan *s, text_word target)
+{
+    return target.size < NOH_NAME_BYTES_MAX - 1u
+               ? 0
+               : text_fail(s, target.line, "the target's name is longer than %u bytes", NOH_NAME_BYTES_MAX - 2u);
 }
 
 static int read_weight(text_scan *s, float *weight)
@@ -78,14 +102,67 @@ static int read_weight(text_scan *s, float *weight)
                      : 0;
 }
 
+/* ---- correctives ---- */
+
+/* A driver's peak, if the next word is a number: it is taken then, and *next is the word behind it. */
+static int read_peak(text_scan *s, text_word *next, float *peak)
+{
+    double value;
+    char shown[TEXT_SHOWN];
+    *peak = 1.0f;
+    if (take_word(s, next)) return 1;
+    if (!next->size || !((next->text[0] >= '0' && next->text[0] <= '9') || next->text[0] == '.')) return 0;
+    if (text_number(s, *next, &value)) return 1;
+    if (!(value > 0.0 && value <= 1.0)) {
+        return text_fail(s, next->line, "the peak %s is not above 0 and at most 1", text_show(*next, shown));
+    }
+    *peak = (float)value;
+    return take_word(s, next);
+}
+
+/* Behind the word `corrective`. */
+static int read_corrective(text_scan *s, recipe_text *recipe)
+{
+    const uint32_t first = recipe->count, line = s->line;
+    text_word target, driver, next;
+    char channel[NOH_NAME_BYTES_MAX] = "+";
+    float peak;
+    if (take_word(s, &target) || take_word(s, &driver)) return 1;
+    if (!target.size || !driver.size) {
+        return text_fail(s, line, "a corrective is `corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ...`");
+    }
+    if (check_target(s, target)) return 1;
+    for (uint32_t i = 0; i < first; i++) {
+        if (recipe->rows[i].channel[0] == '+' && strlen(recipe->rows[i].target) == target.size &&
+            memcmp(recipe->rows[i].target, target.text, target.size) == 0)
+            return text_fail(s, line, "this corrective was told already, in line %u", recipe->rows[i].line);
+    }
+    for (; driver.size; driver = next) {
+        if (recipe->count - first == NOH_CORRECTIVE_DRIVERS_MAX) {
+            return text_fail(s, line, "a corrective has more than %u drivers", NOH_CORRECTIVE_DRIVERS_MAX);
+        }
+        if (driver.size == target.size && memcmp(driver.text, target.text, target.size) == 0) {
+            return text_fail(s, line, "a corrective does not drive itself");
+        }
+        if (check_target(s, driver) || read_peak(s, &next, &peak)) return 1;
+        memcpy(channel + 1, driver.text, driver.size);
+        channel[1 + driver.size] = '\0';
+        if (add_row(s, recipe, line, channel, target, peak)) return 1;
+    }
+    return 0;
+}
+
+/* ---- lines ---- */
+
 static int read_line(text_scan *s, recipe_text *recipe)
 {
     text_word channel, target;
     uint32_t channels[2], count;
-    recipe_row row = { NULL, NULL, 1.0f, 0 };
+    float weight = 1.0f;
     char shown[TEXT_SHOWN];
     if (take_word(s, &channel)) return 1;
     if (!channel.size) return 0; /* a comment */
+    if (text_is(channel, "corrective")) return read_corrective(s, recipe);
     count = find_channels(channel, channels);
     if (!count) {
         return text_fail(s, channel.line, "'%s' is no channel: they are " CHANNEL_ANY, text_show(channel, shown));
@@ -94,14 +171,25 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (!target.size) {
         return text_fail(s, channel.line, "the target is missing: a row is CHANNEL TARGET [WEIGHT]");
     }
-    if (target.size >= NOH_NAME_BYTES_MAX) {
-        return text_fail(s, target.line, "the target's name is longer than %u bytes", NOH_NAME_BYTES_MAX - 1u);
-    }
-    row.line = channel.line;
-    if (read_weight(s, &row.weight)) return 1;
+    if (check_target(s, target) || read_weight(s, &weight)) return 1;
     for (uint32_t i = 0; i < count; i++) {
-        row.channel = noh_face_channel_name(channels[i]);
-        if (add_row(s, recipe, &row, target)) return 1;
+        if (add_row(s, recipe, channel.line, noh_face_channel_name(channels[i]), target, weight)) return 1;
+    }
+    return 0;
+}
+
+recipe_text *recipe_new(void)
+{
+    return calloc(1, sizeof(recipe_text));
+}
+
+int recipe_add_text(recipe_text *recipe, const char *text, size_t size, uint32_t *line, model_error *error)
+{
+    text_scan s;
+    text_start(&s, text, size, error);
+    while (text_next_line(&s)) {
+        *line = s.line;
+        if (read_line(&s, recipe)) return 1;
     }
     return 0;
 }
@@ -109,21 +197,18 @@ static int read_line(text_scan *s, recipe_text *recipe)
 int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error *error)
 {
     size_t size = 0;
-    text_scan s;
     char *text = input_read(path, &size, error);
-    int failed = 0;
-    *out = text ? calloc(1, sizeof **out) : NULL;
+    int failed;
+    *out = text ? recipe_new() : NULL;
     if (!*out) {
         free(text);
         return 1;
     }
-    text_start(&s, text, size, error);
-    while (!failed && text_next_line(&s)) {
-        *line = s.line;
-        failed = read_line(&s, *out);
-    }
+    failed = recipe_add_text(*out, text, size, line, error);
     if (!failed && !(*out)->count) {
+        text_scan s;
         *line = 1;
+        text_start(&s, text, size, error);
         failed = text_fail(&s, 1, "the recipe has no row: CHANNEL TARGET [WEIGHT]");
     }
     if (failed) error->where[0] = 0; /* *line says it */
@@ -133,7 +218,10 @@ int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error
 
 void recipe_free(recipe_text *recipe)
 {
-    for (uint32_t i = 0; recipe && i < recipe->count; i++) free(recipe->rows[i].target);
+    for (uint32_t i = 0; recipe && i < recipe->count; i++) {
+        free(recipe->rows[i].target);
+        free(recipe->rows[i].channel);
+    }
     if (recipe) free(recipe->rows);
     free(recipe);
 }

@@ -1,14 +1,16 @@
-/* recipe_read.h: an artist's recipe as text: one row a line, CHANNEL TARGET [WEIGHT]. */
+/* recipe_read.h: an artist's recipe as text: one row a line, CHANNEL TARGET [WEIGHT], or one corrective,
+ * corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ..., which makes one row for each driver: channel '+' and its name.
+ */
 #ifndef NOH_CONVERT_BASE_RECIPE_READ_H
 #define NOH_CONVERT_BASE_RECIPE_READ_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "convert/base/error.h"
 
 typedef struct recipe_row {
-    char *target;
-    const char *channel; /* a constant */
+    char *target, *channel;
     float weight;
     uint32_t line;
 } recipe_row;
@@ -17,6 +19,14 @@ typedef struct recipe_text {
     recipe_row *rows;
     uint32_t count;
 } recipe_text;
+
+recipe_text *recipe_new(void); /* NULL: out of memory */
+
+/* Add the lines of a text. 0, or 1 with *line and *error; what was read before stays. */
+int recipe_add_text(recipe_text *recipe, const char *text, size_t size, uint32_t *line, model_error *error);
+
+/* Add one row. 0, or 1 when there are too many or memory is out. */
+int recipe_add_row(recipe_text *recipe, const char *target, const char *channel, float weight, uint32_t line);
 
 /* 0, or 1 with *line and *error; free in both cases. */
 int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error *error);

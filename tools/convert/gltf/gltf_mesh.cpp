@@ -389,6 +389,23 @@ static const tinygltf::Value *target_names(const mesh_job &job)
     return names;
 }
 
+/* A face's recipe: a text, or an array of lines. */
+static void read_recipe(file &f, mesh_job &job)
+{
+    if (!job.source->extras.IsObject() || !job.source->extras.Has("recipe")) return;
+    const tinygltf::Value &given = job.source->extras.Get("recipe");
+    std::string lines;
+    if (given.IsString()) lines = given.Get<std::string>();
+    for (size_t i = 0; given.IsArray() && i < given.ArrayLen(); ++i) {
+        const tinygltf::Value &line = given.Get(static_cast<int>(i));
+        if (line.IsString()) lines += line.Get<std::string>() + "\n";
+    }
+    if (lines.empty())
+        leave_out(f, job.where + ": the recipe in its extras", " was skipped: it is neither a text nor lines of one");
+    else
+        job.out->recipe = copy_string(lines);
+}
+
 static std::string given_name(const tinygltf::Value *names, size_t t)
 {
     if (!names || t >= names->ArrayLen() || !names->Get(static_cast<int>(t)).IsString()) return "";
@@ -405,6 +422,7 @@ static std::string unique_name(const std::set<std::string> &taken, const std::st
 
 static void name_targets(file &f, mesh_job &job)
 {
+    read_recipe(f, job);
     const tinygltf::Value *names = target_names(job);
     std::set<std::string> taken;
     if (names && names->ArrayLen() != job.out->target_count)

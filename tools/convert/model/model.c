@@ -89,6 +89,7 @@ void model_mesh_clear(model_mesh *mesh)
     free(mesh->joints);
     free(mesh->joint_weights);
     free(mesh->wrinkles);
+    free(mesh->recipe);
 }
 
 void model_drop_mesh(model *m, uint32_t mesh)

@@ -95,6 +95,7 @@ typedef struct model_mesh {
     uint8_t dual_quaternion; /* skinned by dual quaternions, else by matrices */
     uint32_t skin;           /* valid if `bound` */
     uint32_t palette_limit;  /* joints that one draw may use; 0: as many as the format holds */
+    char *recipe;            /* lines of a face's recipe (base/recipe_read.h) out of the mesh's extras; NULL: none */
     uint8_t *wrinkles; /* [target_count][12] how much each target wrinkles each region, 255 all; NULL: no wrinkles */
 } model_mesh;
 

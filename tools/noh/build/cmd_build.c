@@ -19,7 +19,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
         *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
-    int input_count, eyes, quiet, loop, mask, keep_parts, lod_fast;
+    int input_count, eyes, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
 } build_args;
@@ -195,6 +195,7 @@ static int run(void *args)
     o.identity = a->identity;
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
+    o.no_correctives = a->no_correctives;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
@@ -417,6 +418,12 @@ static const option options[] = {
       .value = "FILE",
       .what = "what the face's targets are for: blinks, looks, emotions, mouth shapes, a text file (noh help FORMATS)",
       .example = "hero.recipe",
+      .excludes = "--only=anim" },
+    { .name = "--no-correctives",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, no_correctives),
+      .what =
+          "targets whose names join those of others (jawOpen_smile), or add hundredths to one (jawOpen50), are targets like others, and not correctives that follow from them",
       .excludes = "--only=anim" },
     { .name = "--unit-cm",
       .kind = OPTION_NUMBER,

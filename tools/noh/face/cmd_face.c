@@ -7,6 +7,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
+#include "face/corrective.h"
 #include "face/recipe.h"
 #include "file/pack_file.h"
 
@@ -24,7 +25,6 @@ static const char *const coverage_names[COVERAGES] = { "covered", "partly", "fal
 
 typedef struct face_report {
     const pack_file *file;
-    noh_face_row rows[NOH_FACE_ROWS_MAX];
     noh_face_recipe own;
     const noh_face_recipe *recipes[4]; /* the best first */
     uint32_t recipe_count;
@@ -35,13 +35,14 @@ typedef struct face_report {
     noh_face_link links[LINKS_MAX];
     uint32_t link_count, counts[COVERAGES];
     noh_face_source sources[NOH_CHANNEL_COUNT];
+    noh_corrective_term terms[NOH_FACE_ROWS_MAX];
+    uint32_t term_count;
 } face_report;
 
 static void list_recipes(face_report *r)
 {
-    if (noh_face_recipe_of_pack(&r->file->pack, r->rows, NOH_FACE_ROWS_MAX, &r->own, NULL) == NOH_OK) {
-        r->recipes[r->recipe_count++] = &r->own;
-    }
+    r->own = noh_face_recipe_in_pack(&r->file->pack);
+    r->recipes[r->recipe_count++] = &r->own;
     r->recipes[r->recipe_count++] = &noh_face_recipe_arkit;
     r->recipes[r->recipe_count++] = &noh_face_recipe_vrm;
     r->recipes[r->recipe_count++] = &noh_face_recipe_units;
@@ -67,6 +68,8 @@ static void read_mesh(face_report *r)
     r->link_count = noh_face_recipe_bind(r->recipes, r->recipe_count, r->names, count, r->links, LINKS_MAX);
     r->link_count = r->link_count < LINKS_MAX ? r->link_count : LINKS_MAX;
     for (uint32_t i = 0; i < r->link_count; i++) r->used[r->links[i].target] = 1;
+    r->term_count = noh_correctives_bind(&r->mesh, r->terms, NOH_FACE_ROWS_MAX);
+    for (uint32_t i = 0; i < r->term_count; i++) r->used[r->terms[i].target] = 1;
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) {
         noh_face_recipe_source(r->recipes, r->recipe_count, r->names, count, c, &r->sources[c]);
         r->counts[coverage_of(&r->sources[c], c)]++;
@@ -100,6 +103,23 @@ static void print_channel(const face_report *r, uint32_t channel)
     printf("\n");
 }
 
+/* Whether a term is the first of its corrective. */
+static int begins(const face_report *r, uint32_t term)
+{
+    return !term || r->terms[term - 1u].target != r->terms[term].target;
+}
+
+static void print_correctives(const face_report *r)
+{
+    for (uint32_t i = 0; i < r->term_count; i++) {
+        const noh_corrective_term *t = &r->terms[i];
+        if (begins(r, i)) printf("%s  corrective %s:", i ? "\n" : "", r->names[t->target]);
+        printf(" %s", r->names[t->driver]);
+        if (t->peak < 1.0f) printf(" at %g (%g to %g)", (double)t->peak, (double)t->from, (double)t->to);
+    }
+    if (r->term_count) printf("\n");
+}
+
 static void print_mesh(const face_report *r)
 {
     uint32_t unused = 0;
@@ -107,6 +127,7 @@ static void print_mesh(const face_report *r)
            r->mesh.name, r->mesh.header->target_count, (unsigned)NOH_CHANNEL_COUNT, r->counts[COVERED],
            r->counts[PARTLY], r->counts[FALLS_BACK], r->counts[NOTHING]);
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) print_channel(r, c);
+    print_correctives(r);
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets of no channel: ", r->names[t]);
     }
@@ -139,6 +160,29 @@ static void json_channel(json *j, const face_report *r, uint32_t channel)
     json_close(j, '}');
 }
 
+static void json_correctives(json *j, const face_report *r)
+{
+    json_open(j, "correctives", '[');
+    for (uint32_t i = 0; i < r->term_count; i++) {
+        const noh_corrective_term *t = &r->terms[i];
+        if (begins(r, i)) {
+            json_open(j, NULL, '{');
+            json_text(j, "target", r->names[t->target]);
+            json_open(j, "drivers", '[');
+        }
+        json_open(j, NULL, '{');
+        json_text(j, "name", r->names[t->driver]);
+        json_number(j, "from", (double)t->from);
+        json_number(j, "peak", (double)t->peak);
+        json_number(j, "to", (double)t->to);
+        json_close(j, '}');
+        if (i + 1u < r->term_count && !begins(r, i + 1u)) continue;
+        json_close(j, ']');
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void json_mesh(json *j, const face_report *r)
 {
     json_open(j, NULL, '{');
@@ -148,6 +192,7 @@ static void json_mesh(json *j, const face_report *r)
     json_open(j, "channels", '[');
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) json_channel(j, r, c);
     json_close(j, ']');
+    json_correctives(j, r);
     json_open(j, "unused", '[');
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) json_text(j, NULL, r->names[t]);

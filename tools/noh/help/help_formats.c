@@ -72,8 +72,12 @@ const char *const help_formats_text[] = {
     "                                               surprise, fear, anger, disgust, contempt",
     "   sil PP FF TH DD kk CH SS nn RR aa E ih oh ou  mouth shapes of speech",
     "   breath                                      the chest",
+    "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of those of its drivers; a driver with a",
+    "                                               peak below 1 counts in full there, and falls to both sides",
     "Channels without a row take the first of the built-in recipes that fits the targets' names (ARKit, VRM, facial units), and a mouth "
-    "shape without any that of the nearest other one. A row whose target no mesh has is a warning. noh face PACK shows what came out.",
+    "shape without any that of the nearest other one. A row whose target no mesh has is a warning. noh face PACK shows what came out. "
+    "A glTF mesh may have the lines in its extras: \"recipe\": an array of lines, or one text with ';' between them. Of targets jaw, grin "
+    "and jaw_grin the last is a corrective by its name, jaw50 an in-between.",
     "   blink lidsClosed",
     "   aa jaw 0.8",
     "   aa \"lips wide\" 0.2",

@@ -1,0 +1,157 @@
+#include "recipe_make.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/limits.h"
+#include "convert/model/model_build.h"
+
+/* ---- extras ---- */
+
+static int is_corrective(const recipe_row *row)
+{
+    return row->channel[0] == '+';
+}
+
+/* Whether the first `end` rows have the channel; of a corrective, the target. */
+static int has_row(const recipe_text *recipe, uint32_t end, const recipe_row *row)
+{
+    for (uint32_t i = 0; i < end; i++) {
+        const recipe_row *other = &recipe->rows[i];
+        if (is_corrective(row) != is_corrective(other)) continue;
+        if (strcmp(is_corrective(row) ? other->target : other->channel,
+                   is_corrective(row) ? row->target : row->channel) == 0)
+            return 1;
+    }
+    return 0;
+}
+
+/* One line, on its own, to the rows of extras. */
+static int add_line(recipe_text *extras, model *m, const model_mesh *mesh, const char *text, size_t size)
+{
+    model_error error = { "", "" };
+    uint32_t line = 1;
+    if (!recipe_add_text(extras, text, size, &line, &error)) return 0;
+    return model_warn(m, "mesh '%s': the recipe in its extras: '%.*s' was left out: %s", mesh->name,
+                      (int)(size < 60 ? size : 60), text, error.what);
+}
+
+/* Lines end with a line feed or a semicolon. */
+static int read_mesh(recipe_text *extras, model *m, const model_mesh *mesh)
+{
+    const char *at = mesh->recipe;
+    while (at && *at) {
+        const size_t size = strcspn(at, ";\n");
+        if (add_line(extras, m, mesh, at, size)) return 1;
+        at += size + (at[size] != '\0');
+    }
+    return 0;
+}
+
+int recipe_add_extras(recipe_text *recipe, model *m)
+{
+    recipe_text *extras = recipe_new();
+    const uint32_t own = recipe->count;
+    int failed = !extras;
+    for (uint32_t i = 0; i < m->mesh_count && !failed; i++) failed = read_mesh(extras, m, &m->meshes[i]);
+    for (uint32_t i = 0; !failed && i < extras->count; i++) {
+        const recipe_row *row = &extras->rows[i];
+        if (!has_row(recipe, own, row)) failed = recipe_add_row(recipe, row->target, row->channel, row->weight, 0);
+    }
+    recipe_free(extras);
+    return failed;
+}
+
+/* ---- names ---- */
+
+#define PARTS_MAX NOH_CORRECTIVE_DRIVERS_MAX
+#define JOINTS_MAX 10 /* underscores of a name that are tried as joints between parts */
+
+typedef struct part {
+    char name[NOH_NAME_BYTES_MAX];
+    float peak;
+} part;
+
+typedef struct parts {
+    part all[PARTS_MAX];
+    uint32_t count;
+} parts;
+
+static int has_target(const model_mesh *mesh, const char *name)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (strcmp(mesh->targets[t].name, name) == 0) return 1;
+    }
+    return 0;
+}
+
+/* A target's name with two digits behind it, 10 to 90, is the target at so many hundredths. */
+static int read_part(const model_mesh *mesh, const char *from, size_t size, part *out)
+{
+    if (size == 0 || size >= sizeof out->name - 1u) return 0;
+    memcpy(out->name, from, size);
+    out->name[size] = '\0';
+    out->peak = 1.0f;
+    if (size > 2 && from[size - 1] >= '0' && from[size - 1] <= '9' && from[size - 2] >= '1' && from[size - 2] <= '9') {
+        out->name[size - 2] = '\0';
+        if (has_target(mesh, out->name)) {
+            out->peak = (float)(10 * (from[size - 2] - '0') + (from[size - 1] - '0')) / 100.0f;
+            return 1;
+        }
+        out->name[size - 2] = from[size - 2];
+    }
+    return has_target(mesh, out->name);
+}
+
+/* Cut a name at those underscores whose bits are set. 0: not all parts are targets, or one is there twice. */
+static int cut(const model_mesh *mesh, const char *name, uint32_t bits, parts *out)
+{
+    const char *from = name;
+    uint32_t joint = 0;
+    out->count = 0;
+    for (const char *at = name;; at++) {
+        if (*at && (*at != '_' || joint >= JOINTS_MAX || !(bits >> joint++ & 1u))) continue;
+        if (out->count == PARTS_MAX || !read_part(mesh, from, (size_t)(at - from), &out->all[out->count])) return 0;
+        for (uint32_t i = 0; i < out->count; i++) {
+            if (strcmp(out->all[i].name, out->all[out->count].name) == 0) return 0;
+        }
+        out->count++;
+        from = at + 1;
+        if (!*at) break;
+    }
+    return out->count > 1 || out->all[0].peak < 1.0f;
+}
+
+/* The cut into the most parts, so that jawOpen_smile_frown is of three targets and not of jawOpen_smile and frown. */
+static int split_name(const model_mesh *mesh, const char *name, parts *best)
+{
+    uint32_t joints = 0;
+    best->count = 0;
+    for (const char *at = name; *at; at++) joints += *at == '_';
+    joints = joints < JOINTS_MAX ? joints : JOINTS_MAX;
+    for (uint32_t bits = 0; bits < 1u << joints; bits++) {
+        parts now;
+        if (cut(mesh, name, bits, &now) && now.count > best->count) *best = now;
+    }
+    return best->count > 0;
+}
+
+int recipe_add_named(recipe_text *recipe, const model *m, uint32_t *count)
+{
+    *count = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
+            recipe_row row = { m->meshes[i].targets[t].name, "+", 1.0f, 0 };
+            parts found;
+            if (!split_name(&m->meshes[i], row.target, &found) || has_row(recipe, recipe->count, &row)) continue;
+            for (uint32_t p = 0; p < found.count; p++) {
+                char channel[NOH_NAME_BYTES_MAX + 1u];
+                (void)snprintf(channel, sizeof channel, "+%s", found.all[p].name);
+                if (recipe_add_row(recipe, row.target, channel, found.all[p].peak, 0)) return 1;
+            }
+            ++*count;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,18 @@
+/* recipe_make.h: the recipe of a model's face: out of a text, out of the extras of its meshes, and correctives that the
+ * names of targets tell. */
+#ifndef NOH_CONVERT_MODEL_RECIPE_MAKE_H
+#define NOH_CONVERT_MODEL_RECIPE_MAKE_H
+
+#include "convert/base/recipe_read.h"
+#include "convert/model/model.h"
+
+/* Add the lines of the model's extras (model_mesh.recipe) for channels and correctives that the recipe has no row of. A
+ * line that cannot be read is left out with a warning. 0, or 1 when out of memory. */
+int recipe_add_extras(recipe_text *recipe, model *m);
+
+/* Add correctives by name: jawOpen_smile of jawOpen and smile, jawOpen50 as an in-between of jawOpen, jawOpen50_smile;
+ * where all parts are targets of the same mesh, and the recipe does not have them. *count: how many. 0, or 1 when out
+ * of memory or there are too many rows. */
+int recipe_add_named(recipe_text *recipe, const model *m, uint32_t *count);
+
+#endif
