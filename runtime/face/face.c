@@ -76,6 +76,11 @@ uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, 
     return noh_face_ticks(60.0f / noh_face_or(desc->breaths_per_minute, 15.0f) * (0.85f + 0.3f * u));
 }
 
+static int has_moods(const noh_face *face)
+{
+    return noh_face_is_four(face) && !(face->flags & NOH_FACE_CALM);
+}
+
 static void look_ahead(noh_face *face, const noh_face_desc *desc)
 {
     for (int i = 0; i < 3; i++) face->target[i] = 0.5f * (desc->eyes[0][i] + desc->eyes[1][i]);
@@ -87,7 +92,7 @@ noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t see
     uint64_t where = 0;
     const char *what = bad_desc(desc, &where);
     NOH_ASSERT(face && desc);
-    if (what || flags > (NOH_FACE_NO_IDLE << 1) - 1u) {
+    if (what || flags > NOH_FACE_FLAGS) {
         return noh_fail(error, NOH_ERR_ARG, what ? what : "flags of a face: unknown bits", where, 0);
     }
     memset(face, 0, sizeof *face);
@@ -97,15 +102,22 @@ noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t see
     look_ahead(face, desc);
     noh_face_blink_schedule(face, desc);
     noh_face_glance_schedule(face);
+    if (has_moods(face)) noh_face_mood_next(face);
     return NOH_OK;
 }
 
 void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flags)
 {
-    NOH_ASSERT(face && desc && flags < NOH_FACE_NO_IDLE << 1);
+    const uint32_t before = face->flags;
+    NOH_ASSERT(face && desc && flags <= NOH_FACE_FLAGS);
     if (flags & (NOH_FACE_CALM | NOH_FACE_NO_WANDER)) memset(face->away, 0, sizeof face->away);
     if (flags & NOH_FACE_CALM) memset(face->tremor, 0, sizeof face->tremor);
     face->flags = (uint8_t)flags;
+    if ((before ^ flags) & NOH_FACE_FOUR) {
+        memset(face->feelings, 0, sizeof face->feelings);
+        face->blinking = 0;
+    }
+    if (has_moods(face) && before != flags) noh_face_mood_next(face);
     noh_face_blink_schedule(face, desc);
     noh_face_glance_schedule(face);
     face->next_tremor = (uint32_t)face->clock;
@@ -121,7 +133,8 @@ typedef enum event {
     EVENT_GAZE,
     EVENT_GLANCE,
     EVENT_TREMOR,
-    EVENT_FEELING
+    EVENT_FEELING,
+    EVENT_MOOD
 } event;
 
 /* The sooner of what is due and `tick`; ticks are compared by what is left of them. */
@@ -156,6 +169,7 @@ static event next_event(const noh_face *face, const noh_face_desc *desc, uint32_
         take_sooner(now, face->next_glance, EVENT_GLANCE, left, &next);
     }
     if (does(face, 0)) take_sooner(now, face->next_tremor, EVENT_TREMOR, left, &next);
+    if (has_moods(face)) take_sooner(now, noh_face_mood_end(face), EVENT_MOOD, left, &next);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         if (face->feelings[i].holds) take_sooner(now, face->feelings[i].end, EVENT_FEELING, left, &next);
     }
@@ -186,6 +200,7 @@ static void handle(noh_face *face, const noh_face_desc *desc, event e)
     case EVENT_GLANCE: noh_face_glance(face, desc); break;
     case EVENT_TREMOR: noh_face_tremor(face); break;
     case EVENT_FEELING: fade_feelings(face); break;
+    case EVENT_MOOD: noh_face_mood_next(face); break;
     case EVENT_NONE: break;
     }
 }
@@ -195,8 +210,11 @@ static void settle(noh_face *face)
 {
     const uint32_t now = (uint32_t)face->clock;
     for (int i = 0; i < 2; i++) noh_face_spring_settle(&face->head[i], now);
-    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) noh_face_spring_settle(&face->feelings[i].amount, now);
+    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX && !noh_face_is_four(face); i++) {
+        noh_face_spring_settle(&face->feelings[i].amount, now);
+    }
     if (now - face->blink_start > 48000u) face->blinking = 0;
+    if (noh_face_is_four(face) && (int32_t)(now - noh_face_mood_end(face)) > 0) face->feelings[0].on = 0;
 }
 
 void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
@@ -237,7 +255,8 @@ void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks)
     NOH_ASSERT(face && desc && ticks >= 0);
     face->clock += ticks;
     now = (uint32_t)face->clock;
-    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
+    if (has_moods(face)) noh_face_mood_next(face);
+    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX && !noh_face_is_four(face); i++) {
         if (face->feelings[i].on) skip_feeling(&face->feelings[i], now, ticks);
     }
     face->gaze = NOH_GAZE_HOLD;
@@ -331,6 +350,10 @@ noh_result noh_face_feel(noh_face *face, noh_emotion emotion, float amount, uint
     if (!(amount >= 0.0f && amount <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "amount is not in 0..1", 0, 0);
     if (onset_ticks > HOLD_MAX || hold_ticks > HOLD_MAX || fade_ticks > HOLD_MAX) {
         return noh_fail(error, NOH_ERR_ARG, "ticks of an emotion: 2^31 or more", 0, HOLD_MAX);
+    }
+    if (noh_face_is_four(face)) {
+        noh_face_mood_begin(face, (uint32_t)emotion, amount, hold_ticks ? hold_ticks : 240000u);
+        return NOH_OK;
     }
     f = feeling_for(face, emotion);
     if (!f->on || f->emotion != emotion) {

@@ -56,6 +56,10 @@ typedef enum noh_activity {
 #define NOH_FACE_NO_WANDER 4u
 #define NOH_FACE_NO_BREATH 8u
 #define NOH_FACE_NO_IDLE 16u
+#define NOH_FACE_FOUR                                                                             \
+    32u /* Granberg's controller of four channels: one blink at even intervals, one emotion after \
+         * another by itself, two mouth shapes (noh_face_four); gaze, breath and head as ever */
+#define NOH_FACE_FLAGS 63u
 
 /* What faces of one kind have in common. Zero is a good value for all but `eyes`. */
 typedef struct noh_face_desc {
@@ -97,7 +101,7 @@ typedef struct noh_face {
     noh_face_spring head[2]; /* yaw, pitch */
     noh_face_feeling feelings[NOH_FACE_EMOTIONS_MAX];
     uint8_t activity, flags, gaze, blinking;
-    uint32_t reserved; /* the same size wherever int64_t is aligned to 4 bytes */
+    uint32_t moods; /* emotions that have come by themselves */
 } noh_face;
 
 /* What shows in one frame. */
@@ -136,7 +140,8 @@ noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const flo
  * errors  as noh_face_look_at */
 noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error);
 
-/* Begin an emotion, or change one that shows.
+/* Begin an emotion, or change one that shows. In the mode of four channels it takes the place of the one that shows,
+ * and comes and goes in a second each; hold_ticks 0: for as long as others.
  * ranges  amount 0..1; hold_ticks 0: until it is changed; below 2^31. onset_ticks, fade_ticks: to 95 %; 0: 0.35 and
  *         0.8 s. A micro-expression is held for 0.04 to 0.2 s, with an onset as short
  * errors  ARG */
@@ -152,6 +157,21 @@ void noh_face_blink(noh_face *face, const noh_face_desc *desc);
 void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
 
 void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose);
+
+/* The four channels of a frame, for a shader that has no more: one blink, the strongest emotion, the two strongest
+ * mouth shapes, which are at most 1 together. */
+typedef struct noh_face_four {
+    float weights[4];  /* blink, emotion, first and second mouth shape */
+    uint8_t emotion;   /* noh_emotion; NOH_EMOTION_COUNT: none */
+    uint8_t speech[2]; /* noh_viseme (face/recipe.h); 0: none */
+    uint8_t reserved;
+} noh_face_four;
+
+/* pose  NULL: at rest. visemes[15], as noh_face_channels takes them; NULL: says nothing */
+void noh_face_four_of(const noh_face_pose *pose, const float *visemes, noh_face_four *four);
+
+/* The mouth shapes back: visemes[15], of which two at most are not 0. */
+void noh_face_four_visemes(const noh_face_four *four, float *visemes);
 
 #ifdef __cplusplus
 }

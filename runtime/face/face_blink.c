@@ -22,6 +22,7 @@ float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity)
 static uint32_t interval(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
 {
     const float u = noh_face_uniform(face->seed, NOH_FACE_INTERVAL, blink);
+    if (noh_face_is_four(face)) return noh_face_four_wait(face, blink);
     const float s = noh_face_log_normal(u, noh_face_blink_mean(desc, face->activity), SIGMA);
     return noh_face_ticks(s < INTERVAL_MIN_S ? INTERVAL_MIN_S : s < 600.0f ? s : 600.0f);
 }
@@ -67,7 +68,7 @@ static int is_double(const noh_face *face, const noh_face_desc *desc, uint32_t b
  * counts as two. */
 static void begin(noh_face *face, const noh_face_desc *desc, uint32_t due)
 {
-    const uint32_t count = is_double(face, desc, face->blinks) ? 2u : 1u;
+    const uint32_t count = !noh_face_is_four(face) && is_double(face, desc, face->blinks) ? 2u : 1u;
     face->blink_start = (uint32_t)face->clock;
     face->blinking = (uint8_t)count;
     face->next_blink = due;
@@ -84,6 +85,7 @@ void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc)
 float noh_face_blink_at(const noh_face *face)
 {
     uint32_t ticks = (uint32_t)face->clock - face->blink_start;
+    if (noh_face_is_four(face)) return face->blinking ? noh_face_four_lid(ticks) : 0.0f;
     for (uint32_t blink = face->blinks - face->blinking; blink != face->blinks; blink++) {
         const noh_face_lid lid = noh_face_lid_of(face, blink);
         const uint32_t whole = lid.closing + lid.shut + lid.opening;

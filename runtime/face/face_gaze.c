@@ -116,7 +116,7 @@ static void begin_saccade(noh_face *face, const noh_face_desc *desc)
     face->gaze = NOH_GAZE_MOVE;
     face->gaze_start = (uint32_t)face->clock;
     face->gaze_ticks = noh_face_ticks(0.021f + 0.0022f / NOH_DEGREE * turn);
-    if (angle > BIG_SHIFT && !(face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BLINK)) &&
+    if (angle > BIG_SHIFT && !(face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BLINK | NOH_FACE_FOUR)) &&
         noh_face_uniform(face->seed, NOH_FACE_WITH_GAZE, face->glances) < 0.6f) {
         noh_face_blink_pull(face, desc);
     }

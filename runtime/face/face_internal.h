@@ -5,7 +5,8 @@
  *   face_spring.c  what moves as a damped spring
  *   face_blink.c   blinks
  *   face_gaze.c    where the eyes look, and how far the head goes along
- *   face_pose.c    what shows */
+ *   face_pose.c    what shows
+ *   face_four.c    the mode of four channels */
 #ifndef NOH_FACE_FACE_INTERNAL_H
 #define NOH_FACE_FACE_INTERNAL_H
 
@@ -36,7 +37,8 @@ typedef enum noh_face_stream {
     NOH_FACE_TREMOR_WAY,
     NOH_FACE_BREATH,
     NOH_FACE_PHRASE,
-    NOH_FACE_IDLE /* three: yaw, pitch, roll */
+    NOH_FACE_IDLE, /* three: yaw, pitch, roll */
+    NOH_FACE_MOOD = NOH_FACE_IDLE + 3
 } noh_face_stream;
 
 float noh_face_uniform(uint32_t seed, uint32_t stream, uint32_t index); /* above 0, below 1 */
@@ -63,6 +65,20 @@ void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* the one
 void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* the next one, now */
 void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc);
 float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* seconds between two */
+
+/* ---- the mode of four channels ---- */
+
+static inline int noh_face_is_four(const noh_face *face)
+{
+    return (face->flags & NOH_FACE_FOUR) != 0;
+}
+
+uint32_t noh_face_four_wait(const noh_face *face, uint32_t blink); /* from one blink to the next */
+float noh_face_four_lid(uint32_t ticks);
+void noh_face_mood_begin(noh_face *face, uint32_t emotion, float amount, uint32_t hold);
+void noh_face_mood_next(noh_face *face);
+uint32_t noh_face_mood_end(const noh_face *face); /* tick */
+float noh_face_mood_at(const noh_face *face);
 
 /* ---- gaze ---- */
 

@@ -104,6 +104,10 @@ static float breath(const noh_face *face, const noh_face_desc *desc)
 
 static void show_feelings(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
 {
+    if (noh_face_is_four(face) && face->feelings[0].on) {
+        emotions[face->feelings[0].emotion] = clamped(noh_face_mood_at(face), 0.0f, 1.0f);
+        return;
+    }
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         const noh_face_feeling *f = &face->feelings[i];
         if (f->on) {

@@ -173,8 +173,15 @@ static float float_of(const noh_part_work *w, uint32_t at)
 
 static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_part_work *w, const noh_face_pose *pose)
 {
-    float channels[NOH_CHANNEL_COUNT];
-    noh_face_channels(pose, &k->face->desc, f->says ? f->visemes : NULL, NOH_MOUTH_NONE, channels);
+    float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
+    const float *says = f->says ? f->visemes : NULL;
+    if (says && f->face.flags & NOH_FACE_FOUR) {
+        noh_face_four four;
+        noh_face_four_of(pose, says, &four);
+        noh_face_four_visemes(&four, two);
+        says = two;
+    }
+    noh_face_channels(pose, &k->face->desc, says, NOH_MOUTH_NONE, channels);
     if (turns(w, &k->face->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
     noh_face_share(&k->face->rules, float_of(w, k->face->speech), float_of(w, k->face->lips_shut), channels);
     noh_face_apply(k->face->links, k->face->link_count, channels, w->floats);

@@ -112,6 +112,105 @@ static void errata_an_even_timer_is_not_log_normal(void **state)
     assert_true(distance_to_log_normal(x, 1020) > 1.035);
 }
 
+/* ---- the mode of four channels ---- */
+
+/* Granberg's timers: blinks of 0.1875 s every 1.875 to 6.875 s after the last one, emotions that change by 1 a second
+ * and hold for 2 to 8 s; whatever the length of a step. */
+static void four_channels_keep_the_timers(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        noh_face face = face_of(seed, NOH_FACE_FOUR);
+        float blink = 0.0f, felt = 0.0f;
+        uint32_t opened = 0, shut = 0, full = 0, last = NOH_EMOTION_COUNT, moods = 0;
+        for (uint32_t ms = 0; ms < 120000; ms++) {
+            noh_face_pose pose;
+            noh_face_four four;
+            noh_face_step(&face, &desc, SECOND / 1000u);
+            pose = pose_of(&face);
+            noh_face_four_of(&pose, NULL, &four);
+            assert_true(four.weights[0] == pose.blink && fabsf(four.weights[1] - felt) <= 0.00101f);
+            if (pose.blink > 0.0f && blink == 0.0f) {
+                if (opened) assert_true(ms - opened >= 1874 && ms - opened <= 6877);
+                shut = ms;
+            }
+            if (pose.blink == 0.0f && blink > 0.0f) {
+                assert_true(ms - shut >= 186 && ms - shut <= 189);
+                opened = ms;
+            }
+            if (four.weights[1] == 1.0f && felt < 1.0f) full = ms;
+            if (four.weights[1] < 1.0f && felt == 1.0f) assert_true(ms - full >= 1999 && ms - full <= 8001);
+            if (four.emotion != NOH_EMOTION_COUNT && four.emotion != last) moods++, last = four.emotion;
+            blink = pose.blink;
+            felt = four.weights[1];
+        }
+        assert_true(opened && moods >= 12 && moods <= 31);
+    }
+}
+
+/* The source's lid is a sine that is looked at once a frame, and its fades add the length of a frame: at 5 frames a
+ * second half of the blinks are not seen shut, and weights pass 1 and 0. */
+static void errata_fades_by_frames_pass_their_goals(void **state)
+{
+    double w = 0.0, worst = 0.0;
+    noh_face coarse = face_of(6, NOH_FACE_FOUR), fine = coarse;
+    (void)state;
+    for (int i = 0; i < 4; i++) worst = fmax(worst, w += 0.3); /* += dt while w < 1 */
+    assert_true(worst > 1.0);
+    for (uint32_t i = 0; i < 1000; i++) {
+        noh_face_pose a, b;
+        noh_face_step(&coarse, &desc, 14400);
+        for (uint32_t k = 0; k < 48; k++) noh_face_step(&fine, &desc, 300);
+        a = pose_of(&coarse);
+        b = pose_of(&fine);
+        assert_memory_equal(&a, &b, sizeof a);
+        for (int e = 0; e < NOH_EMOTION_COUNT; e++) assert_true(a.emotions[e] >= 0.0f && a.emotions[e] <= 1.0f);
+    }
+}
+
+static void four_channels_hold_the_two_strongest_shapes(void **state)
+{
+    float visemes[15] = { 0 }, back[15], sum = 0.0f;
+    noh_face_four four;
+    (void)state;
+    visemes[10] = 0.9f;
+    visemes[13] = 0.6f;
+    visemes[4] = 0.5f;
+    noh_face_four_of(NULL, visemes, &four);
+    assert_true(four.speech[0] == 10 && four.speech[1] == 13 && four.emotion == NOH_EMOTION_COUNT);
+    assert_true(fabsf(four.weights[2] - 0.6f) < 1e-6f && fabsf(four.weights[3] - 0.4f) < 1e-6f);
+    noh_face_four_visemes(&four, back);
+    for (int v = 0; v < 15; v++) sum += back[v];
+    assert_true(fabsf(sum - 1.0f) < 1e-6f && back[4] == 0.0f && back[10] == four.weights[2]);
+}
+
+static void emotions_of_four_channels_may_be_called(void **state)
+{
+    noh_face face = face_of(3, NOH_FACE_FOUR), calm = face_of(3, NOH_FACE_FOUR | NOH_FACE_CALM);
+    noh_face_pose pose;
+    (void)state;
+    noh_face_step(&face, &desc, SECOND);
+    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_FEAR, 0.5f, 0, SECOND, 0, NULL), NOH_OK);
+    noh_face_step(&face, &desc, SECOND + SECOND / 2u);
+    pose = pose_of(&face);
+    assert_true(pose.emotions[NOH_EMOTION_FEAR] == 0.5f);
+    noh_face_step(&face, &desc, SECOND);
+    assert_true(fabsf(pose_of(&face).emotions[NOH_EMOTION_FEAR] - 0.25f) < 1e-5f);
+    noh_face_set_flags(&face, &desc, 0);
+    assert_true(pose_of(&face).emotions[NOH_EMOTION_FEAR] == 0.0f);
+    noh_face_set_flags(&face, &desc, NOH_FACE_FOUR);
+    noh_face_skip(&face, &desc, 100000ll * SECOND);
+    noh_face_step(&face, &desc, 2u * SECOND);
+    pose = pose_of(&calm);
+    noh_face_step(&calm, &desc, 600u * SECOND);
+    {
+        const noh_face_pose still = pose_of(&calm);
+        assert_memory_equal(&pose, &still, sizeof pose);
+    }
+}
+
+/* ---- lids ---- */
+
 static void lids_shut_and_open_again(void **state)
 {
     noh_face face = face_of(5, NOH_FACE_CALM);
@@ -397,7 +496,7 @@ static void bad_values_are_refused(void **state)
     bad = desc;
     bad.eyes[1][2] = INFINITY;
     assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_face_init(&face, &desc, 1, 32, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_face_init(&face, &desc, 1, NOH_FACE_FLAGS + 1u, &error), NOH_ERR_ARG);
     face = before = face_of(1, 0);
     assert_int_equal(noh_face_look_at(&face, &desc, near_point, &error), NOH_ERR_ARG);
     assert_int_equal(noh_face_look_at(&face, &desc, nan_point, &error), NOH_ERR_ARG);
@@ -444,6 +543,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(blinks_come_at_their_rates),
         cmocka_unit_test(intervals_are_log_normal),
         cmocka_unit_test(errata_an_even_timer_is_not_log_normal),
+        cmocka_unit_test(four_channels_keep_the_timers),
+        cmocka_unit_test(errata_fades_by_frames_pass_their_goals),
+        cmocka_unit_test(four_channels_hold_the_two_strongest_shapes),
+        cmocka_unit_test(emotions_of_four_channels_may_be_called),
         cmocka_unit_test(lids_shut_and_open_again),
         cmocka_unit_test(a_blink_with_a_look_takes_the_place_of_the_next),
         cmocka_unit_test(each_eye_aims_at_its_target),
