@@ -65,6 +65,7 @@
 
 /* ---- bodies ---- */
 
+#define NOH_OBSTACLES_MAX 16u        /* of a kind in a world */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */
