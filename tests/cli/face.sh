@@ -112,4 +112,20 @@ refused 'corrective smile' 'corrective TARGET DRIVER'
 refused 'corrective smile smile' 'does not drive itself'
 refused 'corrective smile blink 1.5' 'not above 0 and at most 1'
 
+# A target for f and v, where there are lips that touch and teeth behind them.
+noh build "$mask" -o "$work/lips.noh" --lips
+expect 0 'a mask has no lips that touch'
+check 'a warning says so' grep -q "^warning: --lips: mesh 'mask': its lips do not touch" "$work/out"
+noh build "$work/both.gltf" -o "$work/lips.noh" --lips --quiet
+expect 0 'nor has a triangle'
+if [ -e "${NOH_ASSETS:-none}/hero/head.glb" ]; then
+    noh build "$NOH_ASSETS/hero/head.glb" -o "$work/lips.noh" --lips
+    expect 0 'a head with teeth'
+    check 'the lip is brought to them' grep -q "^mesh 'head': lipToTeeth brings the lower lip to" "$work/out"
+    noh face "$work/lips.noh"
+    check 'and f and v take it' grep -q '^  FF  *pack  *.*lipToTeeth 1$' "$work/out"
+else
+    skip 'a head with teeth' 'NOH_ASSETS does not name a folder of models'
+fi
+
 finish

@@ -100,7 +100,8 @@ static int read_recipe(const convert_options *options, const source *s, recipe_t
         return 1;
     }
     if (!*out) *out = recipe_new();
-    if (!*out || recipe_add_extras(*out, s->m) || (!options->no_correctives && recipe_add_named(*out, s->m, &named))) {
+    if (!*out || recipe_add_extras(*out, s->m) || recipe_add_lips(*out, s->m) ||
+        (!options->no_correctives && recipe_add_named(*out, s->m, &named))) {
         (void)snprintf(failure->error.what, sizeof failure->error.what,
                        "there is no memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
         return 1;
@@ -323,9 +324,10 @@ static int base_of(const source *all, int count)
 static int read_all(const char *const *inputs, int count, const convert_options *options, source *all,
                     convert_failure *failure)
 {
-    source_options reading = { options->clip.sample_rate_hz, options->clip.unit_cm,     options->skin,
-                               options->two_streams,         options->two_stream_count, options->identity,
-                               options->split_eyes };
+    source_options reading = {
+        options->clip.sample_rate_hz, options->clip.unit_cm, options->skin,       options->two_streams,
+        options->two_stream_count,    options->identity,     options->split_eyes, options->lips
+    };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
@@ -335,6 +337,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
         if (all[i].m->mesh_count) { /* people and eyes are made of the first model */
             reading.identity = NULL;
             reading.split_eyes = 0;
+            reading.lips = 0;
         }
     }
     return 0;

@@ -10,6 +10,7 @@
 #include "convert/clips/rcl.h"
 #include "convert/clips/resample.h"
 #include "convert/model/identity_join.h"
+#include "convert/model/lip_target.h"
 #include "convert/model/two_stream.h"
 #include "convert/skin/eye_split.h"
 
@@ -80,6 +81,9 @@ static int read_gltf_file(const char *path, const source_options *options, sourc
         return 1;
     }
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
+        return 1;
+    }
+    if (options->lips && s->m->mesh_count && lip_target_add(s->m, options->skin.report, error)) {
         return 1;
     }
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {

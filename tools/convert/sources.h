@@ -25,6 +25,7 @@ typedef struct source_options {
     uint32_t two_stream_count;
     const char *identity; /* a file of targets that make people, see identity_join.h; NULL: none */
     int split_eyes;       /* 1: eyeballs get joints, see eye_split.h */
+    int lips;             /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

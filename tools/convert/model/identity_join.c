@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model_build.h"
+#include "target_append.h"
 
 /* ---- which mesh ---- */
 
@@ -46,74 +46,6 @@ static int names_clash(const model_mesh *a, const model_mesh *b, const char *pat
     return 0;
 }
 
-/* ---- weights ---- */
-
-static int grow(float **values, size_t rows, uint32_t from, uint32_t to)
-{
-    float *grown = *values ? calloc(rows * to + 1u, sizeof *grown) : NULL;
-    for (size_t r = 0; grown && r < rows; r++) {
-        memcpy(grown + r * to, *values + r * from, from * sizeof *grown);
-    }
-    if (*values && !grown) return 1;
-    free(*values);
-    *values = grown;
-    return 0;
-}
-
-static int grow_channels(model *m, uint32_t mesh, uint32_t to)
-{
-    for (uint32_t c = 0; c < m->clip_count; c++) {
-        for (uint32_t i = 0; i < m->clips[c].channel_count; i++) {
-            model_channel *channel = &m->clips[c].channels[i];
-            const size_t rows = channel->interpolation == MODEL_CUBICSPLINE ? 3u : 1u;
-            if (channel->path != MODEL_PATH_WEIGHTS || m->nodes[channel->node].mesh != mesh) continue;
-            if (grow(&channel->values, rows * channel->key_count, channel->width, to)) return 1;
-            channel->width = to;
-        }
-    }
-    return 0;
-}
-
-static int grow_weights(model *m, uint32_t mesh, uint32_t to)
-{
-    const uint32_t from = m->meshes[mesh].target_count;
-    for (uint32_t n = 0; n < m->node_count; n++) {
-        if (m->nodes[n].mesh == mesh && grow(&m->nodes[n].weights, 1, from, to)) return 1;
-    }
-    return grow(&m->meshes[mesh].weights, 1, from, to) || grow_channels(m, mesh, to);
-}
-
-/* ---- targets ---- */
-
-/* Moved, not copied: b has none afterwards. */
-static int move_targets(model *m, uint32_t mesh, model_mesh *b)
-{
-    model_mesh *a = &m->meshes[mesh];
-    const uint32_t count = a->target_count + b->target_count;
-    model_target *targets;
-    if (grow_weights(m, mesh, count)) return 1;
-    targets = realloc(a->targets, (size_t)count * sizeof *targets);
-    if (!targets) return 1;
-    a->targets = targets;
-    for (uint32_t i = 0; i < b->target_count; i++) {
-        model_target *t = &targets[a->target_count + i];
-        *t = b->targets[i];
-        t->identity = 1;
-    }
-    a->target_count = count;
-    b->target_count = 0;
-    for (uint32_t i = 0; i < count; i++) { /* both have tangents, or neither */
-        if (a->tangent && !targets[i].tangent) {
-            targets[i].tangent = model_zeros((size_t)a->vertex_count * 3, sizeof(float));
-            if (!targets[i].tangent) return 1;
-        } else if (!a->tangent) {
-            free(targets[i].tangent);
-            targets[i].tangent = NULL;
-        }
-    }
-    return 0;
-}
-
 static int join(model *m, model *other, const char *path, model_error *error)
 {
     uint32_t joined = 0;
@@ -122,7 +54,8 @@ static int join(model *m, model *other, const char *path, model_error *error)
         for (uint32_t a = 0; a < m->mesh_count && from->target_count; a++) {
             if (!same_surface(&m->meshes[a], from)) continue;
             if (names_clash(&m->meshes[a], from, path, error)) return 1;
-            if (move_targets(m, a, from)) return model_fail(error, path, "out of memory");
+            for (uint32_t t = 0; t < from->target_count; t++) from->targets[t].identity = 1;
+            if (model_append_targets(m, a, from)) return model_fail(error, path, "out of memory");
             joined++;
             break;
         }

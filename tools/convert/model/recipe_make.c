@@ -5,9 +5,19 @@
 #include <string.h>
 
 #include "base/limits.h"
+#include "convert/model/lip_target.h"
 #include "convert/model/model_build.h"
+#include "face/recipe.h"
 
 /* ---- extras ---- */
+
+static int has_target(const model_mesh *mesh, const char *name)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (strcmp(mesh->targets[t].name, name) == 0) return 1;
+    }
+    return 0;
+}
 
 static int is_corrective(const recipe_row *row)
 {
@@ -63,6 +73,35 @@ int recipe_add_extras(recipe_text *recipe, model *m)
     return failed;
 }
 
+/* ---- lips ---- */
+
+#define LINKS_MAX 512u
+
+static int add_bite(recipe_text *recipe, const model_mesh *mesh)
+{
+    const char *names[NOH_TARGETS_MAX], *bite = noh_face_channel_name(NOH_CHANNEL_VISEMES + NOH_VISEME_FF);
+    noh_face_link links[LINKS_MAX];
+    const recipe_row row = { NULL, (char *)bite, 1.0f, 0 };
+    const uint32_t targets = mesh->target_count < NOH_TARGETS_MAX ? mesh->target_count : NOH_TARGETS_MAX;
+    uint32_t count;
+    if (has_row(recipe, recipe->count, &row)) return 0;
+    for (uint32_t t = 0; t < targets; t++) names[t] = mesh->targets[t].name;
+    count = noh_face_recipe_bind(NULL, 0, names, targets, links, LINKS_MAX);
+    for (uint32_t l = 0; l < count && l < LINKS_MAX; l++) {
+        if (links[l].channel != NOH_CHANNEL_VISEMES + NOH_VISEME_FF) continue;
+        if (recipe_add_row(recipe, names[links[l].target], bite, links[l].weight, 0)) return 1;
+    }
+    return recipe_add_row(recipe, LIP_TARGET, bite, 1.0f, 0);
+}
+
+int recipe_add_lips(recipe_text *recipe, const model *m)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (has_target(&m->meshes[i], LIP_TARGET)) return add_bite(recipe, &m->meshes[i]);
+    }
+    return 0;
+}
+
 /* ---- names ---- */
 
 #define PARTS_MAX NOH_CORRECTIVE_DRIVERS_MAX
@@ -77,14 +116,6 @@ typedef struct parts {
     part all[PARTS_MAX];
     uint32_t count;
 } parts;
-
-static int has_target(const model_mesh *mesh, const char *name)
-{
-    for (uint32_t t = 0; t < mesh->target_count; t++) {
-        if (strcmp(mesh->targets[t].name, name) == 0) return 1;
-    }
-    return 0;
-}
 
 /* A target's name with two digits behind it, 10 to 90, is the target at so many hundredths. */
 static int read_part(const model_mesh *mesh, const char *from, size_t size, part *out)

@@ -10,6 +10,10 @@
  * line that cannot be read is left out with a warning. 0, or 1 when out of memory. */
 int recipe_add_extras(recipe_text *recipe, model *m);
 
+/* FF with LIP_TARGET (lip_target.h), where a mesh has it and the recipe has no row of FF: what the built-in recipes
+ * say, and that target. 0, or 1 when out of memory. */
+int recipe_add_lips(recipe_text *recipe, const model *m);
+
 /* Add correctives by name: jawOpen_smile of jawOpen and smile, jawOpen50 as an in-between of jawOpen, jawOpen50_smile;
  * where all parts are targets of the same mesh, and the recipe does not have them. *count: how many. 0, or 1 when out
  * of memory or there are too many rows. */

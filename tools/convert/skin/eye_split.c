@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/model/affine.h"
+#include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 
 #define VERTICES_MIN 24u
@@ -90,49 +91,6 @@ int eye_sphere_fit(const float *positions, const uint32_t *vertices, uint32_t co
 }
 
 /* ---- islands ---- */
-
-static uint32_t root(uint32_t *parent, uint32_t v)
-{
-    while (parent[v] != v) {
-        parent[v] = parent[parent[v]];
-        v = parent[v];
-    }
-    return v;
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = root(parent, a);
-    b = root(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
-static const float *sorted_positions; /* qsort has no user pointer */
-
-static int by_position(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    const int order = memcmp(sorted_positions + 3 * (size_t)x, sorted_positions + 3 * (size_t)y, 12);
-    return order ? order : (x > y) - (x < y);
-}
-
-/* Vertices of one position are one point, whatever their normals and UVs. */
-static void find_islands(split *s)
-{
-    const model_mesh *mesh = s->mesh;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) s->island[v] = s->vertices[v] = v;
-    sorted_positions = mesh->position;
-    qsort(s->vertices, mesh->vertex_count, sizeof *s->vertices, by_position);
-    for (uint32_t i = 1; i < mesh->vertex_count; i++) {
-        const uint32_t a = s->vertices[i - 1], b = s->vertices[i];
-        if (memcmp(mesh->position + 3 * (size_t)a, mesh->position + 3 * (size_t)b, 12) == 0) unite(s->island, a, b);
-    }
-    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        unite(s->island, mesh->indices[i], mesh->indices[i + 1]);
-        unite(s->island, mesh->indices[i], mesh->indices[i + 2]);
-    }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) s->island[v] = root(s->island, v);
-}
 
 static uint32_t vertices_of(split *s, uint32_t island)
 {
@@ -427,7 +385,7 @@ static int try_mesh(model *m, uint32_t index, split *s, FILE *report, model_erro
     uint32_t pairs;
     int failed;
     s->mesh = &m->meshes[index];
-    find_islands(s);
+    islands_find(s->mesh, s->island, s->vertices);
     find_balls(s);
     pairs = find_pair(s, pair);
     if (!pairs) return 0;

@@ -19,7 +19,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
         *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
-    int input_count, eyes, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
+    int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
     option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
 } build_args;
@@ -195,6 +195,7 @@ static int run(void *args)
     o.identity = a->identity;
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
+    o.lips = a->lips;
     o.no_correctives = a->no_correctives;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
@@ -411,6 +412,12 @@ static const option options[] = {
       .at = offsetof(build_args, eyes),
       .what =
           "find the two eyeballs, islands of a mesh whose vertices lie on spheres, and give them the joints LeftEye and RightEye at their centres, so that a gaze turns them",
+      .excludes = "--only=anim" },
+    { .name = "--lips",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, lips),
+      .what =
+          "find lips and upper teeth, make a target lipToTeeth that brings the lower lip to them, and use it for f and v",
       .excludes = "--only=anim" },
     { .name = "--recipe",
       .kind = OPTION_INPUT,

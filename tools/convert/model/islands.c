@@ -1,0 +1,45 @@
+#include "islands.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t root(uint32_t *parent, uint32_t v)
+{
+    while (parent[v] != v) {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    return v;
+}
+
+static void unite(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = root(parent, a);
+    b = root(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+static const float *sorted_positions; /* qsort has no user pointer */
+
+static int by_position(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    const int order = memcmp(sorted_positions + 3 * (size_t)x, sorted_positions + 3 * (size_t)y, 12);
+    return order ? order : (x > y) - (x < y);
+}
+
+void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work)
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = work[v] = v;
+    sorted_positions = mesh->position;
+    qsort(work, mesh->vertex_count, sizeof *work, by_position);
+    for (uint32_t i = 1; i < mesh->vertex_count; i++) {
+        const uint32_t a = work[i - 1], b = work[i];
+        if (memcmp(mesh->position + 3 * (size_t)a, mesh->position + 3 * (size_t)b, 12) == 0) unite(island, a, b);
+    }
+    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        unite(island, mesh->indices[i], mesh->indices[i + 1]);
+        unite(island, mesh->indices[i], mesh->indices[i + 2]);
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = root(island, v);
+}

@@ -1,0 +1,11 @@
+/* islands.h: which vertices of a mesh hang together. */
+#ifndef NOH_CONVERT_MODEL_ISLANDS_H
+#define NOH_CONVERT_MODEL_ISLANDS_H
+
+#include "convert/model/model.h"
+
+/* For each vertex the first one of its island: vertices that triangles join, and those of one position, whatever their
+ * normals and UVs. island, work: [vertex_count] */
+void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work);
+
+#endif
