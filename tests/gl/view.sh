@@ -279,6 +279,40 @@ fi
 
 close_viewer 'Escape ends it'
 
+# ---- light ----
+
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 1280x800 "$mask" --light room --rotate 20
+lit() { # OPTIONS: as noh render draws it, in $drawn
+    drawn=$work/lit.png
+    "$build/noh" render "$mask" -o "$drawn" --size "$(png_size "$rest")" --light room "$@" >/dev/null
+}
+figure
+rest=$shot
+lit --rotate 20
+check 'light, its shadow and its background are those of noh render' same "$rest" "$drawn"
+lit --rotate 20 --shadow off
+check 'which has a shadow' differ "$rest" "$drawn"
+xdotool key bracketright
+figure
+lit --rotate 35
+check '] turns the light by 15 degrees' same "$shot" "$drawn"
+lose
+figure
+check 'light is there again after a lost context' same "$shot" "$drawn"
+xdotool key bracketleft
+figure
+check '[ turns it back' same "$rest" "$shot"
+close_viewer 'a lit figure is closed'
+for background in gradient plain; do
+    noh view "$mask" --light room --background $background --shadow off --tonemap none --frames 2 --size 700x400
+    expect 0 "in front of $background"
+    check 'GL has nothing to say of that' test ! -s "$work/err"
+done
+noh view "$mask" --light room --background purple
+expect 2 'an unknown background'
+
 # ---- LOD levels ----
 
 # Pictures until one is as the one before: a change of level has been faded.

@@ -42,6 +42,7 @@ static const struct group {
     { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
     { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
     { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
+    { "look", bench_look, 1 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -162,8 +163,10 @@ static const option options[] = {
     { .name = "--only",
       .kind = OPTION_TEXT,
       .at = offsetof(bench_args, only),
-      .value = "morph|morph-cpu|skin-cpu|skin-gpu|heads|clip|pose|crowd|stage",
-      .what = "measure this group of rows; default: all for which the packs have data" },
+      .value = "GROUP",
+      .what = "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage or look; "
+              "default: all for which the packs have data",
+      .example = "look" },
     { .name = "--source",
       .kind = OPTION_INPUT,
       .at = offsetof(bench_args, source),

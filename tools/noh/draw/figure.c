@@ -229,6 +229,22 @@ static int open_shader(figure *f)
     return 0;
 }
 
+static int open_backdrop(figure *f)
+{
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_gl_device device;
+    if (!f->g || !f->desc.light) {
+        return 0;
+    }
+    device = (noh_gl_device){ &f->g->gl, &f->g->caps, &f->g->ledger, log, sizeof log };
+    if (noh_backdrop_create(&device, 0, &f->backdrop, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error("backdrop", &error);
+    }
+    return 0;
+}
+
 static int open_actors(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -261,6 +277,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     f->g = g;
     status = open_stage(f);
     if (!status) status = open_shader(f);
+    if (!status) status = open_backdrop(f);
     if (!status) status = open_actors(f);
     if (status) figure_close(f);
     return status;
@@ -269,6 +286,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
 void figure_close(figure *f)
 {
     if (f->shader) noh_stage_shader_delete(f->shader);
+    if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
     if (f->stage) noh_stage_delete(f->stage);
     free(f->shader_memory);
     free(f->memory);
@@ -281,6 +299,7 @@ int figure_restore(figure *f)
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_result result = noh_stage_restore(f->stage, &error);
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
+    if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
         return tool_fail_error(f->desc.file->path, &error);
@@ -298,7 +317,7 @@ int figure_reset(figure *f)
 
 /* ---- frames ---- */
 
-static int frame(figure *f, const noh_stage_view *views, uint32_t view_count)
+int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_result result = noh_stage_step(f->stage, 0, NULL, NULL, &error);
@@ -318,7 +337,7 @@ int figure_pose(figure *f)
     int status;
     posed.posed = 1;
     status = figure_set_look(f, &posed);
-    if (!status) status = frame(f, NULL, 0);
+    if (!status) status = figure_frame(f, NULL, 0);
     return status ? status : figure_set_look(f, &own);
 }
 
@@ -333,25 +352,52 @@ noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height)
     return view;
 }
 
-int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
+uint32_t figure_views(figure *f, const noh_gl_camera *camera, uint32_t height, noh_stage_view views[2])
 {
-    noh_error error = { NOH_OK, "", 0, 0 };
     lighting *light = f->desc.light;
-    noh_stage_view views[2] = { figure_view(camera, height) };
-    if (light && f->g) noh_stage_set_lighting(f->stage, &light->told);
-    if (!light || !light->desc.shadow_px || !f->g) {
-        return frame(f, views, 1);
+    views[0] = f->seen = figure_view(camera, height);
+    if (!light || !f->g) {
+        return 1;
+    }
+    noh_stage_set_lighting(f->stage, &light->told);
+    if (!light->desc.shadow_px) {
+        return 1;
     }
     const bounds box = figure_bounds(f, 0);
     views[1] = lighting_shadow_view(light, &box);
-    const int status = frame(f, views, 2);
-    if (status) return status;
+    return 2;
+}
+
+int figure_shade(figure *f)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    if (!f->desc.light || !f->g || !f->desc.light->desc.shadow_px) {
+        return 0;
+    }
     return noh_stage_draw_shadow(f->stage, 1, &error) ? tool_fail_error(f->desc.file->path, &error) : 0;
+}
+
+int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
+{
+    noh_stage_view views[2];
+    const int status = figure_frame(f, views, figure_views(f, camera, height, views));
+    return status ? status : figure_shade(f);
+}
+
+static void draw_backdrop(const figure *f)
+{
+    const lighting *l = f->desc.light;
+    if (!f->backdrop.gl || l->background == BACKGROUND_PLAIN) {
+        return;
+    }
+    noh_backdrop_draw(&f->backdrop, l->background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
+                      noh_stage_light_of(f->stage), &l->told, &f->seen);
 }
 
 int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
+    draw_backdrop(f);
     return noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error) ? tool_fail_error(f->desc.file->path, &error)
                                                                           : 0;
 }

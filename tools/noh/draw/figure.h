@@ -8,6 +8,7 @@
  *   figure_find_faces      where the eyes are; figure_feel, figure_live: faces that live
  *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
  *   figure_look            a frame that a camera sees; figure_draw draws it; figure_view
+ *   figure_views           the views of such a frame; figure_frame, figure_shade: the same in steps
  *
  * A figure is a kind of the stage for each skeleton of the pack, the first of which also has what no joint moves, and
  * of each kind one actor at the origin. Whatever a verb needs beside these functions it does with figure.stage and
@@ -23,6 +24,7 @@
 #include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
+#include "stage_gl/backdrop.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */
@@ -70,6 +72,8 @@ typedef struct figure {
     void *memory, *shader_memory;
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's own, lit */
+    noh_backdrop backdrop;    /* zeros: no light */
+    noh_stage_view seen;      /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_look look; /* of all actors */
 } figure;
@@ -151,9 +155,17 @@ noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32
 
 /* A camera as a stage takes it. height: of the picture, pixels */
 noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height);
+/* The views of a frame: the camera's, and that of its light's shadow map, by where it was posed last. Returns how many.
+ */
+uint32_t figure_views(figure *f, const noh_gl_camera *camera, uint32_t height, noh_stage_view views[2]);
+/* A frame that these views see. */
+int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count);
+/* After a frame of these views: draw the shadow map, if there is one. */
+int figure_shade(figure *f);
 /* height: of the picture, pixels. Accumulates, and draws the shadow map: bind the framebuffer to draw into afterwards
  */
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height);
+/* With what is behind it. */
 int figure_draw(figure *f);
 
 /* "no clip named 'wlak' (did you mean 'walk'?)" */

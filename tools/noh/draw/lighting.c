@@ -103,6 +103,7 @@ void lighting_turn(lighting *l, double degrees)
     const float s = (float)sin(degrees * PI / 180.0), c = (float)cos(degrees * PI / 180.0);
     const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
     const noh_tonemap tonemap = l->told.tonemap;
+    l->degrees = degrees;
     noh_lighting_make(&l->light, rotation, l->has_shadow, &l->told);
     l->told.tonemap = tonemap;
 }

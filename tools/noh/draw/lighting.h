@@ -12,6 +12,8 @@ typedef struct light_options {
 
 #define LIGHTING_SHADOW_PX 1024u
 
+typedef enum lighting_background { BACKGROUND_PLAIN, BACKGROUND_GRADIENT, BACKGROUND_LIGHT } lighting_background;
+
 /* Must not move once a figure is lit by it. */
 typedef struct lighting {
     void *texels;
@@ -20,7 +22,8 @@ typedef struct lighting {
     noh_gl_light_desc desc;
     noh_lighting told;
     int has_shadow;
-    enum { BACKGROUND_PLAIN, BACKGROUND_GRADIENT, BACKGROUND_LIGHT } background;
+    double degrees; /* how far it is turned */
+    lighting_background background;
 } lighting;
 
 /* 1 where the options ask for light of an environment: not for "none". */

@@ -1,7 +1,6 @@
 #include "picture.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,18 +28,6 @@ static int open_bones(picture *p, gpu *g)
     return status;
 }
 
-static int open_backdrop(picture *p, gpu *g)
-{
-    char log[4096] = "";
-    const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, log, sizeof log };
-    noh_error error = { NOH_OK, "", 0, 0 };
-    if (noh_backdrop_create(&device, 0, &p->backdrop, &error)) {
-        fputs(log, stderr);
-        return tool_fail_error("backdrop", &error);
-    }
-    return 0;
-}
-
 int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, uint32_t width, uint32_t height)
 {
     int status;
@@ -52,9 +39,6 @@ int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, u
         status = canvas_open(&p->canvas, g, width, height);
         p->has_canvas = !status;
     }
-    if (!status && !shows_bones && desc->light && desc->light->background != BACKGROUND_PLAIN) {
-        status = open_backdrop(p, g);
-    }
     if (status) picture_close(p);
     return status;
 }
@@ -62,7 +46,6 @@ int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, u
 void picture_close(picture *p)
 {
     for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) bones_close(&p->bones[k]);
-    if (p->backdrop.gl) noh_backdrop_delete(&p->backdrop);
     if (p->has_canvas) canvas_close(&p->canvas);
     if (p->figure.stage) figure_close(&p->figure);
     memset(p, 0, sizeof *p);
@@ -93,15 +76,6 @@ static void draw_bones(picture *p, const noh_gl_camera *camera)
     }
 }
 
-static void draw_backdrop(const picture *p, const noh_gl_camera *camera)
-{
-    const lighting *l = p->figure.desc.light;
-    const noh_stage_view view = figure_view(camera, p->canvas.height);
-    if (!p->backdrop.gl) return;
-    noh_backdrop_draw(&p->backdrop, l->background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
-                      noh_stage_light_of(p->figure.stage), &l->told, &view);
-}
-
 int picture_paint(picture *p, const noh_gl_camera *camera)
 {
     const int status = p->shows_bones ? figure_pose(&p->figure) : figure_look(&p->figure, camera, p->canvas.height);
@@ -110,7 +84,6 @@ int picture_paint(picture *p, const noh_gl_camera *camera)
     }
     canvas_begin(&p->canvas);
     if (!p->shows_bones) {
-        draw_backdrop(p, camera);
         return figure_draw(&p->figure);
     }
     draw_bones(p, camera);

@@ -5,14 +5,12 @@
 #include "bones.h"
 #include "figure.h"
 #include "gpu/canvas.h"
-#include "stage_gl/backdrop.h"
 
 typedef struct picture {
     figure figure;
     int shows_bones;
     bones bones[NOH_STAGE_KINDS_MAX]; /* of kinds with joints */
     canvas canvas;
-    noh_backdrop backdrop; /* zeros: none */
     int has_canvas;
 } picture;
 

@@ -44,7 +44,6 @@ static int run(void *args)
 {
     view_args *a = args;
     int status = check_args(a);
-    a->light.shadow = "off";
     if (!status && lighting_wanted(&a->light)) {
         status = lighting_open(&a->lit, &a->light);
         a->run.desc.light = &a->lit;
@@ -102,9 +101,7 @@ static const option options[] = {
       .value = "auto|N",
       .what = "number of LOD levels to convert a model with, with the full mesh, 1 to 8; auto: up to five, by error",
       .example = "4" },
-    OPTION_LIGHT_NAME(view_args, light.light, "none", .needs = NULL),
-    OPTION_LIGHT_ROTATE(view_args, light.rotate, .needs = NULL),
-    OPTION_LIGHT_TONEMAP(view_args, light.tonemap, .needs = NULL),
+    OPTIONS_LIGHT(view_args, light, "none", .needs = NULL),
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
     { .name = "--driver",

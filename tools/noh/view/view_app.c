@@ -167,6 +167,12 @@ void view_zoom(view_app *a, double steps)
     a->orbit.distance = fmin(fmax(distance, a->orbit.radius * 0.05), a->orbit.radius * 50.0);
 }
 
+void view_turn_light(view_app *a, double degrees)
+{
+    lighting *light = a->desc.light;
+    if (light) lighting_turn(light, remainder(light->degrees + degrees, 360.0));
+}
+
 /* ---- playing ---- */
 
 void view_play(view_app *a, uint32_t clip, int beside)

@@ -113,6 +113,8 @@ void view_turn(view_app *a, double dx, double dy);
 void view_pan(view_app *a, double dx, double dy);
 void view_zoom(view_app *a, double steps);
 void view_frame_all(view_app *a);
+/* Turn the light, where there is one. */
+void view_turn_light(view_app *a, double degrees);
 void view_toggle_play(view_app *a);
 /* Start a clip as a->how says, in place of what plays on its layer or beside it. */
 void view_play(view_app *a, uint32_t clip, int beside);

@@ -230,8 +230,8 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
         d.graphs = NULL;
         status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     }
-    if (!status && d.light && !s->show_bones) noh_stage_set_lighting(s->figure->stage, &d.light->told);
     if (!status) status = open_bones(s, g, m->path);
+    if (!status && d.light) status = figure_pose(s->figure); /* its shadow falls by the last pose */
     if (status) close_setting(s);
     return status;
 }
@@ -542,15 +542,11 @@ int view_model_pose(view_model *m, const noh_gl_camera *camera, int cut)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_stage *s = m->figure->stage;
-    noh_stage_view view;
+    noh_stage_view views[2];
+    const uint32_t view_count = figure_views(m->figure, camera, m->canvas.height, views);
     uint32_t count;
-    memset(&view, 0, sizeof view);
-    memcpy(view.view_projection, camera->view_projection, sizeof view.view_projection);
-    memcpy(view.eye, camera->eye, sizeof view.eye);
-    memcpy(view.light, camera->key, sizeof view.light);
-    view.height_px = m->canvas.height;
-    view.cut = (uint32_t)cut;
-    if (noh_stage_frame_begin(s, &view, 1, &error)) {
+    views[0].cut = (uint32_t)cut;
+    if (noh_stage_frame_begin(s, views, view_count, &error)) {
         return tool_fail_error(m->path, &error);
     }
     while ((count = noh_stage_jobs(s)) > 0) {
@@ -571,6 +567,10 @@ static void draw_bones(view_model *m, const noh_gl_camera *camera)
 
 int view_model_draw(view_model *m, const noh_gl_camera *camera)
 {
+    const int status = m->show_bones ? 0 : figure_shade(m->figure);
+    if (status) {
+        return status;
+    }
     canvas_begin(&m->canvas);
     if (m->show_bones) {
         draw_bones(m, camera);

@@ -199,6 +199,33 @@ void drawing_section(view_app *a)
     }
 }
 
+// ---- light ----
+
+void light_section(view_app *a)
+{
+    static const char *const backgrounds[] = { "plain", "gradient", "light" };
+    lighting *light = a->desc.light;
+    if (!light || !ImGui::CollapsingHeader("Light", ImGuiTreeNodeFlags_DefaultOpen)) {
+        return;
+    }
+    float degrees = static_cast<float>(light->degrees);
+    int background = static_cast<int>(light->background);
+    bool filmic = light->told.tonemap == NOH_TONEMAP_FILMIC;
+    ImGui::SetNextItemWidth(-1.0f);
+    if (ImGui::SliderFloat("##turn", &degrees, -180.0f, 180.0f, "turned by %.0f degrees",
+                           ImGuiSliderFlags_AlwaysClamp)) {
+        lighting_turn(light, static_cast<double>(degrees));
+    }
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
+    if (ImGui::Combo("background", &background, backgrounds, 3)) {
+        light->background = static_cast<lighting_background>(background);
+    }
+    ImGui::PopItemWidth();
+    if (ImGui::Checkbox("filmic", &filmic)) {
+        light->told.tonemap = filmic ? NOH_TONEMAP_FILMIC : NOH_TONEMAP_NONE;
+    }
+}
+
 // ---- times, memory, layers ----
 
 void time_row(const char *name, double ms, const char *what)
@@ -315,6 +342,7 @@ void right_panel(view_app *a)
     graph_section(a);
     lod_section(a);
     drawing_section(a);
+    light_section(a);
     times_section(a);
     layers_section(a);
     memory_section(a);
@@ -336,7 +364,8 @@ void events_panel(view_app *a)
         view_pick_text(&a->pick, a->model, text, sizeof text);
         ImGui::TextColored(amber, "%s", text);
     } else {
-        ImGui::TextDisabled("space play  click pick  drag turn/move  wheel zoom  F fit  L detail  Tab hide  F12 save");
+        ImGui::TextDisabled(
+            "space play  click pick  drag turn/move  wheel zoom  F fit  L detail  [ ] light  Tab hide  F12 save");
     }
     ImGui::Separator();
     ImGui::BeginChild("lines");

@@ -66,6 +66,7 @@ void view_print(const view_app *a)
     print_graph(m);
     printf("place %.4f %.4f %.4f\n", (double)place.position[0], (double)place.position[1], (double)place.position[2]);
     printf("center %.4f %.4f %.4f\n", a->orbit.center[0], a->orbit.center[1], a->orbit.center[2]);
+    if (a->desc.light) printf("light turned %.1f\n", a->desc.light->degrees);
     view_lod_text(&a->lod, text, sizeof text);
     printf("%s\n", text);
     if (a->pick.is_on) {

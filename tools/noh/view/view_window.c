@@ -8,9 +8,10 @@
 #include "view/view_panels.h"
 #include "cli/message.h"
 
-#define AWAKE_FRAMES 4   /* drawn after an input before an unchanging picture idles */
-#define SETTLE_FRAMES 3  /* until a click shows: press, release, pose */
-#define CLICK_POINTS 3.0 /* a click moves the mouse less */
+#define AWAKE_FRAMES 4       /* drawn after an input before an unchanging picture idles */
+#define VIEW_LIGHT_STEP 15.0 /* degrees */
+#define SETTLE_FRAMES 3      /* until a click shows: press, release, pose */
+#define CLICK_POINTS 3.0     /* a click moves the mouse less */
 
 typedef struct view_window {
     view_context context;
@@ -112,6 +113,8 @@ static void on_command(view_window *w, int key)
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
     case GLFW_KEY_L: view_lod_next(&a->lod, a->model); break;
+    case GLFW_KEY_LEFT_BRACKET: view_turn_light(a, -VIEW_LIGHT_STEP); break;
+    case GLFW_KEY_RIGHT_BRACKET: view_turn_light(a, VIEW_LIGHT_STEP); break;
     case GLFW_KEY_I: view_print(a); break;
     case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
     case GLFW_KEY_F10: w->lose = 1; break;
