@@ -48,4 +48,11 @@ expect 2 'an unknown shadow'
 noh render "$pack" -o "$work/cut.png" --light room --background red
 expect 2 'an unknown background'
 says "--background wants light, gradient or plain, not 'red'"
+
+noh bench "$pack" --only look --quick --json
+expect 0 'a bench of looks'
+for row in environment environment-shadow environment-tonemap environment-backdrop all; do
+    check "with a row for $row" grep -q "\"look/$row\"" "$work/out"
+done
+check 'none for maps that the pack lacks' sh -c '! grep -q look/surface-map "$1"' - "$work/out"
 finish
