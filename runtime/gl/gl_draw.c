@@ -26,7 +26,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     r->camera = *camera;
     noh_gl_draw_tint(r, NULL);
     noh_gl_draw_wrinkles(r, NULL);
-    memset(r->has_camera, 0, sizeof r->has_camera);
+    for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
 }
 
 void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
@@ -68,12 +68,11 @@ static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
 }
 
 /* Use a variant's program, with the camera of this pass. */
-static void use_variant(noh_gl_renderer *r, const noh_gl_variant *v)
+static void use_variant(const noh_gl_renderer *r, const noh_gl_variant *v)
 {
-    uint8_t *has_camera = &r->has_camera[v - r->variants];
     r->gl->UseProgram(v->program);
-    if (!*has_camera) {
-        *has_camera = 1;
+    if (!v->has_camera) {
+        r->variants[v - r->variants].has_camera = 1;
         r->gl->UniformMatrix4fv(v->u_view_projection, 1, GL_FALSE, r->camera.view_projection);
         r->gl->Uniform3fv(v->u_camera, 1, r->camera.eye);
         r->gl->Uniform3fv(v->u_key, 1, r->camera.key);

@@ -4,7 +4,7 @@
  *   noh_gl_mesh_lod          which indices an LOD level draws
  *   noh_gl_mesh_create_empty buffers without contents, for levels that come later; noh_gl_mesh_fill fills them in
  * pieces noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
- *   noh_gl_renderer_create   compile the shaders of the plain renderer; _delete, _restore, _variant
+ *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _restore, _variant
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
@@ -130,7 +130,6 @@ typedef struct noh_gl_renderer {
     noh_gl_ledger *ledger;
     int layers_uint, without_tangents, encode_srgb, fades, lit;
     noh_debug_view view;
-    noh_gl_passes passes;
     noh_gl_shader_desc shaders; /* zeros: the library's */
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     const noh_gl_light *light;  /* of this pass; NULL where it is not lit */
@@ -139,18 +138,23 @@ typedef struct noh_gl_renderer {
     uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
     uint32_t variant_count;
-    noh_gl_variant variants[NOH_GL_VARIANTS_MAX];
-    uint8_t has_camera[NOH_GL_VARIANTS_MAX]; /* 1: the variant was given it */
+    noh_gl_variant *variants; /* [variant_count] in the memory that create was given */
 } noh_gl_renderer;
 
 #define NOH_GL_RENDERER_BYTES 4u /* the white texel */
 
+/* The bytes of memory for the variants of a desc: a kind of mesh needs 2 to 8 for each kind of material on it, and with
+ * fades or depth twice that. 0: they are more than NOH_GL_VARIANTS_MAX, or the desc is one that create refuses. */
+size_t noh_gl_renderer_size(const noh_gl_renderer_desc *desc);
+
 /* Compile every variant that the meshes of the desc may need: nothing is compiled later.
- * memory  none; *out may be written even on error, but then owns no GL object
- * errors  ARG crowds without palettes in a texture, or unknown passes; LIMIT the meshes need more variants than
- * NOH_GL_VARIANTS_MAX; MEMORY, GL, DATA as noh_gl_program_create and noh_gl_texture_create */
-noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
-                                  noh_error *error);
+ * memory  [bytes] at least noh_gl_renderer_size(desc), aligned to NOH_MEMORY_ALIGN; it stays with the renderer
+ * out     may be written even on error, but then owns no GL object
+ * errors  ARG crowds without palettes in a texture, unknown passes, or memory is NULL or misaligned; LIMIT the meshes
+ *         need more variants than NOH_GL_VARIANTS_MAX; MEMORY it is too small; MEMORY, GL, DATA as
+ *         noh_gl_program_create and noh_gl_texture_create */
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, void *memory,
+                                  size_t bytes, noh_gl_renderer *out, noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
 /* Make its GL objects again in a new context (gl_lost.h). `log` as in noh_gl_program_create.

@@ -2,10 +2,12 @@
  * restore compiles the same list again. */
 #include <string.h>
 
+#include "base/arena.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_draw.h"
 #include "gl/gl_lost.h"
 #include "gl/gl_material_internal.h"
+#include "gl/gl_renderer_internal.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {
@@ -25,34 +27,50 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 /* ---- which variants ---- */
 
 /* What the renderer decides, not a mesh: depth is the same whatever colours are. */
-static noh_gl_variant_key completed(const noh_gl_renderer *r, noh_gl_variant_key key)
+static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int lit, int without_tangents)
 {
-    key.encode_srgb = (uint8_t)(r->encode_srgb && !key.depth);
-    key.lit = (uint8_t)(r->lit && !key.depth);
-    key.two_layers = (uint8_t)(r->without_tangents && !key.depth);
+    key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
+    key.lit = (uint8_t)(lit && !key.depth);
+    key.two_layers = (uint8_t)(without_tangents && !key.depth);
     return key;
 }
 
-static noh_result want_one(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+static noh_debug_view view_of(const noh_gl_renderer_desc *desc)
 {
-    if (noh_gl_renderer_variant(r, key)) {
-        return NOH_OK;
+    return desc->shaders && desc->shaders->view ? desc->shaders->view : desc->view;
+}
+
+typedef struct wish {
+    const noh_gl_renderer_desc *desc;
+    const noh_mesh *mesh;
+    noh_gl_variant_list *list;
+    noh_error *error;
+} wish;
+
+static noh_result want_one(const wish *w, noh_gl_variant_key key)
+{
+    noh_gl_variant_list *list = w->list;
+    key = completed(key, w->desc->encode_srgb, w->desc->lit, w->desc->without_tangents);
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (memcmp(&list->keys[i], &key, sizeof key) == 0) {
+            return NOH_OK;
+        }
     }
-    if (r->variant_count == NOH_GL_VARIANTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit",
+    if (list->count == NOH_GL_VARIANTS_MAX) {
+        return noh_fail(w->error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit",
                         NOH_GL_VARIANTS_MAX, 0);
     }
-    r->variants[r->variant_count++].key = completed(r, key);
+    list->keys[list->count++] = key;
     return NOH_OK;
 }
 
 /* The variant that draws every pixel, and if the renderer fades, the one that draws some. */
-static noh_result want_fades(noh_gl_renderer *r, noh_gl_variant_key key, noh_error *error)
+static noh_result want_fades(const wish *w, noh_gl_variant_key key)
 {
-    noh_result result = want_one(r, key, error);
-    if (!result && r->fades) {
+    noh_result result = want_one(w, key);
+    if (!result && w->desc->fades) {
         key.fade = 1;
-        result = want_one(r, key, error);
+        result = want_one(w, key);
     }
     return result;
 }
@@ -87,46 +105,48 @@ static int has_cut_materials(const noh_mesh *mesh)
 }
 
 /* Those of a key for all materials of a mesh. */
-static noh_result want_features(noh_gl_renderer *r, const noh_mesh *mesh, noh_gl_variant_key key, noh_error *error)
+static noh_result want_features(const wish *w, noh_gl_variant_key key)
 {
     noh_result result = NOH_OK;
-    for (uint32_t i = 0; i < mesh->header->submesh_count && !result; i++) {
-        key.features = noh_gl_features_of(mesh, noh_gl_material_of(mesh, &mesh->submeshes[i]));
-        result = want_fades(r, key, error);
+    for (uint32_t i = 0; i < w->mesh->header->submesh_count && !result; i++) {
+        key.features = noh_gl_features_of(w->mesh, noh_gl_material_of(w->mesh, &w->mesh->submeshes[i]));
+        result = want_fades(w, key);
     }
     return result;
 }
 
 /* The variants of all passes. */
-static noh_result want(noh_gl_renderer *r, const noh_mesh *mesh, noh_gl_variant_key key, noh_error *error)
+static noh_result want(const wish *w, const noh_gl_skin_binding *skin, int crowd)
 {
+    const noh_gl_variant_key key = noh_gl_variant_key_of(w->mesh, skin, crowd, w->desc->layers_uint != 0,
+                                                         view_of(w->desc));
     noh_result result = NOH_OK;
-    if (r->passes != NOH_PASSES_DEPTH) {
-        result = want_features(r, mesh, key, error);
+    if (w->desc->passes != NOH_PASSES_DEPTH) {
+        result = want_features(w, key);
     }
-    if (!result && r->passes != NOH_PASSES_COLOR) {
-        result = want_fades(r, noh_gl_variant_key_depth(key, 0), error);
-        if (!result && has_cut_materials(mesh)) {
-            result = want_fades(r, noh_gl_variant_key_depth(key, 1), error);
+    if (!result && w->desc->passes != NOH_PASSES_COLOR) {
+        result = want_fades(w, noh_gl_variant_key_depth(key, 0));
+        if (!result && has_cut_materials(w->mesh)) {
+            result = want_fades(w, noh_gl_variant_key_depth(key, 1));
         }
     }
     return result;
 }
 
-/* Every variant that the mesh may be drawn by: in the bind pose; with all its influences; and with each lower number.
- */
-static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc, const noh_mesh *mesh,
-                            noh_error *error)
+/* In the bind pose; with all its influences; and with each lower number. */
+noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_gl_variant_list *list,
+                                noh_error *error)
 {
+    const wish w = { desc, mesh, list, error };
     noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
-    uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
-    noh_result result = want(r, mesh, noh_gl_variant_key_of(mesh, NULL, 0, r->layers_uint, r->view), error);
+    const uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
+    noh_result result = want(&w, NULL, 0);
     skin.mode = desc->palettes;
     for (uint32_t limit = NOH_INFLUENCES_MAX; limit >= least && !result && desc->palettes; limit /= 2u) {
         skin.influences = limit;
-        result = want(r, mesh, noh_gl_variant_key_of(mesh, &skin, 0, r->layers_uint, r->view), error);
+        result = want(&w, &skin, 0);
         if (!result && desc->crowds) {
-            result = want(r, mesh, noh_gl_variant_key_of(mesh, &skin, 1, r->layers_uint, r->view), error);
+            result = want(&w, &skin, 1);
         }
     }
     return result;
@@ -135,13 +155,41 @@ static noh_result want_mesh(noh_gl_renderer *r, const noh_gl_renderer_desc *desc
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
     NOH_ASSERT(r && r->variant_count <= NOH_GL_VARIANTS_MAX);
-    key = completed(r, key);
+    key = completed(key, r->encode_srgb, r->lit, r->without_tangents);
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
             return &r->variants[i];
         }
     }
     return NULL;
+}
+
+static noh_result check_desc(const noh_gl_renderer_desc *desc, noh_error *error)
+{
+    NOH_ASSERT(desc && (desc->meshes || !desc->mesh_count));
+    if ((unsigned)desc->passes > NOH_PASSES_DEPTH) {
+        return noh_fail(error, NOH_ERR_ARG, "renderer desc has unknown passes", (uint64_t)desc->passes, 0);
+    }
+    if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
+        return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
+    }
+    return NOH_OK;
+}
+
+static noh_result list_all(const noh_gl_renderer_desc *desc, noh_gl_variant_list *list, noh_error *error)
+{
+    noh_result result = check_desc(desc, error);
+    list->count = 0;
+    for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
+        result = noh_gl_list_variants(desc, &desc->meshes[i], list, error);
+    }
+    return result;
+}
+
+size_t noh_gl_renderer_size(const noh_gl_renderer_desc *desc)
+{
+    noh_gl_variant_list list;
+    return list_all(desc, &list, NULL) ? 0 : noh_gl_variants_size(&list);
 }
 
 /* ---- making ---- */
@@ -159,17 +207,31 @@ static noh_result create_objects(noh_gl_renderer *r, char *log, size_t log_bytes
     return result;
 }
 
-noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, noh_gl_renderer *out,
-                                  noh_error *error)
+/* The keys of all variants, put where the variants will lie: the list is off the stack before anything is compiled. */
+NOH_NEVER_INLINE static noh_result put_keys(const noh_gl_renderer_desc *desc, void *memory, size_t bytes,
+                                            noh_gl_renderer *out, noh_error *error)
 {
-    noh_result result = NOH_OK;
-    NOH_ASSERT(device && device->api && device->ledger && desc && out && (desc->meshes || !desc->mesh_count));
-    if ((unsigned)desc->passes > NOH_PASSES_DEPTH) {
-        return noh_fail(error, NOH_ERR_ARG, "renderer desc has unknown passes", (uint64_t)desc->passes, 0);
+    noh_gl_variant_list list;
+    noh_arena arena;
+    noh_result result = list_all(desc, &list, error);
+    if (!result) result = noh_arena_open(&arena, memory, bytes, noh_gl_variants_size(&list), error);
+    if (result) {
+        return result;
     }
-    if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
-        return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
+    out->variants = noh_arena_carve(&arena, noh_gl_variants_size(&list), 16);
+    out->variant_count = list.count;
+    memset(out->variants, 0, noh_gl_variants_size(&list));
+    for (uint32_t i = 0; i < list.count; i++) {
+        out->variants[i].key = list.keys[i];
     }
+    return NOH_OK;
+}
+
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, void *memory,
+                                  size_t bytes, noh_gl_renderer *out, noh_error *error)
+{
+    noh_result result;
+    NOH_ASSERT(device && device->api && device->ledger && desc && out);
     memset(out, 0, sizeof *out);
     out->gl = device->api;
     out->ledger = device->ledger;
@@ -178,19 +240,12 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
     out->lit = desc->lit != 0;
-    out->view = desc->view;
-    out->passes = desc->passes;
+    out->view = view_of(desc);
     if (desc->shaders) {
         out->shaders = *desc->shaders;
-        if (desc->shaders->view) out->view = desc->shaders->view;
     }
-    for (uint32_t i = 0; i < desc->mesh_count && !result; i++) {
-        result = want_mesh(out, desc, &desc->meshes[i], error);
-    }
-    if (!result) {
-        result = create_objects(out, device->log, device->log_bytes, error);
-    }
-    return result;
+    result = put_keys(desc, memory, bytes, out, error);
+    return result ? result : create_objects(out, device->log, device->log_bytes, error);
 }
 
 void noh_gl_renderer_delete(noh_gl_renderer *renderer)

@@ -62,6 +62,7 @@ typedef struct noh_gl_variant_key {
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
+    uint8_t has_camera; /* 1: its program was given the camera of this pass */
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "character/skin_palette.h"
+#include "gl/gl_renderer_internal.h"
 #include "pose/local_to_model.h"
 #include "stage_gl/stage_gl_internal.h"
 
@@ -142,13 +143,62 @@ static void carve_kinds(measure *m)
     if (m->gl) m->gl->kinds = kinds;
 }
 
+/* Whether a kind's detail may choose fewer influences (open_lod of stage_kind.c): it has one skinned mesh, with levels.
+ */
+static int may_drop_influences(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t skinned = 0, fewer = 0;
+    while (!desc->full_detail && noh_gl_next_site(plan, desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+        if (site.kind != kind || mesh.header->skin == NOH_NONE) continue;
+        skinned++;
+        fewer += mesh.header->level_count > 1u && mesh.header->influence_count > 1u;
+    }
+    return skinned == 1u && fewer == 1u;
+}
+
+/* What a stage's renderer and its shaders are made with, but for the meshes. */
+static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    noh_gl_renderer_desc d;
+    memset(&d, 0, sizeof d);
+    d.palettes = NOH_PALETTE_TEXTURE;
+    d.without_tangents = !desc->tangents;
+    d.encode_srgb = desc->encode_srgb;
+    d.lit = desc->light != NULL;
+    d.passes = desc->without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        d.crowds |= desc->kinds[i].actor_count > 1u;
+        d.fades |= plan->kinds[i].level_count > 1u && !desc->full_detail;
+        d.fewer_influences |= may_drop_influences(desc, plan, i);
+    }
+    return d;
+}
+
+/* Of the renderer of all meshes. Beyond the limit, its create says so. */
+NOH_NEVER_INLINE static size_t variants_size(const measure *m)
+{
+    const noh_gl_renderer_desc d = renderer_desc(m->desc, m->plan);
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    noh_gl_variant_list list;
+    list.count = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
+        (void)noh_gl_list_variants(&d, &mesh, &list, NULL);
+    }
+    return noh_gl_variants_size(&list);
+}
+
 static void carve_head(measure *m)
 {
     const uint32_t models = count_models(m);
     noh_stage_gl *gl = CARVE(m, 1, noh_stage_gl);
     noh_gl_model *of = CARVE(m, models, noh_gl_model);
     noh_mesh *meshes = CARVE(m, models, noh_mesh);
+    const size_t variants_bytes = variants_size(m);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
+    void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
     const size_t light_at = m->arena.used;
     noh_gl_light *light = m->desc->light ? CARVE(m, 1, noh_gl_light) : NULL;
     if (m->desc->light) add(m, "light", NOH_NONE, light_at, noh_gl_light_bytes(m->desc->light));
@@ -159,6 +209,8 @@ static void carve_head(measure *m)
         gl->model_count = models;
         gl->meshes = meshes;
         gl->renderer = renderer;
+        gl->variants = variants;
+        gl->variants_bytes = variants_bytes;
         memset(of, 0, models * sizeof *of);
         memset(renderer, 0, sizeof *renderer);
         gl->light = light;
@@ -234,27 +286,17 @@ static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *cap
 /* ---- made, deleted, made again ---- */
 
 static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, const noh_gl_shader_desc *own,
-                                const noh_gl_device *device, noh_gl_renderer *out, noh_error *error)
+                                const noh_gl_device *device, void *memory, size_t bytes, noh_gl_renderer *out,
+                                noh_error *error)
 {
-    noh_gl_renderer_desc d;
-    memset(&d, 0, sizeof d);
+    noh_gl_renderer_desc d = renderer_desc(&s->desc, s->plan);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) d.layers_uint = noh_gl_morph_plan_of(gl->models[i].morph)->layer_format == GL_RGBA32UI;
     }
     d.meshes = gl->meshes;
     d.mesh_count = gl->model_count;
-    d.palettes = NOH_PALETTE_TEXTURE;
-    d.without_tangents = !s->desc.tangents;
-    d.encode_srgb = s->desc.encode_srgb;
-    d.lit = s->desc.light != NULL;
-    d.passes = s->desc.without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
     d.shaders = own;
-    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        d.crowds |= noh_gl_is_crowd(&s->kinds[i]);
-        d.fades |= s->kinds[i].plan->level_count > 1u && !s->desc.full_detail;
-        d.fewer_influences |= s->kinds[i].table.influence_level_count > 1u;
-    }
-    return noh_gl_renderer_create(device, &d, out, error);
+    return noh_gl_renderer_create(device, &d, memory, bytes, out, error);
 }
 
 static void destroy(noh_stage *stage)
@@ -302,7 +344,8 @@ static noh_result init(void *memory, size_t bytes, const void *device, noh_stage
     if (result == NOH_OK) {
         find_mirrored(m.gl, stage);
         if (!stage->desc.without_shader) {
-            result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->renderer, error);
+            result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->variants, m.gl->variants_bytes,
+                                   m.gl->renderer, error);
         }
     }
     if (result != NOH_OK) {
@@ -464,8 +507,11 @@ const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init,        
 
 size_t noh_stage_shader_size(const noh_stage *stage)
 {
-    (void)stage;
-    return sizeof(noh_stage_shader);
+    const noh_stage_gl *gl = stage->gpu;
+    noh_arena arena = noh_arena_measure();
+    (void)noh_arena_carve(&arena, sizeof(noh_stage_shader), 16);
+    (void)noh_arena_carve(&arena, gl->variants_bytes, 16);
+    return arena.used;
 }
 
 noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
@@ -475,17 +521,19 @@ noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes,
     noh_gl_device device;
     noh_arena arena;
     noh_stage_shader *made;
+    void *variants;
     noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
     NOH_ASSERT(gl && desc && shader);
     if (result != NOH_OK) {
         return result;
     }
     made = noh_arena_carve(&arena, sizeof *made, 16);
+    variants = noh_arena_carve(&arena, gl->variants_bytes, 16);
     memset(made, 0, sizeof *made);
     device = gl->device;
     device.log = log;
     device.log_bytes = log_bytes;
-    result = make_renderer(gl, stage, desc, &device, &made->renderer, error);
+    result = make_renderer(gl, stage, desc, &device, variants, gl->variants_bytes, &made->renderer, error);
     if (result == NOH_OK) {
         *shader = made;
     }

@@ -59,7 +59,9 @@ typedef struct noh_stage_gl {
     uint32_t model_count;
     noh_mesh *meshes; /* [model_count] full, for renderers */
     noh_gl_renderer *renderer;
-    noh_gl_light *light; /* NULL: none */
+    void *variants;        /* [variants_bytes] of the renderer, if there is one */
+    size_t variants_bytes; /* of any renderer of all meshes */
+    noh_gl_light *light;   /* NULL: none */
     const noh_lighting *lighting;
 } noh_stage_gl;
 

@@ -5,6 +5,7 @@
 
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
+#include "support/renderer.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -154,7 +155,7 @@ static noh_gl_renderer renderer_of(const tube *t, const tube_kind *k, noh_gl_pas
     desc.fewer_influences = desc.fades = 1;
     desc.passes = passes;
     assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, ledger, log, sizeof log }, &desc, &r, NULL),
+        renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, ledger, log, sizeof log }, &desc, &r, NULL),
         NOH_OK);
     return r;
 }
@@ -405,8 +406,7 @@ static void materials_are_cut_and_blended_ones_left_out(void **state)
         desc.mesh_count = 1;
         desc.passes = NOH_PASSES_ALL;
         assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &mesh, &gl, NULL), NOH_OK);
-        assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL),
-                         NOH_OK);
+        assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
         assert_int_equal(r.variant_count, alpha == MODEL_ALPHA_MASK ? 3 : 2);
         color = grid_depth(&r, &gl, NOH_DRAW_OPAQUE);
         depth = grid_depth(&r, &gl, NOH_DRAW_DEPTH);
@@ -433,7 +433,7 @@ static void unknown_passes_are_refused(void **state)
     (void)state;
     memset(&desc, 0, sizeof desc);
     desc.passes = (noh_gl_passes)3;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, &error),
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, &error),
                      NOH_ERR_ARG);
     assert_int_equal(error.where, 3);
     assert_int_equal(ledger.programs, 0);

@@ -4,6 +4,7 @@
 
 #include "support/lit_quad.h"
 #include "support/skin_asset.h"
+#include "support/renderer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,7 +76,7 @@ static noh_gl_renderer renderer_of(const noh_gl_renderer_desc *desc, noh_gl_ledg
 {
     noh_gl_renderer r;
     char log[4096] = "";
-    if (noh_gl_renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, ledger, log, sizeof log }, desc, &r, NULL)) {
+    if (renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, ledger, log, sizeof log }, desc, &r, NULL)) {
         fail_msg("%s", log);
     }
     return r;
@@ -367,8 +368,7 @@ static noh_result create_with(const noh_gl_shader_desc *own, char *log, size_t l
     fixture_gpu();
     open_tube(&t, &bytes, &pack, &k);
     desc = desc_of(&t, &k, own);
-    result = noh_gl_renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, &ledger, log, log_bytes }, &desc, &r,
-                                    error);
+    result = renderer_create(&(noh_gl_device){ &fixture_gpu()->gl, NULL, &ledger, log, log_bytes }, &desc, &r, error);
     if (!result) noh_gl_renderer_delete(&r);
     assert_memory_equal(&ledger, &nothing, sizeof ledger);
     tube_close(&t);

@@ -1,6 +1,7 @@
 /* Hair, lashes and brows with alpha from 24 angles: the opaque core and the blended fringe of noh_gl_draw_mesh against
  * triangles sorted on the CPU, back to front, at each angle. */
 #include "support/gl_fixture.h"
+#include "support/renderer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -156,7 +157,7 @@ static void open_head(head *h, const char *path)
     memset(&desc, 0, sizeof desc);
     desc.meshes = &h->mesh;
     desc.mesh_count = 1;
-    assert_int_equal(noh_gl_renderer_create(&device, &desc, &h->renderer, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&device, &desc, &h->renderer, NULL), NOH_OK);
     assert_in_range(h->pack.texture_count, 1, 16);
     for (uint32_t i = 0; i < h->pack.texture_count; i++) {
         noh_texture texture;

@@ -3,6 +3,7 @@
 #include "support/tube_fixture.h"
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
+#include "support/renderer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -96,9 +97,8 @@ static uint8_t *picture(const tube *s, const noh_gl_mesh *gl, draw_kind kind, co
     fixture_frame f;
     fixture_frame_open(&f, SIDE);
     desc.view = view;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc, &renderer, NULL),
-        NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ api, NULL, &f.ledger, log, sizeof log }, &desc, &renderer, NULL),
+                     NOH_OK);
     noh_gl_draw_begin(&renderer, &tube_camera);
     for (uint32_t i = 0; i < (lods ? count : 1u); i++) {
         tube_draw(&renderer, s, gl, kind, lods ? &lods[i] : NULL, NOH_DRAW_OPAQUE);
@@ -349,11 +349,11 @@ static void only_renderers_that_fade_pay_for_it(void **state)
     desc = renderer_desc(&with.mesh, 1);
     key = noh_gl_variant_key_of(&with.mesh, NULL, 0, 0, NOH_VIEW_LIT);
     memset(&ledger, 0, sizeof ledger);
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &fading, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &fading, NULL),
+                     NOH_OK);
     desc.fades = 0;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &plain, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ gl, NULL, &ledger, log, sizeof log }, &desc, &plain, NULL),
+                     NOH_OK);
     assert_int_equal(fading.variant_count, 2u * plain.variant_count);
     assert_non_null(noh_gl_renderer_variant(&plain, key));
     key.fade = 1;

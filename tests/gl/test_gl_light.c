@@ -1,6 +1,7 @@
 /* test_gl_light.c: the lit renderer against closed forms: a furnace, a plane and a wall, the fitted integral of GGX,
  * the shadow of a square. */
 #include "support/gl_fixture.h"
+#include "support/renderer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,7 +108,7 @@ static void open_scene(scene *s, const noh_environment *environment, uint32_t sh
     d.mesh_count = MESHES;
     d.lit = 1;
     d.passes = NOH_PASSES_ALL;
-    if (noh_gl_renderer_create(&device, &d, &s->renderer, NULL)) fail_msg("%s", log);
+    if (renderer_create(&device, &d, &s->renderer, NULL)) fail_msg("%s", log);
     assert_int_equal(canvas_open(&s->canvas, s->g, SIDE, SIDE), 0);
 }
 

@@ -8,6 +8,7 @@
 #include "null.h"
 #include "support/lit_quad.h"
 #include "support/skin_asset.h"
+#include "support/renderer.h"
 
 #include <math.h>
 
@@ -170,7 +171,7 @@ static void draw_by_hand(const wardrobe *w, gpu *g, canvas *to, uint32_t *rgba)
     noh_texture texture;
     memset(pictures, 0, sizeof pictures);
     assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &mesh, &on_gl, NULL), NOH_OK);
-    assert_int_equal(noh_gl_renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
     for (uint32_t set = 0; set < 3; set++) {
         assert_int_equal(noh_pack_texture_at(&w->packs[set / 2u], set % 2u, &texture, NULL), NOH_OK);
         assert_int_equal(noh_gl_picture_create(&g->gl, &g->ledger, &texture, &pictures[set][0], NULL), NOH_OK);
@@ -311,8 +312,7 @@ static void every_way_of_drawing_has_the_tint(void **state)
         fixture_frame f;
         tube t;
         tube_open(&t, &mesh, modes[way]);
-        assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL),
-                         NOH_OK);
+        assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
         for (uint32_t i = 0; i < COPIES && way < 3; i++) {
             const noh_result result = noh_gl_skin_set_tint(t.skin, i, tint, &said);
             assert_int_equal(result, modes[way] == NOH_PALETTE_TEXTURE ? NOH_OK : NOH_ERR_UNSUPPORTED);

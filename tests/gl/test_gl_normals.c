@@ -2,6 +2,7 @@
  * what leaves the vertex shader for a mesh drawn alone and in a crowd, and the colour of pixels in the middle of
  * triangles, where the interpolated normal is not unit. */
 #include "support/gl_fixture.h"
+#include "support/renderer.h"
 
 #include "base/quat.h"
 
@@ -248,9 +249,9 @@ static void middle_pixel(stage *st, noh_debug_view view, const float world[12], 
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.crowds = 1;
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &st->g->gl, NULL, &st->ledger, log, sizeof log }, &desc,
-                                            &renderer, NULL),
-                     NOH_OK);
+    assert_int_equal(
+        renderer_create(&(noh_gl_device){ &st->g->gl, NULL, &st->ledger, log, sizeof log }, &desc, &renderer, NULL),
+        NOH_OK);
     fixture_frame_open(&frame, SIDE);
     noh_gl_draw_begin(&renderer, camera);
     if (crowd) {

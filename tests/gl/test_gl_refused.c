@@ -3,6 +3,7 @@
  * nothing is left behind in GL or in the ledger, and a second attempt in the same memory succeeds. Runs on the null
  * platform, which counts the objects that exist. */
 #include "support/support.h"
+#include "support/renderer.h"
 
 #include "gpu/gpu.h"
 #include "gl/gl_timer.h"
@@ -117,8 +118,7 @@ static noh_result make_renderer(maker *m, noh_error *error)
     desc.meshes = m->meshes;
     desc.mesh_count = 2;
     desc.fades = 1;
-    return noh_gl_renderer_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, &desc, &m->made.renderer,
-                                  error);
+    return renderer_create(&(noh_gl_device){ &m->g.gl, NULL, &m->g.ledger, NULL, 0 }, &desc, &m->made.renderer, error);
 }
 
 static void unmake_renderer(maker *m)

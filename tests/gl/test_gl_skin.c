@@ -1,6 +1,7 @@
 /* Skinning on the GPU: every vertex against the CPU reference; the same bits by a uniform block, a texture and a crowd;
  * the same picture of split meshes; what is sent, and what is refused. */
 #include "support/gl_skin_fixture.h"
+#include "support/renderer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -389,9 +390,8 @@ static uint8_t *picture(const fixture_skin *f, draw_kind kind)
     desc.mesh_count = f->mesh_count;
     desc.palettes = f->plan.mode;
     desc.crowds = kind == CROWD;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &t.ledger, log, sizeof log }, &desc, &renderer, NULL),
-        NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ gl, NULL, &t.ledger, log, sizeof log }, &desc, &renderer, NULL),
+                     NOH_OK);
     noh_gl_draw_begin(&renderer, &camera);
     for (int pass = NOH_DRAW_OPAQUE; pass <= NOH_DRAW_BLENDED; pass++) {
         draw_all(f, &renderer, kind, pass);
@@ -867,13 +867,12 @@ static void renderers_make_what_they_were_told_of(void **state)
     desc.meshes = m.meshes;
     desc.mesh_count = MADE;
     desc.crowds = 1;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error),
-        NOH_ERR_ARG);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error),
+                     NOH_ERR_ARG);
     desc.palettes = NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error),
+                     NOH_OK);
     assert_int_equal(
         r.variant_count,
         14); /* the bind pose, and 4, 2, 1 joints by matrices and by dual quaternions; alone and in crowds */
@@ -911,8 +910,8 @@ static void rigid_variants_have_no_palettes(void **state)
     desc.mesh_count = 1;
     desc.palettes = NOH_PALETTE_UNIFORM;
     desc.encode_srgb = 1;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, log, sizeof log }, &desc, &r, &error),
+                     NOH_OK);
     rigid = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], NULL, 0, 0, NOH_VIEW_LIT));
     skinned = noh_gl_renderer_variant(&r, noh_gl_variant_key_of(&m.meshes[0], &skin, 0, 0, NOH_VIEW_LIT));
     assert_true(rigid->key.encode_srgb && skinned->key.encode_srgb);

@@ -2,6 +2,7 @@
  * trace, and drivers that refuse. */
 #include "support/stage_fixture.h"
 #include "support/gl_fixture.h"
+#include "support/renderer.h"
 
 #include <math.h>
 
@@ -144,7 +145,7 @@ static void the_picture_is_that_of_the_parts(void **state)
         desc.meshes = &mesh;
         desc.mesh_count = 1;
         assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &mesh, &on_gl, NULL), NOH_OK);
-        assert_int_equal(noh_gl_renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
+        assert_int_equal(renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
         for (uint32_t t = 0; t < pack->texture_count; t++) {
             noh_texture texture;
             assert_int_equal(noh_pack_texture_at(pack, t, &texture, NULL), NOH_OK);

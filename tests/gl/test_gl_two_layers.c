@@ -3,6 +3,7 @@
 #include "support/tube_fixture.h"
 
 #include "support/skin_asset.h"
+#include "support/renderer.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,7 @@ static uint8_t *picture(const tube *t, draw_kind kind, noh_debug_view view)
     desc.without_tangents = t->morph_desc.without_tangents;
     desc.view = view;
     fixture_frame_open(&f, SIDE);
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ gl, NULL, &f.ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ gl, NULL, &f.ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
     noh_gl_draw_begin(&r, &tube_camera);
     tube_draw(&r, t, &t->gl, kind, NULL, NOH_DRAW_OPAQUE);
     noh_gl_draw_end(&r);

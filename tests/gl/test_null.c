@@ -5,6 +5,7 @@
 
 #include "null.h"
 #include "support/parts_fixture.h"
+#include "support/renderer.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -193,7 +194,7 @@ static void expect_cameras(const gpu *g, const parts *p, const noh_gl_renderer *
 {
     uint32_t used = 0;
     for (uint32_t i = 0; i < r->variant_count; i++) {
-        used += r->has_camera[i];
+        used += r->variants[i].has_camera;
     }
     assert_in_range(used, 1, r->variant_count - 1u); /* the variants that draw every pixel are not used here */
     assert_true(2u * p->item_count > used);
@@ -214,8 +215,8 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
     desc.meshes = p.meshes;
     desc.mesh_count = file->pack.mesh_count;
     desc.fades = 1;
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc, &renderer, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc, &renderer, NULL),
+                     NOH_OK);
     assert_int_equal(report_of(&g).unlabelled, 0);
     for (uint32_t number = 0; number < 8; number++) {
         set_weights(&p, number, 2);

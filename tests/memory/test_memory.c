@@ -629,21 +629,31 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     noh_gl_texture picture;
     const noh_mesh mesh = test_mesh(&pack, 0);
     const noh_gl_renderer_desc desc = { .meshes = &mesh, .mesh_count = 1 };
+    const size_t size = noh_gl_renderer_size(&desc);
+    uint8_t *variants = test_aligned(NULL, size);
     noh_gl_renderer renderer;
+    noh_error error;
     noh_gl_ledger ledger;
+    const noh_gl_device device = { &g->gl, NULL, &ledger, NULL, 0 };
     (void)state;
     memset(&ledger, 0, sizeof ledger);
     assert_int_equal(noh_pack_texture_at(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
-    assert_int_equal(noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &renderer, NULL),
-                     NOH_OK);
+    assert_true(size > 0);
+    memset(variants, 0x5a, size);
+    assert_int_equal(noh_gl_renderer_create(&device, &desc, variants, size - 1u, &renderer, &error), NOH_ERR_MEMORY);
+    assert_int_equal(error.need, size);
+    for (size_t i = 0; i < size; i++) assert_int_equal(variants[i], 0x5a);
+    assert_int_equal(noh_gl_renderer_create(&device, &desc, variants, size, &renderer, NULL), NOH_OK);
+    assert_int_equal(size, renderer.variant_count * sizeof *renderer.variants);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture) + NOH_GL_RENDERER_BYTES);
     noh_gl_renderer_delete(&renderer);
     noh_gl_texture_delete(&g->gl, &ledger, &picture);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), 0);
     assert_int_equal(ledger.programs + ledger.textures, 0);
     fixture_expect_no_errors();
+    free(variants);
     free(bytes);
 }
 

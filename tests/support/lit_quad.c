@@ -9,6 +9,7 @@
 #include "support.h"
 #include "draw/camera.h"
 #include "gpu/canvas.h"
+#include "renderer.h"
 
 /* Half a turn about y with a scale that differs by axis; the camera looks along +z, and from x and y the scales are
  * taken out again, so that the quad fills the picture. */
@@ -152,9 +153,8 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
         assert_int_equal(noh_gl_picture_create(&g->gl, ledger, &texture, &pictures[i], NULL), NOH_OK);
     }
     assert_int_equal(noh_gl_mesh_create(&g->gl, ledger, &mesh, &drawn, NULL), NOH_OK);
-    assert_int_equal(
-        noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL),
-        NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, ledger, log, sizeof log }, &desc, &renderer, NULL),
+                     NOH_OK);
     noh_gl_draw_begin(&renderer, &q->camera);
     noh_gl_draw_mesh(&renderer, &drawn, q->world, NULL, NULL, NULL, pictures, pass);
     noh_gl_draw_end(&renderer);

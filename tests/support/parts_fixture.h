@@ -11,6 +11,7 @@
 #include "draw/camera.h"
 #include "draw/figure.h"
 #include "gpu/gpu.h"
+#include "renderer.h"
 
 #define PARTS_MAX 16u
 
@@ -86,7 +87,7 @@ static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph
     renderer.layers_uint = noh_gl_morph_plan_of(p->morph.morph)->layer_format == GL_RGBA32UI;
     renderer.meshes = p->meshes;
     renderer.mesh_count = pack->mesh_count;
-    assert_int_equal(noh_gl_renderer_create(&device, &renderer, &p->renderer, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&device, &renderer, &p->renderer, NULL), NOH_OK);
     for (uint32_t i = 0; i < p->item_count; i++) {
         const uint32_t mesh = p->items[i].mesh;
         p->items[i].instance = noh_gl_morph_instance(p->morph.morph, mesh, next[mesh]++);

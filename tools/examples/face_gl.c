@@ -26,7 +26,7 @@ typedef struct face {
     noh_gl_texture pictures[64];
 } face;
 
-static unsigned char file[8u << 20] ALIGNED_16, memory[1u << 20] ALIGNED_16;
+static unsigned char file[8u << 20] ALIGNED_16, memory[1u << 20] ALIGNED_16, programs[1u << 12] ALIGNED_16;
 static unsigned char pixels[SIZE][SIZE][4];
 static char shader_log[2048];
 
@@ -86,7 +86,8 @@ static int open_face(face *f)
     if (noh_gl_mesh_create(&f->gl, &f->ledger, &f->mesh, &f->gl_mesh, &error)) return fail("mesh", &error);
     if (noh_gl_morph_init(memory, sizeof memory, &device, &morph, &f->morph, &error)) return fail("morphs", &error);
     draws.layers_uint = noh_gl_morph_plan_of(f->morph)->layer_format == GL_RGBA32UI;
-    if (noh_gl_renderer_create(&device, &draws, &f->renderer, &error)) return fail("renderer", &error);
+    if (noh_gl_renderer_create(&device, &draws, programs, sizeof programs, &f->renderer, &error))
+        return fail("renderer", &error);
     for (uint32_t i = 0; i < f->pack.texture_count && i < 64u; i++) {
         noh_texture texture;
         (void)noh_pack_texture_at(&f->pack, i, &texture, NULL);

@@ -19,6 +19,7 @@ typedef struct skin_set {
     noh_gl_skin *skin;
     void *memory;
     noh_gl_renderer renderer;
+    void *variants;
 } skin_set;
 
 typedef struct skin_bench {
@@ -103,8 +104,9 @@ static int open_renderer(skin_bench *b, skin_set *s, noh_palette_mode mode)
     desc.palettes = mode;
     desc.crowds = mode == NOH_PALETTE_TEXTURE;
     desc.fewer_influences = 1;
-    if (noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &g->ledger, log, sizeof log }, &desc, &s->renderer,
-                               &error)) {
+    s->variants = malloc(noh_gl_renderer_size(&desc));
+    if (!s->variants || noh_gl_renderer_create(&(noh_gl_device){ &g->gl, NULL, &g->ledger, log, sizeof log }, &desc,
+                                               s->variants, noh_gl_renderer_size(&desc), &s->renderer, &error)) {
         fputs(log, stderr);
         return tool_fail_error("bench", &error);
     }
@@ -147,6 +149,7 @@ static void close_set(skin_set *s)
         noh_gl_skin_delete(s->skin);
     }
     free(s->memory);
+    free(s->variants);
 }
 
 static int skin_open(skin_bench *b)
