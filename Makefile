@@ -93,7 +93,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -231,11 +231,17 @@ $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
-# Makes runtime/face/ear_tables.c out of synthetic speech (flite, libespeak-ng-dev), after a change of the ear only:
-# build/train_ear tools/train_ear/sentences.txt >build/ear_tables.c
-$(BUILD)/train_ear: $(BUILD)/tools/train_ear/train_ear.o $(BUILD)/libnoh.a
+# Makes runtime/face/ear_tables.c out of synthetic speech, after a change of the ear only: `make ear-tables` (ten
+# minutes; `tools/deps.sh ear` installs the synthesisers).
+TRAIN_EAR_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/train_ear/*.c)))
+$(BUILD)/train_ear: $(TRAIN_EAR_O) $(patsubst %,$(BUILD)/runtime/face/%.o,ear_cepstra ear_net phones)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lespeak-ng -lm
+
+ear-tables: $(BUILD)/train_ear
+	$(Q)cd $(BUILD) && ./train_ear $(CURDIR)/tools/train_ear/sentences.txt $(CURDIR)/tools/train_ear/phones.txt \
+	    >ear_tables.c
+	$(Q)mv $(BUILD)/ear_tables.c runtime/face/ear_tables.c
 
 # Our LOD levels against meshoptimizer's; for `make bench`.
 LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))

@@ -93,6 +93,7 @@
 
 /* ---- faces ---- */
 
+#include "face/amplitude.h"  /* mouth shapes out of loudness alone */
 #include "face/corrective.h" /* correctives and in-betweens: targets that follow from others */
 #include "face/ear.h"        /* live sound to mouth shapes */
 #include "face/face.h"       /* blinks, gaze, emotions, breath */

@@ -4,6 +4,7 @@
 #   fuzz   clang and its fuzzer                           cross  other processors
 #   web    the page and its test                          view   the window of noh view
 #   lint   clang-tidy and cppcheck                        docs   the API reference
+#   ear    synthesisers that teach the ear (make ear-tables)
 # Optional packages ("?") may be unavailable: what needs them is left out, or its test is skipped with the reason.
 # Where there is no apt, the list is printed and the script stops.
 set -eu
@@ -58,6 +59,22 @@ packages_web='?emscripten:the page
 libcmocka-dev:its test'
 packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'
+packages_ear='libespeak-ng-dev:formants in every language
+flite:statistics of four voices
+festival:voices cut out of recordings
+festvox-kallpc16k:an American
+festvox-kdlpc16k:an American
+festvox-us-slt-hts:an American
+festvox-italp16k:an Italian
+festvox-itapc16k:an Italian
+festvox-czech-dita:a Czech
+festvox-czech-krb:a Czech
+festvox-czech-machac:a Czech
+festvox-czech-ph:a Czech
+festvox-suopuhe-lj:a Finn
+festvox-suopuhe-mv:a Finn
+festvox-ru:a Russian
+festvox-ca-ona-hts:a Catalan'
 packages_docs='doxygen:the API reference'
 
 # Or the command of that name is here from elsewhere.
@@ -82,6 +99,8 @@ $packages_cross" ;;
 $packages_web" ;;
     lint) all="$all
 $packages_lint" ;;
+    ear) all="$all
+$packages_ear" ;;
     docs) all="$all
 $packages_docs" ;;
     *) echo "deps.sh: no set '$set'" >&2; exit 2 ;;

@@ -9,10 +9,18 @@
 
 enum {
     ONE = 32768,
-    HOLD = 7,      /* frames for which a shape shows at least: 70 ms */
-    SHUT_HOLD = 4, /* shut lips: 34 ms are one frame at 30 Hz */
-    MARGIN = 2600, /* by which another shape must lead */
-    DECIBEL = 85   /* 1/256 octaves of power */
+    DECIBEL = 85, /* 1/256 octaves of power */
+    LIPS = 6,     /* shut for p, b, m; lip on teeth, rounded, open, narrow; at rest */
+    SHUT = 0,
+    REST = 5,
+    /* 1/256 octaves of probability that other lips must gather */
+    TO_SHUT = 250,
+    TO_REST = 2000,
+    TO_OTHER = 900,
+    FROM_SHUT = 450,   /* to others, from lips that are shut or at rest */
+    LEAST_LIKELY = 32, /* 1/32768: no frame counts for less */
+    OTHER_SHAPE = 20,  /* halves: by which another shape of the same lips must lead */
+    SMOOTHED = 3       /* frames whose weights are averaged */
 };
 
 typedef struct ear {
@@ -20,20 +28,29 @@ typedef struct ear {
     int64_t area;
     int32_t last; /* sample heard */
     int16_t samples[EAR_WINDOW], before;
-    uint16_t filled, heard, ready;
+    uint16_t skipped, filled, heard, ready;
     uint32_t frames;
-    ear_mean mean;
-    int16_t seen[EAR_SEEN][EAR_COEFFICIENTS];
-    uint16_t weights[EAR_SMOOTHED][NOH_VISEME_COUNT];
+    ear_voice voice;
+    int8_t seen[EAR_SEEN][EAR_FEATURES];
+    uint16_t weights[SMOOTHED][NOH_VISEME_COUNT];
     int32_t loud[EAR_AFTER + 1];
-    int32_t low, high; /* percentiles of loudness, 1/256 octave */
-    uint8_t shape, held, shut, shut_left;
+    int32_t cost[LIPS];               /* 1/256 octave: of the likeliest way that ends with these lips; 0: of all */
+    int32_t shapes[NOH_VISEME_COUNT]; /* 1/32768: sums that fade */
+    uint8_t shape;
 } ear;
 
 typedef char ear_fits[sizeof(ear) <= NOH_EAR_BYTES ? 1 : -1];
 
 static const uint8_t opens[NOH_VISEME_COUNT] = { 0, 0, 10, 20, 20, 25, 15, 10, 20, 20, 100, 60, 30, 70, 25 };
 static const uint8_t rounds[NOH_VISEME_COUNT] = { 0, 0, 0, 0, 0, 0, 60, 0, 0, 40, 0, 0, 0, 80, 100 };
+static const uint8_t lips[NOH_VISEME_COUNT] = { REST, SHUT, 1, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
+
+static void begin(ear *e)
+{
+    e->shapes[NOH_VISEME_SIL] = ONE;
+    for (uint32_t i = 0; i < REST; i++) e->cost[i] = TO_OTHER;
+    for (uint32_t i = 0; i < SMOOTHED; i++) e->weights[i][NOH_VISEME_SIL] = ONE - 1;
+}
 
 noh_result noh_ear_init(noh_ear *memory, uint32_t sample_rate, noh_error *error)
 {
@@ -45,48 +62,30 @@ noh_result noh_ear_init(noh_ear *memory, uint32_t sample_rate, noh_error *error)
     }
     memset(memory, 0, sizeof *memory);
     e->rate = sample_rate;
-    noh_ear_mean_init(&noh_ear_tables, &e->mean);
-    e->low = 26 * 256; /* -38 dB and -24 dB of full scale */
-    e->high = 31 * 256;
-    for (uint32_t i = 0; i < EAR_SMOOTHED; i++) e->weights[i][NOH_VISEME_SIL] = ONE - 1;
+    noh_ear_voice_init(&noh_ear_tables, &e->voice);
+    begin(e);
     return NOH_OK;
 }
 
-/* 2^-x, x in 1/2^19: 1/32768. */
-static int32_t power_of_half(int64_t x)
+void noh_ear_restart(noh_ear *memory)
 {
-    const int64_t whole = x >> 19, f = (x & ((1 << 19) - 1)) >> 4;
-    /* 2^-f = 1 - .6565 f - .3435 f (1 - f) - ... over one octave, within 1/300 */
-    const int64_t line = 32768 - f / 2, bend = (f * (32768 - f) >> 15) * 5636 / 32768;
-    return whole > 15 ? 0 : (int32_t)((line - bend) >> whole);
-}
-
-static void weigh(const ear_tables *t, const int16_t *c, uint16_t *weights)
-{
-    int64_t score[NOH_VISEME_COUNT], best = INT64_MIN, sum = 0;
-    int32_t part[NOH_VISEME_COUNT];
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
-        score[v] = t->bias[v];
-        for (uint32_t i = 0; i < EAR_COEFFICIENTS; i++) score[v] += (int32_t)t->weight[v][i] * c[i];
-        best = score[v] > best ? score[v] : best;
-    }
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum += part[v] = power_of_half(best - score[v]);
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) weights[v] = (uint16_t)(part[v] * (int64_t)(ONE - 1) / sum);
-}
-
-/* A percentile moves by steps up and down whose sizes are as its share of the frames below and above. */
-static void hear_loudness(ear *e, int32_t loud)
-{
-    e->low += loud > e->low ? 3 : -57;
-    e->high += loud > e->high ? 57 : -3;
-    if (e->high < e->low) e->high = e->low;
+    ear *e = (ear *)(void *)memory;
+    ear_voice voice;
+    uint32_t rate;
+    NOH_ASSERT(memory);
+    voice = e->voice;
+    rate = e->rate;
+    memset(memory, 0, sizeof *memory);
+    e->voice = voice;
+    e->rate = rate;
+    begin(e);
 }
 
 /* Where between the quietest and the loudest of late: 1/32768. */
 static int32_t level(const ear *e, int32_t loud)
 {
-    const int32_t lowest = e->high - 26 * DECIBEL, low = e->low > lowest ? e->low : lowest;
-    const int32_t range = e->high - low > 18 * DECIBEL ? e->high - low : 18 * DECIBEL;
+    const int32_t lowest = e->voice.high - 26 * DECIBEL, low = e->voice.low > lowest ? e->voice.low : lowest;
+    const int32_t range = e->voice.high - low > 18 * DECIBEL ? e->voice.high - low : 18 * DECIBEL;
     const int32_t above = loud - low - 3 * DECIBEL, at = above < 0 ? 0 : above;
     return at > range ? ONE : at * ONE / range;
 }
@@ -102,16 +101,15 @@ static void drop_first(void *bytes, size_t drop, size_t size)
 static void analyse(ear *e)
 {
     const ear_tables *t = &noh_ear_tables;
-    int32_t c[EAR_COEFFICIENTS], loud;
-    noh_ear_mfcc(t, e->samples, e->before, c, &loud);
-    noh_ear_mean_take(&e->mean, c);
+    int32_t cepstra[EAR_CEPSTRA], features[EAR_FEATURES], loudness;
+    noh_ear_cepstra(t, e->samples, e->before, cepstra, &loudness);
+    noh_ear_measure(&e->voice, cepstra, loudness, features);
     drop_first(e->seen, sizeof e->seen[0], sizeof e->seen);
-    drop_first(e->weights, sizeof e->weights[0], sizeof e->weights);
     drop_first(e->loud, sizeof e->loud[0], sizeof e->loud);
-    for (uint32_t i = 0; i < EAR_COEFFICIENTS; i++) e->seen[EAR_SEEN - 1][i] = (int16_t)c[i];
-    e->loud[EAR_AFTER] = loud;
-    hear_loudness(e, loud);
-    weigh(t, e->seen[EAR_SEEN - 1], e->weights[EAR_SMOOTHED - 1]);
+    noh_ear_scale(t, features, e->seen[EAR_SEEN - 1]);
+    /* before the first frame the sound is taken to have been as it is in it */
+    for (uint32_t f = 0; !e->heard && f < EAR_SEEN - 1; f++) memcpy(e->seen[f], e->seen[EAR_SEEN - 1], EAR_FEATURES);
+    e->loud[EAR_AFTER] = loudness;
     e->before = e->samples[EAR_HOP - 1];
     drop_first(e->samples, sizeof(int16_t) * EAR_HOP, sizeof e->samples);
     e->filled = EAR_WINDOW - EAR_HOP;
@@ -121,8 +119,13 @@ static void analyse(ear *e)
 
 static void add_sample(ear *e, int64_t value)
 {
-    if (!e->filled) e->before = (int16_t)value; /* the first of all: no click */
-    e->samples[e->filled++] = (int16_t)(value < -32768 ? -32768 : value > 32767 ? 32767 : value);
+    const int16_t sample = (int16_t)(value < -32768 ? -32768 : value > 32767 ? 32767 : value);
+    if (e->skipped < EAR_SKIP) {
+        e->skipped++;
+        e->before = sample;
+        return;
+    }
+    e->samples[e->filled++] = sample;
     if (e->filled == EAR_WINDOW) analyse(e);
 }
 
@@ -159,78 +162,129 @@ size_t noh_ear_hear(noh_ear *memory, const int16_t *samples, size_t count)
     return taken;
 }
 
-/* The mean of the last frames' weights, of which silence takes what is not loud enough to be speech. */
-static void smooth(const ear *e, int32_t loudness, int32_t *weights)
+/* The network's weights, of which silence takes what is not loud enough to be speech. */
+static void weigh(ear *e, int32_t loudness, int32_t *weights)
 {
     const int32_t speech = loudness * 6 > ONE ? ONE : loudness * 6;
-    int32_t all = 0;
+    int32_t rest = ONE - 1;
+    noh_ear_read(&noh_ear_tables, (const int8_t(*)[EAR_FEATURES])e->seen, weights);
     for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
-        int32_t sum = 0;
-        for (uint32_t i = 0; i < EAR_SMOOTHED; i++) sum += e->weights[i][v];
-        weights[v] = (int32_t)((int64_t)(sum / EAR_SMOOTHED) * speech / ONE);
-        all += weights[v];
+        weights[v] = (int32_t)((int64_t)weights[v] * speech / ONE);
+        rest -= weights[v];
     }
-    weights[NOH_VISEME_SIL] = ONE - all;
+    weights[NOH_VISEME_SIL] = rest;
 }
 
-/* Lips that shut do so at once; any other shape waits for its turn, and has to lead. */
+static int32_t least_of(const int32_t *cost)
+{
+    int32_t least = cost[0];
+    for (uint32_t i = 1; i < LIPS; i++) least = cost[i] < least ? cost[i] : least;
+    return least;
+}
+
+/* The lips at the end of the likeliest way through those of all frames so far (Viterbi, 1967), where lips that change
+ * cost something, and least if they shut. */
+static uint32_t follow(ear *e, const int32_t *weights)
+{
+    const int32_t least = least_of(e->cost), shut = e->cost[SHUT] < e->cost[REST] ? e->cost[SHUT] : e->cost[REST];
+    const int32_t opens_up = shut + FROM_SHUT, other = least + TO_OTHER < opens_up ? least + TO_OTHER : opens_up;
+    int32_t sum[LIPS] = { 0 };
+    uint32_t best = 0;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum[lips[v]] += weights[v];
+    for (uint32_t i = 0; i < LIPS; i++) {
+        const int32_t change = i == SHUT ? least + TO_SHUT : i == REST ? least + TO_REST : other;
+        if (e->cost[i] > change) e->cost[i] = change;
+        e->cost[i] += 15 * 256 - noh_ear_log2((uint64_t)(sum[i] > LEAST_LIKELY ? sum[i] : LEAST_LIKELY));
+        if (e->cost[i] < e->cost[best]) best = i;
+    }
+    for (uint32_t i = 0, from = (uint32_t)e->cost[best]; i < LIPS; i++) e->cost[i] -= (int32_t)from;
+    return best;
+}
+
+/* At rest lips are shut, too. */
+static int is_alike(uint32_t a, uint32_t b)
+{
+    return a == b || ((a == SHUT || a == REST) && (b == SHUT || b == REST));
+}
+
+/* With other lips, what is likeliest in this frame; else another shape has to lead for a while. */
 static void choose(ear *e, const int32_t *weights)
 {
-    uint32_t best = 0;
-    for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) best = weights[v] > weights[best] ? v : best;
-    if (e->held < 255) e->held++;
-    if (e->shut_left) {
-        best = NOH_VISEME_PP;
-    } else if (e->held < HOLD || (best != e->shape && weights[best] < weights[e->shape] + MARGIN)) {
-        best = e->shape;
+    const uint32_t now = follow(e, weights);
+    const int same = is_alike(lips[e->shape], now);
+    uint32_t best = e->shape;
+    int32_t most = same ? e->shapes[e->shape] / 2 * OTHER_SHAPE : -1;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
+        const int32_t weight = same ? e->shapes[v] : weights[v];
+        e->shapes[v] += weights[v] - e->shapes[v] / 5;
+        if (weight <= most || !(same ? is_alike(lips[v], now) : lips[v] == now)) continue;
+        most = weight;
+        best = v;
     }
-    if (best != e->shape) e->held = 0;
     e->shape = (uint8_t)best;
 }
 
-/* What shows leads: the others give way until it does. */
+/* The mean of the last frames' weights. */
+static void smooth(ear *e, int32_t *weights)
+{
+    int32_t rest = ONE;
+    drop_first(e->weights, sizeof e->weights[0], sizeof e->weights);
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) e->weights[SMOOTHED - 1][v] = (uint16_t)weights[v];
+    for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
+        weights[v] = 0;
+        for (uint32_t i = 0; i < SMOOTHED; i++) weights[v] += e->weights[i][v];
+        weights[v] /= SMOOTHED;
+        rest -= weights[v];
+    }
+    weights[NOH_VISEME_SIL] = rest;
+}
+
+/* What shows leads: the others give way until it does. Beside lips that are shut there is nothing. */
 static void lead(const ear *e, int32_t *weights)
 {
+    const int shut = e->shape == NOH_VISEME_SIL || e->shape == NOH_VISEME_PP;
     int32_t best = 0, others;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
         if (v != e->shape && weights[v] > best) best = weights[v];
     }
-    if (!e->shut_left && weights[e->shape] > best) return;
+    if (!shut && weights[e->shape] > best) return;
     others = ONE - weights[e->shape];
-    /* what they keep: all but shut lips share half of it */
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT && others; v++) {
-        if (v != e->shape) weights[v] = e->shut_left ? 0 : (int32_t)((int64_t)weights[v] * (ONE / 2 - 1) / others);
-    }
     weights[e->shape] = ONE;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
-        if (v != e->shape) weights[e->shape] -= weights[v];
+        if (v == e->shape) continue;
+        if (others) weights[v] = shut ? 0 : (int32_t)((int64_t)weights[v] * (ONE / 2 - 1) / others);
+        weights[e->shape] -= weights[v];
     }
 }
 
-int noh_ear_next(noh_ear *memory, noh_ear_frame *frame)
+static void show(const ear *e, const int32_t *weights, int32_t loudness, noh_ear_frame *frame)
 {
-    ear *e = (ear *)(void *)memory;
-    int32_t weights[NOH_VISEME_COUNT], loudness, open = 0, round = 0;
-    NOH_ASSERT(memory && frame);
-    if (!e->ready) return 0;
-    e->ready = 0;
-    loudness = level(e, e->loud[0]);
-    smooth(e, loudness, weights);
-    if (e->shut_left) e->shut_left--;
-    if (noh_ear_shut_score(&noh_ear_tables, (const int16_t(*)[EAR_COEFFICIENTS])e->seen) > 0) e->shut_left = SHUT_HOLD;
-    choose(e, weights);
-    lead(e, weights);
-    frame->index = e->frames++;
+    const int32_t quiet = loudness * 6, loud = ONE * 2 / 5 + loudness / 5 * 3;
+    int64_t open = 0, round = 0;
     frame->shape = (noh_viseme)e->shape;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
         frame->visemes[v] = (float)weights[v] * (1.0f / ONE);
         open += weights[v] * opens[v] / 100;
         round += weights[v] * rounds[v] / 100;
     }
-    loudness = loudness * 6 < ONE * 2 / 5 + loudness / 5 * 3 ? loudness * 6 : ONE * 2 / 5 + loudness / 5 * 3;
-    const int64_t loud_open = (int64_t)open * loudness / ONE;
-    frame->open = (float)loud_open * (1.0f / ONE);
+    frame->open = (float)(open * (quiet < loud ? quiet : loud) / ONE) * (1.0f / ONE);
     frame->round = (float)round * (1.0f / ONE);
-    frame->closed = e->shut_left ? 1.0f : frame->visemes[NOH_VISEME_PP];
+    frame->closed = frame->visemes[NOH_VISEME_PP];
+}
+
+int noh_ear_next(noh_ear *memory, noh_ear_frame *frame)
+{
+    ear *e = (ear *)(void *)memory;
+    int32_t weights[NOH_VISEME_COUNT], loudness;
+    NOH_ASSERT(memory && frame);
+    if (!e->ready) return 0;
+    e->ready = 0;
+    loudness = level(e, e->loud[0]);
+    weigh(e, loudness, weights);
+    choose(e, weights);
+    smooth(e, weights);
+    lead(e, weights);
+    show(e, weights, loudness, frame);
+    frame->index = e->frames++;
     return 1;
 }

@@ -19,9 +19,11 @@ if grep -q 'libsndfile is not here' "$work/err"; then
     finish
 fi
 expect 0 'its own voice'
-noh speak "$work/said.wav"
-expect 2 'a recording without words is a usage error'
-says '--text'
+noh speak "$work/said.wav" --live --text 'Papa bought me five boats.'
+expect 2 'words, or an ear'
+noh speak 'Hello' --live
+expect 2 'a text is not heard'
+says 'recording without words'
 noh speak 'Hello' --labels "$work/said.wav"
 expect 2 'labels want a recording'
 
@@ -101,6 +103,62 @@ for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut
     says "${broken#*:}"
 done
 check 'and nothing is left behind' sh -c '! test -e "$1"' - "$work/other.noh"
+
+# ---- without words: heard ----
+cat >"$work/heard.py" <<'PY'
+import json, sys
+j, method, latency = json.load(open(sys.argv[1])), sys.argv[2], float(sys.argv[3])
+assert j['source'] == 'recording' and j['method'] == method and j['latency_ms'] == latency, j['latency_ms']
+assert set(j) >= {'seconds', 'source', 'latency_ms', 'phones', 'frames'}
+f, p = j['frames'], j['phones']
+assert f['rate_hz'] == 100 and len(f['viseme']) == len(f['open']) == len(f['round']) >= 100 * j['seconds'] - 1
+assert all(0 <= v <= 1 for v in f['open'] + f['round'])
+assert p[0]['start_s'] == 0 and abs(p[-1]['end_s'] - j['seconds']) < 1e-6
+assert [x['start_s'] for x in p][1:] == [x['end_s'] for x in p][:-1]
+assert all(x['viseme'] != y['viseme'] for x, y in zip(p, p[1:]))
+spoken = len(sys.argv) > 4
+assert not spoken or (max(f['open']) > 0.4 and len(p) > 8), (max(f['open']), len(p))
+assert spoken or max(f['open']) < 0.1, max(f['open'])
+PY
+for kind in said u8 s24 f32 stereo r8000 r48000 noise loud half; do
+    noh speak "$work/$kind.wav" --json
+    expect 0 "$kind.wav is heard"
+    cp "$work/out" "$work/heard.json"
+    check 'shapes of speech' python3 "$work/heard.py" "$work/heard.json" ear 0 spoken
+done
+noh speak "$work/said.wav" --live --json
+cp "$work/out" "$work/heard.json"
+check 'live: 40 ms late, and it says so' python3 "$work/heard.py" "$work/heard.json" ear 40 spoken
+noh speak "$work/said.wav" --amplitude --json
+cp "$work/out" "$work/heard.json"
+check 'by loudness alone' python3 "$work/heard.py" "$work/heard.json" amplitude 0 spoken
+noh speak "$work/said.wav" --amplitude --live --json
+cp "$work/out" "$work/heard.json"
+check 'which is later' python3 "$work/heard.py" "$work/heard.json" amplitude 100 spoken
+for kind in silent short nan; do
+    for how in --live --amplitude; do
+        noh speak "$work/$kind.wav" $how --json
+        expect 0 "$kind.wav, $how"
+        cp "$work/out" "$work/heard.json"
+        case $how in --live) method='ear 40' ;; *) method='amplitude 0' ;; esac
+        # shellcheck disable=SC2086 # two words
+        [ $kind = short ] || check 'and the mouth stays shut' python3 "$work/heard.py" "$work/heard.json" $method
+    done
+done
+for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'slow.wav:samples a second'; do
+    noh speak "$work/${broken%%:*}" --face "$build/mask.noh" -o "$work/other.noh"
+    expect 1 "${broken%%:*} is refused"
+    says "${broken#*:}"
+done
+for how in '' --live --amplitude; do
+    noh speak "$work/said.wav" $how --face "$build/mask.noh" -o "$work/heard.noh"
+    expect 0 "a clip of what is heard $how"
+    noh info "$work/heard.noh"
+    check 'it has floats for the face' grep -q "clip 'speech': .* floats" "$work/out"
+    noh render "$build/mask.noh" --size 64x64 -o "$work/rest.png"
+    noh render "$build/mask.noh" --size 64x64 -o "$work/open.png" --anim "$work/heard.noh" --clip speech --time 0.3
+    check 'and moves it' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/open.png"
+done
 noh speak "$work/half.wav" --text 'Papa bought'
 expect 0 'a file cut short is read as far as it goes'
 noh speak "$work/loud.wav" --text 'Papa bought me five boats.'

@@ -9,17 +9,19 @@
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
 #include "alignment.h"
+#include "hearing.h"
 #include "labels.h"
 #include "platform.h"
 #include "speech_track.h"
 #include "wav_file.h"
 
-#define FRAME_RATE 100u
+#define FRAME_RATE SPEECH_TRACK_RATE
 #define TEXT_BYTES_MAX 65536u
 
 typedef struct speak_args {
     const char *subject, *text, *text_file, *labels, *output, *face, *language, *name, *wav;
     int as_json;
+    hearing how;
 } speak_args;
 
 /* What is said, out of a text alone or out of a recording. */
@@ -27,8 +29,8 @@ typedef struct spoken {
     char *text;
     synthesis said;
     speech_track track;
-    int recorded;
-    double score; /* of the alignment */
+    int recorded, heard; /* heard: a recording without words */
+    double score;        /* of the alignment */
     size_t clipped;
     int labelled;
     label_score against;
@@ -58,15 +60,11 @@ static int64_t tick_of(uint32_t frame)
     return (2 * (int64_t)frame + 1) * NOH_TICKS_PER_SECOND / (2 * FRAME_RATE);
 }
 
-static void json_curve(json *j, const char *key, const speech_track *t, uint32_t frames, float (*of)(uint32_t viseme))
+static void json_curve(json *j, const char *key, const speech_track *t, uint32_t frames,
+                       float (*at)(const speech_track *t, int64_t tick))
 {
     json_open(j, key, '[');
-    for (uint32_t f = 0; f < frames; f++) {
-        float visemes[NOH_VISEME_COUNT], sum = 0.0f;
-        noh_speech_visemes(&t->speech, tick_of(f), visemes);
-        for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum += visemes[v] * of(v);
-        json_number(j, NULL, (double)sum);
-    }
+    for (uint32_t f = 0; f < frames; f++) json_number(j, NULL, (double)at(t, tick_of(f)));
     json_close(j, ']');
 }
 
@@ -80,8 +78,8 @@ static void json_frames(json *j, const speech_track *t)
         json_text(j, NULL, viseme_name(speech_track_viseme(t, tick_of(f))));
     }
     json_close(j, ']');
-    json_curve(j, "open", t, frames, viseme_open);
-    json_curve(j, "round", t, frames, viseme_round);
+    json_curve(j, "open", t, frames, speech_track_open);
+    json_curve(j, "round", t, frames, speech_track_round);
     json_close(j, '}');
 }
 
@@ -99,13 +97,16 @@ static void json_labels(json *j, const label_score *l)
     json_close(j, '}');
 }
 
-static int print_json(const spoken *s)
+static int print_json(const speak_args *a, const spoken *s)
 {
     json j = json_begin();
     json_number(&j, "seconds", s->track.seconds);
-    json_text(&j, "source", s->recorded ? "recording and text" : "text");
-    json_number(&j, "latency_ms", 0.0);
-    if (s->recorded) {
+    json_text(&j, "source", s->heard ? "recording" : s->recorded ? "recording and text" : "text");
+    json_number(&j, "latency_ms", s->heard ? hearing_latency_ms(&a->how) : 0.0);
+    if (s->heard) {
+        json_text(&j, "method", a->how.amplitude ? "amplitude" : "ear");
+        json_integer(&j, "clipped_samples", s->clipped);
+    } else if (s->recorded) {
         json_number(&j, "score", s->score);
         json_bool(&j, "words_match", s->score >= ALIGNMENT_SCORE_POOR);
         json_integer(&j, "clipped_samples", s->clipped);
@@ -124,12 +125,17 @@ static double part(uint32_t of, uint32_t all)
 static void print_text(const speak_args *a, const spoken *s)
 {
     FILE *out = report_stream(a->output);
-    fprintf(out, "%.2f s, %zu words, %zu phones:", s->track.seconds, s->said.word_count, s->said.phone_count);
+    if (s->heard) {
+        fprintf(out, "%.2f s, heard %s, %zu mouth shapes:", s->track.seconds,
+                a->how.amplitude ? "by loudness alone" : "by ear", s->said.phone_count);
+    } else {
+        fprintf(out, "%.2f s, %zu words, %zu phones:", s->track.seconds, s->said.word_count, s->said.phone_count);
+    }
     for (size_t i = 0; i < s->said.phone_count; i++) {
         fprintf(out, " %s", s->said.phones[i].name[0] ? s->said.phones[i].name : "_");
     }
     fprintf(out, "\n");
-    if (s->recorded)
+    if (s->recorded && !s->heard)
         fprintf(out, "alignment's score %.2f (%.2f and less: other words)\n", s->score, ALIGNMENT_SCORE_POOR);
     if (s->labelled) {
         const label_score *l = &s->against;
@@ -187,11 +193,13 @@ static int take_text(const speak_args *a, spoken *s)
 {
     const char *text = a->text ? a->text : a->subject;
     s->recorded = a->text || a->text_file;
-    if (!s->recorded && is_sound_file(a->subject)) {
-        return tool_usage("speak: what is said in %s? --text \"WORDS\" or --text-file FILE", a->subject);
+    s->heard = !s->recorded && is_sound_file(a->subject);
+    if ((a->how.live || a->how.amplitude) && !s->heard) {
+        return tool_usage("speak: --live and --amplitude are for a recording without words");
     }
-    if (s->recorded && a->wav) return tool_usage("speak: --wav has no effect with a recording");
-    if (!s->recorded && a->labels) return tool_usage("speak: --labels wants a recording, and --text or --text-file");
+    if ((s->recorded || s->heard) && a->wav) return tool_usage("speak: --wav has no effect with a recording");
+    if (!s->recorded && !s->heard && a->labels) return tool_usage("speak: --labels wants a recording");
+    if (s->heard) text = "";
     if (a->text_file) return read_text_file(a->text_file, &s->text);
     if (strlen(text) > TEXT_BYTES_MAX) return tool_fail("speak", "the text is longer than %u bytes", TEXT_BYTES_MAX);
     s->text = copy(text, strlen(text));
@@ -232,6 +240,19 @@ static int align(const speak_args *a, spoken *s)
     return status;
 }
 
+static int hear(const speak_args *a, spoken *s)
+{
+    sound recording;
+    int status = sound_read(a->subject, &recording);
+    if (status) return status;
+    status = hearing_make(&recording, &a->how, &s->said, &s->track);
+    s->clipped = recording.clipped;
+    sound_free(&recording);
+    if (!status && a->labels) status = labels_score(a->labels, &s->said, &s->against);
+    s->labelled = a->labels != NULL;
+    return status;
+}
+
 static int write_pack(const speak_args *a, const spoken *s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -251,6 +272,7 @@ static int write_pack(const speak_args *a, const spoken *s)
 static int say(const speak_args *a, spoken *s)
 {
     int status = take_text(a, s);
+    if (!status && s->heard) return hear(a, s);
     if (!status) status = s->recorded ? align(a, s) : synthesis_make(s->text, a->language, &s->said);
     synthesis_end();
     if (!status) status = speech_track_make(&s->said, &s->track);
@@ -266,7 +288,7 @@ static int run(void *args)
     status = say(a, &s);
     if (!status && a->output) status = write_pack(a, &s);
     if (!status && a->wav) status = wav_write(a->wav, s.said.samples, s.said.sample_count, s.said.sample_rate);
-    if (!status && a->as_json) status = print_json(&s);
+    if (!status && a->as_json) status = print_json(a, &s);
     if (!status && !a->as_json) print_text(a, &s);
     speech_track_free(&s.track);
     synthesis_free(&s.said);
@@ -295,8 +317,17 @@ static const option options[] = {
       .at = offsetof(speak_args, labels),
       .value = "FILE",
       .what = "measure what was found against phones that are known: lines of start, end (s) and phone",
-      .example = "line.phones",
-      .needs = "--text --text-file" },
+      .example = "line.phones" },
+    { .name = "--live",
+      .kind = OPTION_FLAG,
+      .at = offsetof(speak_args, how.live),
+      .what = "a recording without words, heard in one go as from a microphone (JSON: how late)",
+      .excludes = "--text --text-file" },
+    { .name = "--amplitude",
+      .kind = OPTION_FLAG,
+      .at = offsetof(speak_args, how.amplitude),
+      .what = "a recording without words, by loudness alone: three shapes, ten times a second",
+      .excludes = "--text --text-file" },
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(speak_args, output),
@@ -343,10 +374,11 @@ const verb verb_speak = {
         "shapes run into each other as they do in speech, and lips meet for every p, b and m. Words are callback "
         "keys of the clip. With --text the words are found in a recording (8 to 32 bits or floats, any rate, up to ten "
         "minutes; Debian: libsndfile1): it is warped onto several voices of eSpeak NG that say them, in any of its "
-        "languages. A warning tells when the words do not seem to be in it.",
+        "languages. A warning tells when the words do not seem to be in it. A recording without words is heard by the "
+        "same ear that hears microphones: fewer shapes are right, and any language will do.",
     .example =
         "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json\n"
-        "line.wav --text \"Hello.\" --face face.noh -o line.noh",
+        "line.wav --text \"Hello.\" --face face.noh -o line.noh\nline.wav --face face.noh -o line.noh",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

@@ -79,12 +79,84 @@ int speech_track_make(const synthesis *said, speech_track *out)
 void speech_track_free(speech_track *t)
 {
     free(t->phones);
+    free(t->frames);
     memset(t, 0, sizeof *t);
+}
+
+int speech_track_frames(speech_track *t, double seconds)
+{
+    memset(t, 0, sizeof *t);
+    t->seconds = seconds;
+    t->frame_room = (uint32_t)(seconds * SPEECH_TRACK_RATE) + 1u;
+    t->frames = calloc(t->frame_room, sizeof *t->frames);
+    return t->frames ? 0 : tool_fail("speak", "out of memory");
+}
+
+/* The frame whose middle is at or before a tick, the one behind it, and how far between them. */
+static float frames_at(const speech_track *t, int64_t tick, const speech_track_frame **a, const speech_track_frame **b)
+{
+    const double last = (double)t->frame_count - 1.0;
+    const double at = (double)tick * SPEECH_TRACK_RATE / NOH_TICKS_PER_SECOND - 0.5;
+    const double held = at < 0.0 ? 0.0 : at > last ? last : at;
+    const uint32_t n = (uint32_t)held;
+    *a = &t->frames[n];
+    *b = n + 1u < t->frame_count ? &t->frames[n + 1u] : *a;
+    return (float)(held - n);
+}
+
+/* Before it begins and after it has ended, the mouth is shut. */
+static int is_outside(const speech_track *t, int64_t tick)
+{
+    return !t->frame_count || tick < 0 || (double)tick > t->seconds * NOH_TICKS_PER_SECOND;
+}
+
+void speech_track_visemes(const speech_track *t, int64_t tick, float *visemes)
+{
+    const speech_track_frame *a, *b;
+    float part;
+    if (!t->frames) {
+        noh_speech_visemes(&t->speech, tick, visemes);
+        return;
+    }
+    memset(visemes, 0, NOH_VISEME_COUNT * sizeof *visemes);
+    visemes[NOH_VISEME_SIL] = 1.0f;
+    if (is_outside(t, tick)) return;
+    part = frames_at(t, tick, &a, &b);
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
+        visemes[v] = a->visemes[v] + part * (b->visemes[v] - a->visemes[v]);
+    }
+}
+
+static float curve_at(const speech_track *t, int64_t tick, float (*of)(uint32_t viseme))
+{
+    float visemes[NOH_VISEME_COUNT], sum = 0.0f;
+    speech_track_visemes(t, tick, visemes);
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum += visemes[v] * of(v);
+    return sum;
+}
+
+float speech_track_open(const speech_track *t, int64_t tick)
+{
+    const speech_track_frame *a, *b;
+    if (!t->frames || is_outside(t, tick)) return curve_at(t, tick, viseme_open);
+    (void)frames_at(t, tick, &a, &b);
+    return a->open;
+}
+
+float speech_track_round(const speech_track *t, int64_t tick)
+{
+    return curve_at(t, tick, viseme_round);
 }
 
 uint32_t speech_track_viseme(const speech_track *t, int64_t tick)
 {
     uint32_t low = 0, high = t->speech.phone_count;
+    if (t->frames) {
+        const speech_track_frame *a, *b;
+        if (is_outside(t, tick)) return NOH_VISEME_SIL;
+        (void)frames_at(t, tick, &a, &b);
+        return a->shape;
+    }
     if (tick < (int64_t)t->phones[0].start || tick >= (int64_t)t->speech.end) return NOH_VISEME_SIL;
     while (high - low > 1u) {
         const uint32_t middle = low + (high - low) / 2u;
@@ -147,9 +219,9 @@ static void visemes_of(const speech_track *t, uint32_t frame, float *visemes)
 {
     const int64_t step = NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND, tick = (int64_t)frame * step;
     float other[NOH_VISEME_COUNT];
-    noh_speech_visemes(&t->speech, tick, visemes);
+    speech_track_visemes(t, tick, visemes);
     for (int64_t at = tick - step; at <= tick + step; at += 2 * step) {
-        noh_speech_visemes(&t->speech, at, other);
+        speech_track_visemes(t, at, other);
         if (shut_of(other) > shut_of(visemes)) memcpy(visemes, other, sizeof other);
     }
 }

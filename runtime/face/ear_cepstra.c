@@ -1,4 +1,4 @@
-/* ear_mfcc.c: mel-frequency cepstral coefficients of a window of sound, in integers. */
+/* ear_cepstra.c: mel-frequency cepstral coefficients of a window of sound, in integers. */
 #include "face/ear_internal.h"
 
 static int32_t times(int32_t value, int16_t factor)
@@ -78,7 +78,7 @@ static uint64_t power_at(const ear_tables *t, const int32_t (*z)[2], uint32_t k)
 }
 
 /* log2 in 1/256, within 1/128. */
-static int32_t log2_of(uint64_t value)
+int32_t noh_ear_log2(uint64_t value)
 {
     int32_t whole = 0;
     int64_t part;
@@ -95,17 +95,16 @@ static int32_t loudness_of(const int16_t *samples)
         sum += samples[i];
         squares += (int64_t)samples[i] * samples[i];
     }
-    return log2_of((uint64_t)(squares - sum * sum / EAR_WINDOW) + 1u);
+    return noh_ear_log2((uint64_t)(squares - sum * sum / EAR_WINDOW) + 1u);
 }
 
 /* 64 units are one bit of a sample; squares of them, less the 12 bits of power_at. */
 enum { UNIT_BITS = 2 * 6 - 12, FILTER_BITS = 8, FLOOR = 107 };
 
-void noh_ear_mfcc(const ear_tables *t, const int16_t *samples, int16_t before, int32_t *coefficients, int32_t *loudness)
+static void log_mels(const ear_tables *t, const int16_t *samples, int16_t before, int32_t *logs)
 {
     int32_t z[EAR_FFT / 2][2];
     uint64_t mel[EAR_MELS + 1] = { 0 };
-    int32_t logs[EAR_MELS];
     const int shift = prepare(t, samples, before, z);
     transform(t, z);
     for (uint32_t k = 1; k <= EAR_FFT / 2; k++) {
@@ -117,41 +116,25 @@ void noh_ear_mfcc(const ear_tables *t, const int16_t *samples, int16_t before, i
     }
     for (uint32_t m = 0; m < EAR_MELS; m++) {
         const uint64_t floor = ((uint64_t)FLOOR << FILTER_BITS) << (2 * shift);
-        logs[m] = log2_of(mel[m] + (floor >> 6)) - 2 * 256 * shift;
+        logs[m] = noh_ear_log2(mel[m] + (floor >> 6)) - 2 * 256 * shift;
     }
+}
+
+/* A cosine of c (m + 1/2) / 24 half turns, from the table of 512 steps a turn: within 1/160. */
+static int16_t basis(const ear_tables *t, uint32_t c, uint32_t m)
+{
+    return cosine_of(t, (c * (2 * m + 1) * EAR_FFT + 2 * EAR_MELS) / (4 * EAR_MELS));
+}
+
+void noh_ear_cepstra(const ear_tables *t, const int16_t *samples, int16_t before, int32_t *cepstra, int32_t *loudness)
+{
+    int32_t logs[EAR_MELS];
+    log_mels(t, samples, before, logs);
     *loudness = loudness_of(samples);
-    for (uint32_t c = 0; c < EAR_COEFFICIENTS; c++) {
-        int32_t sum = 0;
-        for (uint32_t m = 0; m < EAR_MELS; m++) sum += t->cosine[c][m] * logs[m];
-        coefficients[c] = sum / 16384;
+    for (uint32_t c = 0; c < EAR_CEPSTRA; c++) {
+        int64_t sum = 0;
+        for (uint32_t m = 0; m < EAR_MELS; m++) sum += (int64_t)basis(t, c, m) * logs[m];
+        /* by sqrt(1 / 24) and sqrt(2 / 24): the transform keeps lengths */
+        cepstra[c] = (int32_t)(sum / 32768 * (c ? 4730 : 3344) / 16384);
     }
-}
-
-void noh_ear_mean_init(const ear_tables *t, ear_mean *m)
-{
-    for (uint32_t c = 0; c < EAR_COEFFICIENTS; c++) m->mean[c] = t->mean[c] * 256;
-    m->peak = -1000000;
-    m->count = 0;
-}
-
-/* As loud as the peak of late, less 11.5 octaves of coefficient 0, is speech; the mean is of 2 s. */
-void noh_ear_mean_take(ear_mean *m, int32_t *coefficients)
-{
-    m->peak = m->peak - 7 > coefficients[0] ? m->peak - 7 : coefficients[0];
-    if (coefficients[0] > m->peak - 2954) {
-        m->count += m->count < 180;
-        for (uint32_t c = 0; c < EAR_COEFFICIENTS; c++) {
-            m->mean[c] += (coefficients[c] * 256 - m->mean[c]) / (m->count + 20);
-        }
-    }
-    for (uint32_t c = 0; c < EAR_COEFFICIENTS; c++) coefficients[c] -= m->mean[c] / 256;
-}
-
-int64_t noh_ear_shut_score(const ear_tables *t, const int16_t (*seen)[EAR_COEFFICIENTS])
-{
-    int64_t score = t->shut_bias;
-    for (uint32_t f = 0; f < EAR_SEEN; f++) {
-        for (uint32_t c = 0; c < EAR_COEFFICIENTS; c++) score += (int32_t)t->shut_weight[f][c] * seen[f][c];
-    }
-    return score;
 }

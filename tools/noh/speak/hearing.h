@@ -1,0 +1,20 @@
+/* hearing.h: a recording without words: mouth shapes as the ear hears them, or by loudness alone. */
+#ifndef NOH_NOH_SPEAK_HEARING_H
+#define NOH_NOH_SPEAK_HEARING_H
+
+#include "sound.h"
+#include "speech_track.h"
+
+typedef struct hearing {
+    int live;      /* in one go, as a program hears a microphone; else what is learnt of the voice is known at once */
+    int amplitude; /* by loudness alone (face/amplitude.h), not by the ear (face/ear.h) */
+} hearing;
+
+/* Fills `said` with runs of one shape, each as a phone that stands for its shape, and `track` with frames. Prints an
+ * error and returns an exit code; 0 on success. */
+int hearing_make(const sound *recording, const hearing *how, synthesis *said, speech_track *track);
+
+/* How long after its sound a frame is known; 0 for a recording that is heard as a whole. */
+double hearing_latency_ms(const hearing *how);
+
+#endif
