@@ -14,10 +14,11 @@ static double eye_sigma(double s)
     return (fabs(s) - EYE_X) / EYE_HALF;
 }
 
+/* Exactly shut in the corners, where sigma is 1 but for rounding: upper and lower side meet in one point. */
 static double almond(double sigma, double fullness)
 {
     double k = 1 - sigma * sigma;
-    return k > 0 ? k * (1 + fullness * sigma * sigma) : 0;
+    return k > 1e-9 ? k * (1 + fullness * sigma * sigma) : 0;
 }
 
 double eye_almond(double s)

@@ -35,19 +35,21 @@ void hair_shift(double *s, double *t, double distance)
     *t *= k;
 }
 
-/* A stroke lies just above the face and moves with it. */
+/* A stroke lies just above the face and moves with it. Strokes that cross lie one on the other: in one plane, corners
+ * of one would meet edges of the other, which shows as specks. */
 V3 stroke_place(const Seed *seed, const Pose *pose)
 {
     FacePoint point = { seed->s, seed->t, 1, seed->t > MOUTH_Y ? 1 : -1 };
     V3 at = face_place(point, pose);
     V3 out = v3_unit(v3(seed->s / FACE_HALF_WIDTH, 0.5 * seed->t / FACE_HALF_HEIGHT, 0.6));
-    return v3_add(at, v3_scale(out, 0.00022));
+    return v3_add(at, v3_scale(out, 0.00022 + 0.00005 * seed->k));
 }
 
 /* A stroke follows the hairline from one angle to another. It keeps `inset`
  * inside the line, meets it at both ends, and tapers there. */
 typedef struct {
     double from, to, inset, width;
+    int layer;
 } Stroke;
 
 static Seed stroke_seed(const Stroke *stroke, int side, double along, double across)
@@ -57,7 +59,7 @@ static Seed stroke_seed(const Stroke *stroke, int side, double along, double acr
     double arch = pow(fmax(4 * along * (1 - along), 0), 0.7);
     double width = stroke->inset > 0 ? stroke->width * mix(0.25, 1, arch) : stroke->width;
     double r = fmin(hair_line(angle) + (across * width - stroke->inset * arch) / scale, 0.975);
-    Seed seed = { .region = ON_STROKE, .k = across };
+    Seed seed = { .region = ON_STROKE, .k = stroke->layer };
     seed.s = side_sign(side) * r * sin(angle) * FACE_HALF_WIDTH;
     seed.t = r * cos(angle) * FACE_HALF_HEIGHT;
     V3 at = stroke_place(&seed, &rest);
@@ -88,9 +90,10 @@ static void stroke_build(Model *model, const Stroke *stroke, int side)
 
 void hair_build(Model *model)
 {
-    static const Stroke strokes[] = { { 0.0, 1.70, 0, 0.0042 },        /* the edge of the hair itself */
-                                      { 0.05, 1.62, 0.0034, 0.00075 }, /* loose strands, as young women's masks have */
-                                      { 0.09, 1.40, 0.0058, 0.00060 } };
+    static const Stroke strokes[] = { { 0.0, 1.70, 0, 0.0042, 2 }, /* the edge of the hair itself */
+                                      { 0.05, 1.62, 0.0034, 0.00075,
+                                        1 }, /* loose strands, as young women's masks have */
+                                      { 0.09, 1.40, 0.0058, 0.00060, 0 } };
     for (int side = 0; side < SIDES; side++) {
         for (int i = 0; i < (int)(sizeof strokes / sizeof *strokes); i++) {
             stroke_build(model, &strokes[i], side);
