@@ -261,12 +261,12 @@ $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 	$(BUILD)/demo_assets --arm $@
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --quiet
+	$(BUILD)/noh build $< -o $@ --wrinkles auto --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
 PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --quiet
+	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --wrinkles auto --quiet
 
 PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
@@ -299,7 +299,7 @@ demo-face: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/mask.noh
 	@sh tools/demo_face.sh $(BUILD)
 
-FILE    ?= $(BUILD)/demo/puppet.glb
+FILE    ?= $(BUILD)/demo/puppet.noh
 view: deps-view
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(FILE)
 	@$(BUILD)/noh view $(FILE)

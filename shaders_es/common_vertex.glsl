@@ -25,6 +25,10 @@ layout(location = 4) in vec4 noh_a_color;
 uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
 out vec3 noh_v_rest;
 out vec3 noh_v_moved;
+#ifdef NOH_CROWD
+uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
+flat out vec4 noh_v_regions[3];
+#endif
 #endif
 
 /* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
@@ -39,6 +43,17 @@ struct noh_vertex {
     vec4 tint;     /* of the instance; linear. alpha: 1 where the material does not blend */
     vec3 model;    /* position in the mesh's own space: morphed and skinned, not placed */
 };
+
+#if defined(NOH_CROWD) && defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+/* Three regions of 8 bits in each component. */
+void noh_fetch_regions()
+{
+    ivec4 bits = (noh_wrinkle_models.x & 8) != 0 ? ivec4(noh_crowd_row(4)) : ivec4(0);
+    for (int k = 0; k < 3; k++) {
+        noh_v_regions[k] = vec4(bits >> 8 * k & 255) / 255.0;
+    }
+}
+#endif
 
 vec4 noh_world_row(int i)
 {
@@ -102,6 +117,9 @@ noh_vertex noh_fetch()
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
     noh_v_rest = noh_a_position - noh_center;
     noh_v_moved = v.model - noh_a_position;
+#ifdef NOH_CROWD
+    noh_fetch_regions();
+#endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
     p = vec4(v.model, 1.0);

@@ -6,8 +6,14 @@
  *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
  *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6 */
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+#ifdef NOH_CROWD
+flat in vec4 noh_v_regions[3];
+#define NOH_REGIONS noh_v_regions
+#else
 uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k, channel c of map k */
-uniform int noh_wrinkle_models;
+#define NOH_REGIONS noh_wrinkle_regions
+#endif
+uniform highp ivec2 noh_wrinkle_models; /* those that show; 255 times how strongly they do */
 uniform mediump sampler2D noh_wrinkle_texture;
 uniform mediump sampler2D noh_wrinkle_weights_0;
 uniform mediump sampler2D noh_wrinkle_weights_1;
@@ -31,28 +37,28 @@ float noh_area_ratio()
 float noh_wrinkle_by_area(float ratio)
 {
     float shrunk = 1.0 - ratio;
-    return clamp(((noh_wrinkle_models & 6) == 0 ? 0.3 : 0.0) + (shrunk < 0.0 ? 0.005 * shrunk : shrunk), 0.0, 1.0);
+    return clamp(((noh_wrinkle_models.x & 6) == 0 ? 0.3 : 0.0) + (shrunk < 0.0 ? 0.005 * shrunk : shrunk), 0.0, 1.0);
 }
 
 /* One value by each model: area, regions, channels. */
 vec3 noh_wrinkle_by_model(vec2 uv)
 {
     vec3 by = vec3(0.0);
-    if ((noh_wrinkle_models & 6) != 0) {
+    if ((noh_wrinkle_models.x & 6) != 0) {
         vec4 first = texture(noh_wrinkle_weights_0, uv);
-        if ((noh_wrinkle_models & 2) != 0) {
-            vec4 all = max(first * noh_wrinkle_regions[0], max(texture(noh_wrinkle_weights_1, uv) * noh_wrinkle_regions[1],
-                                                               texture(noh_wrinkle_weights_2, uv) * noh_wrinkle_regions[2]));
+        if ((noh_wrinkle_models.x & 2) != 0) {
+            vec4 all = max(first * NOH_REGIONS[0], max(texture(noh_wrinkle_weights_1, uv) * NOH_REGIONS[1],
+                                                               texture(noh_wrinkle_weights_2, uv) * NOH_REGIONS[2]));
             by.y = max(max(all.x, all.y), max(all.z, all.w));
         }
-        if ((noh_wrinkle_models & 4) != 0) {
-            by.z = min(dot(first.rgb, vec3(1.0, noh_wrinkle_regions[0].yz)), 1.0);
+        if ((noh_wrinkle_models.x & 4) != 0) {
+            by.z = min(dot(first.rgb, vec3(1.0, NOH_REGIONS[0].yz)), 1.0);
         }
     }
-    if ((noh_wrinkle_models & 1) != 0) {
+    if ((noh_wrinkle_models.x & 1) != 0) {
         by.x = noh_wrinkle_by_area(noh_area_ratio());
     }
-    return by;
+    return by * (float(noh_wrinkle_models.y) / 255.0);
 }
 
 /* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail turned as the base turns

@@ -5,7 +5,7 @@ build=$1
 noh=$build/noh
 
 echo
-"$noh" build "$build/mask.glb" -o "$build/mask.noh"
+"$noh" build "$build/mask.glb" -o "$build/mask.noh" --wrinkles auto
 echo
 way=$(sh tools/demo_path.sh "$noh" "$build/mask.noh")
 path=$(echo "$way" | sed -n 1p)

@@ -7,7 +7,7 @@ out=$build/demo
 noh=$build/noh
 text=${NOH_TEXT:-'Bob and Mabel pump up five balloons before supper.'}
 
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --quiet
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --wrinkles auto --quiet
 if ! "$noh" speak "$text" --face "$out/puppet.noh" -o "$out/says.noh" --wav "$out/says.wav"; then
     echo 'demo-face: nothing is said without eSpeak NG (Debian: apt install libespeak-ng1 espeak-ng-data)'
     exit 0

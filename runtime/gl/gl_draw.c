@@ -27,6 +27,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     noh_gl_draw_tint(r, NULL);
     noh_gl_draw_wrinkles(r, NULL);
     for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
+    noh_gl_draw_wrinkle_look(r, 0, 0);
 }
 
 void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
@@ -41,8 +42,15 @@ void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_RE
     NOH_ASSERT(r);
     memset(r->wrinkles, 0, sizeof r->wrinkles);
     for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* by map, then by channel */
-        r->wrinkles[4u * (i % 3u) + i / 3u] = regions[i];
+        r->wrinkles[4u * (i % 3u) + i / 3u] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
     }
+}
+
+void noh_gl_draw_wrinkle_look(noh_gl_renderer *r, uint32_t models, uint32_t smoothed)
+{
+    NOH_ASSERT(r && models <= 7u && smoothed <= 255u);
+    r->wrinkle_models = (uint8_t)models;
+    r->smoothed = (uint8_t)smoothed;
 }
 
 /* ---- uniforms, attributes, textures ---- */
@@ -153,28 +161,31 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
-/* An instance of a crowd has no weights of its own: its regions are at rest. */
-static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+/* Instances of a crowd have regions in rows of their own, of meshes that have any. */
+#define REGIONS_IN_ROWS 8
+static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, int in_rows,
                          const noh_gl_texture *pictures)
 {
-    static const float none[NOH_WRINKLE_REGIONS] = { 0.0f };
+    const GLint models = (GLint)(r->wrinkle_models ? r->wrinkle_models : m->wrinkle_models);
     bind_picture(r, NOH_UNIT_WRINKLE, m->wrinkle_texture, pictures);
     for (uint32_t k = 0; k < 3u; k++) {
         bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->wrinkle_weights[k], pictures);
     }
-    r->gl->Uniform4fv(v->u_wrinkle_regions, 3, v->key.crowd ? none : r->wrinkles);
-    r->gl->Uniform1i(v->u_wrinkle_models, (GLint)m->wrinkle_models);
+    if (!v->key.crowd) r->gl->Uniform4fv(v->u_wrinkle_regions, 3, r->wrinkles);
+    r->gl->Uniform2i(v->u_wrinkle_models, models | (in_rows ? REGIONS_IN_ROWS : 0), 255 - r->smoothed);
 }
 
-static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
-                         const noh_gl_texture *pictures)
+static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_mesh *mesh, const noh_material *m,
+                         float cutoff, const noh_gl_texture *pictures)
 {
     if (!v->key.depth || v->key.cut) {
         set_base_color(r, v, m, cutoff, pictures);
     }
     if (!v->key.depth) {
         set_features(r, v, m, pictures);
-        if (v->key.features & NOH_FEATURE_WRINKLES) set_wrinkles(r, v, m, pictures);
+        if (v->key.features & NOH_FEATURE_WRINKLES) {
+            set_wrinkles(r, v, m, v->key.crowd && noh_gl_crowd_rows(mesh) > NOH_CROWD_ROWS, pictures);
+        }
     }
     if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
         r->gl->Disable(GL_CULL_FACE);
@@ -267,7 +278,7 @@ static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_
                           draw_part part)
 {
     const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
-    set_material(j->r, v, m, cutoff_of(m, part), j->pictures);
+    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
     j->r->gl->Uniform1i(v->u_blends, (m->flags & NOH_MATERIAL_BLEND) != 0);
     if (j->r->shaders.bind) {
         j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);

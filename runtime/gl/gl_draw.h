@@ -137,6 +137,7 @@ typedef struct noh_gl_renderer {
     noh_gl_camera camera;                /* of this pass */
     uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
+    uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
     uint32_t variant_count;
     noh_gl_variant *variants; /* [variant_count] in the memory that create was given */
 } noh_gl_renderer;
@@ -206,9 +207,14 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
 void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
 
 /* How much the regions of the meshes are wrinkled that noh_gl_draw_mesh draws next; noh_gl_draw_begin smooths them out.
- * In a crowd regions stay smooth: its creases come by area alone.
+ * Instances of a crowd have their own (noh_gl_skin_set_wrinkles).
  * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
 void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
+
+/* Which wrinkles show in what noh_gl_draw_mesh and noh_gl_draw_crowd draw next.
+ * models    NOH_WRINKLE_BY_*: in place of those of the material; 0: those of the material, as after noh_gl_draw_begin
+ * smoothed  0..255: how far wrinkles are smoothed out; 255: nothing is left of them */
+void noh_gl_draw_wrinkle_look(noh_gl_renderer *renderer, uint32_t models, uint32_t smoothed);
 
 /* The same for `count` successive instances of one mesh, the first of them with the binding `first`: one draw call per
  * submesh. Each instance stands where noh_gl_skin_set_place put it. Rigid meshes work too; palettes must be in a

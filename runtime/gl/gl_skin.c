@@ -222,6 +222,25 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
     return NOH_OK;
 }
 
+noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    float values[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    span changed = { UINT32_MAX, 0 };
+    if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
+        return no_crowds(instance, error);
+    }
+    if (noh_gl_crowd_rows(&m->mesh) == NOH_CROWD_ROWS) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the instance's mesh has no wrinkles", instance, 0);
+    }
+    for (uint32_t i = 0; i < NOH_WRINKLE_REGIONS && regions; i++) { /* three bytes each, exact as floats */
+        values[i / 3u] += (float)((uint32_t)(regions[i] * 255.0f + 0.5f) << 8u * (i % 3u));
+    }
+    put_rows(skin, first_row(m, instance) + NOH_CROWD_REGIONS, values, 1, &changed);
+    send(skin, &changed);
+    return NOH_OK;
+}
+
 /* ---- making ---- */
 
 static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)

@@ -124,6 +124,13 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds */
 noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error);
 
+/* Set how much the regions of one instance are wrinkled, for noh_gl_draw_crowd: 0 at first. noh_gl_skin_set_place keeps
+ * it.
+ * shapes  regions of noh_wrinkles_weights, 0..1, kept in 255ths; NULL: none
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; NOT_FOUND the instance's mesh has no
+ *         wrinkles */
+noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error);
+
 /* Upload the span of rows that changed since the last update, in one call.
  * state   Afterwards the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
  * errors  none: init checked everything */

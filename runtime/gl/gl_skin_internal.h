@@ -6,6 +6,7 @@
 #include "gl/gl_skin.h"
 
 #define NOH_CROWD_ROWS 4u            /* in front of an instance's palettes in a texture: see crowd_row */
+#define NOH_CROWD_REGIONS 4u         /* one more, of a mesh with wrinkle regions */
 #define NOH_SKIN_ROWS_MAX (1u << 26) /* 1 GiB */
 
 /* One mesh of the desc. */
@@ -38,6 +39,9 @@ static inline void noh_gl_tint_bits(const uint8_t tint[4], uint32_t bits[3])
     for (int i = 0; i < 3; i++) bits[i] = tint ? (uint32_t)(255 - tint[i]) << (i < 2 ? 16 : 8) : 0;
     if (tint) bits[2] |= (uint32_t)(255 - tint[3]) << 16;
 }
+
+/* What is in front of the palettes of an instance of this mesh. */
+uint32_t noh_gl_crowd_rows(const noh_mesh *mesh);
 
 /* Palettes start at multiples of this many rows. */
 uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps);

@@ -2,10 +2,12 @@
  *
  * Instance after instance, mesh after mesh, each instance has its palettes one behind another, each at a multiple of
  * the alignment: of one row in a texture, of the GPU's offset alignment in a uniform buffer, where each palette is
- * bound as a range of its own. In a texture, the four rows of a crowd's instance come first. */
+ * bound as a range of its own. In a texture, the four rows of a crowd's instance come first, and
+ * of meshes with wrinkle regions a fifth one. */
 #include <string.h>
 
 #include "gl/gl_skin_internal.h"
+#include "mesh/wrinkles.h"
 
 NOH_STATIC_ASSERT(NOH_PALETTE_JOINTS_MAX == 256u, palette_block_of_common_skin);
 
@@ -103,9 +105,15 @@ static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_pl
     return NOH_OK;
 }
 
+uint32_t noh_gl_crowd_rows(const noh_mesh *mesh)
+{
+    noh_wrinkles wrinkles;
+    return NOH_CROWD_ROWS + (mesh->pack && noh_wrinkles_of(mesh, &wrinkles, NULL) == NOH_OK);
+}
+
 uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *mesh, uint32_t palette)
 {
-    uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? NOH_CROWD_ROWS : 0;
+    uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? noh_gl_crowd_rows(mesh) : 0;
     NOH_ASSERT(binding->align && palette <= mesh->header->palette_count);
     for (uint32_t i = 0; i < palette; i++) {
         row += (noh_gl_joint_rows(mesh) * mesh->palettes[i].joint_count + binding->align - 1u) / binding->align *

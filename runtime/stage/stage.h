@@ -353,10 +353,14 @@ typedef struct noh_look {
     uint32_t level;     /* 1 + the level to show whatever its error, with everything else in full; 0: chosen by error */
     uint8_t tint[4];    /* sRGB and alpha, multiplied with its colours; alpha counts where a material blends. All 0:
                          * white */
-    uint32_t texture_set; /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
+    uint32_t texture_set;   /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
+    uint8_t wrinkle_models; /* NOH_WRINKLE_BY_* of pack/format.h, in place of those of its materials; 0: those */
+    uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: nothing is left of them */
+    uint8_t reserved[2];    /* 0 */
 } noh_look;
 
-/* errors  NOT_FOUND; ARG pixels is negative or not finite, or the kind has no such texture_set */
+/* errors  NOT_FOUND; ARG pixels is negative or not finite, the kind has no such texture_set, or wrinkle_models has
+ *         unknown bits */
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
 
 /* Hang an actor on a joint of another one: a sword in a hand. Its place is then relative to the joint. The parent is

@@ -347,6 +347,8 @@ noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error
 
 /* ---- looks and links ---- */
 
+#define WRINKLE_MODELS_ALL (NOH_WRINKLE_BY_AREA | NOH_WRINKLE_BY_REGION | NOH_WRINKLE_BY_CHANNEL)
+
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error)
 {
     noh_stage_actor *a = NULL;
@@ -363,7 +365,12 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
         return noh_fail(error, NOH_ERR_ARG, "texture_set of a look is none of the kind's", actor.id & 0xffffu,
                         k->desc->texture_set_count);
     }
+    if (look->wrinkle_models > WRINKLE_MODELS_ALL) {
+        return noh_fail(error, NOH_ERR_ARG, "wrinkle_models of a look has unknown bits", actor.id & 0xffffu,
+                        look->wrinkle_models);
+    }
     a->look = *look;
+    a->look.reserved[0] = a->look.reserved[1] = 0; /* states are compared as bytes */
     return NOH_OK;
 }
 

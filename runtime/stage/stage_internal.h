@@ -67,7 +67,6 @@ typedef struct noh_stage_actor {
     uint16_t was_seen;   /* in the last frame */
     uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
-    uint32_t reserved;
 } noh_stage_actor;
 
 /* The graph that an actor plays: its instance follows, in as many bytes as the largest of the kind takes. A track of
@@ -113,7 +112,7 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_look) == 28, look);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 32, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);

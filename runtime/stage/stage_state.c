@@ -58,6 +58,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (!what) what = bad_place(&a->before);
     if (what) return what;
     if (!(a->look.pixels >= 0.0f) || !noh_is_finite(a->look.pixels)) return "state: an actor's look is not finite";
+    if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
     if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
     for (uint32_t l = 0; l < k->layer_count; l++) {

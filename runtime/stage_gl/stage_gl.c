@@ -3,6 +3,7 @@
 
 #include "character/skin_palette.h"
 #include "gl/gl_renderer_internal.h"
+#include "mesh/wrinkles.h"
 #include "pose/local_to_model.h"
 #include "stage_gl/stage_gl_internal.h"
 
@@ -393,6 +394,17 @@ static int any_weight(const float *weights, uint32_t count)
     return 0;
 }
 
+/* What its expression wrinkles, for crowds; alone it is given by the draw. */
+static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
+{
+    float regions[NOH_WRINKLE_REGIONS];
+    noh_wrinkles wrinkles;
+    if (noh_wrinkles_of(&mesh->mesh, &wrinkles, NULL) == NOH_OK) {
+        noh_wrinkles_weights(&wrinkles, weights, regions);
+        (void)noh_gl_skin_set_wrinkles(item->skin, place, regions, NULL);
+    }
+}
+
 /* One actor's mesh: its weights and its place. */
 static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_shown *shown,
                          const uint8_t *tint, const float *weights)
@@ -411,6 +423,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     if (!item->mirrored) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
         (void)noh_gl_skin_set_tint(item->skin, shown->place, tint, NULL);
+        upload_regions(mesh, item, shown->place, weights);
     }
 }
 

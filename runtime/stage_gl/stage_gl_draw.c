@@ -52,15 +52,14 @@ static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
 static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_mesh *m = &d->k->meshes[mesh];
+    const noh_look *look = &actor_at(d, place)->look;
     const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
     float regions[NOH_WRINKLE_REGIONS];
     noh_wrinkles wrinkles;
-    if (noh_wrinkles_of(&m->mesh, &wrinkles, NULL) == NOH_OK) {
-        noh_wrinkles_weights(&wrinkles, weights, regions);
-        noh_gl_draw_wrinkles(d->renderer, regions);
-    } else {
-        noh_gl_draw_wrinkles(d->renderer, NULL);
-    }
+    const int has_regions = noh_wrinkles_of(&m->mesh, &wrinkles, NULL) == NOH_OK;
+    if (has_regions) noh_wrinkles_weights(&wrinkles, weights, regions);
+    noh_gl_draw_wrinkles(d->renderer, has_regions ? regions : NULL);
+    noh_gl_draw_wrinkle_look(d->renderer, look->wrinkle_models, look->smoothed);
 }
 
 /* One actor's mesh, at one level, with a share of the pixels. */
@@ -116,13 +115,15 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
         const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool, 0);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
+    noh_gl_draw_wrinkle_look(d->renderer, actor_at(d, first)->look.wrinkle_models, actor_at(d, first)->look.smoothed);
     noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
                       pictures_of(d, first), d->pass);
 }
 
 static uint32_t wears(const drawing *d, uint32_t place)
 {
-    return actor_at(d, place)->look.texture_set;
+    const noh_look *look = &actor_at(d, place)->look;
+    return look->texture_set | (uint32_t)look->wrinkle_models << 16 | (uint32_t)look->smoothed << 24;
 }
 
 static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)

@@ -5,7 +5,7 @@
 
 noh build "$build/mask.glb" -o "$work/auto.noh" --wrinkles auto --only mesh
 expect 0 'build --wrinkles auto'
-check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 512 x 512, weights 256 x 256, 12 regions" "$work/out"
+check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 512 x 512, weights 128 x 128, 12 regions" "$work/out"
 noh build "$build/mask.glb" -o "$work/again.noh" --wrinkles auto --only mesh --quiet
 check 'the same bytes again' cmp "$work/auto.noh" "$work/again.noh"
 noh verify "$work/auto.noh"
@@ -17,6 +17,19 @@ noh build "$build/mask.glb" -o "$work/no.noh" --wrinkles all
 expect 2 'an unknown way'
 noh build "$build/mask.glb" -o "$work/no.noh" --region-mask "$work/none.png"
 check 'a mask that is not there is refused' test "$code" != 0
+png_is() { # FILE WIDTH HEIGHT, below 256
+    [ "$(od -An -tu1 -j16 -N8 "$1" | tr -s ' ')" = " 0 0 0 $2 0 0 0 $3" ]
+}
+noh sheet "$work/auto.noh" -o "$work/sheet.png" --wrinkles --tile 48
+expect 0 'sheet --wrinkles'
+check 'five emotions, five rows' png_is "$work/sheet.png" 240 240
+noh sheet "$work/auto.noh" -o "$work/sheet.png" --wrinkles --tile 48 --target anger --target smile,browInnerUp=0.5
+expect 0 'sheet --wrinkles --target'
+check 'a column each' png_is "$work/sheet.png" 96 240
+noh sheet "$build/mask_levels.noh" -o "$work/no.png" --wrinkles
+expect 1 'a pack without wrinkles'
+says 'no mesh has wrinkles'
+
 printf 'no picture' >"$work/bad.png"
 noh build "$build/mask.glb" -o "$work/no.noh" --wrinkle-map "$work/bad.png"
 expect 1 'a map that is no picture'

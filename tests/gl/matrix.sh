@@ -3,8 +3,8 @@
 # capabilities of lesser devices. float32 must equal the CPU in every bit everywhere; so must float16
 # where the driver's rounding is modelled, else it must stay within the pack's bound. The picture is
 # compared with that of llvmpipe: at most 0.25/255 off in the mean, and 1 % of the pixels by more
-# than 8 (edges and mip levels differ between rasterisers). tests/gl/test_gl_depth.c and test_gl_light.c
-# run on each, too. Prints a table of what ran where.
+# than 8 (edges and mip levels differ between rasterisers). tests/gl/test_gl_depth.c, test_gl_light.c and
+# test_gl_wrinkles.c run on each, too. Prints a table of what ran where.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 table=$work/table
@@ -48,6 +48,9 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_light" >"$work/light" 2>&1
     code=$?
     expect 0 "$name: light is the closed forms'"
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_wrinkles" >"$work/wrinkles" 2>&1
+    code=$?
+    expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
     auto=mrt
     case " $lacking " in *" mrt "*) auto=gather ;; esac
     env "$@" "$build/noh" render "$mask" -o "$work/picture.png" --size 256x256 --weight smile=1 --driver "$driver" \

@@ -11,7 +11,7 @@
 #define MAP_SIZE_LEAST 256u /* of a generated normal map, */
 #define MAP_SIZE_MOST 1024u /* by how many texels lie from crease to crease */
 #define WAVE_TEXELS 8.0
-#define WEIGHTS_SIZE 256u /* of generated weight maps */
+#define WEIGHTS_SHARE 4u  /* of the side of a normal map is the side of generated weight maps: they are smooth */
 #define OVERLAP_MOST 0.25 /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
 #define SHRINKING_LEAST 0.002 /* mean compression of a material's area by all of a mesh's targets together */
 
@@ -161,12 +161,12 @@ static int generate_map(const wrinkle_field *f, const wrinkle_raster *r, wrinkle
     return !w->map;
 }
 
-static int generate_weights(const wrinkle_field *f, wrinkles *w)
+static int generate_weights(const wrinkle_field *f, uint32_t size, wrinkles *w)
 {
     region_weights *regions = wrinkle_regions_make(f);
     wrinkle_raster r;
-    int failed = wrinkle_raster_make(f, WEIGHTS_SIZE, WEIGHTS_SIZE, &r) || !regions;
-    w->weights_width = w->weights_height = WEIGHTS_SIZE;
+    int failed = wrinkle_raster_make(f, size, size, &r) || !regions;
+    w->weights_width = w->weights_height = size;
     if (!failed) {
         w->matrix = wrinkle_matrix_make(f, regions);
         failed = wrinkle_maps_make(f, regions, &r, w->weights) || !w->matrix;
@@ -186,7 +186,7 @@ static int fill(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_s
     if (settings->mask) {
         return read_mask(settings->mask, w, error) || (matrix_of_mask(f, w) && out_of_memory(error));
     }
-    return generate_weights(f, w) && out_of_memory(error);
+    return generate_weights(f, r->width / WEIGHTS_SHARE, w) && out_of_memory(error);
 }
 
 /* ---- into the model ---- */

@@ -4,18 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROUNDS 12         /* of assigning points to regions and moving the regions */
+#define GROUPS 40         /* of points at first: the two most alike are joined until as many are left as regions */
+#define ROUNDS 12         /* of assigning points to groups and moving the groups */
 #define SMOOTHINGS 3      /* rounds in which borders grow soft, one edge a round */
 #define FADE_FIRST 0.01f  /* compression at which a crease begins to show, */
 #define FADE_LAST 0.035f  /* and at which it shows in full */
 #define MATRIX_LEAST 0.04 /* a target that does less than this to a region leaves it alone */
 
-/* Regions as directions: how much each target compresses their points, unit length. */
+/* Groups as directions: how much each target compresses their points, unit length. */
 typedef struct clusters {
     const wrinkle_field *field;
-    double (*direction)[REGION_COUNT]; /* [target_count] */
-    uint8_t *region;                   /* [vertex_count] of points that are compressed, else REGION_COUNT */
-    double *sum;                       /* [target_count] */
+    uint32_t count;              /* of groups */
+    double (*direction)[GROUPS]; /* [target_count] */
+    double weight[GROUPS];       /* what each explains, as point_weight counts */
+    uint8_t *region;             /* [vertex_count] of points that are compressed, else GROUPS */
+    double *sum;                 /* [target_count] */
 } clusters;
 
 static float fade_of(float shrink)
@@ -74,11 +77,11 @@ static int set_direction(clusters *c, uint32_t region, const float *shrink)
     return length > 0.0;
 }
 
-/* Each next region begins where most is left unexplained. */
+/* Each next group begins where most is left unexplained. */
 static void seed(clusters *c)
 {
     const wrinkle_field *f = c->field;
-    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+    for (uint32_t r = 0; r < GROUPS; r++) {
         uint32_t worst = 0;
         double most = 0.0;
         for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
@@ -99,8 +102,8 @@ static void assign(clusters *c)
     const wrinkle_field *f = c->field;
     for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
         double best = 0.0;
-        c->region[v] = REGION_COUNT;
-        for (uint32_t r = 0; r < REGION_COUNT && f->point_largest[v] >= FADE_FIRST; r++) {
+        c->region[v] = GROUPS;
+        for (uint32_t r = 0; r < c->count && f->point_largest[v] >= FADE_FIRST; r++) {
             const double along = project(c, v, r);
             if (along > best) {
                 best = along;
@@ -122,21 +125,82 @@ static double point_share(const clusters *c, uint32_t vertex, uint32_t region)
     return all > 0.0 ? project(c, vertex, region) * point_weight(c->field, vertex) / all : 0.0;
 }
 
-/* Each region's direction becomes that of its points: one step of the power method. */
+/* Each group's direction becomes that of its points: one step of the power method. */
 static void move(clusters *c)
 {
     const wrinkle_field *f = c->field;
     const uint32_t targets = f->mesh->target_count;
-    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+    for (uint32_t r = 0; r < c->count; r++) {
         memset(c->sum, 0, targets * sizeof *c->sum);
+        c->weight[r] = 0.0;
         for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
             const double weight = c->region[v] == r && f->point[v] == v ? point_share(c, v, r) : 0.0;
+            c->weight[r] += weight > 0.0 ? weight * project(c, v, r) : 0.0;
             for (uint32_t t = 0; t < targets && weight > 0.0; t++) {
                 c->sum[t] += weight * (double)f->point_shrink[(size_t)v * targets + t];
             }
         }
         (void)set_direction(c, r, NULL);
     }
+}
+
+static void settle(clusters *c)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        assign(c);
+        move(c);
+    }
+}
+
+/* What one direction in place of two still explains: the larger eigenvalue of the sum of their squares. */
+static double together(const clusters *c, uint32_t a, uint32_t b, double *cosine)
+{
+    const double p = c->weight[a], q = c->weight[b], half = 0.5 * (p - q);
+    *cosine = 0.0;
+    for (uint32_t t = 0; t < c->field->mesh->target_count; t++) {
+        *cosine += c->direction[t][a] * c->direction[t][b];
+    }
+    return 0.5 * (p + q) + sqrt(half * half + p * q * *cosine * *cosine);
+}
+
+/* Its eigenvector goes to the first; the last group takes the place of the second. */
+static void join(clusters *c, uint32_t a, uint32_t b)
+{
+    double cosine;
+    const double both = together(c, a, b, &cosine);
+    const uint32_t strong = c->weight[a] >= c->weight[b] ? a : b, weak = strong == a ? b : a;
+    const double rest = both - c->weight[weak], share = rest > 0.0 ? c->weight[weak] * cosine / rest : 0.0;
+    double length = 0.0;
+    c->count--;
+    for (uint32_t t = 0; t < c->field->mesh->target_count; t++) {
+        c->direction[t][a] = c->direction[t][strong] + share * c->direction[t][weak];
+        length += c->direction[t][a] * c->direction[t][a];
+        c->direction[t][b] = c->direction[t][c->count];
+    }
+    for (uint32_t t = 0; t < c->field->mesh->target_count && length > 0.0; t++) {
+        c->direction[t][a] /= sqrt(length);
+    }
+    c->weight[a] = both;
+    c->weight[b] = c->weight[c->count];
+}
+
+/* The two whose joining leaves least unexplained. */
+static void join_nearest(clusters *c)
+{
+    uint32_t best_a = 0, best_b = 1;
+    double best = -1.0;
+    for (uint32_t b = 1; b < c->count; b++) {
+        for (uint32_t a = 0; a < b; a++) {
+            double cosine;
+            const double loss = c->weight[a] + c->weight[b] - together(c, a, b, &cosine);
+            if (best < 0.0 || loss < best) {
+                best = loss;
+                best_a = a;
+                best_b = b;
+            }
+        }
+    }
+    join(c, best_a, best_b);
 }
 
 /* ---- weights of vertices ---- */
@@ -173,7 +237,7 @@ static int weigh(const clusters *c, region_weights *weights)
     float *count = model_zeros(vertices, sizeof *count);
     const int failed = !sum || !count;
     for (uint32_t v = 0; v < vertices; v++) {
-        if (c->region[v] < REGION_COUNT) weights[v][c->region[v]] = 1.0f;
+        if (c->region[v] < c->count) weights[v][c->region[v]] = 1.0f;
     }
     for (int round = 0; round < SMOOTHINGS && !failed; round++) {
         smooth(f, weights, sum, count);
@@ -192,15 +256,19 @@ region_weights *wrinkle_regions_make(const wrinkle_field *field)
 {
     const model_mesh *mesh = field->mesh;
     region_weights *weights = model_zeros(mesh->vertex_count, sizeof *weights);
-    clusters c = { field, model_zeros(mesh->target_count, sizeof *c.direction), model_zeros(mesh->vertex_count, 1),
-                   model_zeros(mesh->target_count, sizeof *c.sum) };
+    clusters c = { .field = field,
+                   .count = GROUPS,
+                   .direction = model_zeros(mesh->target_count, sizeof *c.direction),
+                   .region = model_zeros(mesh->vertex_count, 1),
+                   .sum = model_zeros(mesh->target_count, sizeof *c.sum) };
     int failed = !weights || !c.direction || !c.region || !c.sum;
     if (!failed) {
         seed(&c);
-        for (int round = 0; round < ROUNDS; round++) {
-            assign(&c);
-            move(&c);
+        settle(&c);
+        while (c.count > REGION_COUNT) {
+            join_nearest(&c);
         }
+        settle(&c);
         assign(&c);
         failed = weigh(&c, weights);
     }

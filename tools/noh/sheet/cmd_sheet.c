@@ -243,7 +243,7 @@ static const option options[] = {
       .at = offsetof(sheet_args, s.tiles.only),
       .value = "NAME[=V]",
       .what =
-          "show this target alone, at weight V (default 1); may repeat; with --lods: a row, of one or several targets, NAME[=V],NAME[=V]...",
+          "show this target alone, at weight V (default 1); may repeat; with --lods: a row, with --wrinkles: a column, of one or several targets, NAME[=V],NAME[=V]...",
       .example = "smile=0.5",
       .excludes = "--clip --bones" },
     { .name = "--clip",
@@ -321,6 +321,12 @@ static const option options[] = {
       .what = "each person at rest, with eyes shut, and with four expressions",
       .needs = "--faces",
       .excludes = "--columns" },
+    { .name = "--wrinkles",
+      .kind = OPTION_FLAG,
+      .at = offsetof(sheet_args, s.tiles.wrinkled),
+      .what =
+          "rows without wrinkles, and with those of each model: by area, region, channel, and as built; a column for each --target, NAME[=V],NAME[=V]..., or for five emotions",
+      .excludes = "--clip --lods --faces --bones --columns" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.show_bones),
@@ -349,9 +355,10 @@ static const option options[] = {
 const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK",
-    .what = "draw a contact sheet: every target at full weight, a clip over time, people by seed, or the LOD levels",
+    .what =
+        "draw a contact sheet: every target at full weight, a clip over time, people by seed, models of wrinkles, or the LOD levels",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

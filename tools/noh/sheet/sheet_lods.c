@@ -24,7 +24,7 @@ typedef struct grid {
 
 /* ---- faces ---- */
 
-static int apply_part(grid *g, const char *part, size_t length)
+static int hold_part(figure *f, const char *part, size_t length)
 {
     static option_list one;
     char text[NOH_NAME_BYTES_MAX + 32];
@@ -34,15 +34,15 @@ static int apply_part(grid *g, const char *part, size_t length)
     snprintf(text, sizeof text, "%.*s%s", (int)length, part, memchr(part, '=', length) ? "" : "=1");
     one.count = 1;
     one.items[0] = text;
-    return figure_hold_options(&g->picture->figure, &one);
+    return figure_hold_options(f, &one);
 }
 
-static int apply_named(grid *g, const char *face)
+int sheet_hold_face(figure *f, const char *face)
 {
     int status = 0;
     while (*face && !status) {
         const size_t length = strcspn(face, ",");
-        status = apply_part(g, face, length);
+        status = hold_part(f, face, length);
         face += length + (face[length] == ',');
     }
     return status;
@@ -74,7 +74,7 @@ static int apply_row(grid *g, uint32_t row)
     if (status || row == 0 || row + 1 == g->rows) {
         return status;
     }
-    return g->o->faces->count ? apply_named(g, g->o->faces->items[row - 1]) : apply_smile(g);
+    return g->o->faces->count ? sheet_hold_face(&g->picture->figure, g->o->faces->items[row - 1]) : apply_smile(g);
 }
 
 /* ---- sizes ---- */

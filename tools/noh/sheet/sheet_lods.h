@@ -17,4 +17,7 @@ typedef struct sheet_lods {
  * level is used: its largest error is one pixel there. Prints an error and returns an exit code; 0 on success. */
 int sheet_lods_write(const sheet_lods *s);
 
+/* Hold the targets of NAME[=V][,NAME[=V]]... */
+int sheet_hold_face(figure *f, const char *face);
+
 #endif

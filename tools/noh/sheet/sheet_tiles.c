@@ -168,7 +168,7 @@ static uint32_t face_columns(const sheet_tiles *t)
 void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
 {
     desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
-    desc->held_float_count = t->face_count ? FIGURE_HELD_ALL : 1u;
+    desc->held_float_count = t->face_count || t->wrinkled ? FIGURE_HELD_ALL : 1u;
     desc->inertia = t->inertia;
     desc->face_layer = t->clips.count > 1;
 }
@@ -177,6 +177,7 @@ int sheet_tiles_open(sheet_tiles *t, const pack_file *file)
 {
     t->file = file;
     t->clip = t->clips.count ? t->clips.items[0] : NULL;
+    if (t->wrinkled) return sheet_wrinkles_open(&t->wrinkles, file, &t->only);
     return t->face_count ? sheet_faces_open(&t->faces, file) : list_names(t);
 }
 
@@ -192,10 +193,14 @@ void sheet_tiles_close(sheet_tiles *t)
 {
     free(t->targets);
     sheet_faces_close(&t->faces);
+    if (t->wrinkled) sheet_wrinkles_close(&t->wrinkles);
 }
 
 uint32_t sheet_tiles_count(const sheet_tiles *t)
 {
+    if (t->wrinkled) {
+        return sheet_wrinkles_columns(&t->wrinkles) * SHEET_WRINKLE_ROWS;
+    }
     if (t->face_count) {
         return t->face_count * face_columns(t);
     }
@@ -207,6 +212,7 @@ uint32_t sheet_tiles_count(const sheet_tiles *t)
 
 uint32_t sheet_tiles_columns(const sheet_tiles *t)
 {
+    if (t->wrinkled) return sheet_wrinkles_columns(&t->wrinkles);
     return t->face_count && t->expressions ? SHEET_FACES_SHOWN : t->clip && t->blend ? t->clip_tiles : 0;
 }
 
@@ -217,7 +223,9 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
     if (status) {
         return status;
     }
-    if (t->face_count) {
+    if (t->wrinkled) {
+        status = sheet_wrinkles_hold(&t->wrinkles, f, tile);
+    } else if (t->face_count) {
         status = sheet_faces_hold(&t->faces, f, t->seed + tile / face_columns(t), tile % face_columns(t));
     } else if (t->blend) {
         status = pose_blend(t, f, tile);
@@ -236,6 +244,10 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
 void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t bytes)
 {
     double time_s;
+    if (t->wrinkled) {
+        sheet_wrinkles_label(&t->wrinkles, tile, text, bytes);
+        return;
+    }
     if (t->face_count) {
         snprintf(text, bytes, "%u%s%s", t->seed + tile / face_columns(t), t->expressions ? " " : "",
                  t->expressions ? sheet_faces_name(tile % face_columns(t)) : "");

@@ -1,10 +1,11 @@
 /* sheet_tiles.h: what the tiles of a contact sheet show: targets, a clip in time, two clips blended,
- * a transition from one to another, people. */
+ * a transition from one to another, people, models of wrinkles. */
 #ifndef NOH_NOH_SHEET_SHEET_TILES_H
 #define NOH_NOH_SHEET_SHEET_TILES_H
 
 #include "draw/figure.h"
 #include "sheet_faces.h"
+#include "sheet_wrinkles.h"
 
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
@@ -30,6 +31,8 @@ typedef struct sheet_tiles {
     uint32_t face_count, seed; /* people, of seeds from there on; 0: none */
     int expressions;           /* each in a row: at rest, and with expressions */
     sheet_faces faces;
+    int wrinkled; /* the same expressions with the wrinkles of each model */
+    sheet_wrinkles wrinkles;
 } sheet_tiles;
 
 /* What a figure must have for them. */

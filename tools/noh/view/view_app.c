@@ -39,7 +39,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     a->show_floor = desc->root_motion;
     a->speed = a->how.speed = a->how.weight = 1.0f;
     a->how.fade_s = 0.2f;
-    a->layer_gain = 1.0f;
+    a->layer_gain = a->lod.wrinkles = 1.0f;
     a->lod.pixels = 1.0f;
     a->screen.width = desc->width;
     a->screen.height = desc->height;

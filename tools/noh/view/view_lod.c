@@ -33,13 +33,18 @@ void view_lod_next(view_lod *d, const view_model *m)
 
 void view_lod_begin(const view_lod *d, view_model *m)
 {
-    const noh_look by_pixels = { .pixels = d->pixels }, fixed = { .level = 1u + d->level }, posed = { .posed = 1 };
+    noh_look look = { 0 };
+    look.wrinkle_models = (uint8_t)d->wrinkle_models;
+    look.smoothed = (uint8_t)(255.5f - 255.0f * d->wrinkles);
+    if (m->show_bones) {
+        look.posed = 1;
+    } else if (d->by_pixels) {
+        look.pixels = d->pixels;
+    } else {
+        look.level = 1u + d->level;
+    }
     for (uint32_t k = 0; k < m->figure->stage_desc.kind_count; k++) {
-        (void)noh_actor_set_look(m->figure->stage, m->figure->actors[k],
-                                 m->show_bones  ? &posed
-                                 : d->by_pixels ? &by_pixels
-                                                : &fixed,
-                                 NULL);
+        (void)noh_actor_set_look(m->figure->stage, m->figure->actors[k], &look, NULL);
     }
 }
 

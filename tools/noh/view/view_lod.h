@@ -1,4 +1,4 @@
-/* view_lod.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels.
+/* view_lod.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels; and its wrinkles.
  *
  *   view_lod_level, view_lod_pixels   the switch
  *   view_lod_next                     cycles through its positions
@@ -17,7 +17,9 @@
 typedef struct view_lod {
     float pixels; /* the allowed error */
     int by_pixels;
-    uint32_t level; /* the fixed level; 0: the full mesh */
+    uint32_t level;     /* the fixed level; 0: the full mesh */
+    int wrinkle_models; /* NOH_WRINKLE_BY_*: in place of those of the pack; 0: those */
+    float wrinkles;     /* 0..1: how much of them shows */
 
     /* what the last frame showed, of all kinds */
     uint32_t finest, coarsest; /* levels */

@@ -165,9 +165,26 @@ void accumulate_combo(view_app *a)
     }
 }
 
+// Which models of wrinkles show, and how much of them.
+void wrinkle_controls(view_app *a)
+{
+    static const char *const models[] = { "as built", "by area", "by region", "by channel" };
+    static const int bits[] = { 0, NOH_WRINKLE_BY_AREA, NOH_WRINKLE_BY_REGION, NOH_WRINKLE_BY_CHANNEL };
+    int model = 0;
+    for (int i = 1; i < 4; i++) {
+        model = a->lod.wrinkle_models == bits[i] ? i : model;
+    }
+    if (ImGui::Combo("wrinkles", &model, models, 4)) {
+        a->lod.wrinkle_models = bits[model];
+    }
+    ImGui::SliderFloat("##wrinkled", &a->lod.wrinkles, 0.0f, 1.0f, "wrinkled %.2f", ImGuiSliderFlags_AlwaysClamp);
+}
+
 void drawing_section(view_app *a)
 {
-    static const char *const views[] = { "lit", "position", "normal", "tangent", "lod" };
+    static const char *const views[] = {
+        "lit", "position", "normal", "tangent", "lod", "light", "occlusion", "wrinkle"
+    };
     int view = static_cast<int>(a->desc.view);
     bool bones = a->model->show_bones != 0;
     if (!ImGui::CollapsingHeader("Drawing", ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -176,9 +193,12 @@ void drawing_section(view_app *a)
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
     path_combo(a);
     accumulate_combo(a);
-    if (ImGui::Combo("view", &view, views, 5)) {
+    if (ImGui::Combo("view", &view, views, 8)) {
         a->wish.view = static_cast<noh_debug_view>(view);
         a->wants_reload = 1;
+    }
+    if (a->model->file.pack.wrinkles_count) {
+        wrinkle_controls(a);
     }
     ImGui::PopItemWidth();
     if (a->model->file.pack.skeleton_count && ImGui::Checkbox("bones", &bones)) {
