@@ -158,6 +158,9 @@ void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
 
 void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose);
 
+/* noh_face_pose.breath alone. */
+float noh_face_breath(const noh_face *face, const noh_face_desc *desc);
+
 /* The four channels of a frame, for a shader that has no more: one blink, the strongest emotion, the two strongest
  * mouth shapes, which are at most 1 together. */
 typedef struct noh_face_four {

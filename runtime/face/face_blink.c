@@ -10,7 +10,8 @@
 #define SIGMA 0.7f             /* of the logarithm of intervals */
 #define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by then */
 #define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two of a double blink */
-#define DEBT_MAX 4.0f          /* mean intervals that blinks taken in advance may put off the next one */
+#define STRATA 32u
+#define DEBT_MAX 4.0f /* mean intervals that blinks taken in advance may put off the next one */
 
 static const float rates[NOH_ACTIVITY_COUNT] = { 17.0f, 26.0f, 4.5f };
 
@@ -19,9 +20,28 @@ float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity)
     return 60.0f / noh_face_or(desc->blinks_per_minute[activity], rates[activity]);
 }
 
+/* Each of 0..STRATA-1 once, in an order by the key: every step of it can be undone. */
+static uint32_t shuffled(uint32_t i, uint32_t key)
+{
+    i = (i ^ key) % STRATA;
+    i = (i * 13u + (key >> 5)) % STRATA;
+    i ^= i >> 3;
+    i = i * (2u * (key >> 10) + 1u) % STRATA;
+    return i ^ i >> 2;
+}
+
+/* A uniform number, of each 32 in a row one in each of 32 parts of 0 to 1: so each person's rate is the rate within
+ * minutes, and not only the mean of many people's. */
+static float stratum(const noh_face *face, uint32_t blink)
+{
+    const float key = noh_face_uniform(face->seed, NOH_FACE_STRATA, blink / STRATA);
+    const float within = noh_face_uniform(face->seed, NOH_FACE_INTERVAL, blink);
+    return ((float)shuffled(blink % STRATA, (uint32_t)(key * 1048576.0f)) + within) / (float)STRATA;
+}
+
 static uint32_t interval(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
 {
-    const float u = noh_face_uniform(face->seed, NOH_FACE_INTERVAL, blink);
+    const float u = stratum(face, blink);
     if (noh_face_is_four(face)) return noh_face_four_wait(face, blink);
     const float s = noh_face_log_normal(u, noh_face_blink_mean(desc, face->activity), SIGMA);
     return noh_face_ticks(s < INTERVAL_MIN_S ? INTERVAL_MIN_S : s < 600.0f ? s : 600.0f);

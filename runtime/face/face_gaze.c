@@ -28,11 +28,10 @@ void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float m
     noh_quat_rotate(rotation, middle, middle);
 }
 
-void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3])
+static void goal_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3])
 {
-    float angles[3], rotation[4], way[3], across;
-    noh_face_head_rotation(face, desc, angles, rotation);
-    noh_face_middle(desc, rotation, way);
+    float way[3], across;
+    noh_face_middle(desc, head, way);
     for (int i = 0; i < 3; i++) {
         way[i] = face->target[i] - way[i];
     }
@@ -42,24 +41,38 @@ void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float g
     gaze[2] = 1.0f / noh_sqrt(noh_dot3(way, way));
 }
 
+void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3])
+{
+    float angles[3], rotation[4];
+    noh_face_head_rotation(face, desc, angles, rotation);
+    goal_from(face, desc, rotation, gaze);
+}
+
 /* 10 t^3 - 15 t^4 + 6 t^5 */
 static float least_jerk(float t)
 {
     return t * t * t * (10.0f + t * (6.0f * t - 15.0f));
 }
 
-void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3])
+void noh_face_gaze_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3])
 {
     float part;
     if (face->gaze == NOH_GAZE_WAIT) {
         for (int i = 0; i < 3; i++) gaze[i] = face->from[i];
         return;
     }
-    noh_face_gaze_goal(face, desc, gaze);
+    goal_from(face, desc, head, gaze);
     if (face->gaze == NOH_GAZE_MOVE) {
         part = least_jerk((float)((uint32_t)face->clock - face->gaze_start) / (float)face->gaze_ticks);
         for (int i = 0; i < 3; i++) gaze[i] = face->from[i] + (gaze[i] - face->from[i]) * part;
     }
+}
+
+void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3])
+{
+    float angles[3], rotation[4];
+    noh_face_head_rotation(face, desc, angles, rotation);
+    noh_face_gaze_from(face, desc, rotation, gaze);
 }
 
 static void direction(const float gaze[3], float way[3])

@@ -38,7 +38,8 @@ typedef enum noh_face_stream {
     NOH_FACE_BREATH,
     NOH_FACE_PHRASE,
     NOH_FACE_IDLE, /* three: yaw, pitch, roll */
-    NOH_FACE_MOOD = NOH_FACE_IDLE + 3
+    NOH_FACE_MOOD = NOH_FACE_IDLE + 3,
+    NOH_FACE_STRATA
 } noh_face_stream;
 
 float noh_face_uniform(uint32_t seed, uint32_t stream, uint32_t index); /* above 0, below 1 */
@@ -86,6 +87,8 @@ enum { NOH_GAZE_HOLD = 0, NOH_GAZE_WAIT, NOH_GAZE_MOVE };
 
 /* Yaw, pitch and 1 / distance from the middle of the eyes, as the head stands at the face's clock. */
 void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
+/* The same where the head's rotation is known. */
+void noh_face_gaze_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3]);
 void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
 /* Leave the gaze `from` for the target after a latency. */
 void noh_face_gaze_shift(noh_face *face, const float from[3], uint32_t latency);

@@ -76,7 +76,7 @@ static void aim(const noh_face_desc *desc, const float rotation[4], const float 
 static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose)
 {
     float gaze[3], point[3], sy, cy, sp, cp;
-    noh_face_gaze_at(face, desc, gaze);
+    noh_face_gaze_from(face, desc, pose->head, gaze);
     noh_face_middle(desc, pose->head, point);
     noh_sin_cos(gaze[0], &sy, &cy);
     noh_sin_cos(gaze[1], &sp, &cp);
@@ -90,14 +90,14 @@ static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_p
 /* ---- the rest ---- */
 
 /* In for two fifths of a breath, out for three. */
-static float breath(const noh_face *face, const noh_face_desc *desc)
+float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
 {
-    const uint32_t whole = noh_face_breath_ticks(face, desc, face->breaths);
-    const float t = (float)((uint32_t)face->clock - face->breath_start) / (float)whole;
-    float sine, cosine;
+    float t, sine, cosine;
+    NOH_ASSERT(face && desc);
     if (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BREATH)) {
         return 0.0f;
     }
+    t = (float)((uint32_t)face->clock - face->breath_start) / (float)noh_face_breath_ticks(face, desc, face->breaths);
     noh_sin_cos(3.14159265f * (t < 0.4f ? t / 0.4f : 1.0f - (t - 0.4f) / 0.6f), &sine, &cosine);
     return 0.5f - 0.5f * cosine;
 }
@@ -127,6 +127,6 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
     pose->lids_down = clamped(-pitch / noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), 0.0f, 1.0f);
     pose->lids_up = clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
     pose->blink = noh_face_blink_at(face);
-    pose->breath = breath(face, desc);
+    pose->breath = noh_face_breath(face, desc);
     show_feelings(face, pose->emotions);
 }

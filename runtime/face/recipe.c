@@ -161,10 +161,11 @@ static const noh_face_recipe *choose(const binding *b, uint32_t channel)
 {
     const noh_face_recipe *some = NULL;
     for (uint32_t i = 0; i < b->recipe_count; i++) {
+        const noh_face_recipe *recipe = b->recipes[i];
         uint32_t rows, found;
-        count_rows(b, b->recipes[i], channel, &rows, &found);
-        if (rows && found == rows) return b->recipes[i];
-        if (found && !some) some = b->recipes[i];
+        count_rows(b, recipe, channel, &rows, &found);
+        if (rows && found == rows) return recipe;
+        if (found && !some) some = recipe;
     }
     return some;
 }

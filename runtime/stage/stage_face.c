@@ -230,8 +230,7 @@ void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_f
     neck_space n;
     float moved[3];
     live(k, f, w->clock);
-    noh_face_pose_of(&f->face, &k->face->desc, &pose);
-    breathe(w, k->face, pose.breath);
+    breathe(w, k->face, noh_face_breath(&f->face, &k->face->desc));
     neck_space_of(k, w, &n);
     look(s, k, f, w, &n);
     noh_face_pose_of(&f->face, &k->face->desc, &pose);

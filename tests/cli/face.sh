@@ -128,4 +128,8 @@ else
     skip 'a head with teeth' 'NOH_ASSETS does not name a folder of models'
 fi
 
+noh bench "$build/mask.noh" --only face --quick --json
+expect 0 'a bench of a thousand faces'
+check 'beside the step of a controller' sh -c 'tr -d " \n" <"$1" | grep -q "\"face/weights\",\"baseline\":\"noh_controller_step\""' - "$work/out"
+
 finish

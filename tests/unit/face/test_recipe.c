@@ -2,6 +2,7 @@
 #include "face/recipe.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "support/support.h"
@@ -208,6 +209,119 @@ static void speech_and_emotion_share_the_mouth_by_rule(void **state)
     assert_true(channels[joy] == 0.8f);
 }
 
+/* ---- who owns what ---- */
+
+/* Channels with all that an emotion shares a face with, and the emotion at so much. */
+static void share(noh_emotion emotion, float amount, const noh_face_rules *rules, float moves, float shut,
+                  float *channels)
+{
+    noh_face_pose pose = at_rest();
+    float visemes[NOH_VISEME_COUNT] = { 0 };
+    pose.emotions[emotion] = amount;
+    pose.blink = 1.0f;
+    pose.lids_down = 0.5f;
+    pose.eyes[0][0] = pose.eyes[1][0] = 0.3f;
+    visemes[NOH_VISEME_AA] = 0.5f;
+    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_NONE, channels);
+    noh_face_share(rules, moves, shut, channels);
+}
+
+/* Of one group of channels what is left at an emotion of 0, 0.25 and 1, by each rule. */
+static void check_override(size_t group, uint32_t channel)
+{
+    static const float amounts[3] = { 0.0f, 0.25f, 1.0f };
+    static const float left[3][3] = { { 1.0f, 1.0f, 1.0f }, { 1.0f, 0.0f, 0.0f }, { 1.0f, 0.75f, 0.0f } };
+    for (uint32_t rule = NOH_OVERRIDE_NONE; rule <= NOH_OVERRIDE_BLEND; rule++) {
+        for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
+            for (int i = 0; i < 3; i++) {
+                noh_face_rules rules, none;
+                float channels[NOH_CHANNEL_COUNT], free_channels[NOH_CHANNEL_COUNT];
+                memset(&rules, 0, sizeof rules);
+                memset(&none, 0, sizeof none);
+                ((uint8_t *)&rules)[group + e] = (uint8_t)rule;
+                share((noh_emotion)e, amounts[i], &none, 0.0f, 0.0f, free_channels);
+                share((noh_emotion)e, amounts[i], &rules, 0.0f, 0.0f, channels);
+                assert_true(free_channels[channel] > 0.0f);
+                assert_true(fabsf(channels[channel] - left[rule][i] * free_channels[channel]) < 1e-6f);
+                for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) { /* all else is left alone */
+                    if (free_channels[c] == channels[c]) continue;
+                    assert_true(group != offsetof(noh_face_rules, lids) || c <= NOH_CHANNEL_BLINK_RIGHT ||
+                                c == NOH_CHANNEL_LIDS_UP || c == NOH_CHANNEL_LIDS_DOWN);
+                    assert_true(group != offsetof(noh_face_rules, eyes) ||
+                                (c >= NOH_CHANNEL_EYES && c < NOH_CHANNEL_EYES + 8u));
+                }
+            }
+        }
+    }
+}
+
+static void emotions_take_lids_by_rule(void **state)
+{
+    (void)state;
+    check_override(offsetof(noh_face_rules, lids), NOH_CHANNEL_BLINK_LEFT);
+    check_override(offsetof(noh_face_rules, lids), NOH_CHANNEL_BLINK_RIGHT);
+    check_override(offsetof(noh_face_rules, lids), NOH_CHANNEL_LIDS_DOWN);
+}
+
+static void emotions_take_eyes_by_rule(void **state)
+{
+    (void)state;
+    check_override(offsetof(noh_face_rules, eyes), NOH_CHANNEL_EYES + 2);
+    check_override(offsetof(noh_face_rules, eyes), NOH_CHANNEL_EYES + 7);
+}
+
+static void emotions_take_speech_by_rule(void **state)
+{
+    (void)state;
+    check_override(offsetof(noh_face_rules, speech), NOH_CHANNEL_VISEMES + NOH_VISEME_AA);
+}
+
+/* No rule and no emotion opens lips that p, b, m, f or v shut. */
+static void no_rule_opens_shut_lips(void **state)
+{
+    (void)state;
+    for (uint32_t rule = 0; rule < 27; rule++) {
+        for (uint32_t v = NOH_VISEME_PP; v <= NOH_VISEME_FF; v++) {
+            noh_face_pose pose = at_rest();
+            noh_face_rules rules;
+            float channels[NOH_CHANNEL_COUNT], visemes[NOH_VISEME_COUNT] = { 0 };
+            memset(&rules, 0, sizeof rules);
+            for (int e = 0; e < NOH_EMOTION_COUNT; e++) {
+                rules.mouth[e] = (uint8_t)(rule % 3u);
+                rules.speech[e] = (uint8_t)(rule / 3u % 3u);
+                rules.lids[e] = (uint8_t)(rule / 9u);
+            }
+            pose.emotions[NOH_EMOTION_SURPRISE] = 1.0f;
+            visemes[v] = 1.0f;
+            noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_NONE, channels);
+            noh_face_share(&rules, 0.0f, 0.0f, channels);
+            assert_true(channels[NOH_CHANNEL_VISEMES + v] == 1.0f);
+            assert_true(channels[NOH_CHANNEL_MOUTH + NOH_EMOTION_SURPRISE] == 0.0f);
+        }
+    }
+}
+
+/* Speech over an emotion's mouth: blend takes as much as it moves, block all, none nothing; whether its own shapes move
+ * the mouth or a clip says so; and what a clip shuts stays shut by any rule. */
+static void speech_takes_the_mouth_by_rule(void **state)
+{
+    static const float left[3] = { 0.4f, 0.0f, 1.0f };
+    (void)state;
+    for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
+        for (uint32_t rule = NOH_MOUTH_BLEND; rule <= NOH_MOUTH_NONE; rule++) {
+            noh_face_rules rules;
+            float channels[NOH_CHANNEL_COUNT];
+            memset(&rules, 0, sizeof rules);
+            rules.mouth[e] = (uint8_t)rule;
+            share((noh_emotion)e, 0.8f, &rules, 0.6f, 0.0f, channels); /* a clip moves more than the aa of 0.5 */
+            assert_true(fabsf(channels[NOH_CHANNEL_MOUTH + e] - 0.8f * left[rule]) < 1e-6f);
+            assert_true(channels[NOH_CHANNEL_UPPER + e] == 0.8f);
+            share((noh_emotion)e, 0.8f, &rules, 0.6f, 1.0f, channels);
+            assert_true(channels[NOH_CHANNEL_MOUTH + e] == 0.0f);
+        }
+    }
+}
+
 static void no_pose_is_a_face_at_rest(void **state)
 {
     const noh_face_pose pose = at_rest();
@@ -265,6 +379,11 @@ int main(int argc, char **argv)
         cmocka_unit_test(eyes_move_their_four_channels),
         cmocka_unit_test(shut_lips_win),
         cmocka_unit_test(speech_and_emotion_share_the_mouth_by_rule),
+        cmocka_unit_test(emotions_take_lids_by_rule),
+        cmocka_unit_test(emotions_take_eyes_by_rule),
+        cmocka_unit_test(emotions_take_speech_by_rule),
+        cmocka_unit_test(no_rule_opens_shut_lips),
+        cmocka_unit_test(speech_takes_the_mouth_by_rule),
         cmocka_unit_test(no_pose_is_a_face_at_rest),
         cmocka_unit_test(mouth_shapes_are_at_most_one_together),
         cmocka_unit_test(weights_stay_within_bounds_and_others_are_left_alone),

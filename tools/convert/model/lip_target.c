@@ -261,6 +261,7 @@ static int on_face(const triangle *t, const double p[3], double out[3])
 static double nearest_tooth(const mouth *h, const double p[3], double out[3])
 {
     double best = HUGE_VAL;
+    memcpy(out, p, 3 * sizeof *out);
     for (uint32_t t = 0; t < h->tooth_count; t++) {
         double at[4][3];
         const int inside = on_face(&h->teeth[t], p, at[3]);

@@ -15,6 +15,7 @@
  *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies on a stage, with and without LOD
  *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
  *   bench_look.c        rows look/: frames with one part of a look, against the plain frame
+ *   bench_face.c        rows face/: a thousand living faces, beside noh_controller_step
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -210,6 +211,7 @@ int bench_cpu(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
 int bench_crowd_pose(bench_job *job);
 int bench_crowd_frame(bench_job *job);
+int bench_face(bench_job *job); /* with the targets of the mesh */
 int bench_cast(bench_job *job); /* none where no mesh has joints and levels, or there are no clips */
 int bench_look(bench_job *job);
 /* The skinned mesh of the most vertices; no rows where the pack has none. */
