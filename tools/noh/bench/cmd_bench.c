@@ -42,8 +42,7 @@ static const struct group {
     { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
     { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
     { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
-    { "look", bench_look, 1 },
-    { "face", bench_face, 1 },
+    { "look", bench_look, 1 },         { "face", bench_face, 1 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -165,8 +164,9 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(bench_args, only),
       .value = "GROUP",
-      .what = "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look or face; "
-              "default: all for which the packs have data",
+      .what =
+          "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look or face; "
+          "default: all for which the packs have data",
       .example = "look" },
     { .name = "--source",
       .kind = OPTION_INPUT,
