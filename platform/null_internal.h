@@ -4,7 +4,7 @@
 
 #include "null.h"
 
-#define NULL_OBJECTS_MAX 2048 /* of one kind; names are never reused, so that a stale one is noticed */
+#define NULL_OBJECTS_MAX 4096 /* of one kind; names are never reused, so that a stale one is noticed */
 #define NULL_UNITS 32
 #define NULL_ATTRIBUTES 16
 #define NULL_ATTACHMENTS 5 /* four colours, depth */

@@ -35,31 +35,66 @@ float noh_gloss_occlusion(float nv, float occlusion, float roughness)
     return clamp(pow(nv + occlusion, exp2(-16.0 * roughness * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 
+/* Of the key light, what a surface sends out again, by channel, over what makes white white. */
+vec3 noh_key_matte(noh_surface s)
+{
+    float shadow = noh_key_shadow(s.position, s.geometric);
+#ifdef NOH_SKIN
+    float facing = dot(s.geometric, noh_key);
+    vec3 through = pow(vec3(mix(1.0, shadow, smoothstep(-0.1, 0.1, facing))), vec3(0.6, 1.0, 1.2));
+    return noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric)) * through;
+#else
+    return vec3(max(dot(s.normal, noh_key), 0.0) * shadow);
+#endif
+}
+
 /* What reaches a matte surface, over what makes white white. */
 vec3 noh_matte_light(noh_surface s)
 {
-    vec3 key = noh_key_color * max(dot(s.normal, noh_key), 0.0);
-    return noh_ambient(s.normal) * s.occlusion + key * noh_key_shadow(s.position, s.geometric);
+    return noh_ambient(s.normal) * s.occlusion + noh_key_color * noh_key_matte(s);
+}
+
+/* What glosses of the key light, over its colour: no reflectance in it. normal: the one that mirrors */
+float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
+{
+    float nl = max(dot(normal, noh_key), 0.0), nh = clamp(dot(normal, h), 0.0, 1.0);
+#ifdef NOH_SKIN
+    vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
+    return nl * mix(noh_gloss(nh, nl, nv, lobes.y), noh_gloss(nh, nl, nv, lobes.x), noh_narrow_lobe);
+#elif defined(NOH_EYE)
+    return nl > 0.0 ? noh_lamp(nh) : 0.0;
+#else
+    return nl * noh_gloss(nh, nl, nv, roughness);
+#endif
 }
 
 vec3 noh_light(noh_surface s)
 {
-    float roughness = clamp(s.roughness, 0.08, 1.0), nv = clamp(dot(s.normal, s.view), 1e-3, 1.0);
+    vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
+#ifdef NOH_SKIN
+    s.roughness = noh_pore_roughness(s.roughness, s.normal);
+#endif
+#ifdef NOH_EYE
+    mirror = noh_eye_light(s);
+#endif
+    float roughness = clamp(s.roughness, 0.08, 1.0), nv = clamp(dot(mirror, s.view), 1e-3, 1.0);
     vec3 f0 = mix(s.f0, s.albedo, s.metallic), h = normalize(noh_key + s.view);
     vec2 part = noh_albedo_of(roughness, nv);
     vec3 gloss = f0 * (part.x - part.y) + part.y; /* reflected of an even light, once */
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and by further bounces between the facets */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
-    float nl = max(dot(s.normal, noh_key), 0.0), shadow = noh_key_shadow(s.position, s.geometric);
-    vec3 mirrored = noh_mirror(reflect(-s.view, s.normal), roughness) * noh_gloss_occlusion(nv, s.occlusion, roughness);
-    vec3 color = matte * (noh_ambient(s.normal) * s.occlusion + noh_key_color * (nl * shadow));
+    vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, s.occlusion, roughness);
+    vec3 color = matte * noh_matte_light(s);
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
         float away = clamp(1.0 - dot(h, s.view), 0.0, 1.0), away2 = away * away;
         vec3 fresnel = f0 + (1.0 - f0) * (away2 * away2 * away);
-        float d = noh_gloss(clamp(dot(s.normal, h), 0.0, 1.0), nl, nv, roughness);
-        color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * nl * shadow * d);
+        float shadow = noh_key_shadow(s.position, s.geometric);
+        color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * shadow * noh_key_glossed(mirror, h, nv, roughness));
     }
+#if defined(NOH_SKIN) || defined(NOH_TEETH)
+    color *= noh_v_open;
+#endif
     return noh_expose(color + s.emissive);
 }
 #else
@@ -75,20 +110,64 @@ float noh_highlight(float nh, float nl, float nv, float roughness)
     return a2 / (3.14159265 * d * d) * visibility;
 }
 
+/* Of the key light, what glosses. normal: the one that mirrors */
+float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
+{
+    float nl = max(dot(normal, noh_key), 0.0), nh = max(dot(normal, h), 0.0);
+#ifdef NOH_SKIN
+    vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
+    return nl * mix(noh_highlight(nh, nl, nv, lobes.y), noh_highlight(nh, nl, nv, lobes.x), noh_narrow_lobe);
+#elif defined(NOH_EYE)
+    return nl > 0.0 ? noh_lamp(nh) : 0.0;
+#else
+    return nl * noh_highlight(nh, nl, nv, roughness);
+#endif
+}
+
+/* The light from sky and ground. */
+vec3 noh_sky(float up)
+{
+    return mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), up * 0.5 + 0.5);
+}
+
+/* Of the key light, what a surface sends out again, by channel. */
+vec3 noh_key_matte(noh_surface s)
+{
+#ifdef NOH_SKIN
+    return noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric));
+#else
+    float wrapped = max((dot(s.normal, noh_key) + 0.18) / 1.18, 0.0);
+    return vec3(wrapped * wrapped);
+#endif
+}
+
 vec3 noh_light(noh_surface s)
 {
+    vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
+#ifdef NOH_SKIN
+    s.roughness = noh_pore_roughness(s.roughness, s.normal);
+#endif
+#ifdef NOH_EYE
+    mirror = noh_eye_light(s);
+#endif
     float roughness = max(s.roughness, 0.08);
     vec3 f0 = mix(s.f0, s.albedo, s.metallic);
     vec3 diffuse = s.albedo * (1.0 - s.metallic);
+#ifdef NOH_EYE
+    vec3 h = normalize(noh_key - 0.35 * normalize(noh_v_up) + s.view); /* low enough to be seen below the lid */
+#else
     vec3 h = normalize(noh_key + s.view);
-    float nl = dot(s.normal, noh_key), nv = max(dot(s.normal, s.view), 1e-3), nh = max(dot(s.normal, h), 0.0);
-    float lit = max(nl, 0.0), wrapped = max((nl + 0.18) / 1.18, 0.0);
+#endif
+    float nv = max(dot(mirror, s.view), 1e-3);
     vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(h, s.view), 0.0), 5.0);
-    vec3 sky = s.occlusion * mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), s.normal.y * 0.5 + 0.5);
-    vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * wrapped * wrapped + 0.62 * sky);
-    color += fresnel * noh_highlight(nh, lit, nv, roughness) * lit * 2.6;
+    vec3 sky = s.occlusion * noh_sky(s.normal.y);
+    vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
+    color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;
     color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic);
     color += 0.10 * sky * pow(1.0 - nv, 3.0) * (1.0 - 0.6 * roughness);
+#if defined(NOH_SKIN) || defined(NOH_TEETH)
+    color *= noh_v_open;
+#endif
     return color + s.emissive;
 }
 #endif

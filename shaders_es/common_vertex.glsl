@@ -121,6 +121,17 @@ noh_vertex noh_fetch()
     noh_fetch_regions();
 #endif
 #endif
+#ifndef NOH_DEPTH_ONLY
+#ifdef NOH_EYE
+    noh_face_vertex(noh_a_position, v.model, noh_direction_of_pair(noh_a_normal), v.normal, x, y, z);
+#endif
+#ifdef NOH_TEETH
+    noh_face_vertex(noh_a_position, v.model);
+#endif
+#ifdef NOH_SKIN
+    noh_face_vertex(noh_a_position);
+#endif
+#endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
     p = vec4(v.model, 1.0);
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));

@@ -55,7 +55,11 @@ void main()
 #else
 void main()
 {
+#ifdef NOH_EYE
+    vec4 base = noh_base(noh_eye_uv(v_world, v_normal, v_uv), v_color);
+#else
     vec4 base = noh_base(v_uv, v_color);
+#endif
     noh_surface s = noh_surface_of(base, v_world, v_normal, v_tangent, v_uv);
 #if NOH_DEBUG_VIEW == 1
     o_color = vec4(pow((v_model - noh_bounds_min) / max(noh_bounds_size, vec3(1e-9)), vec3(2.2)), 1.0);

@@ -161,6 +161,16 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
+/* What skin, eyes and teeth are told. Skin of no unit is of metres. */
+static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
+{
+    const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;
+    const int is_skin = m->surface == NOH_SURFACE_SKIN;
+    r->gl->Uniform4f(v->u_surface_values, is_skin ? mm : m->surface_values[0], m->surface_values[1],
+                     m->surface_values[2], m->surface_values[3]);
+    r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
+}
+
 /* Instances of a crowd have regions in rows of their own, of meshes that have any. */
 #define REGIONS_IN_ROWS 8
 static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, int in_rows,
@@ -186,6 +196,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
         if (v->key.features & NOH_FEATURE_WRINKLES) {
             set_wrinkles(r, v, m, v->key.crowd && noh_gl_crowd_rows(mesh) > NOH_CROWD_ROWS, pictures);
         }
+        if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m);
     }
     if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
         r->gl->Disable(GL_CULL_FACE);

@@ -25,14 +25,17 @@ extern "C" {
  * name    "common_layers.glsl"      noh_morph_fetch adds an instance's deltas
  *         "common_attributes.glsl"  normals and tangents from the pack's integers
  *         "common_skin.glsl"        noh_skin_vertex moves a vertex by its joints; goes behind common_layers.glsl
- *         "common_vertex.glsl"      noh_fetch, all of it for a noh_gl_mesh; goes behind the three
+ *         "common_face.glsl"        what eyes and teeth need of a vertex; goes behind common_skin.glsl
+ *         "common_vertex.glsl"      noh_fetch, all of it for a noh_gl_mesh; goes behind the four
  *         "common_fade.glsl"        noh_fade_noise, the pattern by which LOD levels fade
  *         "common_fragment.glsl"    noh_fade, noh_cut, noh_base, noh_encode; goes behind common_fade.glsl
  *         "common_wrinkle.glsl"     how much a pixel is wrinkled; goes behind common_fragment.glsl
  *         "common_environment.glsl" noh_ambient, noh_mirror, noh_key_shadow, noh_expose: what light there is where
  *                                   NOH_LIT is defined; goes behind common_fragment.glsl
  *         "common_material.glsl"    noh_surface_of, a material's maps; goes behind common_wrinkle.glsl
- *         "common_light.glsl"       noh_light, the light on a surface; goes behind common_material.glsl
+ *         "common_scatter.glsl"     what skin does with light; goes behind common_environment.glsl
+ *         "common_eye.glsl"         what eyes and teeth do with it; goes behind common_environment.glsl
+ *         "common_light.glsl"       noh_light, the light on a surface; goes behind all of these
  * errors  NULL for any other name */
 const char *noh_gl_shader_text(const char *name);
 

@@ -54,6 +54,7 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     if (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) features |= NOH_FEATURE_EMISSIVE;
     if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
+    if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
     return (uint8_t)features;
 }
 
@@ -109,6 +110,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_EMISSIVE, "#define NOH_EMISSIVE\n" },
                   { key.features & NOH_FEATURE_SKIN, "#define NOH_SKIN\n" },
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
+                  { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
@@ -119,7 +121,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 }
 
 /* The texts behind the defines: what is compiled and what noh_gl_shader_prefix hands out. */
-#define PREFIX_PIECES_MAX 12u
+#define PREFIX_PIECES_MAX 14u
 static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX])
 {
     static const char precision[] = "precision highp float;\nprecision highp int;\n", own[] = "#line 1 0\n";
@@ -129,6 +131,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_layers_glsl;
         pieces[count++] = noh_shader_common_attributes_glsl;
         pieces[count++] = noh_shader_common_skin_glsl;
+        pieces[count++] = noh_shader_common_face_glsl;
         pieces[count++] = noh_shader_common_vertex_glsl;
     } else {
         pieces[count++] = noh_shader_common_fade_glsl;
@@ -136,6 +139,8 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_wrinkle_glsl;
         pieces[count++] = noh_shader_common_material_glsl;
         pieces[count++] = noh_shader_common_environment_glsl;
+        pieces[count++] = noh_shader_common_scatter_glsl;
+        pieces[count++] = noh_shader_common_eye_glsl;
         pieces[count++] = noh_shader_common_light_glsl;
     }
     pieces[count++] = own;
@@ -177,7 +182,7 @@ size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, si
 /* ---- programs ---- */
 
 /* A stage's text: what goes behind the key's defines. */
-#define SOURCE_PIECES_MAX 14u
+#define SOURCE_PIECES_MAX 16u
 typedef struct whole_source {
     noh_gl_source source;
     const char *pieces[SOURCE_PIECES_MAX];
@@ -226,6 +231,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_f0", offsetof(noh_gl_variant, u_f0) },
                      { "noh_emissive", offsetof(noh_gl_variant, u_emissive) },
                      { "noh_maps", offsetof(noh_gl_variant, u_maps) },
+                     { "noh_surface_values", offsetof(noh_gl_variant, u_surface_values) },
+                     { "noh_surface_more", offsetof(noh_gl_variant, u_surface_more) },
                      { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },
                      { "noh_wrinkle_regions", offsetof(noh_gl_variant, u_wrinkle_regions) },

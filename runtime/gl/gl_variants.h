@@ -59,6 +59,7 @@ typedef struct noh_gl_variant_key {
 #define NOH_FEATURE_SKIN 8u
 #define NOH_FEATURE_EYE 16u
 #define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps */
+#define NOH_FEATURE_TEETH 64u
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
@@ -66,7 +67,7 @@ typedef struct noh_gl_variant {
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models;
+        u_wrinkle_models, u_surface_values, u_surface_more;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

@@ -107,18 +107,23 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     noh_result result = noh_check_name(check, m->name, m->name_hash, at);
     if (!result) result = noh_check_floats(check, m->base_color, 15, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
+    if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
     if (!result && m->flags & ~15u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
-    if (!result && m->surface > NOH_SURFACE_EYE) {
+    if (!result && m->surface > NOH_SURFACE_TEETH) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
     if (!result && (m->wrinkle_models > 7u || !m->wrinkle_models != (m->wrinkle_texture == NOH_NONE))) {
         result = noh_check_fail(check, "material has unknown models of wrinkles, or models without a wrinkle map",
                                 at + offsetof(noh_material, wrinkle_models));
     }
-    for (uint32_t i = 0; !result && i < 8u; i++) {
+    if (!result && m->surface == NOH_SURFACE_SKIN && m->surface_values[0] < 0.0f) {
+        result = noh_check_fail(check, "skin has less than 0 millimetres in a unit",
+                                at + offsetof(noh_material, surface_values));
+    }
+    for (uint32_t i = 0; !result && i < 2u; i++) {
         if (m->reserved[i]) {
             result = noh_check_fail(check, "reserved field of a material is not zero",
                                     at + offsetof(noh_material, reserved) + 4u * i);

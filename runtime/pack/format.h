@@ -258,10 +258,21 @@ typedef struct noh_node {
 #define NOH_MATERIAL_DOUBLE_SIDED 4u
 #define NOH_MATERIAL_UNLIT 8u
 
-/* What the surface is made of: decides how it is lit. */
+/* What the surface is made of: decides how it is lit. noh_material.surface_values and surface_more then are, of
+ *   skin   x millimetres in a unit of the world, by which light scatters; 0: 1000. Then the inside of a mouth, in the
+ *          bind pose, in mesh space: yzw its middle, at the foremost teeth; half its width and its height, and 1 over
+ *          the depth in which no light comes. Zeros: there is none
+ *   eye    xyz where it looks in the bind pose, in mesh space, as long as the radius of the iris; w the sine of the
+ *          angle, about the middle of the ball, from there to the rim of the iris. Then the edges of the upper and of
+ *          the lower lid, in front of the ball, in its radii: where a is how far from the nose's side a point is to
+ *          where the eye looks, they are at the height x + y a + z a^2. Zeros: not known
+ *   teeth  what is open to the light, from 0 to 1: the place in the bind pose times xyz, plus w; zeros: not known.
+ *          Then x: how much of that is added for each unit that the place has moved; zeros
+ * In a plain one they are zeros. */
 #define NOH_SURFACE_PLAIN 0u
 #define NOH_SURFACE_SKIN 1u
 #define NOH_SURFACE_EYE 2u
+#define NOH_SURFACE_TEETH 3u /* and gums and tongue: what light reaches through the lips only */
 
 /* What shows a wrinkle map: the surface's change of area in the pose; twelve regions, weighted by the expression; the
  * first weight map's red always, its green and blue as regions 3 and 6. */
@@ -287,9 +298,10 @@ typedef struct noh_material {
     uint32_t wrinkle_texture;    /* a second normal map, that of wrinkles */
     uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel */
     uint32_t surface;            /* NOH_SURFACE_* */
-    float surface_values[4];     /* of that surface; zeros in a plain one */
+    float surface_values[4];     /* of that surface, above */
     uint32_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */
-    uint32_t reserved[8];
+    float surface_more[6];       /* of that surface, above */
+    uint32_t reserved[2];
 } noh_material;
 
 /* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, each uint8_t[height][width][4], top row first.

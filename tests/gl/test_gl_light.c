@@ -1,166 +1,17 @@
 /* test_gl_light.c: the lit renderer against closed forms: a furnace, a plane and a wall, the fitted integral of GGX,
  * the shadow of a square. */
-#include "support/gl_fixture.h"
-#include "support/renderer.h"
+#include "support/light_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/math_internal.h"
-#include "gpu/canvas.h"
 
-#define SIDE 65u
-#define PI 3.14159265358979323846
-
-static double encoded(double linear)
+static void open_scene(scene *s, const noh_environment *environment, uint32_t shadow_px, const float values[4])
 {
-    const double c = fmin(fmax(linear, 0.0), 1.0);
-    return 255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055);
-}
-
-/* ---- a scene: a sphere of radius 1, a square of half a side 1 that faces +z ---- */
-
-enum { SPHERE, SQUARE, MESHES };
-
-typedef struct scene {
-    gpu *g;
-    uint8_t *bytes;
-    noh_pack pack;
-    noh_mesh meshes[MESHES];
-    noh_gl_mesh drawn[MESHES];
-    noh_gl_renderer renderer;
-    noh_reflection reflection;
-    noh_gl_light light;
-    noh_gl_ledger ledger;
-    canvas canvas;
-} scene;
-
-static void fill_sphere(model_mesh *m, uint32_t side)
-{
-    for (uint32_t v = 0; v < side * side; v++) {
-        const double a = 2.0 * PI * (v % side) / (side - 1u), b = PI * (v / side) / (side - 1u) - PI / 2.0;
-        const double at[3] = { cos(b) * sin(a), sin(b), cos(b) * cos(a) };
-        for (int k = 0; k < 3; k++) m->position[3 * v + (uint32_t)k] = m->normal[3 * v + (uint32_t)k] = (float)at[k];
-    }
-}
-
-static void fill_square(model_mesh *m, uint32_t side)
-{
-    for (uint32_t v = 0; v < side * side; v++) {
-        const float at[3] = { 2.0f * (float)(v % side) / (float)(side - 1u) - 1.0f,
-                              2.0f * (float)(v / side) / (float)(side - 1u) - 1.0f, 0.0f };
-        const float normal[3] = { 0.0f, 0.0f, 1.0f };
-        memcpy(m->position + 3 * v, at, sizeof at);
-        memcpy(m->normal + 3 * v, normal, sizeof normal);
-    }
-}
-
-static uint8_t *make_pack(float albedo, float roughness, float metallic, float f0, size_t *count)
-{
-    const test_model_desc desc = { MESHES, 65, 0, 0, 1 };
-    model *m = test_model(&desc);
-    model_material *material = m->materials = test_zeros(sizeof *m->materials);
-    uint8_t *bytes;
-    *material = model_material_default();
-    m->material_count = 1;
-    material->name = model_string("ball");
-    for (int k = 0; k < 3; k++) {
-        material->base_color[k] = albedo;
-        material->f0[k] = f0;
-    }
-    material->roughness = roughness;
-    material->metallic = metallic;
-    material->double_sided = 1;
-    fill_sphere(&m->meshes[SPHERE], 65);
-    fill_square(&m->meshes[SQUARE], 71);
-    for (int i = 0; i < MESHES; i++) m->meshes[i].submeshes[0].material = 0;
-    bytes = test_pack_of(m, count, NULL);
-    model_free(m);
-    return bytes;
-}
-
-static void open_scene(scene *s, const noh_environment *environment, uint32_t shadow_px, const float material[4])
-{
-    static __attribute__((aligned(16))) uint32_t texels[2 * 6 * 32 * 32];
-    static __attribute__((aligned(16))) uint8_t scratch[3 * 4 * 2 * 6 * 32 * 32];
-    const noh_reflection_desc baked = { 32, noh_reflection_of_environment, environment };
-    const noh_gl_light_desc desc = { &s->reflection, shadow_px };
-    noh_gl_renderer_desc d;
-    char log[1024] = "";
-    size_t count;
-    memset(s, 0, sizeof *s);
-    memset(&d, 0, sizeof d);
-    s->g = fixture_gpu();
-    s->bytes = make_pack(material[0], material[1], material[2], material[3], &count);
-    s->pack = test_open(s->bytes, count);
-    for (uint32_t i = 0; i < MESHES; i++) {
-        s->meshes[i] = test_mesh(&s->pack, i);
-        assert_int_equal(noh_gl_mesh_create(&s->g->gl, &s->ledger, &s->meshes[i], &s->drawn[i], NULL), NOH_OK);
-    }
-    assert_int_equal(noh_reflection_init(texels, sizeof texels, scratch, sizeof scratch, &baked, &s->reflection, NULL),
-                     NOH_OK);
-    const noh_gl_device device = { &s->g->gl, NULL, &s->ledger, log, sizeof log };
-    const uint64_t before = noh_gl_ledger_bytes(&s->ledger);
-    assert_int_equal(noh_gl_light_create(&device, &desc, &s->light, NULL), NOH_OK);
-    assert_int_equal(noh_gl_ledger_bytes(&s->ledger) - before, noh_gl_light_bytes(&desc));
-    d.meshes = s->meshes;
-    d.mesh_count = MESHES;
-    d.lit = 1;
-    d.passes = NOH_PASSES_ALL;
-    if (renderer_create(&device, &d, &s->renderer, NULL)) fail_msg("%s", log);
-    assert_int_equal(canvas_open(&s->canvas, s->g, SIDE, SIDE), 0);
-}
-
-static void close_scene(scene *s)
-{
-    canvas_close(&s->canvas);
-    noh_gl_renderer_delete(&s->renderer);
-    noh_gl_light_delete(&s->light);
-    for (int i = 0; i < MESHES; i++) noh_gl_mesh_delete(&s->g->gl, &s->ledger, &s->drawn[i]);
-    assert_int_equal(noh_gl_ledger_bytes(&s->ledger), 0);
-    free(s->bytes);
-    fixture_expect_no_errors();
-}
-
-/* Parallel, along -z, of -1..1 in x and y. */
-static noh_gl_camera front(void)
-{
-    noh_gl_camera c;
-    memset(&c, 0, sizeof c);
-    c.view_projection[0] = c.view_projection[5] = c.view_projection[15] = 1.0f;
-    c.view_projection[10] = -0.1f;
-    c.eye[2] = 1000.0f;
-    return c;
-}
-
-static void draw_mesh(scene *s, int mesh, const float world[12], int pass)
-{
-    noh_gl_texture none[1];
-    memset(none, 0, sizeof none);
-    noh_gl_draw_mesh(&s->renderer, &s->drawn[mesh], world, NULL, NULL, NULL, none, pass);
-}
-
-/* rgba[SIDE][SIDE][4], to be freed. */
-static uint8_t *draw(scene *s, int mesh, const float world[12], const noh_lighting *lighting)
-{
-    const noh_gl_camera camera = front();
-    uint8_t *rgba = test_zeros(SIDE * SIDE * 4);
-    canvas_begin(&s->canvas);
-    noh_gl_renderer_light(&s->renderer, &s->light, lighting);
-    noh_gl_draw_begin(&s->renderer, &camera);
-    draw_mesh(s, mesh, world, NOH_DRAW_OPAQUE);
-    noh_gl_draw_end(&s->renderer);
-    assert_int_equal(canvas_read(&s->canvas, rgba), 0);
-    return rgba;
-}
-
-static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
-static const noh_environment black = { .name = "black" };
-
-static double pixel_at(uint32_t i)
-{
-    return (2.0 * i + 1.0) / SIDE - 1.0;
+    const model_material material = scene_material(values);
+    scene_open(s, &material, environment, shadow_px, NULL);
 }
 
 /* ---- even light ---- */
@@ -181,7 +32,7 @@ static void a_furnace_is_white_at_every_pixel(void **state)
         open_scene(&s, noh_environment_at(0), 0, materials[i]);
         noh_light_from_environment(noh_environment_at(0), 6, &light);
         noh_lighting_make(&light, NULL, 1, &lighting);
-        rgba = draw(&s, SPHERE, identity, &lighting);
+        rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
         for (uint32_t p = 0; p < SIDE * SIDE; p++) {
             const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE);
             if (x * x + y * y > 0.96 * 0.96) continue;
@@ -190,7 +41,7 @@ static void a_furnace_is_white_at_every_pixel(void **state)
         }
         assert_true(covered > 2500);
         free(rgba);
-        close_scene(&s);
+        scene_close(&s);
     }
 }
 
@@ -232,7 +83,7 @@ static void the_fitted_integral_is_near(void **state)
         open_scene(&s, noh_environment_at(0), 0, material);
         noh_light_from_environment(noh_environment_at(0), 6, &light);
         noh_lighting_make(&light, NULL, 1, &lighting);
-        rgba = draw(&s, SPHERE, identity, &lighting);
+        rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
         for (uint32_t x = SIDE / 2; x < SIDE * 97 / 100; x++) {
             const double at = pixel_at(x), nv = sqrt(1.0 - at * at);
             double all, edge, right, found;
@@ -243,7 +94,7 @@ static void the_fitted_integral_is_near(void **state)
             worst = fmax(worst, fabs(found - right));
         }
         free(rgba);
-        close_scene(&s);
+        scene_close(&s);
     }
     print_message("the fit is off by %.4f at most\n", worst);
     assert_true(worst < 0.03);
@@ -262,7 +113,7 @@ static void a_plane_and_a_wall_are_the_analytic_ones(void **state)
     noh_light light;
     noh_lighting lighting;
     (void)state;
-    open_scene(&s, &black, 0, flat);
+    open_scene(&s, &scene_black, 0, flat);
     noh_light_from_environment(&half, 6, &light);
     for (int degrees = 0; degrees <= 180;
          degrees += 15) { /* of the light's turn: up, then towards the square's front */
@@ -271,11 +122,11 @@ static void a_plane_and_a_wall_are_the_analytic_ones(void **state)
         const double right = encoded(0.5 * (1.0 + (double)sn));
         uint8_t *rgba;
         noh_lighting_make(&light, turn, 0, &lighting);
-        rgba = draw(&s, SQUARE, identity, &lighting);
+        rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
         for (uint32_t p = 0; p < SIDE * SIDE; p++) assert_true(fabs(rgba[4 * p] - right) <= 1.5);
         free(rgba);
     }
-    close_scene(&s);
+    scene_close(&s);
 }
 
 /* The cosine law, and the sum of key and rest. */
@@ -284,7 +135,7 @@ static void a_key_light_falls_by_the_cosine(void **state)
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f };
     scene s;
     (void)state;
-    open_scene(&s, &black, 0, flat);
+    open_scene(&s, &scene_black, 0, flat);
     for (int degrees = -100; degrees <= 100; degrees += 10) {
         const double a = degrees * PI / 180.0;
         noh_light none;
@@ -298,7 +149,7 @@ static void a_key_light_falls_by_the_cosine(void **state)
         lighting.key_direction[2] = (float)cos(a);
         lighting.key[0] = 0.9f;
         lighting.key[1] = 0.5f;
-        rgba = draw(&s, SQUARE, identity, &lighting);
+        rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
         for (uint32_t p = 0; p < SIDE * SIDE; p++) {
             if (fabs(rgba[4 * p] - encoded(0.9 * cos(a))) > 1.5)
                 fail_msg("%d degrees: %u, not %.1f", degrees, rgba[4 * p], encoded(0.9 * cos(a)));
@@ -307,23 +158,12 @@ static void a_key_light_falls_by_the_cosine(void **state)
         }
         free(rgba);
     }
-    close_scene(&s);
+    scene_close(&s);
 }
 
 /* ---- the shadow map ---- */
 
 #define SHADOW_PX 256u
-
-/* Light from nowhere but the key. */
-static void key_alone(const float to_light[3], noh_lighting *lighting)
-{
-    noh_light none;
-    memset(&none, 0, sizeof none);
-    none.order = 3;
-    noh_lighting_make(&none, NULL, 1, lighting);
-    memcpy(lighting->key_direction, to_light, sizeof lighting->key_direction);
-    for (int c = 0; c < 3; c++) lighting->key[c] = 0.9f;
-}
 
 /* A square of half a side 0.3 floats 0.8 above one that fills the picture; the light comes aslant. */
 static void a_square_casts_its_shadow(void **state)
@@ -333,24 +173,24 @@ static void a_square_casts_its_shadow(void **state)
     const float to_light[3] = { 0.48f, 0.36f, 0.8f };
     const double shift[2] = { -0.8 * 0.48 / 0.8, -0.8 * 0.36 / 0.8 }, texel = 2.0 * 1.6 / SHADOW_PX;
     noh_stage_view view;
-    noh_gl_camera from_light = front();
+    noh_gl_camera from_light = scene_front();
     noh_lighting lighting;
     uint32_t dark = 0, lit = 0;
     uint8_t *rgba;
     scene s;
     (void)state;
-    open_scene(&s, &black, SHADOW_PX, flat);
+    open_scene(&s, &scene_black, SHADOW_PX, flat);
     key_alone(to_light, &lighting);
     noh_view_shadow(&view, sphere, to_light);
     noh_lighting_shadow(&lighting, view.view_projection, sphere[3], SHADOW_PX);
     memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
     noh_gl_light_begin_shadow(&s.light);
     noh_gl_draw_begin(&s.renderer, &from_light);
-    draw_mesh(&s, SQUARE, identity, NOH_DRAW_DEPTH);
-    draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
+    scene_draw_mesh(&s, SQUARE, scene_identity, NOH_DRAW_DEPTH);
+    scene_draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
     noh_gl_draw_end(&s.renderer);
     noh_gl_light_end_shadow(&s.light);
-    rgba = draw(&s, SQUARE, identity, &lighting);
+    rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE) - shift[0], y = -pixel_at(p / SIDE) - shift[1];
         const double out = fmax(fabs(x), fabs(y)) - 0.3; /* of the shadow, as far as its edge */
@@ -365,7 +205,7 @@ static void a_square_casts_its_shadow(void **state)
     }
     assert_true(dark > 150 && lit > 2500);
     free(rgba);
-    close_scene(&s);
+    scene_close(&s);
 }
 
 /* A sphere shadows its own far side and nothing of its near one. */
@@ -374,23 +214,23 @@ static void no_surface_shadows_itself(void **state)
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, all[4] = { 0.0f, 0.0f, 0.0f, 1.1f };
     const float to_light[3] = { 0.6f, 0.0f, 0.8f };
     noh_stage_view view;
-    noh_gl_camera from_light = front();
+    noh_gl_camera from_light = scene_front();
     noh_lighting lighting;
     scene s;
     uint8_t *with, *without;
     (void)state;
-    open_scene(&s, &black, SHADOW_PX, flat);
+    open_scene(&s, &scene_black, SHADOW_PX, flat);
     key_alone(to_light, &lighting);
-    without = draw(&s, SPHERE, identity, &lighting);
+    without = scene_draw(&s, SPHERE, scene_identity, &lighting);
     noh_view_shadow(&view, all, to_light);
     noh_lighting_shadow(&lighting, view.view_projection, all[3], SHADOW_PX);
     memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
     noh_gl_light_begin_shadow(&s.light);
     noh_gl_draw_begin(&s.renderer, &from_light);
-    draw_mesh(&s, SPHERE, identity, NOH_DRAW_DEPTH);
+    scene_draw_mesh(&s, SPHERE, scene_identity, NOH_DRAW_DEPTH);
     noh_gl_draw_end(&s.renderer);
     noh_gl_light_end_shadow(&s.light);
-    with = draw(&s, SPHERE, identity, &lighting);
+    with = scene_draw(&s, SPHERE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE), z2 = 1.0 - x * x - y * y;
         if (z2 < 0.05 || 0.6 * x + 0.8 * sqrt(z2) < 0.25) continue; /* off, or where light grazes */
@@ -398,7 +238,7 @@ static void no_surface_shadows_itself(void **state)
     }
     free(with);
     free(without);
-    close_scene(&s);
+    scene_close(&s);
 }
 
 int main(void)

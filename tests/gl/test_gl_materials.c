@@ -112,8 +112,15 @@ static void surface_maps_and_emissive_colours_count(void **state)
 
 static void programs_have_what_materials_have(void **state)
 {
-    static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture" };
-    static const uint8_t features[] = { 0, NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP, NOH_FEATURE_EMISSIVE };
+    static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture",
+                                         "noh_surface_values" };
+    static const uint8_t features[] = { 0,
+                                        NOH_FEATURE_NORMAL_MAP,
+                                        NOH_FEATURE_SURFACE_MAP,
+                                        NOH_FEATURE_EMISSIVE,
+                                        NOH_FEATURE_SKIN,
+                                        NOH_FEATURE_EYE,
+                                        NOH_FEATURE_TEETH };
     gpu *g = fixture_gpu();
     noh_gl_ledger ledger;
     (void)state;
@@ -127,7 +134,7 @@ static void programs_have_what_materials_have(void **state)
             NOH_OK);
         for (size_t k = 0; k < TEST_COUNT(names); k++) {
             const GLint at = g->gl.GetUniformLocation(v.program, names[k]);
-            assert_int_equal(at >= 0, features[i] == 1u << k);
+            assert_int_equal(at >= 0, i > 3u ? k == 3u : k + 1u == i);
         }
         noh_gl_variant_delete(&g->gl, &ledger, &v);
     }
@@ -151,6 +158,10 @@ static void features_follow_material_and_mesh(void **state)
     m.emissive[1] = 0.5f;
     m.surface = NOH_SURFACE_EYE;
     assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_EYE);
+    m.surface = NOH_SURFACE_SKIN;
+    assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_SKIN);
+    m.surface = NOH_SURFACE_TEETH;
+    assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_TEETH);
     m.flags = NOH_MATERIAL_UNLIT;
     assert_int_equal(noh_gl_features_of(&mesh, &m), 0);
 }

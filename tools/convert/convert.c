@@ -8,6 +8,8 @@
 #include "convert/light/pack_transfer.h"
 #include "convert/model/model_build.h"
 #include "convert/model/recipe_make.h"
+#include "convert/model/surface_kind.h"
+#include "convert/model/surface_shape.h"
 #include "convert/pack/pack_graph.h"
 #include "pack/pack.h"
 #include "sources.h"
@@ -343,6 +345,15 @@ static int read_all(const char *const *inputs, int count, const convert_options 
     return 0;
 }
 
+/* What the materials are made of, and what the meshes tell of that. */
+static int make_surfaces(const convert_options *options, source *s, model_error *error)
+{
+    for (uint32_t i = 0; i < options->surface_count; i++) {
+        if (surface_kind_assign(s->m, options->surfaces[i], error)) return 1;
+    }
+    return options->only != CONVERT_CLIPS && surface_shapes_find(s->m, options->report, error);
+}
+
 static int join_all(const char *const *inputs, int count, int base, source *all, convert_failure *failure)
 {
     for (int i = 0; i < count; i++) {
@@ -371,6 +382,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     if (!failed) {
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, all, failure) ||
+                 make_surfaces(options, &all[base], &failure->error) ||
                  apply_events(options, &all[base], &failure->error) ||
                  read_graphs(options, &all[base], &graphs, failure) ||
                  read_recipe(options, &all[base], &recipe, failure);

@@ -23,6 +23,8 @@ typedef struct convert_options {
     transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
+    const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
+    uint32_t surface_count;
     const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
     int split_eyes;       /* 1: eyeballs of the model get joints */
     convert_only only;

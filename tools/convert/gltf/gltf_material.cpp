@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "base/limits.h"
+#include "convert/model/surface_kind.h"
+#include "pack/format.h"
 
 #include <stb/stb_image.h>
 
@@ -362,6 +364,27 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 
 /* --- materials --- */
 
+/* By "extras": {"surface": "skin", "unitMm": 10}, else by name. */
+static void read_surface(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    uint32_t kind = surface_kind_of_name(m.name.c_str());
+    if (m.extras.IsObject() && m.extras.Has("surface")) {
+        const tinygltf::Value &word = m.extras.Get("surface");
+        const uint32_t named = word.IsString() ? surface_kind_named(word.Get<std::string>().c_str()) : MODEL_NONE;
+        if (named == MODEL_NONE)
+            leave_out(f, where, ": the extra 'surface' is none of plain, skin, eye and teeth, and was ignored");
+        else
+            kind = named;
+    }
+    surface_kind_set(&out, kind);
+    if (out.surface != NOH_SURFACE_SKIN || !m.extras.IsObject() || !m.extras.Has("unitMm")) return;
+    const double mm = number_in(&m.extras, "unitMm", 0.0);
+    if (mm >= 1e-6 && mm <= 1e9)
+        out.surface_values[0] = static_cast<float>(mm);
+    else
+        leave_out(f, where, ": the extra 'unitMm' is no number of millimetres from 1e-6 to 1e9 and was ignored");
+}
+
 static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
@@ -396,6 +419,7 @@ static void read_material(file &f, size_t index, model_material &out)
     out.unlit = m.extensions.count("KHR_materials_unlit") != 0;
     read_emissive(m, out, where);
     read_f0(f, m, out, where);
+    read_surface(f, m, out, where);
     read_maps(f, m, out, where);
 }
 

@@ -45,7 +45,7 @@ typedef struct model_material {
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
     uint32_t surface;        /* NOH_SURFACE_* of pack/format.h */
-    float surface_values[4];
+    float surface_values[4], surface_more[6];
 } model_material;
 
 /* What the file lacks for the vertices of one submesh, and model_complete fills in. */

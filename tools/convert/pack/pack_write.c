@@ -96,6 +96,7 @@ static void write_maps(const model_material *from, noh_material *to)
     memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
     to->surface = from->surface;
     memcpy(to->surface_values, from->surface_values, sizeof to->surface_values);
+    memcpy(to->surface_more, from->surface_more, sizeof to->surface_more);
 }
 
 static void write_materials(writer *w)

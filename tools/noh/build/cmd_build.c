@@ -21,7 +21,7 @@ typedef struct build_args {
         *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
-    option_list dual_quaternion, two_streams, clip_errors, joint_errors, lod_from;
+    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -72,6 +72,8 @@ static int set_skin(const build_args *a, convert_options *o)
     o->skin.keep_parts = a->keep_parts;
     o->two_streams = a->two_streams.items;
     o->two_stream_count = (uint32_t)a->two_streams.count;
+    o->surfaces = a->surfaces.items;
+    o->surface_count = (uint32_t)a->surfaces.count;
     o->skin.dual_quaternion = a->dual_quaternion.items;
     o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
     return 0;
@@ -336,6 +338,14 @@ static const option options[] = {
       .value = "SOURCE=TARGET",
       .what = "make the second mesh a target of the first: same triangles, same vertices in the same order; may repeat",
       .example = "arm=arm_bent",
+      .excludes = "--only=anim" },
+    { .name = "--surface",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, surfaces),
+      .value = "MATERIAL=skin|eye|teeth|plain",
+      .what =
+          "draw a material as skin, as an eye, as teeth, gums and tongue, or as none of them; may repeat; default: what its extras say (\"surface\"), else the words of its name",
+      .example = "face=skin",
       .excludes = "--only=anim" },
     { .name = "--identity",
       .kind = OPTION_INPUT,

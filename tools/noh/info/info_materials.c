@@ -31,7 +31,8 @@ static const char *alpha_of(const noh_material *m)
 
 static const char *surface_of(const noh_material *m)
 {
-    return m->surface == NOH_SURFACE_SKIN ? "skin" : m->surface == NOH_SURFACE_EYE ? "eye" : "plain";
+    static const char *const names[] = { "plain", "skin", "eye", "teeth" };
+    return names[m->surface];
 }
 
 void info_print_materials(const noh_pack *pack)

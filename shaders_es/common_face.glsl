@@ -1,0 +1,57 @@
+/* common_face.glsl: what skin, eyes and teeth need of a vertex. It goes in front of common_vertex.glsl: noh_gl_shader_prefix
+ * puts them together. Nothing of it is there without NOH_SKIN, NOH_EYE and NOH_TEETH, or with
+ * NOH_DEPTH_ONLY. */
+#ifndef NOH_DEPTH_ONLY
+#if defined(NOH_SKIN) || defined(NOH_EYE) || defined(NOH_TEETH)
+uniform vec4 noh_surface_values; /* noh_material.surface_values */
+uniform vec3 noh_surface_more[2];
+#endif
+
+#ifdef NOH_EYE
+out vec3 noh_v_gaze;
+out vec3 noh_v_up;
+out vec3 noh_v_out;
+
+/* Where the vertex's eye looks, upwards, and outwards from the nose, turned as targets turn the normal and then as
+ * joints turn the ball. rest, model: the place before and after targets; before, after: the normal, unit; x, y, z: rows to the world */
+void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec4 y, vec4 z)
+{
+    vec3 turn = cross(before, after), gaze = noh_surface_values.xyz, up = vec3(0.0, 1.0, 0.0);
+    float radius = length(gaze);
+    gaze = radius > 0.0 ? gaze / radius : vec3(0.0, 0.0, 1.0);
+    gaze = normalize(gaze + cross(turn, gaze));
+    vec4 upwards = vec4(up + cross(turn, up), 1.0);
+    noh_skin_vertex(model, gaze, upwards);
+    radius *= length(vec3(x.x, y.x, z.x));
+    noh_v_gaze = max(radius, 1e-6) * normalize(vec3(dot(x.xyz, gaze), dot(y.xyz, gaze), dot(z.xyz, gaze)));
+    noh_v_up = vec3(dot(x.xyz, upwards.xyz), dot(y.xyz, upwards.xyz), dot(z.xyz, upwards.xyz));
+    noh_v_out = cross(noh_v_up, noh_v_gaze) * sign(rest.x);
+}
+#endif
+
+#if defined(NOH_SKIN) || defined(NOH_TEETH)
+out float noh_v_open; /* 0..1: how much of the light outside reaches the place */
+#endif
+
+#ifdef NOH_TEETH
+/* The farther behind the lips, the darker; what a target of the jaw moves away comes into the light.
+ * rest, model: the place before and after targets */
+void noh_face_vertex(vec3 rest, vec3 model)
+{
+    float open = dot(rest, noh_surface_values.xyz) + noh_surface_values.w + noh_surface_more[0].x * length(model - rest);
+    noh_v_open = noh_surface_more[0].x > 0.0 ? mix(0.04, 0.6, smoothstep(0.0, 1.0, open)) : 1.0;
+}
+#endif
+
+#ifdef NOH_SKIN
+/* The skin of a mouth's inside, all around the teeth, is as dark as they are. */
+void noh_face_vertex(vec3 rest)
+{
+    vec3 from = rest - noh_surface_values.yzw;
+    vec2 beside = abs(from.xy) / max(noh_surface_more[0].xy, 1e-6);
+    float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, 0.8 * beside.y));
+    float open = mix(0.04, 1.0, smoothstep(-0.2, 1.0, 1.0 + from.z * noh_surface_more[0].z));
+    noh_v_open = noh_surface_more[0].z > 0.0 ? mix(1.0, open, inside) : 1.0;
+}
+#endif
+#endif

@@ -1,0 +1,53 @@
+/* common_scatter.glsl: what skin does with light. It goes behind common_environment.glsl: noh_gl_shader_prefix puts
+ * them together. Nothing of it is there without NOH_SKIN, or with NOH_DEPTH_ONLY. */
+#if defined(NOH_SKIN) && !defined(NOH_DEPTH_ONLY)
+uniform vec4 noh_surface_values; /* x: millimetres in a unit of the world */
+
+in float noh_v_open; /* 0..1: how much of the light outside reaches the place */
+
+/* The light of a lamp at angle acos(nl) that skin sends out again, by channel: what enters nearby comes out here. It is
+ * the integral of max(cos, 0) over a ring of that curvature, weighted by the diffusion profile of d'Eon and Luebke
+ * (GPU Gems 3, chapter 14), which Penner tabulates (Pre-integrated skin shading, GPU Pro 2, 2011). In place of his
+ * texture stands a fit: a line, and a hyperbola for |nl|, whose corner the curvature rounds. It is off by 0.006 at most
+ * (test_gl_skin_light compares).
+ * nl: a cosine for each channel; curvature: 1/mm; above 1 it counts as 1 */
+vec3 noh_scatter(vec3 nl, float curvature)
+{
+    float c = clamp(curvature, 0.0, 1.0);
+    vec3 line = 0.5 * (1.0 + vec3(-0.35725, -0.30816, -0.14391) * c) / (1.0 + vec3(-0.3, -0.29987, -0.13865) * c);
+    vec3 bend = 0.5 * (1.0 + vec3(-0.053656, -0.31499, 2.9368) * c) / (1.0 + vec3(0.047222, -0.3, 2.9189) * c);
+    vec3 corner = vec3(0.16491, 0.096204, 0.090923) * c / (1.0 + vec3(0.1474, -0.031291, -0.039367) * c);
+    vec3 level = vec3(0.040449, 0.0, -0.0051897) * c / (1.0 + vec3(1.3027, 0.0, -0.3) * c);
+    return max(level + line * nl + bend * sqrt(nl * nl + corner * corner), 0.0);
+}
+
+/* How much a surface bends, in 1/mm, from pixel to pixel. By the larger of two: pixels that lie one behind another say
+ * little of how far they are apart. */
+float noh_curvature(vec3 position, vec3 geometric)
+{
+    vec3 nx = dFdx(geometric), ny = dFdy(geometric), px = dFdx(position), py = dFdy(position);
+    float turn = max(dot(nx, nx), dot(ny, ny)), way = max(dot(px, px), dot(py, py));
+    return sqrt(turn / max(way, 1e-20)) / noh_surface_values.x;
+}
+
+/* Light scatters out of sight of the finest bumps, red the farthest: each channel has a normal of its own, between that
+ * of the maps and that of the mesh (Jensen et al., as Penner has it). The cosines to the key light. */
+vec3 noh_scatter_cosines(noh_surface s, vec3 key)
+{
+    return mix(vec3(dot(s.normal, key)), vec3(dot(s.geometric, key)), vec3(0.7, 0.4, 0.25));
+}
+
+/* Pores that are smaller than a pixel do not glitter: they make it rougher (Tokuyoshi, Kaplanyan: Improved geometric
+ * specular antialiasing, I3D 2019). */
+float noh_pore_roughness(float roughness, vec3 normal)
+{
+    vec3 x = dFdx(normal), y = dFdy(normal);
+    float a = roughness * roughness, wider = min(0.5 * (dot(x, x) + dot(y, y)), 0.18);
+    return sqrt(sqrt(min(a * a + wider, 1.0)));
+}
+
+/* Skin shines in two lobes, those of its oil and of the skin below, narrower and wider than the map says; of each so
+ * much: */
+const vec2 noh_lobes = vec2(0.80, 1.30);
+const float noh_narrow_lobe = 0.45;
+#endif

@@ -1,0 +1,352 @@
+/* test_gl_surfaces.c: skin, eyes and teeth against closed forms and our own integrals: scatter, through its function and
+ * on a ball; a furnace; the lamp in an eye; the iris behind its cornea; teeth behind lips. */
+#include "support/light_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pack/format.h"
+
+/* ---- scatter ---- */
+
+/* d'Eon and Luebke's profile of skin: variances in mm^2, weights by channel. */
+static const double variances[6] = { 0.0064, 0.0484, 0.187, 0.567, 1.99, 7.41 };
+static const double shares[6][3] = { { 0.233, 0.455, 0.649 }, { 0.100, 0.336, 0.344 }, { 0.118, 0.198, 0.0 },
+                                     { 0.113, 0.007, 0.007 }, { 0.358, 0.004, 0.0 },   { 0.078, 0.0, 0.0 } };
+
+/* What noh_scatter is fitted to: max(cos, 0) over a ring of that curvature, 1/mm, weighted by the profile. The steps
+ * grow by the cube: the narrowest Gaussian is 0.08 mm wide. */
+static void integrate(double nl, double curvature, double out[3])
+{
+    enum { STEPS = 3000 };
+    const double angle = acos(nl);
+    double sum[3] = { 0 }, all[3] = { 0 };
+    for (int i = 0; i < STEPS; i++) {
+        const double t = 2.0 * (i + 0.5) / STEPS - 1.0, x = PI * t * t * t;
+        const double chord = 2.0 / curvature * sin(0.5 * x), light = fmax(cos(angle + x), 0.0), width = 3.0 * t * t;
+        for (int g = 0; g < 6; g++) {
+            const double at = width * exp(-chord * chord / (2.0 * variances[g])) / variances[g];
+            for (int c = 0; c < 3; c++) {
+                sum[c] += shares[g][c] * at * light;
+                all[c] += shares[g][c] * at;
+            }
+        }
+    }
+    for (int c = 0; c < 3; c++) out[c] = sum[c] / all[c];
+}
+
+static model_material skin_of(const float values[4], float unit_mm)
+{
+    model_material m = scene_material(values);
+    m.surface = NOH_SURFACE_SKIN;
+    m.surface_values[0] = unit_mm;
+    return m;
+}
+
+static void the_fit_of_scatter_is_near_its_integral(void **state)
+{
+    static const char own[] = "layout(location = 0) out vec4 o_color;\n"
+                              "void main()\n"
+                              "{\n"
+                              "    vec2 at = gl_FragCoord.xy / 65.0;\n"
+                              "    o_color = vec4(noh_encode(noh_scatter(vec3(2.0 * at.x - 1.0), at.y)), 1.0);\n"
+                              "}\n";
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f };
+    const model_material skin = skin_of(values, 0.0f);
+    double worst = 0.0;
+    uint8_t *rgba;
+    scene s;
+    (void)state;
+    scene_open(&s, &skin, NULL, 0, own);
+    rgba = scene_draw(&s, SQUARE, scene_identity, NULL);
+    for (uint32_t row = 0; row < SIDE; row += 4) {
+        for (uint32_t x = 0; x < SIDE; x += 2) {
+            double right[3];
+            integrate(pixel_at(x), 0.5 - 0.5 * pixel_at(row), right);
+            for (uint32_t c = 0; c < 3; c++) {
+                worst = fmax(worst, fabs(decoded(rgba[4 * (row * SIDE + x) + c]) - right[c]));
+            }
+        }
+    }
+    print_message("the fit is off by %.4f at most\n", worst);
+    assert_true(worst < 0.02);
+    free(rgba);
+    scene_close(&s);
+}
+
+/* Through curvature by derivatives: a ball of 5 mm, lit from the right, red beyond the edge of the light. */
+static void a_ball_of_skin_scatters_as_its_curvature_says(void **state)
+{
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, right[3] = { 1.0f, 0.0f, 0.0f };
+    const model_material skin = skin_of(values, 5.0f);
+    noh_lighting lighting;
+    double worst = 0.0, plain = 0.0;
+    uint8_t *rgba;
+    scene s;
+    (void)state;
+    scene_open(&s, &skin, &scene_black, 0, NULL);
+    key_alone(right, &lighting);
+    rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
+    for (uint32_t x = SIDE / 6; x < SIDE - SIDE / 6; x++) {
+        const uint8_t *pixel = rgba + 4 * ((size_t)(SIDE / 2) * SIDE + x);
+        double should[3];
+        integrate(pixel_at(x), 0.2, should);
+        for (int c = 0; c < 3; c++) {
+            worst = fmax(worst, fabs(decoded(pixel[c]) - 0.9 * should[c]));
+            plain = fmax(plain, fabs(0.9 * fmax(pixel_at(x), 0.0) - 0.9 * should[c]));
+        }
+    }
+    print_message("off by %.4f at most; without scatter by %.4f\n", worst, plain);
+    assert_true(worst < 0.03 && plain > 2.0 * worst);
+    free(rgba);
+    scene_close(&s);
+}
+
+/* What is mirrored is taken from what is matte, in two lobes as in one. */
+static void white_skin_in_a_furnace_is_white(void **state)
+{
+    static const float values[][4] = { { 1.0f, 0.3f, 0.0f, 0.028f }, { 1.0f, 0.6f, 0.0f, 0.028f } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(values); i++) {
+        const model_material skin = skin_of(values[i], 100.0f);
+        noh_light light;
+        noh_lighting lighting;
+        uint8_t *rgba;
+        scene s;
+        scene_open(&s, &skin, noh_environment_at(0), 0, NULL);
+        noh_light_from_environment(noh_environment_at(0), 6, &light);
+        noh_lighting_make(&light, NULL, 1, &lighting);
+        rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
+        for (uint32_t p = 0; p < SIDE * SIDE; p++) {
+            const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE);
+            if (x * x + y * y > 0.9 * 0.9) continue;
+            for (uint32_t c = 0; c < 3; c++) assert_true(rgba[4 * p + c] >= encoded(0.99) - 0.5);
+        }
+        free(rgba);
+        scene_close(&s);
+    }
+}
+
+/* The light that a lamp's lobes send out, over all directions, is no more than Fresnel's share of it: the eye goes
+ * around a point that is lit straight on. */
+static void two_lobes_send_out_no_more_than_comes(void **state)
+{
+    static const float values[4] = { 0.0f, 0.5f, 0.0f, 0.028f }, front[3] = { 0.0f, 0.0f, 1.0f };
+    const model_material skin = skin_of(values, 1000.0f);
+    double sum = 0.0;
+    noh_lighting lighting;
+    scene s;
+    (void)state;
+    scene_open(&s, &skin, &scene_black, 0, NULL);
+    key_alone(front, &lighting);
+    for (int c = 0; c < 3; c++) lighting.key[c] = 4.0f;
+    lighting.key_gloss = 1.0f;
+    for (int i = 0; i < 45; i++) {
+        const double angle = (2.0 * i + 1.0) * PI / 180.0;
+        uint8_t *rgba;
+        s.eye[0] = (float)(1e6 * sin(angle));
+        s.eye[2] = (float)(1e6 * cos(angle));
+        rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
+        sum += decoded(rgba[4 * (SIDE / 2 * SIDE + SIDE / 2)]) / 4.0 * 2.0 * sin(angle) * cos(angle) * PI / 90.0;
+        free(rgba);
+    }
+    print_message("%.4f of the light glosses, 0.028 where all facets lie flat\n", sum);
+    assert_true(sum > 0.7 * 0.028 && sum < 1.4 * 0.028);
+    scene_close(&s);
+}
+
+/* ---- eyes ---- */
+
+#define IRIS 0.45f /* sine, and on a ball of radius 1 also the radius */
+
+static model_material eye_of(float red, float green, float blue)
+{
+    static const float values[4] = { 1.0f, 0.1f, 0.0f, 0.025f };
+    model_material m = scene_material(values);
+    m.base_color[0] = red;
+    m.base_color[1] = green;
+    m.base_color[2] = blue;
+    m.surface = NOH_SURFACE_EYE;
+    m.surface_values[2] = m.surface_values[3] = IRIS;
+    return m;
+}
+
+/* The middle of what is brighter than half of white, in -1..1; 0: nothing is. */
+static int bright_spot(const uint8_t *rgba, double out[2])
+{
+    uint32_t count = 0;
+    out[0] = out[1] = 0.0;
+    for (uint32_t p = 0; p < SIDE * SIDE; p++) {
+        const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE);
+        if (x * x + y * y > 0.8 || decoded(rgba[4 * p + 2]) < 0.5) continue;
+        out[0] += x;
+        out[1] -= y;
+        count++;
+    }
+    for (int c = 0; c < 2 && count; c++) out[c] /= count;
+    return count > 4;
+}
+
+/* A lamp shows where a sphere of the cornea's radius mirrors it, not where the ball would; the iris keeps its colour. */
+static void an_eye_shows_the_lamp(void **state)
+{
+    static const float keys[][3] = { { -0.45f, 0.62f, 0.64f }, { 0.3f, 0.5f, 0.81f }, { 0.0f, 0.35f, 0.94f } };
+    const model_material eye = eye_of(0.12f, 0.06f, 0.02f);
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(keys); i++) {
+        const double up = (double)keys[i][1] - 0.35, half[3] = { (double)keys[i][0], up, (double)keys[i][2] + 1.0 };
+        const double across = hypot(half[0], half[1]), ball = atan(across / half[2] * 1.3 * (double)IRIS);
+        double spot[2];
+        const uint8_t *iris;
+        uint8_t *rgba;
+        scene s;
+        scene_open(&s, &eye, NULL, 0, NULL);
+        memcpy(s.key, keys[i], sizeof s.key);
+        rgba = scene_draw(&s, SPHERE, scene_identity, NULL);
+        assert_true(bright_spot(rgba, spot));
+        for (int c = 0; c < 2; c++) assert_true(fabs(spot[c] - sin(ball) * half[c] / across) < 0.05);
+        iris = rgba + 4 * ((size_t)(SIDE / 2 + 6) * SIDE + SIDE / 2);
+        assert_true(fabs(decoded(iris[0]) / decoded(iris[1]) - 2.0) < 0.3);
+        assert_true(decoded(iris[0]) / decoded(iris[2]) > 3.5);
+        free(rgba);
+        scene_close(&s);
+    }
+}
+
+/* Straight before the pupil, the line of sight is bent by Snell's law, and meets the iris beside it. */
+static void the_iris_lies_behind_the_cornea(void **state)
+{
+    static const char own[] = "in vec3 v_world;\nin vec3 v_normal;\nin vec2 v_uv;\n"
+                              "layout(location = 0) out vec4 o_color;\n"
+                              "void main()\n"
+                              "{\n"
+                              "    vec2 shift = noh_eye_uv(v_world, v_normal, v_uv) - v_uv;\n"
+                              "    o_color = vec4(noh_encode(vec3(0.5 + 4.0 * shift, 0.0)), 1.0);\n"
+                              "}\n";
+    static const int degrees[] = { 0, 15, -30, 45, 60 };
+    const model_material eye = eye_of(1.0f, 1.0f, 1.0f);
+    scene s;
+    (void)state;
+    scene_open(&s, &eye, NULL, 0, own);
+    for (size_t i = 0; i < TEST_COUNT(degrees); i++) {
+        const double angle = degrees[i] * PI / 180.0, deep = 0.45 * (double)IRIS;
+        const double right = -0.5 * deep * tan(asin(sin(angle) / 1.336)); /* the texture is as wide as the ball */
+        const uint8_t *pixel;
+        uint8_t *rgba;
+        s.eye[0] = (float)(1e6 * sin(angle));
+        s.eye[2] = (float)(1e6 * cos(angle));
+        rgba = scene_draw(&s, SPHERE, scene_identity, NULL);
+        pixel = rgba + 4 * ((size_t)(SIDE / 2) * SIDE + SIDE / 2);
+        assert_true(fabs((decoded(pixel[0]) - 0.5) / 4.0 - right) < 0.004);
+        assert_true(fabs(decoded(pixel[1]) - 0.5) / 4.0 < 0.004);
+        free(rgba);
+    }
+    scene_close(&s);
+}
+
+/* Lids darken the ball towards their edges, and only where they are known. */
+static void lids_darken_the_ball(void **state)
+{
+    model_material eye = eye_of(0.5f, 0.5f, 0.5f);
+    uint8_t *rgba[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        scene s;
+        eye.surface_more[0] = i ? 0.5f : 0.0f;
+        eye.surface_more[3] = i ? -0.4f : 0.0f;
+        scene_open(&s, &eye, NULL, 0, NULL);
+        s.key[1] = 0.6f;
+        s.key[2] = -0.8f; /* from behind: no lamp in the eye */
+        rgba[i] = scene_draw(&s, SPHERE, scene_identity, NULL);
+        scene_close(&s);
+    }
+    for (int i = 0; i < 2; i++) {
+        const double y = i ? -0.02 : 0.46; /* in the middle of the eye, and close to the upper lid */
+        const size_t p = 4 * ((size_t)((0.5 - 0.5 * y) * SIDE) * SIDE + SIDE / 2);
+        const double share = decoded(rgba[1][p]) / decoded(rgba[0][p]);
+        assert_true(i ? share > 0.85 : share < 0.75);
+    }
+    free(rgba[0]);
+    free(rgba[1]);
+}
+
+/* ---- teeth ---- */
+
+static void teeth_are_dark_behind_the_lips(void **state)
+{
+    static const float values[4] = { 0.8f, 0.9f, 0.0f, 0.04f };
+    model_material teeth = scene_material(values);
+    uint8_t *rgba[2];
+    (void)state;
+    teeth.surface = NOH_SURFACE_TEETH;
+    for (int i = 0; i < 2; i++) {
+        scene s;
+        teeth.surface_values[2] = i ? 1.25f : 0.0f; /* from z = 0.2, where no light comes, to 1 */
+        teeth.surface_values[3] = i ? -0.25f : 0.0f;
+        teeth.surface_more[0] = i ? 1.0f : 0.0f;
+        scene_open(&s, &teeth, NULL, 0, NULL);
+        rgba[i] = scene_draw(&s, SPHERE, scene_identity, NULL);
+        scene_close(&s);
+    }
+    for (uint32_t x = SIDE / 2; x < SIDE * 9 / 10; x++) {
+        const size_t p = 4 * ((size_t)(SIDE / 2) * SIDE + x);
+        const double z = sqrt(1.0 - pixel_at(x) * pixel_at(x)), open = fmin(fmax(1.25 * z - 0.25, 0.0), 1.0);
+        const double right = 0.04 + 0.56 * open * open * (3.0 - 2.0 * open);
+        assert_true(fabs(decoded(rgba[1][p]) / decoded(rgba[0][p]) - right) < 0.03);
+    }
+    free(rgba[0]);
+    free(rgba[1]);
+}
+
+/* ---- a highlight ---- */
+
+/* A15: the literal half vector takes the eye's place for its direction, as if every point lay at the origin. A square
+ * that is not there, close to the eye, tells them apart: the highlight is where the eye, the point and the light say. */
+static void errata_a_highlight_is_seen_from_its_point(void **state)
+{
+    static const float values[4] = { 0.0f, 0.4f, 0.0f, 0.9f };
+    const model_material gloss = scene_material(values);
+    double best = 0.0, literal = 0.0, dearest = 0.0, at = 0.0;
+    uint8_t *rgba;
+    scene s;
+    (void)state;
+    scene_open(&s, &gloss, NULL, 0, NULL);
+    s.eye[0] = 0.6f;
+    s.eye[2] = 1.5f;
+    rgba = scene_draw(&s, SQUARE, scene_identity, NULL);
+    for (uint32_t x = 0; x < SIDE; x++) {
+        const double shown = decoded(rgba[4 * ((size_t)(SIDE / 2) * SIDE + x)]);
+        const double view[2] = { 0.6 - pixel_at(x), 1.5 }, length = hypot(view[0], view[1]);
+        const double right = (view[1] / length + 1.0) / hypot(view[0] / length, view[1] / length + 1.0);
+        if (right > best) {
+            best = right;
+            at = pixel_at(x);
+        }
+        if (shown > dearest) {
+            dearest = shown;
+            literal = pixel_at(x);
+        }
+    }
+    /* by the literal formula the half vector, and with it the picture, is the same at every point */
+    assert_true(fabs(literal - at) < 0.12);
+    assert_true(dearest > 2.0 * decoded(rgba[4 * (size_t)(SIDE / 2) * SIDE]));
+    free(rgba);
+    scene_close(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_fit_of_scatter_is_near_its_integral),
+        cmocka_unit_test(a_ball_of_skin_scatters_as_its_curvature_says),
+        cmocka_unit_test(white_skin_in_a_furnace_is_white),
+        cmocka_unit_test(two_lobes_send_out_no_more_than_comes),
+        cmocka_unit_test(an_eye_shows_the_lamp),
+        cmocka_unit_test(the_iris_lies_behind_the_cornea),
+        cmocka_unit_test(lids_darken_the_ball),
+        cmocka_unit_test(teeth_are_dark_behind_the_lips),
+        cmocka_unit_test(errata_a_highlight_is_seen_from_its_point),
+    };
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}

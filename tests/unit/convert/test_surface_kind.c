@@ -1,0 +1,283 @@
+/* Tests of tools/convert/model/surface_kind.c and surface_shape.c: which materials are skin, eyes and teeth, by name and
+ * by option; where irises and lids are found. */
+#include "convert/model/surface_kind.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/model_build.h"
+#include "convert/model/surface_shape.h"
+#include "pack/format.h"
+#include "support/support.h"
+
+static void names_tell_surfaces(void **state)
+{
+    static const struct {
+        const char *name;
+        uint32_t kind;
+    } names[] = { { "skin", NOH_SURFACE_SKIN },
+                  { "head_skin.001", NOH_SURFACE_SKIN },
+                  { "N00_000_00_Body_00_SKIN (Instance)", NOH_SURFACE_SKIN },
+                  { "Std_Skin_Head", NOH_SURFACE_SKIN },
+                  { "Wolf3D_Skin", NOH_SURFACE_SKIN },
+                  { "Haut", NOH_SURFACE_SKIN },
+                  { "Кожа", NOH_SURFACE_SKIN },
+                  { "КОЖА", NOH_SURFACE_SKIN },
+                  { "顔肌", NOH_SURFACE_SKIN },
+                  { "skinned", NOH_SURFACE_PLAIN },
+                  { "snakeskin", NOH_SURFACE_PLAIN },
+                  { "eyes", NOH_SURFACE_EYE },
+                  { "EyeLeft", NOH_SURFACE_EYE },
+                  { "Wolf3D_Eye", NOH_SURFACE_EYE },
+                  { "F00_000_00_EyeIris_00_EYE", NOH_SURFACE_EYE },
+                  { "Std_Cornea_L", NOH_SURFACE_EYE },
+                  { "Cube Material (Eyes)", NOH_SURFACE_EYE },
+                  { "Œil", NOH_SURFACE_PLAIN }, /* capital and small ligature are not of Latin-1 */
+                  { "œil", NOH_SURFACE_EYE },
+                  { "OJOS", NOH_SURFACE_EYE },
+                  { "глаза", NOH_SURFACE_EYE },
+                  { "瞳", NOH_SURFACE_EYE },
+                  { "eyelashes", NOH_SURFACE_PLAIN },
+                  { "Eye_Lash", NOH_SURFACE_PLAIN },
+                  { "Std_Eye_Occlusion_L", NOH_SURFACE_PLAIN },
+                  { "eyebrows", NOH_SURFACE_PLAIN },
+                  { "eye shadow", NOH_SURFACE_PLAIN },
+                  { "睫毛", NOH_SURFACE_PLAIN },
+                  { "teeth", NOH_SURFACE_TEETH },
+                  { "Std_Tongue", NOH_SURFACE_TEETH },
+                  { "Zähne", NOH_SURFACE_TEETH },
+                  { "ZÄHNE", NOH_SURFACE_TEETH },
+                  { "зубы", NOH_SURFACE_TEETH },
+                  { "舌", NOH_SURFACE_TEETH },
+                  { "hair", NOH_SURFACE_PLAIN },
+                  { "", NOH_SURFACE_PLAIN },
+                  { "\xff\xc3", NOH_SURFACE_PLAIN } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(names); i++) {
+        if (surface_kind_of_name(names[i].name) != names[i].kind) {
+            fail_msg("'%s' is %u", names[i].name, surface_kind_of_name(names[i].name));
+        }
+    }
+}
+
+static void long_names_have_words_too(void **state)
+{
+    char name[4096];
+    (void)state;
+    memset(name, 'x', sizeof name - 1u);
+    name[sizeof name - 1u] = 0;
+    assert_int_equal(surface_kind_of_name(name), NOH_SURFACE_PLAIN);
+    memcpy(name + sizeof name - 6u, " skin", 5);
+    assert_int_equal(surface_kind_of_name(name), NOH_SURFACE_SKIN);
+}
+
+static model *model_of(const char *const *names, uint32_t count)
+{
+    model *m = model_new();
+    m->materials = test_zeros(count * sizeof *m->materials);
+    m->material_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        m->materials[i] = model_material_default();
+        m->materials[i].name = model_string(names[i]);
+    }
+    return m;
+}
+
+static void options_name_a_material_and_a_surface(void **state)
+{
+    static const char *const names[] = { "face", "a=b", "face" };
+    static const char *const refused[] = { "face", "face=leather", "faces=skin", "=skin", "face=", "" };
+    model *m = model_of(names, 3);
+    model_error error;
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(refused); i++) {
+        memset(&error, 0, sizeof error);
+        assert_int_equal(surface_kind_assign(m, refused[i], &error), 1);
+        assert_non_null(strstr(error.what, "--surface"));
+    }
+    assert_int_equal(surface_kind_assign(m, "face=skin", &error), 0);
+    assert_int_equal(surface_kind_assign(m, "a=b=eye", &error), 0);
+    assert_int_equal(m->materials[0].surface, NOH_SURFACE_SKIN);
+    assert_int_equal(m->materials[2].surface, NOH_SURFACE_SKIN);
+    assert_int_equal(m->materials[1].surface, NOH_SURFACE_EYE);
+    model_free(m);
+}
+
+/* What reflects as any plastic reflects as the surface; what was given stays. */
+static void reflectance_follows_the_surface(void **state)
+{
+    model_material m = model_material_default();
+    (void)state;
+    surface_kind_set(&m, NOH_SURFACE_EYE);
+    assert_true(fabsf(m.f0[1] - 0.025f) < 1e-6f);
+    surface_kind_set(&m, NOH_SURFACE_SKIN);
+    assert_true(fabsf(m.f0[1] - 0.028f) < 1e-6f);
+    m.f0[1] = 0.06f;
+    surface_kind_set(&m, NOH_SURFACE_PLAIN);
+    assert_true(fabsf(m.f0[0] - 0.04f) < 1e-6f && m.f0[1] == 0.06f);
+    m.unlit = 1;
+    surface_kind_set(&m, NOH_SURFACE_EYE);
+    assert_int_equal(m.surface, NOH_SURFACE_PLAIN);
+}
+
+/* ---- eyes ---- */
+
+#define RINGS 48u
+#define SIDES 48u
+#define BALL ((RINGS + 1u) * SIDES)
+#define IRIS 0.5 /* sine */
+
+typedef struct eye_spec {
+    double x, turn; /* of the ball; of the gaze to the left, radians */
+    double dark;    /* of the iris, over the white */
+} eye_spec;
+
+/* A ball about its gaze, whose vertex colours paint an iris. */
+static void add_ball(model_mesh *mesh, const eye_spec *e)
+{
+    const uint32_t first = mesh->vertex_count;
+    for (uint32_t i = 0; i < BALL; i++) {
+        const double a = 3.14159265 * (i / SIDES + 0.001) / (RINGS + 0.002), b = 6.2831853 * (i % SIDES) / SIDES;
+        const double n[3] = { sin(a) * cos(b), sin(a) * sin(b), cos(a) };
+        const float luma = (float)(a < asin(IRIS) ? e->dark : 0.8);
+        float *p = mesh->position + 3 * (size_t)mesh->vertex_count, *c = mesh->color + 4 * (size_t)mesh->vertex_count;
+        p[0] = (float)(e->x + 0.012 * (n[0] * cos(e->turn) + n[2] * sin(e->turn)));
+        p[1] = (float)(0.1 + 0.012 * n[1]);
+        p[2] = (float)(0.012 * (n[2] * cos(e->turn) - n[0] * sin(e->turn)));
+        c[0] = c[1] = c[2] = luma;
+        c[3] = 1.0f;
+        mesh->vertex_count++;
+    }
+    for (uint32_t i = 0; i < RINGS * SIDES; i++) {
+        const uint32_t a = first + i, b = first + i / SIDES * SIDES + (i + 1u) % SIDES;
+        const uint32_t quad[6] = { a, a + SIDES, b, b, a + SIDES, b + SIDES };
+        memcpy(mesh->indices + mesh->index_count, quad, sizeof quad);
+        mesh->index_count += 6;
+    }
+}
+
+/* The opening's edge at a distance outwards from the middle. */
+static double lid_at(int upper, double a)
+{
+    return upper ? 0.45 + 0.1 * a - 0.6 * a * a : -0.5 + 0.05 * a + 0.4 * a * a;
+}
+
+/* Strips around each eye, from the edges of its opening to half a radius beyond. */
+static void add_lids(model_mesh *mesh, double x)
+{
+    enum { COLUMNS = 33 };
+    for (int upper = 0; upper < 2; upper++) {
+        const uint32_t first = mesh->vertex_count;
+        for (int i = 0; i < COLUMNS * 2; i++) {
+            const double a = -0.9 + 1.8 * (i / 2) / (COLUMNS - 1);
+            const double e = lid_at(upper, a) + (i % 2 ? (upper ? 0.3 : -0.3) : 0.0);
+            float *p = mesh->position + 3 * (size_t)mesh->vertex_count++;
+            p[0] = (float)(x + 0.012 * (x < 0.0 ? -a : a));
+            p[1] = (float)(0.1 + 0.012 * e);
+            p[2] = (float)(0.012 * sqrt(fmax(1.21 - a * a - e * e, 0.2)));
+        }
+        for (uint32_t i = 0; i < COLUMNS * 2 - 2; i++) {
+            const uint32_t triangle[3] = { first + i, first + i + 1u, first + i + 2u };
+            memcpy(mesh->indices + mesh->index_count, triangle, sizeof triangle);
+            mesh->index_count += 3;
+        }
+    }
+}
+
+static void end_part(model_mesh *mesh, uint32_t part)
+{
+    model_submesh *s = &mesh->submeshes[part];
+    s->material = part;
+    s->first_index = part ? mesh->submeshes[part - 1].first_index + mesh->submeshes[part - 1].index_count : 0u;
+    s->first_vertex = part ? mesh->submeshes[part - 1].first_vertex + mesh->submeshes[part - 1].vertex_count : 0u;
+    s->index_count = mesh->index_count - s->first_index;
+    s->vertex_count = mesh->vertex_count - s->first_vertex;
+}
+
+static model *face_of(const eye_spec *eyes, uint32_t count, int lids)
+{
+    static const char *const names[] = { "eyes", "skin" };
+    model *m = model_of(names, 2);
+    model_mesh *mesh = m->meshes = test_zeros(sizeof *m->meshes);
+    m->mesh_count = 1;
+    mesh->name = model_string("face");
+    mesh->position = test_zeros(3u * 8192u * sizeof *mesh->position);
+    mesh->color = test_zeros(4u * 8192u * sizeof *mesh->color);
+    mesh->indices = test_zeros(6u * 8192u * sizeof *mesh->indices);
+    mesh->submeshes = test_zeros(2u * sizeof *mesh->submeshes);
+    mesh->submesh_count = 2;
+    m->materials[0].surface = NOH_SURFACE_EYE;
+    m->materials[1].surface = NOH_SURFACE_SKIN;
+    for (uint32_t i = 0; i < count; i++) add_ball(mesh, &eyes[i]);
+    end_part(mesh, 0);
+    for (uint32_t i = 0; i < count && lids; i++) add_lids(mesh, eyes[i].x);
+    end_part(mesh, 1);
+    return m;
+}
+
+static void irises_and_lids_are_found(void **state)
+{
+    static const eye_spec pair[2] = { { 0.03, 0.0, 0.1 }, { -0.03, 0.0, 0.1 } };
+    model *m = face_of(pair, 2, 1);
+    const float *values = m->materials[0].surface_values, *more = m->materials[0].surface_more;
+    model_error error;
+    (void)state;
+    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_true(fabs((double)values[3] - IRIS) <= 0.03);
+    assert_true(fabs((double)values[2] - 0.012 * IRIS) < 0.0004);
+    assert_true(fabsf(values[0]) < 0.0002f && fabsf(values[1]) < 0.0002f);
+    for (int upper = 0; upper < 2; upper++) {
+        const float *fit = more + (upper ? 0 : 3);
+        for (int i = -5; i <= 5; i++) {
+            const double a = 0.1 * i, found = (double)fit[0] + (double)fit[1] * a + (double)fit[2] * a * a;
+            assert_true(fabs(found - lid_at(upper, a)) < 0.06);
+        }
+    }
+    model_free(m);
+}
+
+/* An eye that looks aside has its iris there; two that squint have one between. */
+static void irises_are_found_where_eyes_look(void **state)
+{
+    static const eye_spec aside[1] = { { 0.03, 0.3, 0.2 } };
+    static const eye_spec squint[2] = { { 0.03, -0.1, 0.1 }, { -0.03, 0.1, 0.1 } };
+    model *m = face_of(aside, 1, 0);
+    const float *values = m->materials[0].surface_values;
+    model_error error;
+    (void)state;
+    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_true(fabs(atan2((double)values[0], (double)values[2]) - 0.3) < 0.03);
+    for (int k = 0; k < 6; k++) assert_true(m->materials[0].surface_more[k] == 0.0f);
+    model_free(m);
+    m = face_of(squint, 2, 0);
+    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_true(fabsf(m->materials[0].surface_values[0]) < 0.0002f);
+    model_free(m);
+}
+
+/* A ball of one colour is wet, and no more. */
+static void a_ball_without_an_iris_has_none(void **state)
+{
+    static const eye_spec blank[2] = { { 0.03, 0.0, 0.8 }, { -0.03, 0.0, 0.8 } };
+    model *m = face_of(blank, 2, 1);
+    model_error error;
+    (void)state;
+    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    for (int k = 0; k < 4; k++) assert_true(m->materials[0].surface_values[k] == 0.0f);
+    model_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_tell_surfaces),
+        cmocka_unit_test(long_names_have_words_too),
+        cmocka_unit_test(options_name_a_material_and_a_surface),
+        cmocka_unit_test(reflectance_follows_the_surface),
+        cmocka_unit_test(irises_and_lids_are_found),
+        cmocka_unit_test(irises_are_found_where_eyes_look),
+        cmocka_unit_test(a_ball_without_an_iris_has_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,31 @@
+/* surface_kind.h: which materials are skin, eyes, or what a mouth holds. */
+#ifndef NOH_CONVERT_MODEL_SURFACE_KIND_H
+#define NOH_CONVERT_MODEL_SURFACE_KIND_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The NOH_SURFACE_* called "plain", "skin", "eye" or "teeth"; MODEL_NONE for any other word. */
+uint32_t surface_kind_named(const char *word);
+
+/* By the words of a material's name in English, German, French, Spanish, Portuguese, Italian, Dutch, Polish, Russian,
+ * Japanese, Chinese and Korean: "EyeLeft", "head_skin.001", "Haut", "N00_000_Body_00_SKIN". A word ends where letters
+ * do, and before a capital behind a small letter. What lies around an eye is not one: lashes, brows, lids, shadows,
+ * glasses. name: UTF-8; bytes that are not are words of no language. */
+uint32_t surface_kind_of_name(const char *name);
+
+/* Make a material one of them. What is unlit stays plain. A reflectance that is that of any plastic becomes that of
+ * the surface: 0.028 for skin, 0.025 for eyes. */
+void surface_kind_set(model_material *m, uint32_t kind);
+
+/* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface. */
+int surface_kind_assign(model *m, const char *assignment, model_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,460 @@
+#include "surface_shape.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/islands.h"
+#include "convert/model/model_build.h"
+#include "convert/skin/eye_split.h"
+#include "pack/format.h"
+
+#define BALL_VERTICES_MIN 24u
+#define BALL_RESIDUAL_MAX 0.1
+#define RINGS 40       /* of directions about an axis, by the sine of their angle to it */
+#define RING_WIDTH 0.02
+#define GRID 8         /* points along a triangle's edge at which its colour is taken */
+#define IRIS_MIN 10    /* rings: the narrowest iris, and the widest */
+#define IRIS_MAX 36
+#define IRIS_STEP 6    /* rings on either side of the rim that are compared */
+#define LID_COLUMNS 11 /* about where the eye looks, from one corner to the other */
+#define LID_REACH 0.75 /* radii to the outermost */
+#define LID_ROWS 128   /* from one radius below to one above */
+
+#define MOUTH_DEPTH 0.6f /* of the range of what is teeth: how far behind the foremost no light comes */
+
+typedef struct eye_ball {
+    const model *m;
+    const model_mesh *mesh;
+    const uint32_t *island;
+    uint32_t material, first; /* its island */
+    eye_sphere sphere;
+    double gaze[3], out[3], up[3];  /* unit, at right angles; out: from the nose */
+    double iris;                    /* sine of the angle from gaze to the rim */
+    double lids[6];                 /* as in noh_material; zeros: not found */
+} eye_ball;
+
+/* ---- colours on a ball ---- */
+
+static double texel_luma(const model_texture *t, double u, double v)
+{
+    const double wide = u - floor(u), high = v - floor(v);
+    uint32_t x = (uint32_t)(wide * t->width), y = (uint32_t)(high * t->height);
+    const uint8_t *p;
+    x = x < t->width ? x : t->width - 1u;
+    y = y < t->height ? y : t->height - 1u;
+    p = t->rgba + 4 * ((size_t)y * t->width + x);
+    return (0.2126 * p[0] * p[0] + 0.7152 * p[1] * p[1] + 0.0722 * p[2] * p[2]) / 65025.0; /* about linear */
+}
+
+static void mixed(const float *values, const uint32_t corner[3], const double weight[3], int width, double *out)
+{
+    for (int c = 0; c < width; c++) {
+        out[c] = 0.0;
+        for (int k = 0; k < 3; k++) out[c] += weight[k] * (double)values[(size_t)width * corner[k] + (size_t)c];
+    }
+}
+
+/* About the linear luminance of the surface at a point of a triangle. */
+static double luma_at(const eye_ball *b, const uint32_t corner[3], const double weight[3])
+{
+    const uint32_t texture = b->m->materials[b->material].base_color_texture;
+    double luma = 1.0, color[4], uv[2];
+    if (b->mesh->color) {
+        mixed(b->mesh->color, corner, weight, 4, color);
+        luma = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    }
+    if (b->mesh->uv && texture != MODEL_NONE) {
+        mixed(b->mesh->uv, corner, weight, 2, uv);
+        luma *= texel_luma(&b->m->textures[texture], uv[0], uv[1]);
+    }
+    return luma;
+}
+
+typedef void visit_point(const double direction[3], double luma, double area, void *user);
+
+static double area_of(const model_mesh *mesh, const uint32_t corner[3])
+{
+    double a[3], b[3], normal[3];
+    for (int c = 0; c < 3; c++) {
+        const double at = (double)mesh->position[3 * (size_t)corner[0] + (size_t)c];
+        a[c] = (double)mesh->position[3 * (size_t)corner[1] + (size_t)c] - at;
+        b[c] = (double)mesh->position[3 * (size_t)corner[2] + (size_t)c] - at;
+    }
+    vec_cross(a, b, normal);
+    return sqrt(vec_dot(normal, normal));
+}
+
+static void visit_triangle(const eye_ball *b, const uint32_t corner[3], visit_point *visit, void *user)
+{
+    const double area = area_of(b->mesh, corner);
+    for (int i = 0; i < GRID; i++) {
+        for (int j = 0; i + j < GRID; j++) {
+            const double u = (i + 1.0 / 3.0) / GRID, v = (j + 1.0 / 3.0) / GRID, weight[3] = { 1.0 - u - v, u, v };
+            double at[3];
+            mixed(b->mesh->position, corner, weight, 3, at);
+            for (int c = 0; c < 3; c++) at[c] -= b->sphere.centre[c];
+            if (vec_normalize(at)) visit(at, luma_at(b, corner, weight), area, user);
+        }
+    }
+}
+
+static void visit_ball(const eye_ball *b, visit_point *visit, void *user)
+{
+    for (uint32_t s = 0; s < b->mesh->submesh_count; s++) {
+        const model_submesh *part = &b->mesh->submeshes[s];
+        for (uint32_t i = 0; part->material == b->material && i + 2 < part->index_count; i += 3) {
+            const uint32_t *corner = b->mesh->indices + part->first_index + i;
+            if (b->island[corner[0]] == b->first) visit_triangle(b, corner, visit, user);
+        }
+    }
+}
+
+/* ---- the iris ---- */
+
+/* What is dark near an axis. */
+typedef struct dark_spot {
+    double axis[3], within;      /* cosine */
+    double luma, area;           /* sums */
+    double limit, sum[3], found; /* of what is darker than the limit */
+} dark_spot;
+
+static void add_luma(const double direction[3], double luma, double area, void *user)
+{
+    dark_spot *s = user;
+    if (vec_dot(direction, s->axis) < s->within) return;
+    s->luma += area * luma;
+    s->area += area;
+}
+
+static void add_dark(const double direction[3], double luma, double area, void *user)
+{
+    dark_spot *s = user;
+    if (vec_dot(direction, s->axis) < s->within || luma >= s->limit) return;
+    for (int c = 0; c < 3; c++) s->sum[c] += area * (s->limit - luma) * direction[c];
+    s->found += area * (s->limit - luma);
+}
+
+/* The middle of what is dark, from +z on; 0: all is of one brightness. */
+static int find_axis(eye_ball *b)
+{
+    dark_spot s = { { 0.0, 0.0, 1.0 }, 0.5, 0.0, 0.0, 0.0, { 0.0 }, 0.0 };
+    for (int pass = 0; pass < 4; pass++) {
+        s.luma = s.area = s.found = s.sum[0] = s.sum[1] = s.sum[2] = 0.0;
+        visit_ball(b, add_luma, &s);
+        if (!(s.area > 0.0)) return 0;
+        s.limit = 0.7 * s.luma / s.area;
+        visit_ball(b, add_dark, &s);
+        if (!(s.found > 0.0) || !vec_normalize(s.sum)) return 0;
+        memcpy(s.axis, s.sum, sizeof s.axis);
+        s.within = 0.7;
+    }
+    memcpy(b->gaze, s.axis, sizeof b->gaze);
+    return s.axis[2] > 0.8;
+}
+
+typedef struct rings {
+    const double *axis;
+    double luma[RINGS], area[RINGS];
+} rings;
+
+static void add_ring(const double direction[3], double luma, double area, void *user)
+{
+    rings *r = user;
+    const double along = vec_dot(direction, r->axis), square = 1.0 - along * along;
+    const int ring = (int)(sqrt(square > 0.0 ? square : 0.0) / RING_WIDTH);
+    if (along <= 0.0 || ring >= RINGS) return;
+    r->luma[ring] += area * luma;
+    r->area[ring] += area;
+}
+
+static double mean_of(const rings *r, int from, int to)
+{
+    double luma = 0.0, area = 0.0;
+    for (int i = from; i < to; i++) {
+        luma += r->luma[i];
+        area += r->area[i];
+    }
+    return area > 0.0 ? luma / area : 0.0;
+}
+
+/* Where brightness rises the most; 0: nowhere by as much as an iris differs from the white. */
+static int find_rim(eye_ball *b)
+{
+    rings r = { .axis = b->gaze };
+    double most = 0.0;
+    visit_ball(b, add_ring, &r);
+    for (int i = IRIS_MIN; i < IRIS_MAX; i++) {
+        const int end = i + IRIS_STEP < RINGS ? i + IRIS_STEP : RINGS;
+        const double inside = mean_of(&r, i - IRIS_STEP, i), outside = mean_of(&r, i, end), rise = outside - inside;
+        if (rise > most && rise > 0.25 * outside) {
+            most = rise;
+            b->iris = i * RING_WIDTH;
+        }
+    }
+    return most > 0.0;
+}
+
+static int find_iris(eye_ball *b)
+{
+    static const double y[3] = { 0.0, 1.0, 0.0 };
+    if (!find_axis(b) || !find_rim(b)) return 0;
+    memcpy(b->up, y, sizeof b->up);
+    vec_reject(b->up, b->gaze);
+    if (!vec_normalize(b->up)) return 0;
+    vec_cross(b->up, b->gaze, b->out);
+    for (int c = 0; c < 3; c++) b->out[c] = b->sphere.centre[0] < 0.0 ? -b->out[c] : b->out[c];
+    return 1;
+}
+
+/* ---- the lids ---- */
+
+typedef struct lid_edges {
+    float low[LID_COLUMNS][LID_ROWS], high[LID_COLUMNS][LID_ROWS]; /* of what is in a row; low above high: nothing */
+} lid_edges;
+
+static void add_lid(const eye_ball *b, const double at[3], lid_edges *lids)
+{
+    double d[3], length, a, e;
+    int column, row;
+    for (int c = 0; c < 3; c++) d[c] = at[c] - b->sphere.centre[c];
+    for (int c = 0; c < 3; c++) d[c] /= b->sphere.radius;
+    length = sqrt(vec_dot(d, d));
+    a = vec_dot(d, b->out);
+    e = vec_dot(d, b->up);
+    if (length < 0.95 || length > 1.35 || vec_dot(d, b->gaze) < 0.2 || fabs(a) >= LID_REACH) return;
+    column = (int)((a / LID_REACH + 1.0) * 0.5 * LID_COLUMNS);
+    row = (int)((e + 1.0) * 0.5 * LID_ROWS);
+    if (row < 0 || row >= LID_ROWS) return;
+    if ((float)e < lids->low[column][row]) lids->low[column][row] = (float)e;
+    if ((float)e > lids->high[column][row]) lids->high[column][row] = (float)e;
+}
+
+/* The widest gap of a column is where the eye is open; 0: nothing is above it, or below. */
+static int find_gap(const lid_edges *lids, int column, double *lower, double *upper)
+{
+    float below = -2.0f, widest = 0.0f;
+    for (int row = 0; row < LID_ROWS; row++) {
+        const float low = lids->low[column][row], high = lids->high[column][row];
+        if (low > high) continue;
+        if (below > -2.0f && low - below > widest) {
+            widest = low - below;
+            *lower = (double)below;
+            *upper = (double)low;
+        }
+        below = high;
+    }
+    return widest > 0.1f;
+}
+
+static void add_lid_edge(const eye_ball *b, uint32_t from, uint32_t to, lid_edges *lids)
+{
+    for (int i = 0; i < GRID; i++) {
+        const double t = (double)i / GRID;
+        double at[3];
+        for (size_t c = 0; c < 3; c++) {
+            at[c] = (1.0 - t) * (double)b->mesh->position[3 * (size_t)from + c] +
+                    t * (double)b->mesh->position[3 * (size_t)to + c];
+        }
+        add_lid(b, at, lids);
+    }
+}
+
+static int is_opaque_lid(const model *m, const model_submesh *part)
+{
+    const model_material *material = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
+    return !material || (material->alpha == MODEL_ALPHA_OPAQUE && material->surface != NOH_SURFACE_EYE &&
+                         material->surface != NOH_SURFACE_TEETH);
+}
+
+/* edge(a) = out[0] + out[1] a + out[2] a^2, by least squares over the columns where there is one. */
+static int fit_edge(const double edge[LID_COLUMNS], const int open[LID_COLUMNS], double out[3])
+{
+    double sums[5] = { 0.0 }, right[3] = { 0.0 }, row[3][3], det;
+    for (int i = 0; i < LID_COLUMNS; i++) {
+        const double a = ((i + 0.5) / LID_COLUMNS * 2.0 - 1.0) * LID_REACH;
+        double power = 1.0;
+        if (!open[i]) continue;
+        for (int k = 0; k < 5; k++) {
+            sums[k] += power;
+            if (k < 3) right[k] += power * edge[i];
+            power *= a;
+        }
+    }
+    vec_cross((double[3]){ sums[1], sums[2], sums[3] }, (double[3]){ sums[2], sums[3], sums[4] }, row[0]);
+    vec_cross((double[3]){ sums[2], sums[3], sums[4] }, sums, row[1]);
+    vec_cross(sums, (double[3]){ sums[1], sums[2], sums[3] }, row[2]);
+    det = vec_dot(sums, row[0]);
+    if (sums[0] < 6.0 || fabs(det) < 1e-9) return 0;
+    for (int k = 0; k < 3; k++) {
+        out[k] = (row[0][k] * right[0] + row[1][k] * right[1] + row[2][k] * right[2]) / det;
+    }
+    return fabs(out[0]) < 0.95;
+}
+
+static void find_lids(eye_ball *b)
+{
+    lid_edges lids;
+    double fit[6], lower[LID_COLUMNS], upper[LID_COLUMNS];
+    int open[LID_COLUMNS];
+    for (int i = 0; i < LID_COLUMNS * LID_ROWS; i++) {
+        lids.low[i / LID_ROWS][i % LID_ROWS] = 2.0f;
+        lids.high[i / LID_ROWS][i % LID_ROWS] = -2.0f;
+    }
+    for (uint32_t s = 0; s < b->mesh->submesh_count; s++) {
+        const model_submesh *part = &b->mesh->submeshes[s];
+        for (uint32_t i = 0; is_opaque_lid(b->m, part) && i + 2 < part->index_count; i += 3) {
+            const uint32_t *corner = b->mesh->indices + part->first_index + i;
+            for (int k = 0; k < 3; k++) add_lid_edge(b, corner[k], corner[(k + 1) % 3], &lids);
+        }
+    }
+    for (int i = 0; i < LID_COLUMNS; i++) open[i] = find_gap(&lids, i, &lower[i], &upper[i]);
+    if (fit_edge(upper, open, fit) && fit_edge(lower, open, fit + 3) && fit[0] > fit[3]) {
+        memcpy(b->lids, fit, sizeof b->lids);
+    }
+}
+
+/* ---- eyes ---- */
+
+/* Sums over the eyes of a material. */
+typedef struct eye_mean {
+    uint32_t count, with_lids;
+    double gaze[3], iris, radius, lids[6];
+} eye_mean;
+
+static void add_eye(const eye_ball *b, eye_mean *mean)
+{
+    mean->count++;
+    mean->iris += b->iris;
+    mean->radius += b->iris * b->sphere.radius;
+    for (int c = 0; c < 3; c++) mean->gaze[c] += b->gaze[c];
+    if (b->lids[0] == 0.0) return;
+    mean->with_lids++;
+    for (int c = 0; c < 6; c++) mean->lids[c] += b->lids[c];
+}
+
+static uint32_t vertices_of(const model_mesh *mesh, const uint32_t *island, uint32_t first, uint32_t *out)
+{
+    uint32_t count = 0;
+    for (uint32_t v = first; v < mesh->vertex_count; v++) {
+        if (island[v] == first) out[count++] = v;
+    }
+    return count;
+}
+
+/* The islands that a part of the mesh is made of, each once. room[vertex_count] */
+static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const uint32_t *island,
+                     uint32_t *room, eye_mean *mean)
+{
+    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+        eye_ball b = { .m = m, .mesh = mesh, .island = island, .material = part->material, .first = island[v] };
+        uint32_t count;
+        if (island[v] != v) continue;
+        count = vertices_of(mesh, island, v, room);
+        if (count < BALL_VERTICES_MIN || eye_sphere_fit(mesh->position, room, count, &b.sphere) ||
+            b.sphere.residual > BALL_RESIDUAL_MAX || !find_iris(&b)) {
+            continue;
+        }
+        /* which side of the nose a vertex is on is told by the sign of its x */
+        if (fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
+        add_eye(&b, mean);
+    }
+}
+
+static float rounded(double x)
+{
+    return (float)(floor(x * 4096.0 + 0.5) / 4096.0);
+}
+
+static void set_eye(model_material *material, eye_mean *mean, FILE *report)
+{
+    /* the radius may be of any unit: it is rounded as a share of itself, by the gaze's own rounding */
+    if (!mean->count || !vec_normalize(mean->gaze)) return;
+    for (int c = 0; c < 3; c++) {
+        material->surface_values[c] = rounded(mean->gaze[c]) * (float)(mean->radius / mean->count);
+    }
+    material->surface_values[3] = rounded(mean->iris / mean->count);
+    for (int c = 0; c < 6 && mean->with_lids; c++) material->surface_more[c] = rounded(mean->lids[c] / mean->with_lids);
+    if (report) {
+        fprintf(report, "material '%s': %u eye%s, an iris of radius %.4f%s\n", material->name, mean->count,
+                mean->count == 1 ? "" : "s", mean->radius / mean->count, mean->with_lids ? ", lids" : "");
+    }
+}
+
+static int find_eyes(model *m, uint32_t material, FILE *report)
+{
+    eye_mean mean = { 0 };
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        uint32_t *island = model_zeros(mesh->vertex_count, sizeof *island);
+        uint32_t *room = model_zeros(mesh->vertex_count, sizeof *room);
+        const int failed = !island || !room;
+        if (!failed) islands_find(mesh, island, room);
+        for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
+            if (mesh->submeshes[s].material == material) {
+                add_eyes(m, mesh, &mesh->submeshes[s], island, room, &mean);
+            }
+        }
+        free(island);
+        free(room);
+        if (failed) return 1;
+    }
+    set_eye(&m->materials[material], &mean, report);
+    return 0;
+}
+
+/* ---- teeth ---- */
+
+/* The bounds of what is teeth. */
+static int mouth_bounds(const model *m, float low[3], float high[3])
+{
+    int found = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
+            const model_submesh *part = &m->meshes[i].submeshes[s];
+            const float *p = m->meshes[i].position + 3 * (size_t)part->first_vertex;
+            if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_TEETH) continue;
+            for (uint32_t v = 0; v < part->vertex_count; v++, p += 3, found = 1) {
+                for (int c = 0; c < 3; c++) {
+                    low[c] = !found || p[c] < low[c] ? p[c] : low[c];
+                    high[c] = !found || p[c] > high[c] ? p[c] : high[c];
+                }
+            }
+        }
+    }
+    return found && high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
+}
+
+static void find_mouth(model *m)
+{
+    float low[3], high[3];
+    if (!mouth_bounds(m, low, high)) return;
+    const float slope = 1.0f / (MOUTH_DEPTH * (high[2] - low[2]));
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        float *values = m->materials[i].surface_values, *more = m->materials[i].surface_more;
+        if (m->materials[i].surface == NOH_SURFACE_TEETH) {
+            values[2] = slope;
+            values[3] = 1.0f - high[2] * slope;
+            more[0] = 0.5f * slope;
+        } else if (m->materials[i].surface == NOH_SURFACE_SKIN) {
+            for (int c = 0; c < 2; c++) {
+                values[1 + c] = 0.5f * (low[c] + high[c]);
+                more[c] = 0.5f * (high[c] - low[c]);
+            }
+            values[3] = high[2];
+            more[2] = slope;
+        }
+    }
+}
+
+int surface_shapes_find(model *m, FILE *report, model_error *error)
+{
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        model_material *material = &m->materials[i];
+        if (material->surface == NOH_SURFACE_EYE && find_eyes(m, i, report)) {
+            return model_fail(error, material->name, "out of memory");
+        }
+    }
+    find_mouth(m);
+    return 0;
+}
