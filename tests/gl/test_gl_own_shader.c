@@ -299,7 +299,8 @@ static void other_names_have_no_text(void **state)
 {
     static const char *const names[] = { "common_layers.glsl",  "common_attributes.glsl", "common_skin.glsl",
                                          "common_vertex.glsl",  "common_fade.glsl",       "common_fragment.glsl",
-                                         "common_wrinkle.glsl", "common_material.glsl", "common_face.glsl", "common_scatter.glsl", "common_eye.glsl",   "common_light.glsl" };
+                                         "common_wrinkle.glsl", "common_material.glsl",   "common_face.glsl",
+                                         "common_scatter.glsl", "common_eye.glsl",        "common_light.glsl" };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(names); i++) {
         const char *text = noh_gl_shader_text(names[i]);

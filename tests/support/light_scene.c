@@ -115,7 +115,7 @@ void scene_open(scene *s, const model_material *material, const noh_environment 
     d.meshes = s->meshes;
     d.mesh_count = MESHES;
     d.lit = lit != NULL;
-    d.passes = NOH_PASSES_ALL;
+    d.passes = own ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
     d.shaders = own ? &shaders : NULL;
     if (renderer_create(&device, &d, &s->renderer, NULL)) fail_msg("%s", log);
     assert_int_equal(canvas_open(&s->canvas, s->g, SIDE, SIDE), 0);

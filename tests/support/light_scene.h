@@ -35,7 +35,7 @@ double decoded(uint8_t byte);
 model_material scene_material(const float values[4]);
 
 /* lit: by an environment and a shadow map of that side, 0 none; NULL: by the plain light.
- * own: a fragment shader in place of the library's, or NULL */
+ * own: a fragment shader in place of the library's, for colour alone; or NULL */
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,
                 const char *own);
 void scene_close(scene *s);

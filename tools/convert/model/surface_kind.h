@@ -21,7 +21,8 @@ uint32_t surface_kind_of_name(const char *name);
  * the surface: 0.028 for skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
 
-/* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface. */
+/* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface.
+ */
 int surface_kind_assign(model *m, const char *assignment, model_error *error);
 
 #ifdef __cplusplus

@@ -11,10 +11,10 @@
 
 #define BALL_VERTICES_MIN 24u
 #define BALL_RESIDUAL_MAX 0.1
-#define RINGS 40       /* of directions about an axis, by the sine of their angle to it */
+#define RINGS 40 /* of directions about an axis, by the sine of their angle to it */
 #define RING_WIDTH 0.02
-#define GRID 8         /* points along a triangle's edge at which its colour is taken */
-#define IRIS_MIN 10    /* rings: the narrowest iris, and the widest */
+#define GRID 8      /* points along a triangle's edge at which its colour is taken */
+#define IRIS_MIN 10 /* rings: the narrowest iris, and the widest */
 #define IRIS_MAX 36
 #define IRIS_STEP 6    /* rings on either side of the rim that are compared */
 #define LID_COLUMNS 11 /* about where the eye looks, from one corner to the other */
@@ -29,9 +29,9 @@ typedef struct eye_ball {
     const uint32_t *island;
     uint32_t material, first; /* its island */
     eye_sphere sphere;
-    double gaze[3], out[3], up[3];  /* unit, at right angles; out: from the nose */
-    double iris;                    /* sine of the angle from gaze to the rim */
-    double lids[6];                 /* as in noh_material; zeros: not found */
+    double gaze[3], out[3], up[3]; /* unit, at right angles; out: from the nose */
+    double iris;                   /* sine of the angle from gaze to the rim */
+    double lids[6];                /* as in noh_material; zeros: not found */
 } eye_ball;
 
 /* ---- colours on a ball ---- */

@@ -1,0 +1,55 @@
+#!/bin/sh
+# noh build --surface: what materials are drawn as, told by name, extras and option; what is refused; what is drawn.
+. "$(dirname "$0")/lib.sh"
+
+mask=$build/mask.glb
+noh build "$mask" -o "$work/named.noh"
+expect 0 'build by names'
+check 'the report tells of irises' grep -q "material 'eyes': 2 eyes, an iris" "$work/out"
+noh info "$work/named.noh"
+for line in "material 'eyes': eye" "material 'teeth': teeth" "material 'paint': plain"; do
+    check "info: $line" grep -q "$line" "$work/out"
+done
+noh info "$work/named.noh" --json
+check 'info --json: eye' grep -q '"surface": "eye"' "$work/out"
+
+noh build "$mask" -o "$work/told.noh" --surface eyes=plain --surface paint=skin --quiet
+expect 0 'build by options'
+noh info "$work/told.noh"
+check 'an option outdoes a name' grep -q "material 'eyes': plain" "$work/out"
+check 'and makes skin' grep -q "material 'paint': skin" "$work/out"
+for option in eyes=wet eyes nose=eye; do
+    noh build "$mask" -o "$work/none.noh" --surface $option
+    expect 1 "--surface $option"
+    says '--surface'
+    check 'no pack of it' test ! -e "$work/none.noh"
+done
+
+# Extras of a material, without a mesh that has it.
+gltf() {
+    printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"materials":[{"name":"%s","extras":%s}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}' "$1" "$2" >"$work/extras.gltf"
+}
+gltf leather '{"surface":"skin","unitMm":10}'
+noh build "$work/extras.gltf" -o "$work/extras.noh"
+expect 0 'extras'
+noh info "$work/extras.noh"
+check 'extras outdo a name' grep -q "material 'leather': skin" "$work/out"
+gltf skin '{"surface":"wood","unitMm":-1}'
+noh build "$work/extras.gltf" -o "$work/extras.noh"
+expect 0 'extras that say nothing'
+check 'are named' grep -q "the extra 'surface' is none of plain, skin, eye and teeth" "$work/out"
+check 'each of them' grep -q "the extra 'unitMm' is no number" "$work/out"
+noh info "$work/extras.noh"
+check 'and the name counts' grep -q "material 'skin': skin" "$work/out"
+
+for name in named told; do
+    noh render "$work/$name.noh" -o "$work/$name.png" --camera face --size 128x128
+    expect 0 "render $name"
+    noh render "$work/$name.noh" -o "$work/${name}_lit.png" --camera face --size 128x128 --light room
+    expect 0 "render $name --light room"
+done
+check 'surfaces change the picture' sh -c '! cmp -s "$1" "$2"' - "$work/named.png" "$work/told.png"
+check 'in a light, too' sh -c '! cmp -s "$1" "$2"' - "$work/named_lit.png" "$work/told_lit.png"
+noh verify "$work/told.noh"
+expect 0 'verify'
+finish
