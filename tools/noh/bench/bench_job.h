@@ -16,6 +16,7 @@
  *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
  *   bench_look.c        rows look/: frames with one part of a look, against the plain frame
  *   bench_face.c        rows face/: a thousand living faces, beside noh_controller_step
+ *   bench_ear.c         row face/ear: live sound heard, against a frame drawn
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_report.c      rows, storage, and how they are printed
@@ -208,6 +209,7 @@ typedef struct bench_job {
 int bench_morph(bench_job *job);
 int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
+int bench_ear(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
 int bench_crowd_pose(bench_job *job);
 int bench_crowd_frame(bench_job *job);

@@ -42,7 +42,7 @@ static const struct group {
     { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
     { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
     { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
-    { "look", bench_look, 1 },         { "face", bench_face, 1 },
+    { "look", bench_look, 1 },         { "face", bench_face, 1 },         { "ear", bench_ear, 1 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
