@@ -104,6 +104,20 @@ for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut
 done
 check 'and nothing is left behind' sh -c '! test -e "$1"' - "$work/other.noh"
 
+noh speak "$work/said.wav" --text "$(yes 'Papa bought me five boats.' | head -n 1000 | tr '\n' ' ')"
+expect 1 'more words than anyone could say in it'
+says 'bytes of text are not said in'
+
+# ---- German: another throat than those of the warp, made by other means (Klatt) ----
+german='Am Montag brachte Peter seiner Mutter bunte Blumen und ein Buch.'
+noh speak "$german" --lang de+klatt4 --wav "$work/german.wav" --json
+expect 0 'a sentence in German'
+cp "$work/out" "$work/text.json"
+noh speak "$work/german.wav" --text "$german" --lang de --json
+expect 0 'is found in its recording'
+cp "$work/out" "$work/german.json"
+check 'its phones begin where they do, 10 ms' python3 "$work/near.py" "$work/text.json" "$work/german.json" 0.01
+
 # ---- without words: heard ----
 cat >"$work/heard.py" <<'PY'
 import json, sys

@@ -2,7 +2,7 @@
  *
  *   train_ear SENTENCES.txt PHONES.txt >ear_tables.c
  *
- * Every sentence is heard as it was said, and twice more as bad rooms and microphones have it, always the same. No
+ * Every sentence is heard as it was said, and four times more as bad rooms and microphones have it, always the same. No
  * recording of a person's speech is used: those are there to judge what has been learnt. Four speakers are kept back,
  * and how well they are read is printed. */
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "learn.h"
 #include "spoil.h"
 
-enum { MAX_FRAMES = 2500000, MAX_UTTERANCES = 16384, ROUNDS = 6, N = EAR_FEATURES, V = NOH_VISEME_COUNT };
+enum { MAX_FRAMES = 2500000, MAX_UTTERANCES = 16384, ROUNDS = 10, SPOILED = 4, N = EAR_FEATURES, V = NOH_VISEME_COUNT };
 
 static const int kept_back[] = { VOICE_FLITE + 2, VOICE_FESTIVAL + 1, VOICE_FESTIVAL + 4, VOICE_FESTIVAL + 6 };
 
@@ -80,10 +80,10 @@ static void hear(const utterance *said, double warp, int hard)
     first_frame[++utterances] = at;
 }
 
-static void hear_thrice(const utterance *said)
+static void hear_often(const utterance *said)
 {
     hear(said, 1, 0);
-    for (int i = 0; i < 2; i++) hear(said, voices_random(.85, 1.18), 1);
+    for (int i = 0; i < SPOILED; i++) hear(said, voices_random(.85, 1.18), 1);
 }
 
 static void learn_mean(void)
@@ -215,7 +215,7 @@ int main(int argc, char **argv)
     if (argc != 3) voices_die("SENTENCES.txt PHONES.txt >ear_tables.c", "usage");
     if (!middles) voices_die("out of memory", "frames");
     make_tables();
-    voices_say(argv[1], argv[2], hear_thrice, &hash);
+    voices_say(argv[1], argv[2], hear_often, &hash);
     fprintf(stderr, "%d sentences, %d frames\n", utterances, first_frame[utterances]);
     learn_mean();
     learn_scale();

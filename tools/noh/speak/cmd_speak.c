@@ -17,6 +17,8 @@
 
 #define FRAME_RATE SPEECH_TRACK_RATE
 #define TEXT_BYTES_MAX 65536u
+#define TEXT_BYTES_A_SECOND 150.0 /* ten times what people say, in scripts of one byte a character */
+#define TEXT_BYTES_SPARE 500.0
 
 typedef struct speak_args {
     const char *subject, *text, *text_file, *labels, *output, *face, *language, *name, *wav;
@@ -222,13 +224,24 @@ static void warn(const speak_args *a, const spoken *s)
     }
 }
 
+/* Nothing can say so much in so little time: the warp would take minutes to find that out. */
+static int check_length(const speak_args *a, const spoken *s, const sound *recording)
+{
+    const double seconds = (double)recording->count / recording->rate;
+    const size_t bytes = strlen(s->text);
+    if ((double)bytes <= TEXT_BYTES_SPARE + TEXT_BYTES_A_SECOND * seconds) return 0;
+    return tool_fail(a->subject, "%zu bytes of text are not said in %.1f s: is it the text of this recording alone?",
+                     bytes, seconds);
+}
+
 static int align(const speak_args *a, spoken *s)
 {
     sound recording;
     alignment aligned;
     int status = sound_read(a->subject, &recording);
     if (status) return status;
-    status = alignment_make(&recording, s->text, a->language, &aligned);
+    status = check_length(a, s, &recording);
+    if (!status) status = alignment_make(&recording, s->text, a->language, &aligned);
     s->clipped = recording.clipped;
     sound_free(&recording);
     if (status) return status;
