@@ -396,17 +396,21 @@ void noh_identity_random(const noh_identity *identity, uint32_t seed, float amou
     }
 }
 
+float noh_identity_shut(const noh_identity *identity, const float *weights, uint32_t i)
+{
+    float shut = 1.0f;
+    NOH_ASSERT(identity && weights && i < identity->closing_count);
+    for (uint32_t t = 0; t < identity->target_count; t++) {
+        if (identity->targets[t].used) shut += identity->targets[t].closing[i] * weights[t];
+    }
+    return shut < 0.5f ? 0.5f : shut > 2.0f ? 2.0f : shut;
+}
+
 void noh_identity_bind(const noh_identity *identity, const float *weights, noh_face_link *links, uint32_t link_count)
 {
     float shut[NOH_IDENTITY_CLOSINGS];
     NOH_ASSERT(identity && weights && (links || !link_count));
-    for (uint32_t i = 0; i < identity->closing_count; i++) {
-        shut[i] = 1.0f;
-        for (uint32_t t = 0; t < identity->target_count; t++) {
-            if (identity->targets[t].used) shut[i] += identity->targets[t].closing[i] * weights[t];
-        }
-        shut[i] = shut[i] < 0.5f ? 0.5f : shut[i] > 2.0f ? 2.0f : shut[i];
-    }
+    for (uint32_t i = 0; i < identity->closing_count; i++) shut[i] = noh_identity_shut(identity, weights, i);
     for (uint32_t l = 0; l < link_count; l++) {
         for (uint32_t i = 0; i < identity->closing_count; i++) {
             const int blinks = links[l].channel <= NOH_CHANNEL_BLINK_RIGHT;

@@ -3,6 +3,7 @@
  *   noh_identity_init     finds how a mesh's identity targets belong together, and how far each may go
  *   noh_identity_random   a person by seed
  *   noh_identity_bind     lids that still close on that person
+ *   noh_actor_set_identity  (stage/stage_face.h) an actor as a person
  *
  * A person is one vector of weights: an expression's deltas are added to the person's as to the rest face, so all
  * people share the targets of one mesh, and nothing is made or copied for each.
@@ -77,6 +78,10 @@ noh_result noh_identity_init(void *memory, size_t bytes, void *scratch, size_t s
  * shapes  weights[target_count]
  * ranges  amount 0..2: 0 the mesh's own face, 1 as people differ; weights come out within 0..1 */
 void noh_identity_random(const noh_identity *identity, uint32_t seed, float amount, float *weights);
+
+/* The weight at which closing i of the mesh (closings[i]) is shut on a person: 0.5..2, 1 on the mesh's own face.
+ * shapes  weights[target_count] of the person */
+float noh_identity_shut(const noh_identity *identity, const float *weights, uint32_t i);
 
 /* Change a binding's links for a person, so that blinks shut that person's lids, however large the eyes are.
  * shapes  weights[target_count] of the person; links[link_count] of noh_face_recipe_bind for the same targets, as it

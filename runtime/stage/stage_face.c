@@ -171,6 +171,20 @@ static float float_of(const noh_part_work *w, uint32_t at)
     return value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
 }
 
+/* A person's lids are shut at more or less than others'. */
+static void shut_lids(const noh_stage_face_kind *k, const noh_stage_face *f, const float *channels, float *floats)
+{
+    for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) {
+        const float more = f->shut[i] ? (float)(f->shut[i] - 1) / NOH_STAGE_SHUT - 1.0f : 0.0f;
+        if (more == 0.0f) continue;
+        for (uint32_t l = 0; l < k->link_count; l++) {
+            const noh_face_link *link = &k->links[l];
+            if (link->channel <= NOH_CHANNEL_BLINK_RIGHT && link->target == k->lids[i])
+                floats[link->target] += more * link->weight * channels[link->channel];
+        }
+    }
+}
+
 static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_part_work *w, const noh_face_pose *pose)
 {
     float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
@@ -185,6 +199,7 @@ static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_p
     if (turns(w, &k->face->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
     noh_face_share(&k->face->rules, float_of(w, k->face->speech), float_of(w, k->face->lips_shut), channels);
     noh_face_apply(k->face->links, k->face->link_count, channels, w->floats);
+    shut_lids(k->face, f, channels, w->floats);
 }
 
 /* ---- all of it ---- */

@@ -8,6 +8,7 @@
  *   noh_actor_set_visemes     mouth shapes that come live, of an ear or a network
  *   noh_actor_set_face_flags  calm, or without one of the things that a face does by itself
  *   noh_actor_seed_face       another person
+ *   noh_actor_set_identity    a person of face/identity.h
  *   noh_actor_blink           now
  *   noh_actor_face            what shows
  *
@@ -22,6 +23,7 @@
 #ifndef NOH_STAGE_STAGE_FACE_H
 #define NOH_STAGE_STAGE_FACE_H
 
+#include "face/identity.h"
 #include "face/recipe.h"
 #include "stage/stage.h"
 
@@ -79,6 +81,15 @@ noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t 
 
 /* A new face by this seed, which looks ahead and feels nothing. A new actor's seed is its id. */
 noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed, noh_error *error);
+
+/* Make the actor a person: its floats of the identity's targets are held (noh_actor_hold_float) at these weights, and
+ * its blinks shut this person's lids. Costs as many held floats as weights are not 0.
+ * shapes  mesh that the identity was made of, of the kind's pack; weights[target_count] of noh_identity_random; NULL:
+ *         the mesh's own face again
+ * errors  also NOT_FOUND the kind has no float of a target's name; LIMIT held_float_count is too small (need: it). The
+ *         actor is then as it was */
+noh_result noh_actor_set_identity(noh_stage *stage, noh_actor actor, const noh_identity *identity, const noh_mesh *mesh,
+                                  const float *weights, noh_error *error);
 
 noh_result noh_actor_blink(noh_stage *stage, noh_actor actor, noh_error *error);
 

@@ -286,6 +286,18 @@ static uint32_t find_float(const noh_stage_kind *k, const char *name)
     return NOH_NONE;
 }
 
+static void find_lids(noh_stage_face_kind *f)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) f->lids[i] = NOH_NONE;
+    for (uint32_t l = 0; l < f->link_count && count < NOH_IDENTITY_CLOSINGS; l++) {
+        uint32_t known = 0;
+        if (f->links[l].channel > NOH_CHANNEL_BLINK_RIGHT) continue;
+        while (known < count && f->lids[known] != f->links[l].target) known++;
+        if (known == count) f->lids[count++] = f->links[l].target;
+    }
+}
+
 void noh_stage_open_face(noh_stage_kind *k)
 {
     noh_stage_face_kind *f = k->face;
@@ -299,6 +311,7 @@ void noh_stage_open_face(noh_stage_kind *k)
     f->links = links;
     f->link_count = bind_links(k->desc, find_in_kind, k, links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
+    find_lids(f);
     f->speech = find_float(k, "speech");
     f->lips_shut = find_float(k, "lips-shut");
 }

@@ -83,6 +83,8 @@ typedef struct noh_stage_part_head {
     uint32_t reserved;
 } noh_stage_part_head;
 
+#define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
+
 typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;
 
 /* Before the states of its parts, of a kind with faces. */
@@ -94,7 +96,8 @@ typedef struct noh_stage_face {
     float visemes[NOH_VISEME_COUNT];
     uint8_t looks, says, begun; /* noh_stage_looks */
     uint8_t fresh;              /* 1: what it looks at is new: reached by a saccade */
-    uint32_t padding[2];
+    uint16_t
+        shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
 } noh_stage_face;
 
 typedef struct noh_stage_free {
@@ -181,8 +184,9 @@ typedef struct noh_stage_face_kind {
     noh_stage_face_joint head, neck, chest, eyes[2];
     float middle[3]; /* between the eyes at rest, model space */
     uint32_t flags;
-    uint32_t speech, lips_shut; /* floats of clips; NOH_NONE: no clip has them */
-    noh_face_link *links;       /* to floats of the set */
+    uint32_t speech, lips_shut;           /* floats of clips; NOH_NONE: no clip has them */
+    noh_face_link *links;                 /* to floats of the set */
+    uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
     uint32_t link_count;
 } noh_stage_face_kind;
 

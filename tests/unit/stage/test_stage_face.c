@@ -369,6 +369,126 @@ static void a_pack_brings_its_own_recipe_and_correctives(void **state)
     free(strings);
 }
 
+/* ---- people ---- */
+
+typedef struct person {
+    noh_mesh mesh;
+    noh_identity identity;
+    void *memory;
+    float weights[NOH_TARGETS_MAX];
+    uint32_t held; /* weights that are not 0 */
+} person;
+
+/* The mask's cheeks, nose and brows as if they told people apart: they stretch what the lids are shut by. */
+static void open_person(const cast *c, person *p, uint32_t seed)
+{
+    uint8_t marks[NOH_TARGETS_MAX] = { 0 };
+    noh_identity_desc desc;
+    void *scratch;
+    size_t bytes, working;
+    memset(p, 0, sizeof *p);
+    memset(&desc, 0, sizeof desc);
+    for (uint32_t i = 0; !p->mesh.header || !p->mesh.header->target_count; i++) {
+        assert_int_equal(noh_pack_mesh_at(&c->packs[PUPPETS], i, &p->mesh, NULL), NOH_OK);
+    }
+    for (uint32_t t = 0; t < p->mesh.header->target_count; t++) {
+        const char *name = noh_pack_string(p->mesh.pack, p->mesh.targets[t].name);
+        marks[t] = strncmp(name, "cheek", 5) == 0 || strncmp(name, "nose", 4) == 0 ||
+                   strncmp(name, "eyeSquint", 9) == 0;
+    }
+    desc.is_identity = marks;
+    bytes = noh_identity_size(&p->mesh);
+    working = noh_identity_scratch_size(&p->mesh);
+    p->memory = test_zeros(bytes);
+    scratch = test_zeros(working);
+    assert_int_equal(noh_identity_init(p->memory, bytes, scratch, working, &p->mesh, &desc, &p->identity, NULL),
+                     NOH_OK);
+    free(scratch);
+    for (; p->held < 2u; seed++) {
+        noh_identity_random(&p->identity, seed, 1.0f, p->weights);
+        p->held = 0;
+        for (uint32_t t = 0; t < p->mesh.header->target_count; t++) p->held += p->weights[t] != 0.0f;
+    }
+    /* as a head has them whose lids are larger */
+    p->identity.closing_count = 1;
+    p->identity.closings[0] = (uint16_t)noh_mesh_find_target(&p->mesh, "eyeBlinkLeft");
+    for (uint32_t t = 0; t < p->mesh.header->target_count; t++) {
+        ((noh_identity_target *)p->memory)[t].closing[0] = marks[t] ? 0.4f : 0.0f;
+    }
+    assert_ptr_equal(p->identity.targets, p->memory);
+}
+
+/* Their floats are held at the person's weights, lids shut at theirs, and all of it is state. */
+static void an_actor_is_a_person(void **state)
+{
+    const noh_kind_face face = alive();
+    person p;
+    noh_actor actor;
+    float worst = 0.0f, shut = 0.0f;
+    uint64_t hash;
+    cast c;
+    (void)state;
+    open_cast(&c, 2, &face, 1);
+    open_person(&c, &p, 5);
+    c.kinds[0].held_float_count = p.held;
+    cast_make(&c, NULL);
+    actor = enter(&c, NULL, NULL);
+    assert_int_equal(noh_actor_set_face_flags(c.stage, actor, NOH_FACE_CALM, NULL), NOH_OK);
+    hash = noh_stage_hash(c.stage);
+    assert_int_equal(noh_actor_set_identity(c.stage, actor, &p.identity, &p.mesh, p.weights, NULL), NOH_OK);
+    assert_true(noh_stage_hash(c.stage) != hash);
+    assert_int_equal(noh_actor_set_identity(c.stage, actor, &p.identity, &p.mesh, p.weights, NULL), NOH_OK); /* again */
+    run(&c, 2);
+    for (uint32_t t = 0; t < p.mesh.header->target_count; t++) {
+        const char *name = noh_pack_string(p.mesh.pack, p.mesh.targets[t].name);
+        if (p.identity.targets[t].used) worst = fmaxf(worst, fabsf(float_named(&c, actor, name) - p.weights[t]));
+    }
+    assert_true(worst == 0.0f);
+    assert_int_equal(noh_actor_blink(c.stage, actor, NULL), NOH_OK);
+    for (int i = 0; i < 30; i++) {
+        run(&c, 1);
+        shut = fmaxf(shut,
+                     float_named(&c, actor, noh_pack_string(p.mesh.pack, p.mesh.targets[p.identity.closings[0]].name)));
+    }
+    print_message("lids are shut at %.3f\n", (double)shut);
+    assert_true(shut > 1.01f && fabsf(shut - noh_identity_shut(&p.identity, p.weights, 0)) < 2e-3f);
+    assert_int_equal(noh_actor_set_identity(c.stage, actor, &p.identity, &p.mesh, NULL, NULL), NOH_OK);
+    run(&c, 1);
+    for (uint32_t t = 0; t < p.mesh.header->target_count; t++) {
+        if (p.weights[t] != 0.0f)
+            assert_true(float_named(&c, actor, noh_pack_string(p.mesh.pack, p.mesh.targets[t].name)) == 0.0f);
+    }
+    close_cast(&c);
+    free(p.memory);
+}
+
+static void a_person_that_does_not_fit_is_refused(void **state)
+{
+    const noh_kind_face face = alive();
+    person p;
+    noh_actor actor;
+    noh_error error;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &face, 1);
+    open_person(&c, &p, 5);
+    c.kinds[0].held_float_count = 1;
+    cast_make(&c, NULL);
+    actor = enter(&c, NULL, NULL);
+    if (p.held > 1) {
+        assert_int_equal(noh_actor_set_identity(c.stage, actor, &p.identity, &p.mesh, p.weights, &error),
+                         NOH_ERR_LIMIT);
+        assert_int_equal(error.need, p.held);
+        run(&c, 1);
+        for (uint32_t t = 0; t < p.mesh.header->target_count; t++) {
+            if (p.weights[t] != 0.0f)
+                assert_true(float_named(&c, actor, noh_pack_string(p.mesh.pack, p.mesh.targets[t].name)) == 0.0f);
+        }
+    }
+    close_cast(&c);
+    free(p.memory);
+}
+
 /* Out of view nothing is lived through; an hour later a face goes on at once. */
 static void an_hour_unseen_is_skipped(void **state)
 {
@@ -489,6 +609,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
         cmocka_unit_test(a_pack_brings_its_own_recipe_and_correctives),
+        cmocka_unit_test(an_actor_is_a_person),
+        cmocka_unit_test(a_person_that_does_not_fit_is_refused),
         cmocka_unit_test(an_hour_unseen_is_skipped),
         cmocka_unit_test(a_face_is_planned_to_the_byte),
         cmocka_unit_test(states_of_faces_are_put_back),
