@@ -7,15 +7,17 @@ out=$build/demo
 noh=$build/noh
 text=${NOH_TEXT:-'Bob and Mabel pump up five balloons before supper.'}
 
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --wrinkles auto --quiet
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --wrinkles auto \
+    --lips --quiet
+"$noh" build "$build/mask.glb" -o "$out/mask_says_pack.noh" --wrinkles auto --lips --quiet
 if ! "$noh" speak "$text" --face "$out/puppet.noh" -o "$out/says.noh" --wav "$out/says.wav"; then
     echo 'demo-face: nothing is said without eSpeak NG (Debian: apt install libespeak-ng1 espeak-ng-data)'
     exit 0
 fi
-"$noh" speak "$text" --face "$build/mask.noh" -o "$out/mask_says.noh"
+"$noh" speak "$text" --face "$out/mask_says_pack.noh" -o "$out/mask_says.noh"
 "$noh" sheet "$out/puppet.noh" -o "$out/puppet_says.png" --anim "$out/puppet.noh" --anim "$out/says.noh" \
     --clip speech --clip walk --face on --tiles 16 --columns 8 --tile 240
-"$noh" sheet "$build/mask.noh" -o "$out/mask_says.png" --anim "$out/mask_says.noh" --clip speech \
+"$noh" sheet "$out/mask_says_pack.noh" -o "$out/mask_says.png" --anim "$out/mask_says.noh" --clip speech \
     --face on --feel joy=0.8 --tiles 16 --columns 8 --tile 240
 
 # 25 pictures a second of as long as the sound lasts: 16 bits, one channel, 22,050 samples a second

@@ -12,11 +12,13 @@
 
 #define LINKS_MAX 512u
 #define RIM_MAX 512u
+#define RIM_MIN 6u
 
-/* Shares of how far an open mouth moves the chin: about 35 mm for a person. */
+/* Shares of the size of the mouth: about 35 mm for a person. */
 #define TOUCH 0.07      /* lips that touch are no further apart */
+#define PARTED 0.7      /* lips of a mouth that is modelled open are no further apart */
 #define REACH 0.6       /* teeth are no further from the lips */
-#define STILL 0.02      /* teeth that stay move no more */
+#define STILL 0.02      /* of how far the chin moves: teeth that stay move no more */
 #define CLEARANCE 0.008 /* left between lip and teeth */
 #define AROUND 0.28     /* how far the skin around the rim goes along */
 
@@ -31,6 +33,7 @@ typedef struct mouth {
     float *moved;     /* [vertex_count] how far the open mouth moves it */
     float *bite;      /* [vertex_count][3] rest, and what the recipe's FF adds */
     double most;      /* the farthest of `moved` */
+    double size;      /* of the mouth: `most`, or half its width and two fifths, whichever is more */
     uint32_t skin;    /* island */
     uint32_t rim[RIM_MAX], rim_count;
     double ways[RIM_MAX][3]; /* from a point of the rim towards the teeth */
@@ -145,9 +148,8 @@ static uint32_t first_at(const mouth *h, uint32_t count, double x)
     return low;
 }
 
-static void find_rim(mouth *h)
+static void find_rim(mouth *h, double touch)
 {
-    const double touch = TOUCH * h->most;
     uint32_t uppers = 0;
     h->rim_count = 0;
     for (uint32_t v = 0; v < h->mesh->vertex_count; v++) {
@@ -194,6 +196,24 @@ static double aside(const mouth *h, const double at[3])
     return fabs(along) / h->half;
 }
 
+/* Lips that touch in the middle, or those of a mouth that is modelled a little open. 1: found. */
+static int find_lips(mouth *h)
+{
+    h->size = h->most;
+    for (double touch = TOUCH; touch <= PARTED; touch *= 1.5) {
+        find_rim(h, touch * h->size);
+        if (h->rim_count < RIM_MIN) continue;
+        measure_rim(h);
+        if (1.4 * h->half > h->size) h->size = 1.4 * h->half;
+        for (uint32_t r = 0; r < h->rim_count && h->half > TOUCH * h->size; r++) {
+            double at[3];
+            point(h->mesh->position, h->rim[r], at);
+            if (aside(h, at) < 0.2) return 1;
+        }
+    }
+    return 0;
+}
+
 /* ---- teeth ---- */
 
 static int is_tooth(const mouth *h, uint32_t v)
@@ -201,7 +221,7 @@ static int is_tooth(const mouth *h, uint32_t v)
     double at[3];
     if (h->island[v] == h->skin || (double)h->moved[v] > STILL * h->most) return 0;
     point(h->mesh->position, v, at);
-    return distance(at, h->centre) < h->half + REACH * h->most;
+    return distance(at, h->centre) < h->half + REACH * h->size;
 }
 
 static int find_teeth(mouth *h)
@@ -295,11 +315,11 @@ static void lead(mouth *h)
         double rest[3], clear, by;
         int leads = 1;
         for (uint32_t o = 0; o < h->rim_count && leads; o++) {
-            leads = !(between(h, h->rim[r], h->rim[o]) < 2.0 * TOUCH * h->most && far[o] < far[r] - 0.01 * h->most);
+            leads = !(between(h, h->rim[r], h->rim[o]) < 2.0 * TOUCH * h->size && far[o] < far[r] - 0.01 * h->size);
         }
         if (!leads) continue;
         point(h->mesh->position, h->rim[r], rest);
-        clear = CLEARANCE * h->most;
+        clear = CLEARANCE * h->size;
         by = far[r] > clear ? (1.0 - clear / far[r]) * (1.0 - smooth(0.3, 0.9, aside(h, rest))) : 0.0;
         h->rim[count] = h->rim[r];
         for (int i = 0; i < 3; i++) h->ways[count][i] = h->ways[r][i] * by;
@@ -311,7 +331,7 @@ static void lead(mouth *h)
 /* What the rim leads a point of the skin by. */
 static void follow(const mouth *h, uint32_t v, float out[3])
 {
-    const double blur = 0.003 * h->most;
+    const double blur = 0.003 * h->size;
     double way[3] = { 0.0 }, sum = 0.0, least = HUGE_VAL, share;
     for (uint32_t r = 0; r < h->rim_count; r++) {
         const double d = between(h, v, h->rim[r]), k = 1.0 / (d * d + blur * blur);
@@ -319,7 +339,7 @@ static void follow(const mouth *h, uint32_t v, float out[3])
         sum += k * k;
         for (int i = 0; i < 3; i++) way[i] += k * k * h->ways[r][i];
     }
-    share = exp(-pow(least / (AROUND * h->most), 2.0)) * smooth(0.2, 0.6, (double)h->moved[v] / h->most);
+    share = exp(-pow(least / (AROUND * h->size), 2.0)) * smooth(0.2, 0.6, (double)h->moved[v] / h->most);
     for (int i = 0; i < 3; i++) out[i] = share > 0.01 ? (float)(share * way[i] / sum) : 0.0f;
 }
 
@@ -355,10 +375,7 @@ static const char *look(mouth *h)
     }
     if (h->mesh->target_count >= NOH_TARGETS_MAX) return "it has as many targets as there may be";
     if (!pose(h)) return "no target opens its mouth";
-    find_rim(h);
-    if (h->rim_count < 4) return "its lips do not touch anywhere";
-    measure_rim(h);
-    if (!(h->half > TOUCH * h->most)) return "its lips touch in one place only";
+    if (!find_lips(h)) return "its lips are found nowhere, or are too far apart at rest";
     if (find_teeth(h)) return "there is not enough memory";
     return h->tooth_count ? NULL : "it has no teeth behind the lips that stay where they are while the mouth opens";
 }

@@ -213,11 +213,12 @@ static int open_shader(figure *f)
 {
     char log[4096] = "";
     noh_error error = { NOH_OK, "", 0, 0 };
-    const size_t bytes = noh_stage_shader_size(f->stage);
     const noh_gl_shader_desc desc = { .view = f->desc.view };
+    size_t bytes;
     if (!f->g || f->desc.view == NOH_VIEW_LIT) {
         return 0;
     }
+    bytes = noh_stage_shader_size(f->stage);
     f->shader_memory = malloc(bytes);
     if (!f->shader_memory) {
         return tool_fail("renderer", "out of memory");

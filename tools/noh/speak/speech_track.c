@@ -191,14 +191,17 @@ static int drawn_mesh(const noh_pack *pack, uint32_t n, face_node *out)
 static int bind(const noh_pack *pack, face_node *n)
 {
     const uint32_t targets = n->mesh.header->target_count;
+    const noh_face_recipe own = noh_face_recipe_in_pack(pack);
+    const noh_face_recipe *const recipes[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
+                                                &noh_face_recipe_units };
     const char **names = calloc(targets + 1u, sizeof *names);
     noh_face_link *all;
     uint32_t count = 0;
     for (uint32_t i = 0; names && i < targets; i++) names[i] = noh_pack_string(pack, n->mesh.targets[i].name);
-    if (names) count = noh_face_recipe_bind(NULL, 0, names, targets, NULL, 0);
+    if (names) count = noh_face_recipe_bind(recipes, 4, names, targets, NULL, 0);
     all = calloc(count + 1u, sizeof *all);
     if (names && all) {
-        (void)noh_face_recipe_bind(NULL, 0, names, targets, all, count);
+        (void)noh_face_recipe_bind(recipes, 4, names, targets, all, count);
         for (uint32_t i = 0; i < count; i++) {
             if (all[i].channel >= NOH_CHANNEL_VISEMES) all[n->link_count++] = all[i];
         }
