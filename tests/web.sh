@@ -76,11 +76,11 @@ $(grep '^# budget ' "$out/log.txt")
 END
     for shown in 'rest --weight smile=0' 'smile --weight smile=1' "clip --clip $clip --time $time"; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$pack" -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in auto mrt gather; do compare "${path}_${shown%% *}"; done
     done
     [ -f "$out/level.png" ] || return
-    "$build/noh" render "$pack" -o "$out/native.png" --size ${size}x$size --lod 2 >/dev/null || not_ok 'noh render --lod'
+    "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size --lod 2 >/dev/null || not_ok 'noh render --lod'
     compare level
 }
 

@@ -39,7 +39,7 @@ noh render "$pack" -o "$work/cut.png" --light "$work/none.hdr"
 expect 1 'no such file'
 noh render "$pack" -o "$work/cut.png" --light rooom
 expect 2 'an unknown environment'
-says "--light wants none, white, studio, room, sky or a file (.hdr, .png), not 'rooom'"
+says "--light wants auto, none, white, studio, room, sky or a file (.hdr, .png), not 'rooom'"
 noh render "$pack" -o "$work/cut.png" --light room --tonemap bright
 expect 2 'an unknown tone map'
 says "--tonemap wants filmic or none, not 'bright'"
@@ -48,6 +48,17 @@ expect 2 'an unknown shadow'
 noh render "$pack" -o "$work/cut.png" --light room --background red
 expect 2 'an unknown background'
 says "--background wants light, gradient or plain, not 'red'"
+
+# ---- without --light ----
+
+noh render "$pack" -o "$work/auto.png" --size 128x128
+noh render "$pack" -o "$work/studio.png" --size 128x128 --light studio
+check 'a picture is lit by the studio' cmp -s "$work/auto.png" "$work/studio.png"
+noh render "$pack" -o "$work/plain.png" --size 128x128 --light none
+check 'unless it is told not to be' sh -c '! cmp -s "$1" "$2"' - "$work/auto.png" "$work/plain.png"
+noh render "$pack" -o "$work/auto.png" --size 128x128 --debug normal
+noh render "$pack" -o "$work/plain.png" --size 128x128 --debug normal --light none
+check 'values as colours are not' cmp -s "$work/auto.png" "$work/plain.png"
 
 noh bench "$pack" --only look --quick --json
 expect 0 'a bench of looks'

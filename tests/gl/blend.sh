@@ -4,7 +4,7 @@
 . tests/cli/lib.sh
 mask=$build/mask.noh
 
-noh render "$mask" -o "$work/cpu.png" --size 128x128 --weight smile=1 --path cpu
+noh render "$mask" --light none -o "$work/cpu.png" --size 128x128 --weight smile=1 --path cpu
 if [ $code != 0 ]; then
     skip 'blending' 'no EGL context here'
     finish
@@ -19,7 +19,7 @@ blends() { # NAME PATH ENVIRONMENT...
     name=$1 path=$2
     shift 2
     rm -f "$work/blend.png"
-    env "$@" "$build/noh" render "$mask" -o "$work/blend.png" --size 128x128 --weight smile=1 --path blend >"$work/out" 2>"$work/err"
+    env "$@" "$build/noh" render "$mask" --light none -o "$work/blend.png" --size 128x128 --weight smile=1 --path blend >"$work/out" 2>"$work/err"
     code=$?
     expect 0 "$name"
     check "$name: $path" grep -q " $path-f32 ($path: " "$work/out"
@@ -36,11 +36,11 @@ blends 'no geometry shaders' per-layer MESA_GLES_VERSION_OVERRIDE=3.1 \
 blends 'ES 3.0' per-layer MESA_GLES_VERSION_OVERRIDE=3.0
 
 export MESA_EXTENSION_OVERRIDE=-GL_EXT_float_blend
-noh render "$mask" -o "$work/none.png" --path blend
+noh render "$mask" --light none -o "$work/none.png" --path blend
 expect 1 'no float blending: refused'
 says 'EXT_float_blend'
 check 'and no picture is written' test ! -e "$work/none.png"
-noh render "$mask" -o "$work/half.png" --path blend --accumulate f16
+noh render "$mask" --light none -o "$work/half.png" --path blend --accumulate f16
 expect 0 'halves still blend'
 check 'and are layered' grep -q ' layered-f16 ' "$work/out"
 sh tools/demo_path.sh "$build/noh" "$mask" >"$work/out" 2>"$work/err"

@@ -19,12 +19,12 @@ DISPLAY=:$(cat "$work/display")
 export DISPLAY
 check 'the virtual display runs' test "$DISPLAY" != :
 
-noh render "$mask" -o "$work/egl.png" --weight smile=1 --driver egl
+noh render "$mask" --light none -o "$work/egl.png" --weight smile=1 --driver egl
 if [ $code != 0 ]; then
     skip 'windows' 'no EGL context to compare with'
     finish
 fi
-noh render "$mask" -o "$work/glfw.png" --weight smile=1 --driver glfw
+noh render "$mask" --light none -o "$work/glfw.png" --weight smile=1 --driver glfw
 if [ $code != 0 ] && grep -q 'libglfw' "$work/err"; then
     skip 'glfw' 'no libglfw.so.3 here'
 else
@@ -45,7 +45,7 @@ for driver in glfw egl; do
 done
 
 unset DISPLAY
-noh render "$mask" -o "$work/none.png" --driver glfw
+noh render "$mask" --light none -o "$work/none.png" --driver glfw
 expect 1 'without a display glfw is refused'
 says 'no GL context'
 check 'and nothing is written' test ! -e "$work/none.png"

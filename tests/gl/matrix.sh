@@ -10,7 +10,7 @@ mask=$build/mask.noh
 table=$work/table
 : >"$table"
 
-noh render "$mask" -o "$work/reference.png" --size 256x256 --weight smile=1 --path cpu
+noh render "$mask" --light none -o "$work/reference.png" --size 256x256 --weight smile=1 --path cpu
 if [ $code != 0 ]; then
     skip 'the matrix' 'no EGL context here'
     finish
@@ -53,7 +53,7 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
     expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
     auto=mrt
     case " $lacking " in *" mrt "*) auto=gather ;; esac
-    env "$@" "$build/noh" render "$mask" -o "$work/picture.png" --size 256x256 --weight smile=1 --driver "$driver" \
+    env "$@" "$build/noh" render "$mask" --light none -o "$work/picture.png" --size 256x256 --weight smile=1 --driver "$driver" \
         --path $auto >"$work/out.txt" 2>"$work/err"
     code=$?
     expect 0 "$name: a picture with $auto"

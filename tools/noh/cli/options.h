@@ -83,11 +83,12 @@
         __VA_ARGS__                                                                                                    \
     }
 
-#define OPTION_LIGHT_NAME(T, m, text, ...)                                                                        \
-    {                                                                                                             \
-        .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text,      \
-        .what = "light from all around: none (a plain one), white, studio, room, sky, or a panorama: .hdr, .png", \
-        .example = "room", __VA_ARGS__                                                                            \
+#define OPTION_LIGHT_NAME(T, m, text, ...)                                                                          \
+    {                                                                                                               \
+        .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text,        \
+        .what = "light from all around: white, studio, room, sky, a panorama (.hdr, .png), or none (a plain one); " \
+                "auto: studio, but none for bones and --debug",                                                     \
+        .example = "room", __VA_ARGS__                                                                              \
     }
 
 #define OPTION_LIGHT_ROTATE(T, m, ...)                                                                   \

@@ -9,8 +9,11 @@
 
 #define PI 3.14159265358979323846
 
-int lighting_wanted(const light_options *o)
+int lighting_wanted(light_options *o, int shows_surfaces)
 {
+    if (o->light && strcmp(o->light, "auto") == 0) {
+        o->light = shows_surfaces ? "studio" : NULL;
+    }
     return o->light && strcmp(o->light, "none") != 0;
 }
 
@@ -57,7 +60,7 @@ static int read_light(lighting *l, const char *name)
         return bake(l, noh_reflection_of_environment, noh_environment_at(index));
     }
     if (!strchr(name, '.') && !strchr(name, '/')) {
-        return tool_usage("--light wants none, white, studio, room, sky or a file (.hdr, .png), not '%s'", name);
+        return tool_usage("--light wants auto, none, white, studio, room, sky or a file (.hdr, .png), not '%s'", name);
     }
     status = light_file_open(&file, name);
     if (!status) {

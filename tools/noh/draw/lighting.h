@@ -26,8 +26,9 @@ typedef struct lighting {
     lighting_background background;
 } lighting;
 
-/* 1 where the options ask for light of an environment: not for "none". */
-int lighting_wanted(const light_options *o);
+/* 1 where the options ask for light of an environment: not for "none". "auto" becomes the light that it stands for.
+ * shows_surfaces: 0: bones, or values as colours */
+int lighting_wanted(light_options *o, int shows_surfaces);
 /* Read or bake the environment. Prints an error and returns an exit code; 0 on success. */
 int lighting_open(lighting *l, const light_options *o);
 void lighting_close(lighting *l);

@@ -108,7 +108,7 @@ static int render(render_args *a, const pack_file *file)
     gpu g;
     const int shows_bones = picture_shows_bones(file, a->show_bones);
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
-    if (!status && lighting_wanted(&a->light)) {
+    if (!status && lighting_wanted(&a->light, !shows_bones && a->figure.view == NOH_VIEW_LIT)) {
         status = lighting_open(&light, &a->light);
         if (status) return status;
         a->figure.light = &light;
@@ -168,7 +168,7 @@ static const option options[] = {
     OPTION_FEEL(render_args, emotions),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
-    OPTIONS_LIGHT(render_args, light, "none", .excludes = "--bones"),
+    OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(render_args, show_bones),

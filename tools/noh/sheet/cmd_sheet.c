@@ -213,7 +213,7 @@ static int run(void *args)
     sheet_args *a = args;
     pack_file file;
     int status = check_args(a);
-    if (!status && lighting_wanted(&a->s.light)) {
+    if (!status && lighting_wanted(&a->s.light, !a->s.show_bones)) {
         status = lighting_open(&a->s.lit, &a->s.light);
         if (!status) a->s.figure.light = &a->s.lit;
     }
@@ -346,7 +346,7 @@ static const option options[] = {
       .example = "8",
       .excludes = "--lods --blend" },
     OPTION_CAMERA(sheet_args, s.camera, "face"),
-    OPTIONS_LIGHT(sheet_args, s.light, "none", .excludes = "--bones"),
+    OPTIONS_LIGHT(sheet_args, s.light, "auto", .excludes = "--bones"),
     OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(sheet_args, accumulate, .initial = "auto", .excludes = "--bones"),
     OPTION_DRIVER(sheet_args, s.driver, .initial = "egl"),

@@ -44,7 +44,7 @@ static int run(void *args)
 {
     view_args *a = args;
     int status = check_args(a);
-    if (!status && lighting_wanted(&a->light)) {
+    if (!status && lighting_wanted(&a->light, !a->run.desc.show_bones)) {
         status = lighting_open(&a->lit, &a->light);
         a->run.desc.light = &a->lit;
     }
@@ -101,7 +101,7 @@ static const option options[] = {
       .value = "auto|N",
       .what = "number of LOD levels to convert a model with, with the full mesh, 1 to 8; auto: up to five, by error",
       .example = "4" },
-    OPTIONS_LIGHT(view_args, light, "none", .needs = NULL),
+    OPTIONS_LIGHT(view_args, light, "auto", .needs = NULL),
     OPTION_PATH(view_args, path, .initial = "auto"),
     OPTION_ACCUMULATE(view_args, accumulate, .initial = "auto"),
     { .name = "--driver",
