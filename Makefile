@@ -93,7 +93,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o))
 
-.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -112,6 +112,7 @@ help:
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
+	@echo 'make look-compare  pictures beside three.js in the light of a room'
 	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
 	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
 	@echo 'make amalgam    the library as three files, $(BUILD)/amalgam/noh.c, noh.h and noh_gl.h'
@@ -367,6 +368,11 @@ web-bench: deps-web
 	$(BUILD)/noh build $(WEB_BENCH) -o $(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh --quiet && \
 	$(MAKE) --no-print-directory DEPS=0 web WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
 	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
+
+# Pictures beside those of three.js's standard materials.
+LOOKS ?= $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb $(BUILD)/mask.glb
+look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
+	@NOH_BUILD="$(BUILD)" sh tests/web_look.sh $(LOOKS)
 
 $(WEB)/page.noh: $(WEB_PACK)
 	@mkdir -p $(@D)

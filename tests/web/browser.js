@@ -7,12 +7,15 @@ const path = require('path');
 
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
-// Serve the files of { '/prefix/': folder }; resolves to the server and its address.
+// A file alone is served as itself.
+const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, name || 'index.html') : place;
+
+// Serve the files of { '/prefix/': folder or file }; resolves to the server and its address.
 function serve(folders) {
     const server = http.createServer((request, answer) => {
         const name = new URL(request.url, 'http://localhost').pathname;
         const prefix = Object.keys(folders).find((p) => name.startsWith(p) && !name.includes('..'));
-        fs.readFile(prefix ? path.join(folders[prefix], name.slice(prefix.length) || 'index.html') : '', (error, bytes) => {
+        fs.readFile(prefix ? fileOf(folders[prefix], name.slice(prefix.length)) : '', (error, bytes) => {
             answer.writeHead(error ? 404 : 200, { 'Content-Type': types[path.extname(name)] || (name.endsWith('/') ? 'text/html' : 'application/octet-stream') });
             answer.end(error ? '' : bytes);
         });
