@@ -97,11 +97,13 @@ float noh_iris_rim(noh_eye e)
     return 1.0 - 0.35 * smoothstep(0.7, 0.95, e.across) * (1.0 - smoothstep(0.98, 1.2, e.across));
 }
 
-/* The lamp in an eye: a disc of eleven degrees, over its solid angle. nh: cosine between the normal and the half
- * vector */
+float noh_on_cornea = 1.0; /* 1 on the cornea and on balls without an iris, 0 on the white: noh_eye_light sets it */
+
+/* The lamp in an eye: a disc of eleven degrees, over its solid angle. At the cornea's rim the normal turns back, and
+ * would smear it over the white. nh: cosine between the normal and the half vector */
 float noh_lamp(float nh)
 {
-    return 8.7 * smoothstep(0.977, 0.986, 2.0 * nh * nh - 1.0);
+    return 8.7 * smoothstep(0.977, 0.986, 2.0 * nh * nh - 1.0) * noh_on_cornea;
 }
 
 /* Make a surface that of an eye for matte light. Returns the normal that mirrors, unit. */
@@ -112,6 +114,7 @@ vec3 noh_eye_light(inout noh_surface s)
     s.roughness = min(s.roughness, 0.12);
     if (e.gaze != vec3(0.0)) {
         mirror = noh_cornea(e, s.normal);
+        noh_on_cornea = 1.0 - smoothstep(0.8, 1.0, e.across);
         s.albedo *= noh_iris_rim(e);
         s.normal = noh_iris_normal(s, e);
     }
