@@ -44,15 +44,13 @@ static const char *const joined_skin[] = { "肌", "皮膚", "皮肤", "피부" }
 static void fold(unsigned char *text, size_t length)
 {
     for (size_t i = 0; i < length; i++) {
-        if (text[i] >= 'A' && text[i] <= 'Z') {
-            text[i] = (unsigned char)(text[i] + 32u);
-        } else if (i && text[i - 1] == 0xc3u && text[i] >= 0x80u && text[i] <= 0x9eu) {
-            text[i] = (unsigned char)(text[i] + 32u);
-        } else if (i && text[i - 1] == 0xd0u && text[i] >= 0x90u && text[i] <= 0x9fu) {
-            text[i] = (unsigned char)(text[i] + 32u);
-        } else if (i && text[i - 1] == 0xd0u && text[i] >= 0xa0u && text[i] <= 0xafu) {
+        const unsigned char c = text[i], before = i ? text[i - 1] : 0;
+        if ((c >= 'A' && c <= 'Z') || (before == 0xc3u && c >= 0x80u && c <= 0x9eu) ||
+            (before == 0xd0u && c >= 0x90u && c <= 0x9fu)) {
+            text[i] = (unsigned char)(c + 32u);
+        } else if (before == 0xd0u && c >= 0xa0u && c <= 0xafu) {
             text[i - 1] = 0xd1u;
-            text[i] = (unsigned char)(text[i] - 32u);
+            text[i] = (unsigned char)(c - 32u);
         }
     }
 }
