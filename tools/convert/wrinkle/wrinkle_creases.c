@@ -14,6 +14,7 @@
 #define WAVE_MOST 24.0    /* coarser ones take long to compute */
 #define ROUNDS 8          /* of the filter */
 #define REACH 0.8         /* of the filter, in distances from crease to crease */
+#define LEAN 10.0         /* degrees from the axis of its triangle alone that a slope may be off */
 #define GAIN 4.0          /* what is left of noise grows, what has grown stays */
 #define SLOPE_MOST 0.42   /* of a crease's side */
 #define SLOPE_BY_ROOT 1.1 /* a sine that hides a share c of a length has the slope 2 sqrt(c); skin hides less */
@@ -21,7 +22,7 @@
 /* A texel that is compressed. */
 typedef struct crease {
     double u[3], v[3];    /* model units to the next texel to the right, and to the one below */
-    double across[3];     /* unit, in the surface */
+    double across[3];     /* unit, in the surface: of the slope */
     float wave_x, wave_y; /* degrees from it to those two */
     float depth;          /* model units from ridge to valley */
     int reach;            /* texels that its filter takes in on each side; 0: not compressed */
@@ -57,16 +58,22 @@ static int texel_steps(const canvas *c, uint32_t triangle, double u[3], double v
     return det > 1e-9 || det < -1e-9;
 }
 
-/* The direction of a crease: the larger principal axis, in the plane of u and v, of the corners' mean tensor. */
-static void crease_axis(const canvas *c, size_t at, const double *u, const double *v, double axis[3])
+/* The mean tensor of a texel's corners. */
+static void tensor_at(const canvas *c, size_t at, double t[6])
 {
-    double t[6] = { 0 }, x[3], y[3], xx, xy, yy, half, root, a, b;
+    memset(t, 0, 6 * sizeof *t);
     for (uint32_t k = 0; k < 3; k++) {
         const double *corner = c->field->tensor[wrinkle_corner(c->field, c->raster->triangle[at], k)];
         for (int i = 0; i < 6; i++) {
             t[i] += (double)c->raster->share[at][k] * corner[i];
         }
     }
+}
+
+/* The direction of a crease: the larger principal axis of a tensor in the plane of u and v. */
+static void crease_axis(const double t[6], const double *u, const double *v, double axis[3])
+{
+    double x[3], y[3], xx, xy, yy, half, root, a, b;
     memcpy(x, u, sizeof x);
     memcpy(y, v, sizeof y);
     (void)vec_normalize(x);
@@ -89,6 +96,22 @@ static void crease_axis(const canvas *c, size_t at, const double *u, const doubl
         axis[i] = a * x[i] + b * y[i];
     }
     if (!vec_normalize(axis)) memcpy(axis, x, sizeof x);
+}
+
+/* Turn an axis towards another one until they are no further than LEAN apart. */
+static void lean(double axis[3], const double to[3])
+{
+    const double sign = vec_dot(axis, to) < 0.0 ? -1.0 : 1.0, cosine = sign * vec_dot(axis, to);
+    double side[3], s, c;
+    for (int i = 0; i < 3; i++) {
+        side[i] = sign * axis[i];
+    }
+    vec_reject(side, to);
+    angle_sin_cos_degrees(LEAN, &s, &c);
+    if (cosine >= c || !vec_normalize(side)) return;
+    for (int i = 0; i < 3; i++) {
+        axis[i] = c * to[i] + s * side[i];
+    }
 }
 
 /* How much a texel is compressed: the mean of its corners. */
@@ -118,16 +141,20 @@ static void set_wave(const canvas *c, crease *to)
 static void set_crease(const canvas *c, size_t at)
 {
     crease *to = &c->creases[at];
-    double axis[3], normal[3], shrink, slope;
+    double t[6], axis[3], own[3], normal[3], shrink, slope;
     if (c->raster->triangle[at] == MODEL_NONE || (shrink = shrink_at(c, at)) < SHRINK_LEAST ||
         !texel_steps(c, c->raster->triangle[at], to->u, to->v)) {
         return;
     }
-    crease_axis(c, at, to->u, to->v, axis);
+    tensor_at(c, at, t);
+    crease_axis(t, to->u, to->v, axis);
     vec_cross(to->u, to->v, normal);
     if (!vec_normalize(normal)) return;
     vec_cross(normal, axis, to->across);
     set_wave(c, to);
+    crease_axis(c->field->demand[c->raster->triangle[at]], to->u, to->v, own);
+    lean(axis, own);
+    vec_cross(normal, axis, to->across);
     slope = SLOPE_BY_ROOT * sqrt(shrink);
     to->depth *= (float)((slope < SLOPE_MOST ? slope : SLOPE_MOST) / PI); /* a sine's slope is pi * depth / length */
 }
