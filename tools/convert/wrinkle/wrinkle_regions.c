@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GROUPS 40         /* of points at first: the two most alike are joined until as many are left as regions */
+#define GROUPS 96         /* of points at first: the two most alike are joined until as many are left as regions */
 #define ROUNDS 12         /* of assigning points to groups and moving the groups */
 #define SMOOTHINGS 3      /* rounds in which borders grow soft, one edge a round */
 #define FADE_FIRST 0.01f  /* compression at which a crease begins to show, */
