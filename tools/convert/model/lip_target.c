@@ -16,7 +16,7 @@
 
 /* Shares of the size of the mouth: about 35 mm for a person. */
 #define TOUCH 0.07      /* lips that touch are no further apart */
-#define PARTED 0.7      /* lips of a mouth that is modelled open are no further apart */
+#define WIDENED_MAX 6   /* times one and a half: lips of a mouth that is modelled open are no further apart */
 #define REACH 0.6       /* teeth are no further from the lips */
 #define STILL 0.02      /* of how far the chin moves: teeth that stay move no more */
 #define CLEARANCE 0.008 /* left between lip and teeth */
@@ -200,7 +200,8 @@ static double aside(const mouth *h, const double at[3])
 static int find_lips(mouth *h)
 {
     h->size = h->most;
-    for (double touch = TOUCH; touch <= PARTED; touch *= 1.5) {
+    double touch = TOUCH;
+    for (int widened = 0; widened < WIDENED_MAX; widened++, touch *= 1.5) {
         find_rim(h, touch * h->size);
         if (h->rim_count < RIM_MIN) continue;
         measure_rim(h);

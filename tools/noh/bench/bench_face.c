@@ -165,16 +165,18 @@ static int measure(bench_job *job, face_bench *b)
 int bench_face(bench_job *job)
 {
     face_bench *b = calloc(1, sizeof *b);
-    int status = b ? make_faces(b) : tool_fail("bench", "out of memory");
+    int status;
+    if (!b) {
+        return tool_fail("bench", "out of memory");
+    }
+    status = make_faces(b);
     if (!status) status = make_controllers(b);
     if (!status) {
         bind(b, &job->mesh);
         status = measure(job, b);
     }
-    if (b) {
-        free(b->faces);
-        free(b->controllers);
-    }
+    free(b->faces);
+    free(b->controllers);
     free(b);
     return status;
 }
