@@ -260,14 +260,15 @@ static void lead(const ear *e, int32_t *weights)
 static void show(const ear *e, const int32_t *weights, int32_t loudness, noh_ear_frame *frame)
 {
     const int32_t quiet = loudness * 6, loud = ONE * 2 / 5 + loudness / 5 * 3;
-    int64_t open = 0, round = 0;
+    int64_t open = 0, round = 0, as_loud;
     frame->shape = (noh_viseme)e->shape;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
         frame->visemes[v] = (float)weights[v] * (1.0f / ONE);
         open += weights[v] * opens[v] / 100;
         round += weights[v] * rounds[v] / 100;
     }
-    frame->open = (float)(open * (quiet < loud ? quiet : loud) / ONE) * (1.0f / ONE);
+    as_loud = open * (quiet < loud ? quiet : loud) / ONE;
+    frame->open = (float)as_loud * (1.0f / ONE);
     frame->round = (float)round * (1.0f / ONE);
     frame->closed = frame->visemes[NOH_VISEME_PP];
 }

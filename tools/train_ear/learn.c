@@ -134,7 +134,7 @@ static void descend(const lesson *l, int rounds)
 static double most_of(const float *values, int count, int stride)
 {
     double most = 1e-6;
-    for (int i = 0; i < count; i++) most = fmax(most, fabs(values[i * stride]));
+    for (int i = 0; i < count; i++) most = fmax(most, (double)fabsf(values[i * stride]));
     return most;
 }
 

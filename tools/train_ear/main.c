@@ -74,7 +74,7 @@ static void hear(const utterance *said, double warp, int hard)
         noh_ear_cepstra(&tables, heard + i, heard[i - 1], c, &loud);
         for (int k = 0; k < EAR_CEPSTRA; k++) cepstra[at][k] = (int16_t)c[k];
         loudness[at] = (int16_t)loud;
-        shapes[at] = (signed char)shape_at(said, warp * (i - EAR_SKIP + EAR_WINDOW / 2) / EAR_RATE);
+        shapes[at] = (signed char)shape_at(said, warp * (i - EAR_SKIP + EAR_WINDOW / 2.0) / EAR_RATE);
     }
     voices[utterances] = said->voice;
     first_frame[++utterances] = at;
