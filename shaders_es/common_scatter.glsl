@@ -9,7 +9,7 @@ in float noh_v_open; /* 0..1: how much of the light outside reaches the place */
  * the integral of max(cos, 0) over a ring of that curvature, weighted by the diffusion profile of d'Eon and Luebke
  * (GPU Gems 3, chapter 14), which Penner tabulates (Pre-integrated skin shading, GPU Pro 2, 2011). In place of his
  * texture stands a fit: a line, and a hyperbola for |nl|, whose corner the curvature rounds. It is off by 0.006 at most
- * (test_gl_skin_light compares).
+ * (test_gl_surfaces compares).
  * nl: a cosine for each channel; curvature: 1/mm; above 1 it counts as 1 */
 vec3 noh_scatter(vec3 nl, float curvature)
 {
