@@ -7,9 +7,9 @@
 #include "base/math_internal.h"
 #include "deform/morph_kernel_internal.h"
 
-static noh_field make_field(unsigned before, unsigned bits, float weight)
+static morph_field make_field(unsigned before, unsigned bits, float weight)
 {
-    noh_field f = { before, 32u - bits, weight };
+    morph_field f = { before, 32u - bits, weight };
     return f;
 }
 
@@ -17,16 +17,16 @@ static noh_field make_field(unsigned before, unsigned bits, float weight)
  * of that axis as two's complement integers, from the top bit down. Shifted left to the top and then right
  * arithmetically, a field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round
  * the same products. */
-static void target_fields(const noh_target *t, float weight, noh_field f[3])
+static void target_fields(const noh_target *t, float weight, morph_field f[3])
 {
     f[0] = make_field(0, t->position_bits, t->position_scale * weight);
     f[1] = make_field(t->position_bits, t->normal_bits, t->normal_scale * weight);
     f[2] = make_field((unsigned)t->position_bits + t->normal_bits, t->tangent_bits, t->tangent_scale * weight);
 }
 
-typedef void (*run_function)(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3]);
+typedef void (*run_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
 
-static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+static void run_simd(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     if (layers[2]) {
         noh_add_run(words, count, f, layers, 3);
@@ -38,7 +38,7 @@ static void run_simd(const uint32_t *words, size_t count, const noh_field f[3], 
 /* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
  * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams.
  */
-static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const noh_field f[3],
+static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
                               const noh_morph_layers *layers, run_function run)
 {
     const noh_rect *rect = mesh->rects + t->first_rect;
@@ -73,7 +73,7 @@ static void accumulate(const noh_mesh *mesh, const float *weights, const noh_mor
     NOH_ASSERT(layers->position || !mesh->header->touched_count);
     NOH_VALIDATE(all_finite(weights, mesh->header->target_count));
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
-        noh_field f[3];
+        morph_field f[3];
         if (weights[i] != 0.0f) {
             target_fields(&mesh->targets[i], weights[i], f);
             accumulate_target(mesh, &mesh->targets[i], f, layers, run);
@@ -130,7 +130,7 @@ const char *noh_morph_simd(void)
     return NOH_MORPH_SIMD;
 }
 
-static void run_scalar(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+static void run_scalar(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         noh_add_run_scalar(words, count, f[l], layers[l]);
@@ -147,7 +147,7 @@ static float round_half(float value, noh_half_mode mode)
     return noh_half_to_float(noh_half_from_float(value, mode));
 }
 
-static void run_f16_rne(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+static void run_f16_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
@@ -156,7 +156,7 @@ static void run_f16_rne(const uint32_t *words, size_t count, const noh_field f[3
     }
 }
 
-static void run_f16_rtz(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3])
+static void run_f16_rtz(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {

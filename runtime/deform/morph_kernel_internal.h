@@ -29,19 +29,19 @@
 
 /* Where a field lies in a word, and the weight of one unit of it. The left shift drops the bits above the field, the
  * arithmetic right shift those below it, and extends the sign. */
-typedef struct noh_field {
+typedef struct morph_field {
     uint32_t left, right;
     float weight;
-} noh_field;
+} morph_field;
 
-static inline float noh_field_value(uint32_t word, noh_field f)
+static inline float noh_field_value(uint32_t word, morph_field f)
 {
     /* C99 leaves the right shift of a negative value to the compiler; all known ones shift in the sign, and a test says
      * so */
     return (float)((int32_t)(word << f.left) >> f.right) * f.weight;
 }
 
-static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_field f, float *layer)
+static inline void noh_add_run_scalar(const uint32_t *words, size_t count, morph_field f, float *layer)
 {
     for (size_t i = 0; i < count; i++) {
         layer[i] = layer[i] + noh_field_value(words[i], f);
@@ -49,13 +49,13 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, noh_f
 }
 
 #if defined(NOH_SSE2) /* AVX2 has it too */
-static inline __m128 noh_add_four(__m128i q, noh_field f, __m128 layer)
+static inline __m128 noh_add_four(__m128i q, morph_field f, __m128 layer)
 {
     q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
 }
 
-static inline void noh_add_step4(const uint32_t *words, noh_field f, float *layer)
+static inline void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
 {
     __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
     _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
@@ -75,7 +75,7 @@ static inline __m128i noh_load_tail(const void *from, size_t count)
     return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
 }
 
-static inline void noh_add_tail(const uint32_t *words, size_t count, noh_field f, float *layer)
+static inline void noh_add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
 {
     __m128 sum = noh_add_four(noh_load_tail(words, count), f, _mm_castsi128_ps(noh_load_tail(layer, count)));
     if (count == 1) {
@@ -91,7 +91,7 @@ static inline void noh_add_tail(const uint32_t *words, size_t count, noh_field f
 
 #if defined(NOH_AVX2)
 #define NOH_MORPH_STEP 8u
-static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
 {
     __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
     q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
@@ -100,13 +100,13 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 }
 #elif defined(NOH_SSE2)
 #define NOH_MORPH_STEP 4u
-static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
 {
     noh_add_step4(words, f, layer);
 }
 #elif defined(NOH_NEON)
 #define NOH_MORPH_STEP 4u
-static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer)
+static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
 {
     int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
     q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
@@ -117,7 +117,7 @@ static inline void noh_add_step(const uint32_t *words, noh_field f, float *layer
 /* A run into all layers, of which there are two or three: a constant wherever this is inlined. Steps are as wide as the
  * processor's vectors; what remains is done four words at a time, then as a tail. Left to itself gcc calls it, and
  * looks shifts and weights up in every step: with SSE2 that takes half as long again. */
-NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, const noh_field f[3], float *const layers[3],
+NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
                                    int layer_count)
 {
     size_t i = 0;

@@ -74,7 +74,7 @@ static float way_of(const noh_mesh *mesh, const noh_target *t, uint32_t vertex)
 {
     const uint32_t texel = noh_mesh_accumulation_texel(mesh, vertex), log2 = mesh->header->morph_width_log2;
     const uint32_t x = texel & ((1u << log2) - 1u), y = texel >> log2;
-    const noh_field field = { 0, 32u - t->position_bits, t->position_scale };
+    const morph_field field = { 0, 32u - t->position_bits, t->position_scale };
     uint32_t first = t->first_texel;
     if (texel >= mesh->header->touched_count || !t->position_bits) return 0.0f;
     for (uint32_t i = 0; i < t->rect_count; i++) {
