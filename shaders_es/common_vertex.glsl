@@ -84,7 +84,7 @@ ivec4 noh_tile_row()
 #endif
 }
 
-#ifndef NOH_DEPTH_ONLY
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
 uniform int noh_blends; /* 1: the material blends, so that a tint's alpha counts */
 
 /* From 8 bits of sRGB, and of alpha. */
@@ -109,6 +109,8 @@ noh_vertex noh_fetch()
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_direction_of_pair(noh_a_normal);
     v.tangent = noh_tangent_of_pair(noh_a_tangent);
+#endif
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.tint = noh_tint_of(row);
 #endif
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {

@@ -190,7 +190,7 @@ typedef struct noh_gl_lod {
 /* Draw a mesh's submeshes of one pass: first every mesh with NOH_DRAW_OPAQUE, then every mesh with NOH_DRAW_BLENDED.
  * Of a material that blends and has a texture, NOH_DRAW_OPAQUE draws the pixels with an alpha of 0.9 or more, which
  * then hide what is behind them; so strands of hair are in order from all sides without being sorted. A tint's alpha
- * counts in that, but not in NOH_DRAW_DEPTH. NOH_DRAW_DEPTH fetches positions alone, of alpha-cut materials uv, colours
+ * counts in that. NOH_DRAW_DEPTH fetches positions alone, of alpha-cut materials uv, colours
  * and texture too, and writes no colour. It may come before the others, with the same framebuffer, or stand alone. A
  * mesh whose variant the renderer's desc did not ask for asserts, and is not drawn. shapes  world[12] rows of 3 x 4;
  * pictures[texture_count of the pack] morph   where its deltas are, accumulated for this LOD level or a finer one;

@@ -363,7 +363,8 @@ static uint8_t *grid_with(model_alpha alpha, size_t *count)
     return bytes;
 }
 
-static uint32_t *grid_depth(noh_gl_renderer *r, const noh_gl_mesh *gl, int pass)
+static uint32_t *grid_depth(noh_gl_renderer *r, const noh_gl_mesh *gl, const noh_gl_texture *pictures,
+                            const uint8_t tint[4], int pass)
 {
     static const float world[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     depth_frame f;
@@ -378,7 +379,8 @@ static uint32_t *grid_depth(noh_gl_renderer *r, const noh_gl_mesh *gl, int pass)
     camera.view_projection[15] = 1.0f;
     frame_open(&f);
     noh_gl_draw_begin(r, &camera);
-    noh_gl_draw_mesh(r, gl, world, NULL, NULL, NULL, NULL, pass);
+    noh_gl_draw_tint(r, tint);
+    noh_gl_draw_mesh(r, gl, world, NULL, NULL, NULL, pictures, pass);
     noh_gl_draw_end(r);
     if (pass == NOH_DRAW_DEPTH) expect_untouched_color();
     bits = frame_bits(&f);
@@ -408,8 +410,8 @@ static void materials_are_cut_and_blended_ones_left_out(void **state)
         assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &mesh, &gl, NULL), NOH_OK);
         assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
         assert_int_equal(r.variant_count, alpha == MODEL_ALPHA_MASK ? 3 : 2);
-        color = grid_depth(&r, &gl, NOH_DRAW_OPAQUE);
-        depth = grid_depth(&r, &gl, NOH_DRAW_DEPTH);
+        color = grid_depth(&r, &gl, NULL, NULL, NOH_DRAW_OPAQUE);
+        depth = grid_depth(&r, &gl, NULL, NULL, NOH_DRAW_DEPTH);
         assert_memory_equal(depth, color, SIDE * SIDE * 4u);
         drawn[alpha] = covered(depth);
         noh_gl_renderer_delete(&r);
@@ -421,6 +423,69 @@ static void materials_are_cut_and_blended_ones_left_out(void **state)
     assert_true(drawn[MODEL_ALPHA_OPAQUE] > SIDE * SIDE / 2u);
     assert_in_range(drawn[MODEL_ALPHA_MASK], drawn[MODEL_ALPHA_OPAQUE] / 4u, 3u * drawn[MODEL_ALPHA_OPAQUE] / 4u);
     assert_int_equal(drawn[MODEL_ALPHA_BLEND], 0);
+}
+
+/* A textured quad that blends, opaque everywhere: all of it is its core. */
+static uint8_t *hair_quad(size_t *count)
+{
+    const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
+    model *m = test_model(&desc);
+    uint8_t *bytes;
+    m->materials = test_zeros(sizeof *m->materials);
+    m->material_count = 1;
+    m->materials[0] = model_material_default();
+    m->materials[0].name = model_string("hair");
+    m->materials[0].base_color_texture = 0;
+    m->materials[0].alpha = MODEL_ALPHA_BLEND;
+    m->materials[0].double_sided = 1;
+    m->textures = test_zeros(sizeof *m->textures);
+    m->texture_count = 1;
+    m->textures[0].name = model_string("strands");
+    m->textures[0].width = m->textures[0].height = 1;
+    m->textures[0].rgba = test_zeros(4);
+    memset(m->textures[0].rgba, 255, 4);
+    m->meshes[0].submeshes[0].material = 0;
+    bytes = test_pack_of(m, count, NULL);
+    model_free(m);
+    return bytes;
+}
+
+/* Hair that a tint thins has no core, and then it leaves no depth either. */
+static void alpha_of_a_tint_counts_in_depth(void **state)
+{
+    static const uint8_t tints[2][4] = { { 10, 20, 30, 255 }, { 255, 255, 255, 128 } };
+    gpu *g = fixture_gpu();
+    noh_gl_renderer_desc desc;
+    noh_gl_renderer r;
+    noh_gl_ledger ledger = { 0 };
+    noh_gl_mesh gl;
+    noh_gl_texture picture;
+    noh_texture strands;
+    size_t count;
+    uint8_t *bytes = hair_quad(&count);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    (void)state;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = &mesh;
+    desc.mesh_count = 1;
+    desc.passes = NOH_PASSES_ALL;
+    assert_int_equal(noh_pack_texture_at(&pack, 0, &strands, NULL), NOH_OK);
+    assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &strands, &picture, NULL), NOH_OK);
+    assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, &mesh, &gl, NULL), NOH_OK);
+    assert_int_equal(renderer_create(&(noh_gl_device){ &g->gl, NULL, &ledger, NULL, 0 }, &desc, &r, NULL), NOH_OK);
+    for (int i = 0; i < 2; i++) {
+        uint32_t *color = grid_depth(&r, &gl, &picture, tints[i], NOH_DRAW_OPAQUE);
+        uint32_t *depth = grid_depth(&r, &gl, &picture, tints[i], NOH_DRAW_DEPTH);
+        assert_memory_equal(depth, color, SIDE * SIDE * 4u);
+        assert_true(i ? covered(depth) == 0 : covered(depth) > SIDE * SIDE / 2u);
+        free(color);
+        free(depth);
+    }
+    noh_gl_renderer_delete(&r);
+    noh_gl_mesh_delete(&g->gl, &ledger, &gl);
+    noh_gl_texture_delete(&g->gl, &ledger, &picture);
+    free(bytes);
 }
 
 static void unknown_passes_are_refused(void **state)
@@ -447,6 +512,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(depth_fetches_positions_alone),
     cmocka_unit_test(only_renderers_with_a_depth_pass_compile_for_it),
     cmocka_unit_test(materials_are_cut_and_blended_ones_left_out),
+    cmocka_unit_test(alpha_of_a_tint_counts_in_depth),
     cmocka_unit_test(unknown_passes_are_refused),
 };
 
