@@ -25,7 +25,7 @@ emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack_bytes -DNOH_WEB_MEMORY_BYTES="$noh" -DNOH
 cat <<END
 WebAssembly memory, which cannot grow:
   the pack                     $pack_bytes
-  its stage, by its plan       $noh (the most of any path)
+  its block, by the plan       $noh (the most of any path)
   static data of the program   $STATIC (at most)
   stack                        $STACK
   heap of emscripten's strings $HEAP

@@ -75,29 +75,70 @@ static uint32_t most_skin_joints(const noh_pack *pack)
     return most;
 }
 
-size_t web_cast_matrices(const web_cast *cast)
+static size_t larger(size_t a, size_t b)
 {
-    return ((size_t)cast->plan.cpu_bytes + 15u) / 16u * 16u;
+    return a > b ? a : b;
 }
 
-noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, uint32_t actors, noh_morph_path path,
-                         const noh_gl_caps *caps, noh_error *error)
+size_t web_cast_scratch(const noh_pack *pack)
+{
+    static web_cast cast;
+    size_t most = 0;
+    if (list_kinds(&cast, pack, 1, NULL)) return 0;
+    for (uint32_t k = 0; k < cast.desc.kind_count; k++) most = larger(most, noh_kind_find_eyes_size(&cast.kinds[k]));
+    return most;
+}
+
+static void find_faces(web_cast *cast, void *scratch, size_t scratch_bytes)
+{
+    for (uint32_t k = 0; k < cast->desc.kind_count; k++) {
+        if (noh_kind_find_eyes(&cast->kinds[k], scratch, scratch_bytes, cast->faces[k].face.eyes, NULL)) continue;
+        cast->faces_found |= 1u << k;
+        cast->kinds[k].face = &cast->faces[k];
+    }
+}
+
+/* After the stage, each aligned to 16. */
+static void place_rest(web_cast *cast, const noh_pack *pack)
+{
+    const size_t to_bake = noh_reflection_scratch_size(cast->reflection.side);
+    size_t at = (size_t)cast->plan.cpu_bytes;
+    cast->matrices_at = at = (at + 15u) / 16u * 16u;
+    at += sizeof(float) * 12u * most_skin_joints(pack);
+    cast->texels_at = at = (at + 15u) / 16u * 16u;
+    at += noh_reflection_size(cast->reflection.side);
+    cast->scratch_at = (at + 15u) / 16u * 16u;
+    cast->scratch_bytes = larger(to_bake, web_cast_scratch(pack));
+    cast->bytes = cast->scratch_at + cast->scratch_bytes + (size_t)cast->plan.state_bytes;
+}
+
+static void describe(web_cast *cast)
+{
+    cast->reflection.side = 64;
+    cast->light.reflection = &cast->reflection;
+    cast->light.shadow_px = WEB_SHADOW_PX;
+    cast->desc.light = cast->wants.lit ? &cast->light : NULL;
+    cast->desc.gpu = &noh_stage_on_gl;
+    cast->desc.encode_srgb = 1; /* a canvas does not encode */
+    cast->desc.without_depth = !cast->wants.lit;
+    cast->desc.morph_path = (uint32_t)cast->wants.path;
+}
+
+noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *wants, void *scratch,
+                         size_t scratch_bytes, const noh_gl_caps *caps, noh_error *error)
 {
     noh_result result;
     memset(cast, 0, sizeof *cast);
-    result = list_kinds(cast, pack, actors, error);
-    cast->desc.gpu = &noh_stage_on_gl;
-    cast->desc.encode_srgb = 1; /* a canvas does not encode */
-    cast->desc.without_depth = 1;
-    cast->desc.morph_path = (uint32_t)path;
+    cast->wants = *wants;
+    result = list_kinds(cast, pack, wants->actors, error);
+    describe(cast);
+    if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
     for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the floats are counted by now */
         const uint32_t floats = cast->plan.kinds[i].float_count;
         cast->kinds[i].held_float_count = floats ? floats : NOH_NONE;
     }
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
-    if (result) return result;
-    cast->skin_joints = most_skin_joints(pack);
-    cast->bytes = web_cast_matrices(cast) + sizeof(float) * 12u * cast->skin_joints;
-    return NOH_OK;
+    if (!result) place_rest(cast, pack);
+    return result;
 }

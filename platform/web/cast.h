@@ -7,22 +7,37 @@
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 
+#define WEB_SHADOW_PX 1024u /* as `noh render` has it */
+
+/* What is to be there. */
+typedef struct web_wants {
+    uint32_t actors; /* of each kind */
+    noh_morph_path path;
+    int lit;   /* 1: by an environment, with a shadow map */
+    int alive; /* 1: faces, where eyes are found */
+} web_wants;
+
 typedef struct web_cast {
-    noh_stage_desc desc; /* points at kinds */
+    web_wants wants;
+    noh_stage_desc desc; /* points at kinds and light */
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    noh_kind_face faces[NOH_STAGE_KINDS_MAX];
+    uint32_t faces_found;      /* a bit for each kind */
+    noh_reflection reflection; /* without its texels, which nothing asks for before the stage is made */
+    noh_gl_light_desc light;
     uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */
     noh_stage_plan plan;
-    uint32_t skin_joints; /* of the largest skin */
-    size_t bytes;         /* of the stage, then of the matrices that web_bounds works on */
+    /* What else the page keeps, behind the stage: the matrices that web_bounds works on, the texels of a reflection,
+     * what is needed while one is made or faces are found, and the state that another stage goes on with */
+    size_t matrices_at, texels_at, scratch_at, scratch_bytes;
+    size_t bytes; /* of all of it */
 } web_cast;
 
-/* A kind for each skeleton of the pack that moves a mesh, with so many actors each; every float may be held. Must not
- * be moved afterwards.
- * errors  LIMIT more skeletons than kinds; as noh_stage_plan_make */
-noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, uint32_t actors, noh_morph_path path,
-                         const noh_gl_caps *caps, noh_error *error);
-
-/* Where the matrices begin. */
-size_t web_cast_matrices(const web_cast *cast);
+/* A kind for each skeleton of the pack that moves a mesh; every float may be held. Must not be moved afterwards.
+ * scratch  [scratch_bytes] to find faces in; web_cast_scratch tells how much is enough. With less there are none
+ * errors   LIMIT more skeletons than kinds; as noh_stage_plan_make */
+noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *wants, void *scratch,
+                         size_t scratch_bytes, const noh_gl_caps *caps, noh_error *error);
+size_t web_cast_scratch(const noh_pack *pack);
 
 #endif

@@ -7,50 +7,14 @@
 #include <string.h>
 
 #include "bounds.h"
-#include "cast.h"
-#include "context.h"
+#include "web.h"
 
-#define PARTS_MAX 128u
-#define ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
 #define PICK_M 1e6f
 #define SPEED_ONE 65536
 
 static uint8_t pack_bytes[NOH_WEB_PACK_BYTES] __attribute__((aligned(64)));
 static uint8_t memory[NOH_WEB_MEMORY_BYTES] __attribute__((aligned(16)));
-
-/* A character has an actor for each of its skeletons. */
-typedef struct figure {
-    noh_actor actor;
-    uint32_t kind, character;
-} figure;
-
-/* What a slider moves: the floats of a name. */
-typedef struct target {
-    const char *name;
-    uint32_t figure, index; /* the first figure that has it */
-} target;
-
-static struct web {
-    noh_platform_context *context;
-    noh_gl_api gl;
-    noh_gl_caps caps;
-    noh_gl_ledger ledger;
-    noh_error error;
-    noh_pack pack;
-    web_cast cast;
-    noh_stage *stage;
-    noh_stage_bytes parts[PARTS_MAX];
-    uint32_t part_count;
-    figure figures[ACTORS_MAX];
-    uint32_t figure_count;
-    target targets[NOH_TARGETS_MAX];
-    uint32_t target_count;
-    noh_stage_view view;
-    noh_stage_hit hit;
-    float bounds[6], spacing;
-    int32_t speed;  /* 1/65,536, of what plays */
-    uint32_t level; /* 1 + the LOD level that is shown; 0: by pixels */
-} web;
+struct web web = { .light = { .environment = WEB_PLAIN } };
 
 /* ---- loading ---- */
 
@@ -63,21 +27,47 @@ static noh_result open_context(void)
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
-static noh_result open_stage(noh_morph_path path)
+void *web_block(size_t at)
+{
+    return memory + at;
+}
+
+static noh_result make_stage(const web_wants *wants)
 {
     const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
-    noh_result result = web_cast_plan(&web.cast, &web.pack, NOH_WEB_ACTORS, path, &web.caps, &web.error);
+    noh_result result = web_cast_plan(&web.cast, &web.pack, wants, memory, sizeof memory, &web.caps, &web.error);
     if (!result && web.cast.bytes > sizeof memory) {
         return noh_fail(&web.error, NOH_ERR_MEMORY, "less memory than the pack needs: build the page for this pack", 0,
                         web.cast.bytes);
     }
+    if (!result) result = web_light_bake();
     if (!result) {
         result = noh_stage_init(memory, (size_t)web.cast.plan.cpu_bytes, &device, &web.cast.desc, &web.cast.plan,
                                 &web.stage, &web.error);
     }
+    if (!result) result = web_light_open();
+    return result;
+}
+
+/* The state goes over at the end of the block, behind all that either stage and its light work on. */
+noh_result web_open_stage(const web_wants *wants)
+{
+    size_t bytes = 0;
+    const void *state = web.stage ? noh_stage_state(web.stage, &bytes) : NULL;
+    uint8_t *kept = memory + sizeof memory - bytes;
+    noh_result result;
+    if (web.stage) {
+        memmove(kept, state, bytes);
+        web_light_close();
+        noh_stage_delete(web.stage);
+        web.stage = NULL;
+    }
+    result = make_stage(wants);
+    if (!result && state) result = noh_stage_set_state(web.stage, kept, bytes, &web.error);
     if (result) return result;
-    web.part_count = noh_stage_plan_parts(&web.cast.desc, &web.caps, &web.cast.plan, web.parts, PARTS_MAX);
-    web.part_count = web.part_count < PARTS_MAX ? web.part_count : PARTS_MAX;
+    web.part_count = noh_stage_plan_parts(&web.cast.desc, &web.caps, &web.cast.plan, web.parts, WEB_PARTS_MAX);
+    web.part_count = web.part_count < WEB_PARTS_MAX ? web.part_count : WEB_PARTS_MAX;
+    web.view.cut = 1;
     return NOH_OK;
 }
 
@@ -98,7 +88,7 @@ static noh_result enter(uint32_t characters)
     noh_result result = NOH_OK;
     for (uint32_t n = 0; n < characters && n < NOH_WEB_ACTORS; n++) {
         for (uint32_t k = 0; k < web.cast.desc.kind_count && !result; k++) {
-            figure *f = &web.figures[web.figure_count++];
+            web_figure *f = &web.figures[web.figure_count++];
             f->kind = k;
             f->character = n;
             result = noh_stage_spawn(web.stage, k, NULL, &f->actor, &web.error);
@@ -109,7 +99,7 @@ static noh_result enter(uint32_t characters)
 
 static void add_target(const char *name)
 {
-    target t = { name, 0, NOH_NONE };
+    web_target t = { name, 0, NOH_NONE };
     for (uint32_t i = 0; i < web.target_count; i++) {
         if (strcmp(web.targets[i].name, name) == 0) return;
     }
@@ -137,12 +127,14 @@ EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
     return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
 }
 
-/* Open the pack of so many bytes. path: a noh_morph_path. characters: on stage, at most as many as there is room for */
-EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters)
+/* Open the pack of so many bytes. path: a noh_morph_path. characters: on stage, at most as many as there is room for.
+ * alive: 0: without faces */
+EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters, int alive)
 {
+    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive };
     noh_result result = noh_pack_open(pack_bytes, bytes, &web.pack, &web.error);
     if (!result) result = open_context();
-    if (!result) result = open_stage((noh_morph_path)path);
+    if (!result) result = web_open_stage(&wants);
     if (!result) result = enter(characters);
     if (!result) list_targets();
     web.speed = SPEED_ONE;
@@ -154,7 +146,8 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
-    return (int)(result ? result : noh_stage_restore(web.stage, &web.error));
+    if (!result) result = noh_stage_restore(web.stage, &web.error);
+    return (int)(result ? result : web_light_restore());
 }
 
 /* ---- getting and setting ---- */
@@ -256,7 +249,7 @@ EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i)
     return -1.0;
 }
 
-static void set_speeds(const figure *f, int32_t body, int32_t rest)
+static void set_speeds(const web_figure *f, int32_t body, int32_t rest)
 {
     noh_controller *c = noh_actor_controller(web.stage, f->actor, NULL);
     const noh_track *on_body = noh_actor_track(web.stage, f->actor, WEB_BODY);
@@ -278,7 +271,7 @@ EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
 }
 
 /* A clip of that name, or none, on a figure's layer. The body goes over by inertia, so that it does not slow down. */
-static noh_result play(const figure *f, uint32_t layer, const char *clip, uint32_t fade_ticks)
+static noh_result play(const web_figure *f, uint32_t layer, const char *clip, uint32_t fade_ticks)
 {
     noh_play how;
     if (noh_stage_find(web.stage, f->kind, NOH_NAME_CLIP, clip) == NOH_NONE) {
@@ -398,7 +391,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_picked_mesh(void)
 EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
 {
     for (uint32_t i = 0; i < web.figure_count && web.hit.joint != NOH_NONE; i++) {
-        const figure *f = &web.figures[i];
+        const web_figure *f = &web.figures[i];
         if (f->actor.id == web.hit.actor.id) return noh_stage_name(web.stage, f->kind, NOH_NAME_JOINT, web.hit.joint);
     }
     return "";
@@ -406,16 +399,25 @@ EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
 
 /* ---- a frame ---- */
 
+/* Where the first character has walked to: 3 floats, what the camera follows. Valid until the next call. */
+EMSCRIPTEN_KEEPALIVE float *web_walked(void)
+{
+    static noh_place place;
+    (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
+    return place.position;
+}
+
 /* The box of all figures in their present pose: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     set_looks(1);
     if (noh_stage_frame(web.stage, 0, NULL, NULL, NULL, &web.error) == NOH_OK) {
-        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * NOH_WEB_ACTORS,
-                   (float *)(void *)(memory + web_cast_matrices(&web.cast)), web.bounds);
+        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * NOH_WEB_ACTORS, web_block(web.cast.matrices_at),
+                   web.bounds);
     }
     set_looks(0);
     web.view.cut = 1;
+    memcpy(web.from, web_walked(), sizeof web.from);
     return web.bounds;
 }
 
@@ -424,14 +426,6 @@ EMSCRIPTEN_KEEPALIVE void web_set_spacing(float spacing)
 {
     web.spacing = spacing;
     go_home();
-}
-
-/* Where the first character has walked to: 3 floats, what the camera follows. Valid until the next call. */
-EMSCRIPTEN_KEEPALIVE float *web_walked(void)
-{
-    static noh_place place;
-    (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
-    return place.position;
 }
 
 /* The matrix, eye and light of the noh_stage_view that the page is to fill in: 22 floats. */
@@ -454,19 +448,25 @@ static void begin_frame(uint32_t width, uint32_t height)
     web.gl.DepthMask(GL_TRUE);
     web.gl.ClearBufferfv(GL_COLOR, 0, background);
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
+    web_light_backdrop();
 }
 
 /* Draw a frame. In a lost context nothing is drawn, which is no error. */
 EMSCRIPTEN_KEEPALIVE int web_draw(void)
 {
+    noh_stage_view views[2];
     uint32_t width, height;
     noh_result result;
+    int shadow;
     if (noh_platform_web.present(web.context)) return 0;
     noh_platform_web.size(web.context, &width, &height);
     web.view.height_px = height;
-    result = noh_stage_frame_begin(web.stage, &web.view, 1, &web.error);
+    views[0] = web.view;
+    shadow = web_light_shadow(&views[1]);
+    result = noh_stage_frame_begin(web.stage, views, shadow ? 2 : 1, &web.error);
     if (!result) result = noh_stage_frame_end(web.stage, &web.error);
     web.view.cut = 0;
+    if (!result && shadow) result = noh_stage_draw_shadow(web.stage, 1, &web.error);
     if (result) return (int)result;
     begin_frame(width, height);
     return (int)noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);

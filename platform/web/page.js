@@ -2,7 +2,7 @@
 // The query: ?pack=NAME shows that pack instead of page.noh; ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
 // the camera where it is; ?actors=3 shows so many characters, as far as the page was built for them; ?size=512 draws a
-// canvas of so many pixels across.
+// canvas of so many pixels across. light.js, faces.js and speech.js have parts of the query of their own.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -74,7 +74,8 @@ function setCamera() {
     out.set(key.map((k) => k / Math.hypot(...key)), 19);
 }
 
-// One finger or the mouse turns the figure; two fingers or the wheel zoom; a tap or a click picks.
+// One finger or the mouse turns the figure; two fingers or the wheel zoom; two fingers that go the same way, or a drag
+// with shift, turn the light; a tap or a click picks.
 const pointers = new Map();
 let tapped = null;
 const apart = () => {
@@ -102,7 +103,9 @@ canvas.addEventListener('pointermove', (event) => {
     if (tapped && Math.hypot(event.clientX - tapped.x, event.clientY - tapped.y) > 6) tapped = null;
     const x = event.clientX - at.x, y = event.clientY - at.y, before = pointers.size === 2 ? apart() : 0;
     Object.assign(at, { x: event.clientX, y: event.clientY });
+    if (before || event.shiftKey) turnLight(before ? x / 2 : x);
     if (before) return zoom(before / apart());
+    if (event.shiftKey) return undefined;
     orbit.azimuth -= x * 0.01;
     orbit.elevation = Math.min(1.5, Math.max(-1.5, orbit.elevation + y * 0.01));
     redraw();
@@ -126,6 +129,7 @@ function draw() {
     wanted = false;
     if (lost || !window.noh.ready) return;
     const now = performance.now();
+    showSpeech();
     check(Module._web_step(Math.min(now - drawn, 100) / 1000));
     drawn = now;
     setCamera();
@@ -134,7 +138,7 @@ function draw() {
     showDetail();
     showTime();
     sliders.forEach(showWeight);
-    if (playing || now < busy || Module._web_fades()) redraw();
+    if (playing || now < busy || Module._web_fades() || isAlive() || isSpeaking()) redraw();
 }
 
 function redraw() {
@@ -162,6 +166,7 @@ canvas.addEventListener('webglcontextrestored', () => {
     check(Module._web_restore());
     lost = false;
     window.noh.restored++;
+    chooseLight();
     byId('message').textContent = '';
     draw();
 });
@@ -347,7 +352,9 @@ async function start() {
     const place = Module._web_pack(file.length);
     if (!place) fail(`the pack has ${file.length} bytes, more than the page was built for`);
     Module.HEAPU8.set(file, place);
-    check(Module._web_open(file.length, Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1)));
+    beginLight();
+    check(Module._web_open(file.length, Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1),
+        query.get('alive') === 'off' ? 0 : 1));
     const box = floats(Module._web_measure(), 6);
     Module._web_set_spacing((box[3] - box[0]) * 1.1);
     for (let i = 0; i < Module._web_target_count(); i++) addSlider(i, text(Module._web_target_name(i)));
@@ -356,6 +363,8 @@ async function start() {
     window.noh.path = text(Module._web_path());
     beginDetail();
     beginClips();
+    beginFaces();
+    beginSpeech();
     fit();
     byId('message').textContent = '';
     window.noh.ready = true;

@@ -2,7 +2,8 @@
  *
  *   plan PACK ACTORS
  *
- * Prints the bytes of the page's block, then those of the stage by each path, and how many floats may be held. */
+ * Prints the bytes of the stage by each path, plain and lit, with faces that live and without; how many floats may be
+ * held, which kinds have a face (a bit for each) and where the first one's eyes are; the bytes of the page's block. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,19 +28,37 @@ static noh_gl_caps any_device(void)
     return caps;
 }
 
-static int plan(const noh_pack *pack, uint32_t actors, noh_error *error)
+/* One line, and the most of all. */
+static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_error *error)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER };
     static web_cast cast;
     const noh_gl_caps caps = any_device();
-    size_t most = 0;
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        if (web_cast_plan(&cast, pack, actors, paths[i], &caps, error)) return 1;
-        printf("%s %llu %llu\n", noh_morph_path_name(paths[i]), (unsigned long long)cast.plan.cpu_bytes,
-               (unsigned long long)cast.plan.gpu_bytes);
-        most = cast.bytes > most ? cast.bytes : most;
+    const size_t bytes = web_cast_scratch(pack);
+    void *scratch = malloc(bytes + 1u);
+    const int failed = !scratch || web_cast_plan(&cast, pack, wants, scratch, bytes, &caps, error);
+    free(scratch);
+    if (failed) return 1;
+    printf("%s %s %s %llu %llu\n", noh_morph_path_name(wants->path), wants->lit ? "lit" : "plain",
+           wants->alive ? "alive" : "still", (unsigned long long)cast.plan.cpu_bytes,
+           (unsigned long long)cast.plan.gpu_bytes);
+    if (cast.bytes > *most) *most = cast.bytes;
+    if (wants->alive && wants->lit && wants->path == NOH_MORPH_CPU) {
+        printf("floats %u\nfaces %u\n", cast.plan.kinds[0].float_count, cast.faces_found);
+        for (int i = 0; i < 6; i++) printf("%s%.9g", i ? " " : "eyes ", (double)cast.faces[0].face.eyes[i / 3][i % 3]);
+        printf("\n");
     }
-    printf("floats %u\nblock %llu\n", cast.plan.kinds[0].float_count, (unsigned long long)most);
+    return 0;
+}
+
+static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
+{
+    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER };
+    size_t most = 0;
+    for (uint32_t i = 0; i < 4u * sizeof paths / sizeof *paths; i++) {
+        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0 };
+        if (plan(pack, &wants, &most, error)) return 1;
+    }
+    printf("block %llu\n", (unsigned long long)most);
     return 0;
 }
 
@@ -49,7 +68,7 @@ int main(int argc, char **argv)
     noh_file file;
     noh_pack pack;
     if (argc != 3 || noh_file_map(argv[1], &file, &error) || noh_pack_open(file.data, file.bytes, &pack, &error) ||
-        plan(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error)) {
+        plan_all(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error)) {
         (void)fprintf(stderr, "plan: %s\n", error.what);
         return 1;
     }

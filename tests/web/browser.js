@@ -25,11 +25,12 @@ function serve(folders) {
     });
 }
 
-function launch(executablePath) {
+// flags: more of them, of the browser's command line.
+function launch(executablePath, flags) {
     return require('playwright-core').chromium.launch({
         executablePath,
         args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-            '--disable-background-networking', '--disable-component-update'],
+            '--disable-background-networking', '--disable-component-update', ...(flags || [])],
     });
 }
 

@@ -1,5 +1,5 @@
 // page.js FOLDER CHROMIUM OUT CLIP TIME SIZE: the page in headless Chromium on SwiftShader. Loads it, moves sliders,
-// searches, plays clips, turns the figure, loses the context and restores it. Saves canvases in OUT as PNG, among them
+// searches, plays clips, turns the figure, loses the context and restores it, lights it, lets it live and speak. Saves canvases in OUT as PNG, among them
 // CLIP at TIME by each path, SIZE pixels across. Prints its checks as TAP.
 'use strict';
 const fs = require('fs');
@@ -35,12 +35,13 @@ const slide = (page, selector, value) => drawn(page, () => page.locator(selector
 }, value));
 const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
 
+// In plain light and without faces that live, unless the search says otherwise.
 async function open(browser, options, search) {
     const page = await browser.newPage(options);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-    await page.goto(`${address}/?${search}`);
+    await page.goto(`${address}/?${search}&light=plain&alive=off`);
     await page.waitForFunction(() => window.noh.ready || window.noh.error, null, { timeout: 60000 });
     return page;
 }
@@ -75,7 +76,7 @@ async function onePath(browser, forced) {
     if (!state.ready) return;
     check(`${forced}: and takes that path`, state.path === (forced === 'auto' ? 'cpu' : forced), state.path);
     if (forced === 'auto') console.log(`# ${state.renderer}; ${JSON.stringify(state.memory)}`);
-    console.log(`# budget ${state.path} ${state.memory.cpu} ${state.memory.gpu}`);
+    console.log(`# budget ${state.path} plain still ${state.memory.cpu} ${state.memory.gpu}`);
     check(`${forced}: what noh uses is within what the page was built for`, state.memory.cpu <= state.memory.room);
     await keep(page, `${forced}_rest.png`);
     await setTarget(page, 'smile', 1);
@@ -196,6 +197,120 @@ async function bodies(browser) {
     await faces(browser);
 }
 
+// ---- light ----
+
+const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
+const toggle = (page, selector) => drawn(page, () => page.click(selector));
+
+async function lights(browser, forced) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&detail=0&size=${size}&light=room`);
+    const budget = async (words) => {
+        const m = await page.evaluate(() => window.noh.memory), path = await page.evaluate(() => window.noh.path);
+        console.log(`# budget ${path} ${words} ${m.cpu} ${m.gpu}`);
+        return m;
+    };
+    const before = await budget('lit still');
+    await keep(page, `${forced}_room.png`);
+    const moves = async (what, name, act) => {
+        await act();
+        await keep(page, `${forced}_${name}.png`);
+        check(`light by ${forced}: ${what} shows`, !same(`${forced}_room.png`, `${forced}_${name}.png`));
+    };
+    const back = async (what) => {
+        await keep(page, `${forced}_again.png`);
+        check(`light by ${forced}: ${what}, it is the same picture`, same(`${forced}_room.png`, `${forced}_again.png`));
+    };
+    await moves('a shadow less', 'flat', () => toggle(page, '#shadow'));
+    await toggle(page, '#shadow');
+    await moves('the tone map', 'tones', () => toggle(page, '#tonemap'));
+    await toggle(page, '#tonemap');
+    await moves('what is behind', 'grey', () => choose(page, '#background', 'grey behind'));
+    await choose(page, '#background', 'light behind');
+    await moves('a turn', 'turned', () => slide(page, '#rotate', 90));
+    await slide(page, '#rotate', 0);
+    await moves('another light', 'sky', () => choose(page, '#light', 'sky'));
+    await choose(page, '#light', 'room');
+    await back('and all of it back');
+    await loseAndRestore(page);
+    await back('after a lost context');
+    await setTarget(page, 'smile', 1);
+    await choose(page, '#light', 'plain');
+    const plain = await budget('plain still');
+    check(`light by ${forced}: none of it, and its textures are gone`, plain.gpu < before.gpu - 1e6, plain.gpu);
+    check(`light by ${forced}: what was held stays`, await page.locator('input[data-target="smile"]').inputValue() === '1');
+    await keep(page, `${forced}_plain_smile.png`);
+    check(`light by ${forced}: plain light is the same, whether it was chosen or was there`, same(`${forced}_plain_smile.png`, `${forced}_smile.png`));
+    await choose(page, '#light', 'studio');
+    await drawn(page, () => page.click('#reset'));
+    await slide(page, '#rotate', 40);
+    await toggle(page, '#shadow');
+    await toggle(page, '#tonemap');
+    await choose(page, '#background', 'gradient behind');
+    await keep(page, `${forced}_studio.png`);
+    const after = await budget('lit still');
+    check(`light by ${forced}: the same bytes as before`, after.gpu === before.gpu && after.cpu === before.cpu && after.all === before.all);
+    await close(page, `light by ${forced}`);
+}
+
+// Two fingers that go the same way turn the light, and so does a drag with shift.
+async function turns(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 }, hasTouch: true }, 'clip=none&light=room');
+    const turned = () => page.inputValue('#rotate').then(Number);
+    await page.keyboard.down('Shift');
+    await drawn(page, async () => {
+        await page.mouse.move(300, 300);
+        await page.mouse.down();
+        await page.mouse.move(360, 300);
+        await page.mouse.up();
+    });
+    await page.keyboard.up('Shift');
+    check('light: a drag with shift turns it', await turned() === 30, await turned());
+    await drawn(page, () => page.evaluate(() => {
+        const on = (type, id, x) => canvas.dispatchEvent(new PointerEvent(type, { pointerId: id, clientX: x, clientY: 300, bubbles: true }));
+        canvas.setPointerCapture = () => {};
+        on('pointerdown', 11, 200);
+        on('pointerdown', 12, 400);
+        on('pointermove', 11, 240);
+        on('pointermove', 12, 440);
+        on('pointerup', 11, 240);
+        on('pointerup', 12, 440);
+    }));
+    check('light: two fingers turn it', await turned() === 50, await turned());
+    await close(page, 'turns');
+}
+
+// ---- faces ----
+
+// Wait until a target is above a weight. Returns 1, or 0 after a minute.
+const reaches = (page, target, weight) => page.waitForFunction(([t, w]) => {
+    const e = document.querySelector(`input[data-target="${t}"]`);
+    return e && Number(e.value) > w;
+}, [target, weight], { timeout: 60000 }).then(() => 1, () => 0);
+
+async function living(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&alive=on');
+    const state = await page.evaluate(() => window.noh);
+    console.log(`# budget ${state.path} plain alive ${state.memory.cpu} ${state.memory.gpu}`);
+    check('a face: it is there', await page.isVisible('#living'));
+    check('a face: it blinks', await reaches(page, 'eyeBlinkLeft', 0.5) === 1);
+    const r = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(r.x + r.width * 0.95, r.y + r.height / 2);
+    check('a face: it looks to its left', await reaches(page, 'eyeLookInRight', 0.3) === 1);
+    await page.mouse.move(r.x + r.width * 0.05, r.y + r.height / 2);
+    check('a face: and to its right', await reaches(page, 'eyeLookInLeft', 0.3) === 1);
+    await page.selectOption('#emotion', { label: 'joy' });
+    check('a face: joy smiles', await reaches(page, 'smile', 0.3) + await reaches(page, 'mouthSmileLeft', 0.3) > 0);
+    await page.click('#alive');
+    await page.selectOption('#emotion', { label: 'no emotion' });
+    await page.waitForFunction(() => !wanted && performance.now() > busy, null, { timeout: 60000 });
+    const frames = await page.evaluate(() => new Promise((resolve) => {
+        const before = window.noh.frames;
+        requestAnimationFrame(() => requestAnimationFrame(() => resolve(window.noh.frames - before)));
+    }));
+    check('a face: a calm one costs no frames', frames === 0, frames);
+    await close(page, 'a face');
+}
+
 async function phone(browser) {
     const page = await open(browser, { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true }, `clip=${clip}`);
     await page.waitForFunction(() => Number(document.getElementById('time').value) > 0.6, null, { timeout: 60000 });
@@ -251,6 +366,9 @@ async function byPixels(browser) {
     const browser = await launch(executablePath);
     try {
         for (const forced of forcedPaths) await onePath(browser, forced);
+        for (const forced of ['auto', 'gather']) await lights(browser, forced);
+        await turns(browser);
+        await living(browser);
         await panels(browser);
         await levels(browser);
         await held(browser);

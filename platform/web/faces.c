@@ -1,0 +1,114 @@
+/* faces.c: the figures' faces: they blink, breathe, look at the pointer, feel, and show what is said. */
+#include <emscripten.h>
+#include <math.h>
+#include <string.h>
+
+#include "web.h"
+
+#define LINKS_MAX 1024u
+#define REACH 0.4f /* of the way from the camera to a face: there the pointer hangs in the air */
+
+static int has_face(uint32_t figure)
+{
+    return (int)(web.cast.faces_found >> web.figures[figure].kind & 1u);
+}
+
+static uint32_t find(const void *user, const char *name, uint32_t nth)
+{
+    return nth ? NOH_NONE : noh_stage_find(web.stage, *(const uint32_t *)user, NOH_NAME_FLOAT, name);
+}
+
+/* Whether a face has a target for any of these channels. */
+static int shows(uint32_t first, uint32_t count)
+{
+    static noh_face_link links[LINKS_MAX];
+    for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
+        const noh_kind_face *face = &web.cast.faces[k];
+        uint32_t bound;
+        if (!(web.cast.faces_found >> k & 1u)) continue;
+        bound = noh_face_recipe_bind_by(face->recipes, face->recipe_count, find, &k, links, LINKS_MAX);
+        for (uint32_t i = 0; i < bound && i < LINKS_MAX; i++) {
+            if (links[i].channel - first < count) return 1;
+        }
+    }
+    return 0;
+}
+
+/* 1: some figure has a face that lives. */
+EMSCRIPTEN_KEEPALIVE int web_alive(void)
+{
+    return web.cast.faces_found != 0;
+}
+/* What faces have targets for: 1 emotions, 2 mouth shapes of speech. */
+EMSCRIPTEN_KEEPALIVE int web_face_shows(void)
+{
+    return shows(NOH_CHANNEL_UPPER, 2u * NOH_EMOTION_COUNT) + 2 * shows(NOH_CHANNEL_VISEMES, NOH_VISEME_COUNT);
+}
+
+EMSCRIPTEN_KEEPALIVE const char *web_emotion_name(uint32_t i) /* NULL past the last */
+{
+    return noh_emotion_name((noh_emotion)i);
+}
+
+/* From now on, until it is changed. The one before goes. */
+EMSCRIPTEN_KEEPALIVE void web_feel(int emotion, float amount)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        noh_face_pose now;
+        if (!has_face(i) || noh_actor_face(web.stage, web.figures[i].actor, &now, NULL)) continue;
+        for (int e = 0; e < NOH_EMOTION_COUNT; e++) {
+            const float wanted = e == emotion ? amount : 0.0f;
+            if (e != emotion && now.emotions[e] == 0.0f) continue;
+            (void)noh_actor_feel(web.stage, web.figures[i].actor, noh_emotion_name((noh_emotion)e), wanted, 0, 0, 0,
+                                 NULL);
+        }
+    }
+}
+
+/* 1: nothing moves by itself. */
+EMSCRIPTEN_KEEPALIVE void web_set_calm(int calm)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        if (has_face(i)) {
+            (void)noh_actor_set_face_flags(web.stage, web.figures[i].actor, calm ? NOH_FACE_CALM : 0u, NULL);
+        }
+    }
+}
+
+/* Look at a pixel of the canvas, as if it hung in the air before the figure; or ahead. */
+EMSCRIPTEN_KEEPALIVE void web_look(float x, float y, int on)
+{
+    float origin[3], way[3];
+    uint32_t width, height;
+    noh_platform_web.size(web.context, &width, &height);
+    on = on && noh_view_ray(&web.view, x, y, width, height, origin, way);
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        float sphere[4], point[3], square = 0.0f;
+        if (!has_face(i)) continue;
+        if (!on || noh_actor_sphere(web.stage, web.figures[i].actor, sphere, NULL)) {
+            (void)noh_actor_look_at(web.stage, web.figures[i].actor, NULL, NULL);
+            continue;
+        }
+        for (int k = 0; k < 3; k++) square += (sphere[k] - web.view.eye[k]) * (sphere[k] - web.view.eye[k]);
+        for (int k = 0; k < 3; k++) point[k] = web.view.eye[k] + way[k] * REACH * sqrtf(square);
+        (void)noh_actor_look_at(web.stage, web.figures[i].actor, point, NULL);
+    }
+}
+
+void web_say(const float *visemes)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        if (has_face(i)) (void)noh_actor_set_visemes(web.stage, web.figures[i].actor, visemes, NULL);
+    }
+}
+
+/* 1: it talks, 0: it rests. */
+EMSCRIPTEN_KEEPALIVE void web_set_talking(int talks)
+{
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        if (has_face(i)) {
+            (void)noh_actor_set_activity(web.stage, web.figures[i].actor, talks ? NOH_ACTIVITY_TALK : NOH_ACTIVITY_REST,
+                                         NULL);
+        }
+    }
+}

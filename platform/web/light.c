@@ -1,0 +1,128 @@
+/* light.c: the light that the page's figures stand in, by the words of `noh render --light`. */
+#include <emscripten.h>
+#include <math.h>
+#include <string.h>
+
+#include "web.h"
+
+#define RADIANS 0.017453292519943295
+
+/* ---- the environment ---- */
+
+static int is_lit(void)
+{
+    return web.light.environment != WEB_PLAIN;
+}
+
+noh_result web_light_bake(void)
+{
+    const uint32_t side = web.cast.reflection.side;
+    noh_reflection_desc desc;
+    if (!is_lit()) return NOH_OK;
+    memset(&desc, 0, sizeof desc);
+    desc.side = side;
+    desc.radiance = noh_reflection_of_environment;
+    desc.user = noh_environment_at((uint32_t)web.light.environment);
+    noh_light_from_environment(desc.user, NOH_SH_ORDER_MAX, &web.light.all);
+    return noh_reflection_init(web_block(web.cast.texels_at), noh_reflection_size(side), web_block(web.cast.scratch_at),
+                               web.cast.scratch_bytes, &desc, &web.cast.reflection, &web.error);
+}
+
+/* Without a shadow all of the light stays around. */
+static void tell(void)
+{
+    const float s = (float)sin((double)web.light.degrees * RADIANS),
+                c = (float)cos((double)web.light.degrees * RADIANS);
+    const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    if (!is_lit()) return;
+    noh_lighting_make(&web.light.all, rotation, web.light.shadow, &web.light.told);
+    web.light.told.tonemap = (noh_tonemap)web.light.tonemap;
+    noh_stage_set_lighting(web.stage, &web.light.told);
+}
+
+noh_result web_light_open(void)
+{
+    const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
+    if (!is_lit()) return NOH_OK;
+    tell();
+    return noh_backdrop_create(&device, 1, &web.light.backdrop, &web.error);
+}
+
+void web_light_close(void)
+{
+    if (web.light.backdrop.gl) noh_backdrop_delete(&web.light.backdrop);
+    memset(&web.light.backdrop, 0, sizeof web.light.backdrop);
+}
+
+noh_result web_light_restore(void)
+{
+    return is_lit() ? noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error) : NOH_OK;
+}
+
+/* ---- a frame ---- */
+
+int web_light_shadow(noh_stage_view *view)
+{
+    noh_place place;
+    float sphere[4], square = 0.0f;
+    if (!is_lit() || !web.light.shadow) return 0;
+    (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
+    for (int i = 0; i < 3; i++) {
+        const float half = 0.5f * (web.bounds[3 + i] - web.bounds[i]);
+        sphere[i] = web.bounds[i] + half + place.position[i] - web.from[i];
+        square += half * half;
+    }
+    sphere[3] = 1.02f * sqrtf(square);
+    sphere[3] = sphere[3] > 1e-6f ? sphere[3] : 1e-6f;
+    noh_view_shadow(view, sphere, web.light.told.key_direction);
+    noh_lighting_shadow(&web.light.told, view->view_projection, sphere[3], web.cast.light.shadow_px);
+    return 1;
+}
+
+void web_light_backdrop(void)
+{
+    if (!is_lit() || !web.light.background) return;
+    noh_backdrop_draw(&web.light.backdrop, (noh_backdrop_kind)(web.light.background - 1), noh_stage_light_of(web.stage),
+                      &web.light.told, &web.view);
+}
+
+/* ---- what the page asks for ---- */
+
+EMSCRIPTEN_KEEPALIVE uint32_t web_light_count(void)
+{
+    return NOH_ENVIRONMENT_COUNT;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_light_name(uint32_t i)
+{
+    return noh_environment_at(i)->name;
+}
+
+/* degrees about the vertical axis; shadow: 0, 1; tonemap: a noh_tonemap; background: 0 plain, 1 a gradient, 2 the
+ * light, blurred. Before web_open, too. */
+EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonemap, int background)
+{
+    web.light.degrees = degrees;
+    web.light.shadow = shadow;
+    web.light.tonemap = tonemap;
+    web.light.background = background;
+    if (web.stage) tell();
+}
+
+/* An environment, or -1: the plain renderer's own light, for which the stage is made anew. Before web_open, too. */
+EMSCRIPTEN_KEEPALIVE int web_set_light(int environment)
+{
+    const int was_lit = is_lit();
+    web_wants wants = web.cast.wants;
+    noh_result result;
+    if (environment == web.light.environment) return 0;
+    web.light.environment = environment;
+    if (!web.stage) return 0;
+    if (was_lit != is_lit()) {
+        wants.lit = is_lit();
+        return (int)web_open_stage(&wants);
+    }
+    result = web_light_bake();
+    if (!result && is_lit()) result = noh_gl_light_upload(noh_stage_light_of(web.stage), &web.error);
+    tell();
+    return (int)result;
+}

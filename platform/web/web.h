@@ -1,0 +1,77 @@
+/* web.h: what the files of the page's program share. */
+#ifndef NOH_PLATFORM_WEB_WEB_H
+#define NOH_PLATFORM_WEB_WEB_H
+
+#include "cast.h"
+#include "context.h"
+#include "stage_gl/backdrop.h"
+
+#define WEB_PARTS_MAX 128u
+#define WEB_ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
+#define WEB_PLAIN (-1) /* no environment: the plain renderer's own light */
+
+/* A character has an actor for each of its skeletons. */
+typedef struct web_figure {
+    noh_actor actor;
+    uint32_t kind, character;
+} web_figure;
+
+/* What a slider moves: the floats of a name. */
+typedef struct web_target {
+    const char *name;
+    uint32_t figure, index; /* the first figure that has it */
+} web_target;
+
+typedef struct web_light {
+    int environment;                 /* WEB_PLAIN, or an index of noh_environment_at */
+    float degrees;                   /* that it is turned by */
+    int shadow, tonemap, background; /* 1: a shadow; a noh_tonemap; 1 + a noh_backdrop_kind, 0: plain */
+    noh_light all;                   /* not turned */
+    noh_lighting told;
+    noh_backdrop backdrop;
+} web_light;
+
+struct web {
+    noh_platform_context *context;
+    noh_gl_api gl;
+    noh_gl_caps caps;
+    noh_gl_ledger ledger;
+    noh_error error;
+    noh_pack pack;
+    web_cast cast;
+    noh_stage *stage;
+    noh_stage_bytes parts[WEB_PARTS_MAX];
+    uint32_t part_count;
+    web_figure figures[WEB_ACTORS_MAX];
+    uint32_t figure_count;
+    web_target targets[NOH_TARGETS_MAX];
+    uint32_t target_count;
+    noh_stage_view view;
+    noh_stage_hit hit;
+    web_light light;
+    float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
+    int32_t speed;                     /* 1/65,536, of what plays */
+    uint32_t level;                    /* 1 + the LOD level that is shown; 0: by pixels */
+};
+
+extern struct web web;
+
+/* The block's part at an offset of web.cast. */
+void *web_block(size_t at);
+
+/* Make the stage for what is wanted, in place of another one, whose state it then goes on with. */
+noh_result web_open_stage(const web_wants *wants);
+
+/* Bake the environment into the block, before a stage is made that is lit by it. */
+noh_result web_light_bake(void);
+noh_result web_light_open(void); /* what is behind, once the stage is there; web_light_close before it goes */
+void web_light_close(void);
+noh_result web_light_restore(void);
+/* The second view of a frame, which sees the shadows; 0: there are none. */
+int web_light_shadow(noh_stage_view *view);
+void web_light_backdrop(void);
+
+/* What mouths show, [NOH_VISEME_COUNT]; NULL: nothing is said. */
+void web_say(const float *visemes);
+
+#endif
