@@ -1,7 +1,7 @@
 #!/bin/sh
-# web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js); its
-# canvas is compared with `noh render`, its bytes with the plan that sized its memory, and with `noh budget`. `make web-check` runs it. The last line is as that
-# of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
+# web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js, and
+# tests/web/speech.js with the mask); its canvas is compared with `noh render`, its bytes with the plan that sized its
+# memory, and with `noh budget`. `make web-check` runs it. The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -63,16 +63,25 @@ budget_of() { # PATH plain|lit still|alive CPU GPU
     if [ "$4" -le $((cpu * 11 / 10)) ] && [ "$4" -ge $((cpu * 3 / 4)) ]; then ok; else not_ok "$1 $2 $3 takes $4 bytes, noh budget says $cpu"; fi
 }
 
+# The checks of a log, and what it says beside them.
+count() { # CODE LOG
+    good=$(grep -c '^ok ' "$2") bad=$(grep -c '^not ok ' "$2")
+    [ "$1" = 0 ] || [ "$bad" != 0 ] || bad=1
+    passed=$((passed + good)) failed=$((failed + bad))
+    grep -v '^ok \|^# budget \|^1\.\.' "$2"
+}
+
 check_pack() {
     out=$build/web-check/$name
     mkdir -p "$out"
     rm -f "$out/level.png"
     timeout -k 5 300 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size >"$out/log.txt" 2>&1
     code=$?
-    good=$(grep -c '^ok ' "$out/log.txt") bad=$(grep -c '^not ok ' "$out/log.txt")
-    [ $code = 0 ] || [ "$bad" != 0 ] || bad=1
-    passed=$((passed + good)) failed=$((failed + bad))
-    grep -v '^ok \|^# budget \|^1\.\.' "$out/log.txt"
+    count $code "$out/log.txt"
+    if [ "$name" = mask ]; then
+        timeout -k 5 300 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
+        count $? "$out/speech.txt"
+    fi
     plan=$(node $fetch "$build/web-objects/plan.js" "$pack" 1)
     floats=$(echo "$plan" | sed -n 's/^floats //p') eyes=$(echo "$plan" | sed -n 's/^eyes //p')
     while read -r _ _ path light life cpu_used gpu_used; do budget_of "$path" "$light" "$life" "$cpu_used" "$gpu_used"; done <<END

@@ -18,15 +18,18 @@ static uint32_t find(const void *user, const char *name, uint32_t nth)
     return nth ? NOH_NONE : noh_stage_find(web.stage, *(const uint32_t *)user, NOH_NAME_FLOAT, name);
 }
 
-/* Whether a face has a target for any of these channels. */
+/* Whether a face has a target for any of these channels: by the pack's recipe and those that are built in, as the stage
+ * binds them. */
 static int shows(uint32_t first, uint32_t count)
 {
     static noh_face_link links[LINKS_MAX];
+    const noh_face_recipe own = noh_face_recipe_in_pack(&web.pack);
+    const noh_face_recipe *const recipes[] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
+                                               &noh_face_recipe_units };
     for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
-        const noh_kind_face *face = &web.cast.faces[k];
         uint32_t bound;
         if (!(web.cast.faces_found >> k & 1u)) continue;
-        bound = noh_face_recipe_bind_by(face->recipes, face->recipe_count, find, &k, links, LINKS_MAX);
+        bound = noh_face_recipe_bind_by(recipes, sizeof recipes / sizeof *recipes, find, &k, links, LINKS_MAX);
         for (uint32_t i = 0; i < bound && i < LINKS_MAX; i++) {
             if (links[i].channel - first < count) return 1;
         }

@@ -29,7 +29,7 @@ function feel() {
     settle();
 }
 
-// A calm face moves, too, when it is told to.
+// A calm face moves, too, when it is told to; and a pose is not made anew in every frame.
 function settle() {
     if (byId('living').hidden) return;
     busy = Math.max(busy, performance.now() + 2500);

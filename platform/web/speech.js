@@ -39,7 +39,7 @@ function stopSpeech() {
     Module._web_show_shapes(0);
     Module._web_set_talking(0);
     window.noh.said = { open: 0, source: '' };
-    redraw();
+    settle();
 }
 
 function speakBy(source, which) {
@@ -114,8 +114,8 @@ function listenTo(context, stream, stop) {
     byId('listen').textContent = 'stop listening';
     byId('listen').setAttribute('aria-pressed', 'true');
     speakBy('microphone', { node, stop, frame: () => frame });
-    const device = settings.latency ? ` and ${Math.round(settings.latency * 1000)} ms of the microphone` : '';
-    said(`Listening. The mouth is ${latency()} ms late by the ear, 10 ms by the page${device}, and one picture. Nothing is kept or sent.`);
+    const device = settings.latency ? `, ${Math.round(settings.latency * 1000)} by the microphone` : '';
+    said(`Listening. The mouth is ${latency()} ms late by the ear, 10 by the page${device}, and a picture. Nothing is kept.`);
 }
 
 byId('listen').addEventListener('click', async () => {
@@ -247,7 +247,7 @@ function sayText(words, number) {
     utterance.onboundary = ({ charIndex }) => {
         const i = shapes.findIndex((s) => s.at >= charIndex);
         if (i >= 0 && i < times.length) began = performance.now() - times[i];
-        if (!told && number === newest) said('The browser speaks. It tells only where words begin: in between the mouth follows letters, roughly.');
+        if (!told && number === newest) said('The browser speaks, and tells only where words begin: in between the mouth follows letters, roughly.');
         told = true;
     };
     utterance.onend = () => { if (number === newest) stopSpeech(); };
@@ -274,7 +274,7 @@ byId('say').addEventListener('submit', (event) => {
     stopSpeech();
     if (!words) return said('Type a sentence first.');
     if (!window.speechSynthesis || !window.speechSynthesis.getVoices().length) {
-        return said('This browser has no voices. Use the microphone or a sound file; noh speak makes clips of sentences.');
+        return said('This browser has no voices. Use the microphone or a sound file; `noh speak` makes clips of sentences.');
     }
     return sayText(words, newest);
 });

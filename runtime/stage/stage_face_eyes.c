@@ -53,13 +53,6 @@ static uint32_t find_target(const void *user, const char *name, uint32_t nth)
     return NOH_NONE;
 }
 
-static uint32_t bind(const search *s, noh_face_link *links, uint32_t link_max)
-{
-    const noh_kind_face *face = s->kind->face;
-    return noh_face_recipe_bind_by(face ? face->recipes : NULL, face ? face->recipe_count : 0, find_target, s, links,
-                                   link_max);
-}
-
 static size_t carve(search *s, noh_arena *arena, uint32_t links)
 {
     const size_t matrices = sizeof(float) * 12u * s->skeleton.joint_count;
@@ -163,7 +156,7 @@ size_t noh_kind_find_eyes_size(const noh_kind_desc *kind)
     search s;
     NOH_ASSERT(kind && kind->mesh);
     begin(&s, kind);
-    return carve(&s, &arena, bind(&s, NULL, 0));
+    return carve(&s, &arena, noh_stage_face_bind(kind, find_target, &s, NULL, 0));
 }
 
 noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t scratch_bytes, float eyes[2][3],
@@ -178,12 +171,12 @@ noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t s
     result = noh_arena_open(&arena, scratch, scratch_bytes, noh_kind_find_eyes_size(kind), error);
     if (result != NOH_OK) return result;
     begin(&s, kind);
-    links = bind(&s, NULL, 0);
+    links = noh_stage_face_bind(kind, find_target, &s, NULL, 0);
     (void)carve(&s, &arena, links);
     if (s.skeleton.joint_count) {
         noh_local_to_model(&s.skeleton, s.skeleton.bind_pose, s.skeleton.joint_count, s.model);
     }
-    (void)bind(&s, s.links, links);
+    (void)noh_stage_face_bind(kind, find_target, &s, s.links, links);
     add_links(&s, links);
     return place(&s, eyes) ? NOH_OK
                            : noh_fail(error, NOH_ERR_NOT_FOUND,

@@ -236,21 +236,20 @@ static uint32_t find_in_pack(const void *user, const char *name, uint32_t nth)
     return NOH_NONE;
 }
 
-/* By the recipes of the desc, or else the pack's own and those that are built in. */
-static uint32_t bind_links(const noh_kind_desc *d, noh_face_find_fn find, const void *user, noh_face_link *links,
-                           uint32_t link_max)
+uint32_t noh_stage_face_bind(const noh_kind_desc *d, noh_face_find_fn find, const void *user, noh_face_link *links,
+                             uint32_t link_max)
 {
     const noh_face_recipe own = noh_face_recipe_in_pack(d->mesh);
     const noh_face_recipe *const usual[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
                                               &noh_face_recipe_units };
-    const int given = d->face->recipes != NULL;
+    const int given = d->face && d->face->recipes;
     return noh_face_recipe_bind_by(given ? d->face->recipes : usual, given ? d->face->recipe_count : 4u, find, user,
                                    links, link_max);
 }
 
 uint32_t noh_stage_face_links(const noh_kind_desc *d)
 {
-    return bind_links(d, find_in_pack, d, NULL, 0);
+    return noh_stage_face_bind(d, find_in_pack, d, NULL, 0);
 }
 
 /* Floats of the set that the name moves, each once: one that takes its value from a namesake is the namesake. */
@@ -309,7 +308,7 @@ void noh_stage_open_face(noh_stage_kind *k)
     NOH_ASSERT(!what); /* the plan was made of it */
     (void)what;
     f->links = links;
-    f->link_count = bind_links(k->desc, find_in_kind, k, links, most);
+    f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     find_lids(f);
     f->speech = find_float(k, "speech");

@@ -542,6 +542,9 @@ void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
 
 /* What is wrong with the face of a kind; NULL: nothing. */
 const char *noh_stage_bad_face(const noh_kind_desc *kind);
+/* Links by the recipes of the kind's face, or else (face NULL, too) the pack's own and those that are built in. */
+uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, const void *user, noh_face_link *links,
+                             uint32_t link_max);
 /* Where the joints of its eyes are at rest, model space; 0: there are none. */
 int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
 uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
