@@ -312,13 +312,22 @@ async function living(browser) {
 }
 
 async function phone(browser) {
-    const page = await open(browser, { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true }, `clip=${clip}`);
+    const page = await open(browser, { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true }, `clip=${clip}&light=room&alive=on`);
     await page.waitForFunction(() => Number(document.getElementById('time').value) > 0.6, null, { timeout: 60000 });
     await page.tap('#play');
     const widths = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
     check('a phone: one column, nothing sticks out', widths[0] <= widths[1], widths.join(' of '));
     const small = await page.locator('button:visible, select:visible').evaluateAll((all) => all.filter((e) => e.getBoundingClientRect().height < 36).length);
     check('a phone: what is touched is large enough', small === 0, small);
+    const nameless = await page.locator('button, select, input').evaluateAll((all) => all.filter((e) => !(e.getAttribute('aria-label') ||
+        (e.labels && [...e.labels].some((l) => l.textContent.trim())) || (e.tagName === 'BUTTON' && e.textContent.trim()))).map((e) => e.id));
+    check('a phone: a screen reader has a name for each control', nameless.length === 0, nameless.join(' '));
+    const below = () => page.locator('#memory').evaluate((e) => e.getBoundingClientRect().top + window.scrollY);
+    const before = await below();
+    await page.tap('#say button');
+    await page.waitForFunction(() => document.getElementById('speech-text').textContent.includes('Type a sentence'));
+    await page.tap('#canvas');
+    check('a phone: nothing jumps when words change', await below() === before, `${before} to ${await below()}`);
     await page.screenshot({ path: path.join(out, 'phone.png') });
     await page.evaluate(() => window.scrollTo(0, 600));
     await page.screenshot({ path: path.join(out, 'phone_scrolled.png') });
