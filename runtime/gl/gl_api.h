@@ -65,6 +65,7 @@ extern "C" {
     X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)                     \
     X(UniformBlockBinding, UNIFORMBLOCKBINDING)                       \
     X(Uniform1i, UNIFORM1I)                                           \
+    X(Uniform2i, UNIFORM2I)                                           \
     X(Uniform3i, UNIFORM3I)                                           \
     X(Uniform4i, UNIFORM4I)                                           \
     X(Uniform2f, UNIFORM2F)                                           \
@@ -144,7 +145,6 @@ extern "C" {
     X(DetachShader, DETACHSHADER)                         \
     X(BindAttribLocation, BINDATTRIBLOCATION)             \
     X(GetActiveUniformBlockiv, GETACTIVEUNIFORMBLOCKIV)   \
-    X(Uniform2i, UNIFORM2I)                               \
     X(Uniform1iv, UNIFORM1IV)                             \
     X(Uniform4iv, UNIFORM4IV)                             \
     X(Uniform1ui, UNIFORM1UI)                             \
