@@ -1,5 +1,5 @@
 // faces.js: faces that live: they blink, breathe, look at the pointer or the finger, and feel. ?alive=off leaves them out,
-// ?emotion=joy begins with one.
+// ?emotion=joy begins with one, ?wrinkles=0.5 with wrinkles half as strong.
 'use strict';
 
 const isAlive = () => !byId('living').hidden && byId('alive').checked;
@@ -29,6 +29,14 @@ function feel() {
     settle();
 }
 
+// 0 smooths the wrinkles out.
+function smooth() {
+    const strength = Number(byId('wrinkles').value);
+    byId('wrinkles-text').textContent = strength.toFixed(2);
+    Module._web_set_wrinkles(strength);
+    redraw();
+}
+
 // A calm face moves, too, when it is told to; and a pose is not made anew in every frame.
 function settle() {
     if (byId('living').hidden) return;
@@ -39,6 +47,10 @@ function settle() {
 function beginFaces() {
     byId('living').hidden = !Module._web_alive();
     byId('emotions-row').hidden = !(Module._web_face_shows() & 1);
+    byId('wrinkles-row').hidden = !Module._web_wrinkles();
+    byId('looks-of-face').hidden = byId('living').hidden && byId('wrinkles-row').hidden;
+    byId('wrinkles').value = query.get('wrinkles') || 1;
+    smooth();
     for (let i = 0; Module._web_emotion_name(i); i++) byId('emotion').add(new Option(text(Module._web_emotion_name(i)), i));
     byId('alive').checked = !matchMedia('(prefers-reduced-motion: reduce)').matches;
     setAlive();
@@ -53,3 +65,4 @@ byId('looks').addEventListener('change', lookAhead);
 byId('alive').addEventListener('change', setAlive);
 byId('emotion').addEventListener('change', feel);
 byId('amount').addEventListener('input', feel);
+byId('wrinkles').addEventListener('input', smooth);

@@ -324,7 +324,7 @@ EMSCRIPTEN_KEEPALIVE double web_time(void)
     return 0.0;
 }
 
-/* ---- LOD levels ---- */
+/* ---- looks: LOD levels, wrinkles ---- */
 
 static void set_looks(int posed)
 {
@@ -332,9 +332,24 @@ static void set_looks(int posed)
     memset(&look, 0, sizeof look);
     look.posed = posed != 0;
     look.level = web.level;
+    look.smoothed = web.smoothed;
     for (uint32_t i = 0; i < web.figure_count; i++) {
         (void)noh_actor_set_look(web.stage, web.figures[i].actor, &look, NULL);
     }
+}
+
+/* 1: something wrinkles. */
+EMSCRIPTEN_KEEPALIVE int web_wrinkles(void)
+{
+    int any = 0;
+    for (uint32_t i = 0; i < web.pack.material_count; i++) any |= web.pack.materials[i].wrinkle_models != 0;
+    return any;
+}
+/* How strong they are: 1 as they are, 0 smoothed out. */
+EMSCRIPTEN_KEEPALIVE void web_set_wrinkles(float strength)
+{
+    web.smoothed = (uint8_t)(255.0f - 255.0f * strength + 0.5f);
+    set_looks(0);
 }
 
 /* The most that any kind has. */

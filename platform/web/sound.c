@@ -23,6 +23,11 @@ EMSCRIPTEN_KEEPALIVE int web_ear_open(uint32_t rate)
 {
     return (int)noh_ear_init(&ear, rate, &web.error);
 }
+/* The same sound from its beginning, by an ear that knows the speaker and the room. */
+EMSCRIPTEN_KEEPALIVE void web_ear_restart(void)
+{
+    noh_ear_restart(&ear);
+}
 EMSCRIPTEN_KEEPALIVE uint32_t web_ear_latency(void) /* ms */
 {
     return NOH_EAR_LATENCY_MS;

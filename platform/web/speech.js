@@ -144,7 +144,8 @@ function mixed(buffer) {
     return sum;
 }
 
-// The whole file is heard first, so that its mouth is not late.
+// The whole file is heard first, so that its mouth is not late: twice, as `noh speak` does, so that the ear knows the
+// speaker and the room.
 async function playFile(file, number) {
     const context = new AudioContext();
     const rate = Math.min(context.sampleRate, earRates[1]);
@@ -154,7 +155,10 @@ async function playFile(file, number) {
         const buffer = await decoder.decodeAudioData(bytes).catch(() => { throw new Error(`${file.name}: this browser cannot decode it as sound`); });
         if (number !== newest) return context.close();
         openEar(rate);
-        const frames = hear(mixed(buffer)), node = context.createBufferSource();
+        const samples = mixed(buffer), node = context.createBufferSource();
+        hear(samples);
+        Module._web_ear_restart();
+        const frames = hear(samples);
         node.buffer = buffer;
         node.connect(context.destination);
         await context.resume();

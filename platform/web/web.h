@@ -51,6 +51,7 @@ struct web {
     web_light light;
     float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
     int32_t speed;                     /* 1/65,536, of what plays */
+    uint8_t smoothed;                  /* noh_look.smoothed of all */
     uint32_t level;                    /* 1 + the LOD level that is shown; 0: by pixels */
 };
 

@@ -252,6 +252,23 @@ async function lights(browser, forced) {
     await close(page, `light by ${forced}`);
 }
 
+// A frown creases the brow, as far as the slider says.
+async function wrinkles(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=none&detail=0&size=${size}&light=studio`);
+    if (await page.isVisible('#wrinkles')) {
+        await setTarget(page, 'browDownLeft', 1);
+        await setTarget(page, 'browDownRight', 1);
+        await keep(page, 'wrinkled.png');
+        await slide(page, '#wrinkles', 0);
+        await keep(page, 'smooth.png');
+        check('wrinkles: smoothed out by the slider', !same('wrinkled.png', 'smooth.png'));
+        await slide(page, '#wrinkles', 1);
+        await keep(page, 'wrinkled_again.png');
+        check('wrinkles: and back', same('wrinkled.png', 'wrinkled_again.png'));
+    }
+    await close(page, 'wrinkles');
+}
+
 // Two fingers that go the same way turn the light, and so does a drag with shift.
 async function turns(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 }, hasTouch: true }, 'clip=none&light=room');
@@ -291,7 +308,7 @@ async function living(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&alive=on');
     const state = await page.evaluate(() => window.noh);
     console.log(`# budget ${state.path} plain alive ${state.memory.cpu} ${state.memory.gpu}`);
-    check('a face: it is there', await page.isVisible('#living'));
+    check('a face: it is there', await page.isVisible('#alive') && await page.isVisible('#emotion'));
     check('a face: it blinks', await reaches(page, 'eyeBlinkLeft', 0.5) === 1);
     const r = await page.locator('#canvas').boundingBox();
     await page.mouse.move(r.x + r.width * 0.95, r.y + r.height / 2);
@@ -376,6 +393,7 @@ async function byPixels(browser) {
     try {
         for (const forced of forcedPaths) await onePath(browser, forced);
         for (const forced of ['auto', 'gather']) await lights(browser, forced);
+        await wrinkles(browser);
         await turns(browser);
         await living(browser);
         await panels(browser);
