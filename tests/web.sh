@@ -87,7 +87,7 @@ check_pack() {
     while read -r _ _ path light life cpu_used gpu_used; do budget_of "$path" "$light" "$life" "$cpu_used" "$gpu_used"; done <<END
 $(grep '^# budget ' "$out/log.txt")
 END
-    for shown in 'rest --weight smile=0' 'smile --weight smile=1' "clip --clip $clip --time $time"; do
+    for shown in 'rest --light none --weight smile=0' 'smile --light none --weight smile=1' "clip --light none --clip $clip --time $time"; do
         # shellcheck disable=SC2086
         "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in auto mrt gather; do compare "${path}_${shown%% *}"; done
@@ -98,7 +98,7 @@ END
         for path in auto gather; do compare "${path}_${shown%% *}"; done
     done
     [ -f "$out/level.png" ] || return
-    "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size --lod 2 >/dev/null || not_ok 'noh render --lod'
+    "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size --light none --lod 2 >/dev/null || not_ok 'noh render --lod'
     compare level
 }
 

@@ -1,8 +1,8 @@
-// light.js: the light that the figures stand in, by the words of `noh render`: ?light=plain|white|studio|room|sky,
+// light.js: the light that the figures stand in, by the words of `noh render`: ?light=none|white|studio|room|sky,
 // ?rotate=DEGREES, ?shadow=off, ?tonemap=none, ?background=light|gradient|plain.
 'use strict';
 
-const firstLight = 'room';
+const firstLight = 'studio'; // as pictures of `noh render` have it
 const backgrounds = ['plain', 'gradient', 'light'];
 const ofLight = ['rotate', 'shadow', 'tonemap', 'background'];
 
