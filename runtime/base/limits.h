@@ -65,7 +65,11 @@
 
 /* ---- bodies ---- */
 
-#define NOH_OBSTACLES_MAX 16u        /* of a kind in a world */
+#define NOH_OBSTACLES_MAX 16u      /* of a kind in a world */
+#define NOH_RAGDOLL_BODIES_MAX 16u /* of one doll */
+#define NOH_RAGDOLL_PAIRS_MAX 24u  /* of bodies of a doll that collide */
+#define NOH_RAGDOLL_SUBSTEPS_MAX 20u
+#define NOH_RAGDOLLS_MAX 1024u       /* of one set */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */

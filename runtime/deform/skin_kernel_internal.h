@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#include "deform/lanes_internal.h"
+#include "base/lanes_internal.h"
 #include "deform/morph.h"
 #include "deform/skin.h"
 

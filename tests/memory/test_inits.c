@@ -234,6 +234,18 @@ INIT(identity_init)
     return noh_identity_init(memory, bytes, scratch, sizeof scratch, &s.mesh, NULL, &identity, error);
 }
 
+INIT(ragdolls_init)
+{
+    static noh_ragdoll_rig rig;
+    const noh_ragdolls_desc desc = { &rig, 3, 10 };
+    noh_ragdolls *set;
+    rig.body_count = 1;
+    rig.bodies[0] = (noh_ragdoll_body){
+        NOH_NONE, 0, 0.1f, 0.05f, 1.0f, 0.01f, 0.01f, { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }
+    };
+    return noh_ragdolls_init(memory, bytes, &desc, &set, error);
+}
+
 INIT(spring_init)
 {
     static const noh_spring_joint joints[2] = {
@@ -366,6 +378,7 @@ static const struct {
     ROW(lod_pack_init),
     ROW(lod_pools_init),
     ROW(identity_init),
+    ROW(ragdolls_init),
     ROW(spring_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),

@@ -4,10 +4,10 @@
 
 #include "args.h"
 
-#define VERB_COUNT 17
+#define VERB_COUNT 18
 
 extern const verb verb_build, verb_strip, verb_info, verb_clip, verb_budget, verb_light, verb_render, verb_sheet,
-    verb_zoom, verb_dump, verb_verify, verb_view, verb_crowd, verb_speak, verb_mask, verb_face, verb_bench;
+    verb_zoom, verb_dump, verb_verify, verb_view, verb_crowd, verb_drop, verb_speak, verb_mask, verb_face, verb_bench;
 
 /* In the order of the help. */
 const verb *verb_at(int index);

@@ -1,11 +1,11 @@
-/* lanes_internal.h (private to deform/): as many floats side by side as a register of the processor holds.
+/* lanes_internal.h: as many floats side by side as a register of the processor holds.
  *
  * Kernels are written once, over these. Each operation works on every lane by itself and rounds once, as IEEE 754 has
  * it (division and square root too; approximations of them, such as SSE's rsqrt, are not used), so every width gives
  * the bits of a single lane. Masks are all ones or all zeros in each lane. The width is chosen when the library is
  * compiled. */
-#ifndef NOH_DEFORM_LANES_INTERNAL_H
-#define NOH_DEFORM_LANES_INTERNAL_H
+#ifndef NOH_BASE_LANES_INTERNAL_H
+#define NOH_BASE_LANES_INTERNAL_H
 
 #include <stdint.h>
 #include <string.h>

@@ -1,0 +1,537 @@
+/* ragdoll.c: sets of ragdolls: memory, what comes in and out, sleep. */
+#include "sim/ragdoll.h"
+
+#include "base/arena.h"
+#include "base/assert.h"
+#include "base/trig.h"
+#include "sim/ragdoll_internal.h"
+#include "sim/vector_internal.h"
+
+#define STILL_STEPS 30u  /* half a second */
+#define STILL_PART 0.02f /* of its size: 35 mm of 1.75 m */
+#define SPEED_PART 23.0f /* of its size in a second: 40 m/s of 1.75 m */
+
+/* ---- rigs ---- */
+
+static int is_unit4(const float q[4])
+{
+    const float square = noh_quat_dot(q, q);
+    return square > 0.99f && square < 1.01f;
+}
+
+static int is_finite3(const float v[3])
+{
+    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
+}
+
+static int is_positive(float x)
+{
+    return x > 0.0f && noh_is_finite(x);
+}
+
+static int good_body(const noh_ragdoll_rig *rig, uint32_t i)
+{
+    const noh_ragdoll_body *b = &rig->bodies[i];
+    return (i ? b->parent < i : b->parent == NOH_NONE) && b->half >= 0.0f && noh_is_finite(b->half) &&
+           is_positive(b->radius) && is_positive(b->mass) && is_positive(b->inertia_across) &&
+           is_positive(b->inertia_along) && is_finite3(b->position) && is_unit4(b->rotation);
+}
+
+/* Around 0, and no more than half a turn. */
+static int good_range(float low, float high)
+{
+    return low >= -3.1416f && low <= 0.0f && high >= 0.0f && high <= 3.1416f;
+}
+
+/* How full rest makes the ellipse of swing, 0..1. */
+static float rest_swing(const noh_ragdoll_joint *j)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < 2; i++) {
+        float middle, half, unused;
+        noh_sin_cos((j->swing_max[i] + j->swing_min[i]) * 0.25f, &middle, &unused);
+        noh_sin_cos((j->swing_max[i] - j->swing_min[i]) * 0.25f, &half, &unused);
+        sum += middle * middle / (half * half + 1e-6f);
+    }
+    return sum;
+}
+
+static int good_joint(const noh_ragdoll_joint *j)
+{
+    int good = is_finite3(j->anchor) && is_unit4(j->frame) && j->friction >= 0.0f && noh_is_finite(j->friction);
+    if (!(j->flags & NOH_RAGDOLL_LOOSE)) {
+        good = good && good_range(j->twist_min, j->twist_max);
+        if (!(j->flags & NOH_RAGDOLL_HINGE)) {
+            good = good && good_range(j->swing_min[0], j->swing_max[0]) &&
+                   good_range(j->swing_min[1], j->swing_max[1]) && rest_swing(j) <= 1.001f;
+        }
+    }
+    for (int i = 0; i < 3 && (j->flags & NOH_RAGDOLL_SLIDES); i++) {
+        good = good && j->linear_min[i] <= 0.0f && j->linear_max[i] >= 0.0f && is_finite3(j->linear_min) &&
+               is_finite3(j->linear_max);
+    }
+    return good;
+}
+
+noh_result noh_ragdoll_rig_check(const noh_ragdoll_rig *rig, noh_error *error)
+{
+    if (!rig->body_count || rig->body_count > NOH_RAGDOLL_BODIES_MAX || rig->pair_count > NOH_RAGDOLL_PAIRS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a ragdoll has no bodies, or more bodies or pairs than the limit",
+                        rig->body_count, NOH_RAGDOLL_BODIES_MAX);
+    }
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        if (!good_body(rig, i)) {
+            return noh_fail(error, NOH_ERR_ARG, "a ragdoll's body has a number out of its range", i, 0);
+        }
+        if (i && !good_joint(&rig->joints[i])) {
+            return noh_fail(error, NOH_ERR_ARG,
+                            "a ragdoll's joint has a number out of its range, or rests outside "
+                            "of its limits",
+                            i, 0);
+        }
+    }
+    for (uint32_t i = 0; i < rig->pair_count; i++) {
+        const uint8_t *pair = rig->pairs[i];
+        if (pair[0] >= rig->body_count || pair[1] >= rig->body_count || pair[0] == pair[1]) {
+            return noh_fail(error, NOH_ERR_ARG, "a pair of a ragdoll's bodies names one that is not there", i, 0);
+        }
+    }
+    return NOH_OK;
+}
+
+static void set_mass(noh_ragdoll_body *b, float mass)
+{
+    b->inertia_across *= mass / b->mass;
+    b->inertia_along *= mass / b->mass;
+    b->mass = mass;
+}
+
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+void noh_ragdoll_stabilize(noh_ragdoll_rig *rig)
+{
+    float wanted[NOH_RAGDOLL_BODIES_MAX], below[NOH_RAGDOLL_BODIES_MAX] = { 0.0f }, sum = 0.0f, total = 0.0f;
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        const noh_ragdoll_body *b = &rig->bodies[i];
+        const float ratio = i ? b->mass / rig->bodies[b->parent].mass : 1.0f;
+        wanted[i] = (i ? wanted[b->parent] : 1.0f) * (ratio < 0.8f ? 0.8f : ratio > 1.2f ? 1.2f : ratio);
+        sum += wanted[i];
+        total += b->mass;
+    }
+    for (uint32_t i = 0; i < rig->body_count; i++) set_mass(&rig->bodies[i], wanted[i] * total / sum);
+    for (uint32_t i = rig->body_count; i-- > 0;) {
+        noh_ragdoll_body *b = &rig->bodies[i];
+        if (below[i] > 0.0f) {
+            const float own = larger(b->inertia_across, b->inertia_along);
+            const float least = below[i] < 2.0f * own ? below[i] : 2.0f * own;
+            b->inertia_across = larger(b->inertia_across, least);
+            b->inertia_along = larger(b->inertia_along, least);
+        }
+        if (i) below[b->parent] += larger(b->inertia_across, b->inertia_along) + below[i];
+    }
+}
+
+/* ---- constants ---- */
+
+/* A point, a rotation, in a body's space. */
+static void point_into(const noh_ragdoll_body *b, const float point[3], float out[3])
+{
+    float back[4], d[3];
+    noh_quat_conjugate(b->rotation, back);
+    noh_sub3(point, b->position, d);
+    noh_quat_rotate(back, d, out);
+}
+
+static void rotation_into(const noh_ragdoll_body *b, const float q[4], float out[4])
+{
+    float back[4];
+    noh_quat_conjugate(b->rotation, back);
+    noh_quat_mul(back, q, out);
+}
+
+static void set_joint(const noh_ragdoll_rig *rig, uint32_t i, noh_ragdoll_constants *c)
+{
+    const noh_ragdoll_joint *j = &rig->joints[i];
+    const noh_ragdoll_body *child = &rig->bodies[i], *parent = &rig->bodies[child->parent];
+    float lean[4], middle[3] = { 0.0f, 0.0f, 0.0f };
+    c->flags = j->flags;
+    point_into(parent, j->anchor, c->anchor_parent);
+    point_into(child, j->anchor, c->anchor);
+    rotation_into(parent, j->frame, c->rest_parent);
+    rotation_into(child, j->frame, c->frame);
+    for (int k = 0; k < 2; k++) {
+        float sine, unused;
+        noh_sin_cos((j->swing_max[k] - j->swing_min[k]) * 0.25f, &sine, &unused);
+        c->swing[k] = 1.0f / (sine * sine + 1e-6f);
+        middle[k] = (j->swing_max[k] + j->swing_min[k]) * 0.5f;
+    }
+    noh_quat_from_rotation(middle, lean);
+    if (j->flags & NOH_RAGDOLL_HINGE) {
+        memcpy(c->frame_parent, c->rest_parent, sizeof c->frame_parent);
+    } else {
+        noh_quat_mul(c->rest_parent, lean, c->frame_parent);
+    }
+    noh_sin_cos(j->twist_min * 0.5f, &c->twist_min[0], &c->twist_min[1]);
+    noh_sin_cos(j->twist_max * 0.5f, &c->twist_max[0], &c->twist_max[1]);
+    memcpy(c->linear_min, j->linear_min, sizeof c->linear_min);
+    memcpy(c->linear_max, j->linear_max, sizeof c->linear_max);
+    c->friction = j->friction;
+}
+
+static void ends_of(const float position[3], const float rotation[4], float half, float ends[2][3])
+{
+    static const float z[3] = { 0.0f, 0.0f, 1.0f };
+    float axis[3];
+    noh_quat_rotate(rotation, z, axis);
+    noh_madd3(position, half, axis, ends[0]);
+    noh_madd3(position, -half, axis, ends[1]);
+}
+
+static float axes_apart(const float a[2][3], const float b[2][3])
+{
+    float along[2], p[3], q[3], d[3];
+    noh_segments_closest(a[0], a[1], b[0], b[1], along);
+    noh_sub3(a[1], a[0], d);
+    noh_madd3(a[0], along[0], d, p);
+    noh_sub3(b[1], b[0], d);
+    noh_madd3(b[0], along[1], d, q);
+    noh_sub3(p, q, d);
+    return noh_length3(d);
+}
+
+static void set_pair(const noh_ragdoll_rig *rig, uint32_t i, noh_ragdoll_pair *pair)
+{
+    const noh_ragdoll_body *a = &rig->bodies[rig->pairs[i][0]], *b = &rig->bodies[rig->pairs[i][1]];
+    float ends_a[2][3], ends_b[2][3];
+    ends_of(a->position, a->rotation, a->half, ends_a);
+    ends_of(b->position, b->rotation, b->half, ends_b);
+    const float rest = axes_apart((const float(*)[3])ends_a, (const float(*)[3])ends_b), sum = a->radius + b->radius;
+    pair->a = rig->pairs[i][0];
+    pair->b = rig->pairs[i][1];
+    pair->distance = rest < sum ? rest : sum;
+}
+
+/* The longest side of the box round the ends of bodies at rest. */
+static float size_of(const noh_ragdoll_rig *rig)
+{
+    float low[3] = { 1e30f, 1e30f, 1e30f }, high[3] = { -1e30f, -1e30f, -1e30f }, size = 0.0f;
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        const noh_ragdoll_body *b = &rig->bodies[i];
+        float ends[2][3];
+        ends_of(b->position, b->rotation, b->half, ends);
+        for (int k = 0; k < 6; k++) {
+            const float at = ends[k / 3][k % 3];
+            low[k % 3] = at - b->radius < low[k % 3] ? at - b->radius : low[k % 3];
+            high[k % 3] = at + b->radius > high[k % 3] ? at + b->radius : high[k % 3];
+        }
+    }
+    for (int k = 0; k < 3; k++) size = larger(size, high[k] - low[k]);
+    return size;
+}
+
+static void set_shape(noh_ragdolls *set, const noh_ragdolls_desc *desc)
+{
+    const noh_ragdoll_rig *rig = desc->rig;
+    noh_ragdoll_shape *shape = &set->shape;
+    set->size = size_of(rig);
+    shape->body_count = rig->body_count;
+    shape->pair_count = rig->pair_count;
+    shape->substeps = desc->substeps ? desc->substeps : 10u;
+    shape->speed_max = SPEED_PART * set->size;
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        noh_ragdoll_constants *c = &shape->bodies[i];
+        const noh_ragdoll_body *b = &rig->bodies[i];
+        c->half = b->half;
+        c->radius = b->radius;
+        c->mass = b->mass;
+        c->inertia_across = b->inertia_across;
+        c->inertia_along = b->inertia_along;
+        c->parent = b->parent;
+        if (i) set_joint(rig, i, c);
+    }
+    for (uint32_t i = 0; i < rig->pair_count; i++) set_pair(rig, i, &shape->pairs[i]);
+}
+
+/* ---- size and init ---- */
+
+typedef struct layout {
+    noh_ragdolls *set;
+    noh_ragdoll_doll *dolls;
+    float *scratch;
+} layout;
+
+/* Shared memory comes last: it may begin 16 bytes later, on a multiple of 32. */
+static layout carve(noh_arena *arena, uint32_t count)
+{
+    layout l;
+    l.set = noh_arena_carve(arena, sizeof *l.set, 16);
+    l.dolls = noh_arena_carve(arena, count * sizeof *l.dolls, 16);
+    l.scratch = noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u, 16);
+    return l;
+}
+
+static int good_desc(const noh_ragdolls_desc *desc)
+{
+    return desc->rig && desc->count && desc->count <= NOH_RAGDOLLS_MAX &&
+           (!desc->substeps || (desc->substeps >= 5u && desc->substeps <= NOH_RAGDOLL_SUBSTEPS_MAX));
+}
+
+size_t noh_ragdolls_size(const noh_ragdolls_desc *desc)
+{
+    noh_arena arena = noh_arena_measure();
+    if (!good_desc(desc)) return 0;
+    (void)carve(&arena, desc->count);
+    return arena.used;
+}
+
+noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set)
+{
+    noh_arena arena = noh_arena_over(set, SIZE_MAX);
+    return carve(&arena, set->count).dolls;
+}
+
+static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
+{
+    NOH_ASSERT(set && doll < set->count);
+    return (const noh_ragdoll_doll *)(const void *)((const uint8_t *)set + ((sizeof *set + 15u) & ~(size_t)15u)) + doll;
+}
+
+float *noh_ragdoll_scratch(noh_ragdolls *set)
+{
+    noh_arena arena = noh_arena_over(set, SIZE_MAX);
+    uint8_t *scratch = (uint8_t *)carve(&arena, set->count).scratch;
+    return (float *)(void *)(scratch + (32u - (uintptr_t)scratch % 32u) % 32u);
+}
+
+static void rest_doll(noh_ragdoll_doll *doll, const noh_ragdoll_rig *rig)
+{
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        noh_ragdoll_state *s = &doll->bodies[i];
+        memcpy(s->position, rig->bodies[i].position, sizeof s->position);
+        memcpy(s->rotation, rig->bodies[i].rotation, sizeof s->rotation);
+        s->goal_rotation[3] = 1.0f;
+    }
+    doll->asleep = 1;
+}
+
+noh_result noh_ragdolls_init(void *memory, size_t bytes, const noh_ragdolls_desc *desc, noh_ragdolls **set,
+                             noh_error *error)
+{
+    noh_arena arena;
+    NOH_ASSERT(desc && set);
+    if (!good_desc(desc)) {
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "a set of ragdolls has no rig, no dolls, too many, or substeps out of "
+                        "5..20",
+                        desc->count, NOH_RAGDOLLS_MAX);
+    }
+    noh_result result = noh_ragdoll_rig_check(desc->rig, error);
+    if (!result) result = noh_arena_open(&arena, memory, bytes, noh_ragdolls_size(desc), error);
+    if (result) return result;
+    const layout l = carve(&arena, desc->count);
+    memset(memory, 0, noh_ragdolls_size(desc));
+    l.set->count = desc->count;
+    set_shape(l.set, desc);
+    for (uint32_t i = 0; i < desc->count; i++) rest_doll(&l.dolls[i], desc->rig);
+    *set = l.set;
+    return NOH_OK;
+}
+
+/* ---- in ---- */
+
+static void wake(noh_ragdoll_doll *doll)
+{
+    doll->asleep = 0;
+    doll->still = 0;
+}
+
+static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
+{
+    uint32_t i = 0;
+    while (i < count && is_finite3(bodies[i].position) && is_unit4(bodies[i].rotation)) i++;
+    return i;
+}
+
+noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *bodies,
+                             const noh_ragdoll_motion *motions, noh_error *error)
+{
+    const uint32_t count = set->shape.body_count;
+    uint32_t bad = first_bad_pose(bodies, count);
+    noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
+    NOH_ASSERT(doll < set->count);
+    for (uint32_t i = 0; motions && i < count && bad == count; i++) {
+        if (!is_finite3(motions[i].velocity) || !is_finite3(motions[i].spin)) bad = i;
+    }
+    if (bad < count) {
+        return noh_fail(error, NOH_ERR_ARG, "a ragdoll's body is placed where no number is, or not by a unit rotation",
+                        bad, 0);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        noh_ragdoll_state *s = &d->bodies[i];
+        memcpy(s->position, bodies[i].position, sizeof s->position);
+        memcpy(s->rotation, bodies[i].rotation, sizeof s->rotation);
+        memset(s->velocity, 0, sizeof s->velocity + sizeof s->spin);
+        if (motions) {
+            memcpy(s->velocity, motions[i].velocity, sizeof s->velocity);
+            memcpy(s->spin, motions[i].spin, sizeof s->spin);
+        }
+    }
+    wake(d);
+    return NOH_OK;
+}
+
+noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *goals, uint32_t held,
+                              const float *hertz, noh_error *error)
+{
+    const uint32_t count = set->shape.body_count;
+    uint32_t bad = goals ? first_bad_pose(goals, count) : count;
+    noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
+    NOH_ASSERT(doll < set->count);
+    for (uint32_t i = 0; goals && hertz && i < count && bad == count; i++) {
+        if (!(hertz[i] >= 0.0f) || !noh_is_finite(hertz[i])) bad = i;
+    }
+    if (bad < count) {
+        return noh_fail(error, NOH_ERR_ARG, "a goal of a ragdoll's body is no number, or its strength below 0", bad, 0);
+    }
+    memset(d->hertz, 0, sizeof d->hertz);
+    d->held = goals ? held : 0;
+    for (uint32_t i = 0; goals && i < count; i++) {
+        memcpy(d->bodies[i].goal_position, goals[i].position, sizeof goals[i].position);
+        memcpy(d->bodies[i].goal_rotation, goals[i].rotation, sizeof goals[i].rotation);
+        if (hertz) d->hertz[i] = hertz[i];
+    }
+    if (goals) wake(d);
+    return NOH_OK;
+}
+
+/* The body whose surface is nearest to a point. */
+static uint32_t nearest_body(const noh_ragdoll_shape *shape, const noh_ragdoll_doll *d, const float point[3])
+{
+    uint32_t nearest = 0;
+    float best = 1e30f;
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        float ends[2][3], at[2][3];
+        ends_of(d->bodies[i].position, d->bodies[i].rotation, shape->bodies[i].half, ends);
+        memcpy(at[0], point, sizeof at[0]);
+        memcpy(at[1], point, sizeof at[1]);
+        const float far = axes_apart((const float(*)[3])ends, (const float(*)[3])at) - shape->bodies[i].radius;
+        if (far < best) {
+            best = far;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/* I^-1 v of a body. */
+static void turn_by(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float v[3], float out[3])
+{
+    static const float z[3] = { 0.0f, 0.0f, 1.0f };
+    float axis[3];
+    noh_quat_rotate(s->rotation, z, axis);
+    const float extra = (1.0f / c->inertia_along - 1.0f / c->inertia_across) * noh_dot3(axis, v);
+    for (int i = 0; i < 3; i++) out[i] = v[i] / c->inertia_across + extra * axis[i];
+}
+
+void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3])
+{
+    noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
+    NOH_ASSERT(doll < set->count);
+    if (!is_finite3(point) || !is_finite3(impulse)) return;
+    const uint32_t i = nearest_body(&set->shape, d, point);
+    noh_ragdoll_state *s = &d->bodies[i];
+    float arm[3], twist[3], spin[3];
+    noh_sub3(point, s->position, arm);
+    noh_cross3(arm, impulse, twist);
+    turn_by(&set->shape.bodies[i], s, twist, spin);
+    noh_madd3(s->velocity, 1.0f / set->shape.bodies[i].mass, impulse, s->velocity);
+    noh_madd3(s->spin, 1.0f, spin, s->spin);
+    wake(d);
+}
+
+/* ---- steps ---- */
+
+/* How far an end of a body is at most from where it lay. */
+static float strayed(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float lain[7])
+{
+    float ends[2][3], before[2][3], most = 0.0f;
+    ends_of(s->position, s->rotation, c->half + c->radius, ends);
+    ends_of(lain, lain + 3, c->half + c->radius, before);
+    for (int k = 0; k < 2; k++) {
+        float d[3];
+        noh_sub3(ends[k], before[k], d);
+        most = larger(most, noh_dot3(d, d));
+    }
+    return most;
+}
+
+static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
+{
+    const float reach = STILL_PART * set->size;
+    int moves = d->still == 0 || d->held || 0;
+    for (uint32_t i = 0; i < set->shape.body_count && !moves; i++) {
+        moves = !(strayed(&set->shape.bodies[i], &d->bodies[i], d->lain[i]) < reach * reach);
+    }
+    if (moves) {
+        for (uint32_t i = 0; i < set->shape.body_count; i++) {
+            memcpy(d->lain[i], d->bodies[i].position, sizeof d->lain[i]);
+        }
+    }
+    d->still = moves ? 1u : d->still + 1u;
+    if (d->still > STILL_STEPS) {
+        d->asleep = 1;
+        for (uint32_t i = 0; i < set->shape.body_count; i++) {
+            memset(d->bodies[i].velocity, 0, sizeof d->bodies[i].velocity + sizeof d->bodies[i].spin);
+        }
+    }
+}
+
+static void step_all(noh_ragdolls *set, const noh_world *world)
+{
+    noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set), *awake[NOH_RAGDOLL_LANES_MAX];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < set->count; i++) {
+        if (!dolls[i].asleep) awake[count++] = &dolls[i];
+        if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
+            noh_ragdoll_step_dolls(&set->shape, world, awake, count, noh_ragdoll_scratch(set));
+            for (uint32_t k = 0; k < count; k++) rest_or_go_on(set, awake[k]);
+            count = 0;
+        }
+    }
+}
+
+uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks)
+{
+    const uint32_t dropped = set->steps.dropped;
+    const uint32_t steps = noh_steps_take(&set->steps, ticks, NOH_RAGDOLL_STEP_TICKS, NOH_RAGDOLL_STEPS_MAX);
+    for (uint32_t i = 0; i < steps; i++) step_all(set, world);
+    return set->steps.dropped - dropped;
+}
+
+/* ---- out ---- */
+
+void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose *bodies)
+{
+    const noh_ragdoll_doll *d = doll_of(set, doll);
+    for (uint32_t i = 0; i < set->shape.body_count; i++) {
+        memcpy(bodies[i].position, d->bodies[i].position, sizeof bodies[i].position);
+        memcpy(bodies[i].rotation, d->bodies[i].rotation, sizeof bodies[i].rotation);
+    }
+}
+
+void noh_ragdoll_motions(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_motion *motions)
+{
+    const noh_ragdoll_doll *d = doll_of(set, doll);
+    for (uint32_t i = 0; i < set->shape.body_count; i++) {
+        memcpy(motions[i].velocity, d->bodies[i].velocity, sizeof motions[i].velocity);
+        memcpy(motions[i].spin, d->bodies[i].spin, sizeof motions[i].spin);
+    }
+}
+
+int noh_ragdoll_sleeps(const noh_ragdolls *set, uint32_t doll)
+{
+    return doll_of(set, doll)->asleep != 0;
+}

@@ -1,0 +1,541 @@
+/* ragdoll_lanes.c: 1/60 s of as many ragdolls as there are lanes.
+ *
+ * In each substep: predict; pairs of bodies; joints from the first body to the last, each by anchors, hinge or
+ * swing, twist, strength; the world, with static friction; velocities from what has moved; no bounce; friction in
+ * joints. Masked lanes keep their bits: what is corrected nowhere may be left out, so width does not matter.
+ *
+ * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers:
+ * I^-1 v = across v + (along - across) z (z . v). */
+#include "base/assert.h"
+#include "sim/lanes3_internal.h"
+#include "sim/ragdoll_internal.h"
+
+#define POINTS 3u /* of a body that touch the world: its two ends, and one between */
+
+typedef struct lane_body {
+    lane3 p;
+    lane4 q;
+    lane3 v, w, goal_p;
+    lane4 goal_q;
+    lanes hertz;
+    lanes mass, across, along; /* one over them; 0: held */
+    lane3 z;                   /* the axis, of q */
+    lane3 p_before;
+    lane4 q_before;
+    lane3 normals[POINTS];
+    lanes at[POINTS], pushed[POINTS]; /* where along the axis, and by how much in this substep */
+} lane_body;
+NOH_STATIC_ASSERT(sizeof(lane_body) == NOH_RAGDOLL_LANE_FLOATS * sizeof(lanes), lane_body);
+NOH_STATIC_ASSERT(NOH_LANES <= NOH_RAGDOLL_LANES_MAX, lanes);
+
+/* ---- dolls in and out ---- */
+
+static void load_doll(const noh_ragdoll_shape *shape, const noh_ragdoll_doll *doll, lane_body *bodies, uint32_t lane)
+{
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        const noh_ragdoll_constants *c = &shape->bodies[i];
+        const float *from = (const float *)(const void *)&doll->bodies[i];
+        float *to = (float *)(void *)&bodies[i];
+        const int held = (doll->held >> i) & 1u;
+        for (uint32_t k = 0; k < NOH_RAGDOLL_STATE_FLOATS; k++) to[k * NOH_LANES + lane] = from[k];
+        to[20 * NOH_LANES + lane] = doll->hertz[i];
+        to[21 * NOH_LANES + lane] = held ? 0.0f : 1.0f / c->mass;
+        to[22 * NOH_LANES + lane] = held ? 0.0f : 1.0f / c->inertia_across;
+        to[23 * NOH_LANES + lane] = held ? 0.0f : 1.0f / c->inertia_along;
+    }
+}
+
+static void store_doll(const noh_ragdoll_shape *shape, noh_ragdoll_doll *doll, const lane_body *bodies, uint32_t lane)
+{
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        const float *from = (const float *)(const void *)&bodies[i];
+        float *to = (float *)(void *)&doll->bodies[i];
+        for (uint32_t k = 0; k < NOH_RAGDOLL_MOVES; k++) to[k] = from[k * NOH_LANES + lane];
+    }
+}
+
+/* ---- masses ---- */
+
+NOH_ALWAYS_INLINE lane3 inverse_inertia(const lane_body *b, lane3 v)
+{
+    const lanes extra = lanes_mul(lanes_sub(b->along, b->across), lane3_dot(b->z, v));
+    return lane3_madd(lane3_scale(v, b->across), extra, b->z);
+}
+
+/* One over the mass that a rotation about n, a push along n at r with c = r x n, has to move. */
+NOH_ALWAYS_INLINE lanes turn_weight(const lane_body *b, lane3 n)
+{
+    const lanes d = lane3_dot(b->z, n);
+    return lanes_add(lanes_mul(b->across, lane3_dot(n, n)), lanes_mul(lanes_sub(b->along, b->across), lanes_mul(d, d)));
+}
+
+NOH_ALWAYS_INLINE lanes push_weight(const lane_body *b, lane3 c)
+{
+    return lanes_add(b->mass, turn_weight(b, c));
+}
+
+/* a share / weight, 0 where there is no weight or the mask says no */
+NOH_ALWAYS_INLINE lanes over_weight(lanes mask, lanes value, lanes weight)
+{
+    const lanes some = lanes_and(mask, lanes_less(lanes_set(0.0f), weight));
+    return lanes_choose(some, lanes_div(value, lanes_choose(some, weight, lanes_set(1.0f))), lanes_set(0.0f));
+}
+
+NOH_ALWAYS_INLINE void turn_body(lane_body *b, lanes mask, lane3 by)
+{
+    b->q = lane4_choose(mask, lane4_turn(b->q, by), b->q);
+    b->z = lane4_axis_z(b->q);
+}
+
+/* Two bodies by an angle about the unit axis n: a onwards, b back, each by its share. */
+NOH_ALWAYS_INLINE void turn_pair(lane_body *a, lane_body *b, lanes mask, lane3 n, lanes angle)
+{
+    const lanes s = over_weight(mask, angle, lanes_add(turn_weight(a, n), turn_weight(b, n)));
+    const lane3 by_a = lane3_scale(inverse_inertia(a, n), s);
+    const lane3 by_b = lane3_scale(inverse_inertia(b, n), lanes_negate(s));
+    turn_body(a, mask, by_a);
+    turn_body(b, mask, by_b);
+}
+
+/* Two bodies by `far` along the unit vector n at ra and rb: a back, b onwards. */
+NOH_ALWAYS_INLINE void push_pair(lane_body *a, lane3 ra, lane_body *b, lane3 rb, lanes mask, lane3 n, lanes far)
+{
+    const lane3 ca = lane3_cross(ra, n), cb = lane3_cross(rb, n);
+    const lanes s = over_weight(mask, far, lanes_add(push_weight(a, ca), push_weight(b, cb)));
+    const lane3 by_a = lane3_scale(inverse_inertia(a, ca), lanes_negate(s)),
+                by_b = lane3_scale(inverse_inertia(b, cb), s);
+    a->p = lane3_choose(mask, lane3_madd(a->p, lanes_negate(lanes_mul(s, a->mass)), n), a->p);
+    b->p = lane3_choose(mask, lane3_madd(b->p, lanes_mul(s, b->mass), n), b->p);
+    turn_body(a, mask, by_a);
+    turn_body(b, mask, by_b);
+}
+
+/* ---- joints ---- */
+
+typedef struct joint {
+    const noh_ragdoll_constants *c;
+    lane_body *a, *b; /* the parent and the body itself */
+} joint;
+
+NOH_ALWAYS_INLINE lane4 frame_a(const joint *j)
+{
+    return lane4_mul(j->a->q, lane4_set(j->c->frame_parent));
+}
+
+NOH_ALWAYS_INLINE lane4 frame_b(const joint *j)
+{
+    return lane4_mul(j->b->q, lane4_set(j->c->frame));
+}
+
+/* The axes of a hinge onto each other. */
+NOH_ALWAYS_INLINE void solve_hinge(const joint *j)
+{
+    const lane3 c = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
+    const lanes square = lane3_dot(c, c), mask = lanes_less(lanes_set(1e-14f), square);
+    const lanes inverse = lanes_inverse_root(mask, square);
+    turn_pair(j->a, j->b, mask, lane3_scale(c, inverse), lanes_mul(square, inverse));
+}
+
+/* Swing back into its ellipse, along the shortest way to the middle. r: of b in the frame of a. */
+NOH_ALWAYS_INLINE void solve_swing(const joint *j, lane4 r)
+{
+    const lanes one = lanes_set(1.0f);
+    const lanes rest = lanes_add(lanes_mul(r.z, r.z), lanes_mul(r.w, r.w));
+    const lanes swung = lanes_add(lanes_mul(r.x, r.x), lanes_mul(r.y, r.y));
+    /* x and y of the swing alone, times the root of `rest` */
+    const lanes x = lanes_sub(lanes_mul(r.x, r.w), lanes_mul(r.y, r.z));
+    const lanes y = lanes_add(lanes_mul(r.x, r.z), lanes_mul(r.y, r.w));
+    const lanes fill = lanes_add(lanes_mul(lanes_mul(x, x), lanes_set(j->c->swing[0])),
+                                 lanes_mul(lanes_mul(y, y), lanes_set(j->c->swing[1])));
+    lanes mask = lanes_less(rest, fill); /* fill / rest above 1 */
+    if (!lanes_any(mask)) return;
+    const lane3 n = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
+    const lanes square = lane3_dot(n, n);
+    mask = lanes_and(mask, lanes_less(lanes_set(1e-12f), square));
+    const lanes a = lanes_sqrt(swung), b = lanes_sqrt(rest);
+    const lanes sine = lanes_mul(a, lanes_sqrt(lanes_div(rest, lanes_choose(mask, fill, one))));
+    const lanes cosine = lanes_sqrt(lanes_max(lanes_sub(one, lanes_mul(sine, sine)), lanes_set(0.0f)));
+    const lanes over = lanes_sub(lanes_mul(a, cosine), lanes_mul(b, sine));
+    const lanes along = lanes_add(lanes_mul(b, cosine), lanes_mul(a, sine));
+    const lanes angle = lanes_mul(lanes_set(2.0f), lanes_arc_tangent(over, lanes_max(along, lanes_set(1e-3f))));
+    turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), angle);
+}
+
+/* Twist back between its limits: no angle is made while it is. */
+NOH_ALWAYS_INLINE void solve_twist(const joint *j, lane4 r)
+{
+    const lanes zero = lanes_set(0.0f), turned = lanes_less(r.w, zero);
+    const lanes s0 = lanes_set(j->c->twist_min[0]), c0 = lanes_set(j->c->twist_min[1]);
+    const lanes s1 = lanes_set(j->c->twist_max[0]), c1 = lanes_set(j->c->twist_max[1]);
+    const lanes z = lanes_choose(turned, lanes_negate(r.z), r.z), w = lanes_choose(turned, lanes_negate(r.w), r.w);
+    const lanes over = lanes_sub(lanes_mul(z, c1), lanes_mul(w, s1));
+    const lanes under = lanes_sub(lanes_mul(z, c0), lanes_mul(w, s0));
+    const lanes above = lanes_less(zero, over);
+    lanes mask = lanes_or(above, lanes_less(under, zero));
+    if (!lanes_any(mask)) return;
+    const lanes along = lanes_choose(above, lanes_add(lanes_mul(w, c1), lanes_mul(z, s1)),
+                                     lanes_add(lanes_mul(w, c0), lanes_mul(z, s0)));
+    const lanes ratio = lanes_arc_tangent(lanes_choose(above, over, under), lanes_max(along, lanes_set(1e-3f)));
+    const lane3 n = lane3_add(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
+    const lanes square = lane3_dot(n, n);
+    mask = lanes_and(mask, lanes_less(lanes_set(1e-6f), square));
+    turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), lanes_mul(lanes_set(2.0f), ratio));
+}
+
+/* Towards the angle that the goals have, as a critically damped spring of so many hertz: of the angle it takes
+ * (s / (1 + s))^2, of the speed 2 s / (1 + s)^2, with s = 2 pi hertz h.
+ * source  Macklin et al. 2016, section 5, with the effective inertia put in */
+NOH_ALWAYS_INLINE void solve_strength(const joint *j, lanes h)
+{
+    const lanes one = lanes_set(1.0f), s = lanes_mul(lanes_mul(j->b->hertz, lanes_set(6.2831853f)), h);
+    const lanes part = lanes_div(one, lanes_add(one, s)), share = lanes_mul(lanes_mul(s, s), lanes_mul(part, part));
+    const lanes damping = lanes_mul(lanes_mul(lanes_set(2.0f), s), lanes_mul(part, part));
+    lanes mask = lanes_less(lanes_set(0.0f), s);
+    if (!lanes_any(mask)) return;
+    const lane4 goal = lane4_mul(lane4_conjugate(j->a->goal_q), j->b->goal_q);
+    const lane3 off = lane4_difference(j->b->q, lane4_mul(j->a->q, goal));
+    const lane3 moved = lane3_scale(lane3_sub(j->b->w, j->a->w), h);
+    const lane3 back = lane3_madd(lane3_scale(off, share), damping, moved);
+    const lanes square = lane3_dot(back, back);
+    mask = lanes_and(mask, lanes_less(lanes_set(1e-16f), square));
+    const lanes inverse = lanes_inverse_root(mask, square);
+    turn_pair(j->a, j->b, mask, lane3_scale(back, inverse), lanes_mul(square, inverse));
+}
+
+/* What a sliding joint's anchors are apart by, without what they may be. */
+NOH_ALWAYS_INLINE lane3 past_linear(const joint *j, lane3 apart)
+{
+    const lane4 q = frame_a(j);
+    const lane3 d = lane4_rotate(lane4_conjugate(q), apart);
+    const lane3 low = lane3_set(j->c->linear_min), high = lane3_set(j->c->linear_max);
+    const lane3 past = { lanes_sub(d.x, lanes_max(lanes_min(d.x, high.x), low.x)),
+                         lanes_sub(d.y, lanes_max(lanes_min(d.y, high.y), low.y)),
+                         lanes_sub(d.z, lanes_max(lanes_min(d.z, high.z), low.z)) };
+    return lane4_rotate(q, past);
+}
+
+/* The anchors onto each other. */
+NOH_ALWAYS_INLINE void solve_anchors(const joint *j)
+{
+    const lane3 ra = lane4_rotate(j->a->q, lane3_set(j->c->anchor_parent));
+    const lane3 rb = lane4_rotate(j->b->q, lane3_set(j->c->anchor));
+    lane3 d = lane3_sub(lane3_add(j->b->p, rb), lane3_add(j->a->p, ra));
+    if (j->c->flags & NOH_RAGDOLL_SLIDES) d = past_linear(j, d);
+    const lanes square = lane3_dot(d, d), mask = lanes_less(lanes_set(1e-18f), square);
+    const lanes inverse = lanes_inverse_root(mask, square);
+    push_pair(j->b, rb, j->a, ra, mask, lane3_scale(d, inverse), lanes_mul(square, inverse));
+}
+
+static inline void solve_joint(const joint *j, lanes h)
+{
+    solve_anchors(j);
+    if (j->c->flags & NOH_RAGDOLL_HINGE) solve_hinge(j);
+    if (!(j->c->flags & NOH_RAGDOLL_LOOSE)) {
+        if (!(j->c->flags & NOH_RAGDOLL_HINGE)) {
+            solve_swing(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)));
+        }
+        solve_twist(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)));
+    }
+    solve_strength(j, h);
+}
+
+/* ---- the world ---- */
+
+NOH_ALWAYS_INLINE lane3 contact_arm(const lane_body *b, uint32_t point, lanes radius)
+{
+    return lane3_madd(lane3_scale(b->z, b->at[point]), lanes_negate(radius), b->normals[point]);
+}
+
+/* Out of the world along n, as far as `depth` is below 0; then back along the ground by what it has moved there, as far
+ * as friction holds. */
+static inline void touch(lane_body *b, const noh_ragdoll_constants *c, uint32_t point, lanes at, lane3 n, lanes depth,
+                         float friction)
+{
+    const lanes zero = lanes_set(0.0f), mask = lanes_less(depth, zero);
+    if (!lanes_any(mask)) return;
+    b->normals[point] = lane3_choose(mask, n, b->normals[point]);
+    b->at[point] = lanes_choose(mask, at, b->at[point]);
+    const lane3 r = contact_arm(b, point, lanes_set(c->radius)), cross = lane3_cross(r, n);
+    const lanes push = over_weight(mask, lanes_negate(depth), push_weight(b, cross));
+    b->pushed[point] = lanes_add(b->pushed[point], push);
+    b->p = lane3_choose(mask, lane3_madd(b->p, lanes_mul(push, b->mass), n), b->p);
+    turn_body(b, mask, lane3_scale(inverse_inertia(b, cross), push));
+
+    const lane3 arm = contact_arm(b, point, lanes_set(c->radius));
+    const lane3 turned = lane4_difference(b->q, b->q_before);
+    const lane3 moved = lane3_add(lane3_sub(b->p, b->p_before), lane3_cross(turned, arm));
+    const lane3 slid = lane3_madd(moved, lanes_negate(lane3_dot(moved, n)), n);
+    const lanes square = lane3_dot(slid, slid), slides = lanes_and(mask, lanes_less(lanes_set(1e-18f), square));
+    const lanes inverse = lanes_inverse_root(slides, square);
+    const lane3 back = lane3_scale(slid, lanes_negate(inverse)), about = lane3_cross(arm, back);
+    const lanes whole = over_weight(slides, lanes_mul(square, inverse), push_weight(b, about));
+    const lanes held = lanes_min(whole, lanes_mul(lanes_set(friction), b->pushed[point]));
+    b->p = lane3_choose(slides, lane3_madd(b->p, lanes_mul(held, b->mass), back), b->p);
+    turn_body(b, slides, lane3_scale(inverse_inertia(b, about), held));
+}
+
+static inline lanes end_of(const noh_ragdoll_constants *c, uint32_t point)
+{
+    return lanes_set(point == 0 ? c->half : point == 1 ? -c->half : 0.0f);
+}
+
+static void touch_planes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+{
+    for (uint32_t i = 0; i < world->plane_count; i++) {
+        const lane3 n = lane3_set(world->planes[i].normal);
+        const lanes far = lanes_set(world->planes[i].distance + c->radius);
+        for (uint32_t point = 0; point < 2; point++) {
+            const lanes at = end_of(c, point);
+            const lanes depth = lanes_sub(lane3_dot(lane3_madd(b->p, at, b->z), n), far);
+            touch(b, c, point, at, n, depth, world->friction);
+        }
+    }
+}
+
+/* The numbers of one lane. */
+NOH_ALWAYS_INLINE float lane_of(const lanes *v, uint32_t lane)
+{
+    return ((const float *)(const void *)v)[lane];
+}
+
+NOH_ALWAYS_INLINE void set_lane(lanes *v, uint32_t lane, float value)
+{
+    ((float *)(void *)v)[lane] = value;
+}
+
+/* A height field is looked up lane by lane. */
+static void touch_field(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+{
+    for (uint32_t point = 0; point < 2; point++) {
+        const lanes at = end_of(c, point);
+        const lane3 end = lane3_madd(b->p, at, b->z);
+        lane3 n = { lanes_set(0.0f), lanes_set(1.0f), lanes_set(0.0f) };
+        lanes depth = lanes_set(1.0f);
+        for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
+            float height, normal[3];
+            if (noh_field_height(world->field, lane_of(&end.x, lane), lane_of(&end.z, lane), &height, normal)) {
+                set_lane(&n.x, lane, normal[0]);
+                set_lane(&n.y, lane, normal[1]);
+                set_lane(&n.z, lane, normal[2]);
+                set_lane(&depth, lane, (lane_of(&end.y, lane) - height) * normal[1] - c->radius);
+            }
+        }
+        touch(b, c, point, at, n, depth, world->friction);
+    }
+}
+
+/* Where two segments are nearest to each other: middles and half vectors. at: -1..1 along each.
+ * source  Ericson 2005, section 5.1.9 */
+NOH_ALWAYS_INLINE void closest(lane3 a, lane3 half_a, lane3 b, lane3 half_b, lanes at[2])
+{
+    const lanes one = lanes_set(1.0f), less = lanes_set(-1.0f), tiny = lanes_set(1e-12f);
+    const lane3 r = lane3_sub(a, b);
+    const lanes aa = lane3_dot(half_a, half_a), bb = lane3_dot(half_b, half_b), ab = lane3_dot(half_a, half_b);
+    const lanes ar = lane3_dot(half_a, r), br = lane3_dot(half_b, r);
+    const lanes square = lanes_sub(lanes_mul(aa, bb), lanes_mul(ab, ab));
+    const lanes crossed = lanes_less(lanes_mul(lanes_set(1e-6f), lanes_mul(aa, bb)), square);
+    lanes s = lanes_sub(lanes_mul(ab, br), lanes_mul(ar, bb));
+    s = lanes_choose(crossed, lanes_div(s, lanes_choose(crossed, square, one)), lanes_set(0.0f));
+    s = lanes_max(lanes_min(s, one), less);
+    lanes t = lanes_div(lanes_add(lanes_mul(ab, s), br), lanes_max(bb, tiny));
+    t = lanes_max(lanes_min(t, one), less);
+    s = lanes_div(lanes_sub(lanes_mul(ab, t), ar), lanes_max(aa, tiny));
+    at[0] = lanes_max(lanes_min(s, one), less);
+    at[1] = t;
+}
+
+static void touch_capsules(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+{
+    for (uint32_t i = 0; i < world->capsule_count; i++) {
+        const noh_capsule *k = &world->capsules[i];
+        const lane3 from = lane3_set(k->from), to = lane3_set(k->to);
+        const lane3 middle = lane3_scale(lane3_add(from, to), lanes_set(0.5f));
+        const lane3 half = lane3_scale(lane3_sub(to, from), lanes_set(0.5f));
+        lanes at[2];
+        closest(b->p, lane3_scale(b->z, lanes_set(c->half)), middle, half, at);
+        const lanes along = lanes_mul(at[0], lanes_set(c->half));
+        const lane3 d = lane3_sub(lane3_madd(b->p, along, b->z), lane3_madd(middle, at[1], half));
+        const lanes square = lane3_dot(d, d), mask = lanes_less(lanes_set(1e-12f), square);
+        const lanes inverse = lanes_inverse_root(mask, square);
+        const lanes depth = lanes_sub(lanes_mul(square, inverse), lanes_set(k->radius + c->radius));
+        touch(b, c, 2, along, lane3_scale(d, inverse), lanes_choose(mask, depth, lanes_set(1.0f)), world->friction);
+    }
+}
+
+/* How far one axis of a point in a box's space is past its side, on whichever side it lies. */
+NOH_ALWAYS_INLINE lanes past_side(lanes at, float half)
+{
+    return lanes_sub(lanes_abs(at), lanes_set(half));
+}
+
+NOH_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
+{
+    return lanes_choose(lanes_less(sign, lanes_set(0.0f)), lanes_negate(size), size);
+}
+
+/* Outwards from a box, in its space, and how far outside the point is: from the nearest side where it is inside. */
+NOH_ALWAYS_INLINE lanes out_of_box(const noh_obb *box, lane3 l, lane3 *n)
+{
+    const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f);
+    const lane3 past = { past_side(l.x, box->half[0]), past_side(l.y, box->half[1]), past_side(l.z, box->half[2]) };
+    const lane3 off = { lanes_max(past.x, zero), lanes_max(past.y, zero), lanes_max(past.z, zero) };
+    const lanes square = lane3_dot(off, off), outside = lanes_less(lanes_set(1e-12f), square);
+    const lanes inverse = lanes_inverse_root(outside, square);
+    const lanes most = lanes_max(lanes_max(past.x, past.y), past.z);
+    const lanes x = lanes_less(past.x, most), y = lanes_less(past.y, most); /* not the nearest side */
+    const lane3 side = { lanes_choose(x, zero, one), lanes_choose(x, lanes_choose(y, zero, one), zero),
+                         lanes_choose(lanes_and(x, y), one, zero) };
+    const lane3 size = lane3_choose(outside, lane3_scale(off, inverse), side);
+    n->x = with_sign(size.x, l.x);
+    n->y = with_sign(size.y, l.y);
+    n->z = with_sign(size.z, l.z);
+    return lanes_choose(outside, lanes_mul(square, inverse), most);
+}
+
+static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+{
+    for (uint32_t i = 0; i < world->box_count; i++) {
+        const noh_obb *box = &world->boxes[i];
+        const lane4 q = lane4_set(box->rotation);
+        const lane3 centre = lane3_set(box->centre);
+        for (uint32_t point = 0; point < POINTS; point++) {
+            const lanes half = lanes_set(c->half), to = lane3_dot(lane3_sub(centre, b->p), b->z);
+            const lanes nearest = lanes_max(lanes_min(to, half), lanes_negate(half));
+            const lanes at = point < 2 ? end_of(c, point) : nearest;
+            const lane3 from = lane3_sub(lane3_madd(b->p, at, b->z), centre);
+            lane3 n;
+            const lanes depth = out_of_box(box, lane4_rotate(lane4_conjugate(q), from), &n);
+            touch(b, c, point, at, lane4_rotate(q, n), lanes_sub(depth, lanes_set(c->radius)), world->friction);
+        }
+    }
+}
+
+static inline void solve_world(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+{
+    touch_planes(b, c, world);
+    if (world->field) touch_field(b, c, world);
+    touch_capsules(b, c, world);
+    touch_boxes(b, c, world);
+}
+
+/* ---- bodies of a doll against each other ---- */
+
+static inline void solve_pair(const noh_ragdoll_shape *shape, const noh_ragdoll_pair *pair, lane_body *bodies)
+{
+    lane_body *a = &bodies[pair->a], *b = &bodies[pair->b];
+    const float half_a = shape->bodies[pair->a].half, half_b = shape->bodies[pair->b].half;
+    const lane3 between = lane3_sub(b->p, a->p);
+    const float reach = half_a + half_b + pair->distance;
+    if (!lanes_any(lanes_less(lane3_dot(between, between), lanes_set(reach * reach)))) return;
+    const lane3 axis_a = lane3_scale(a->z, lanes_set(half_a)), axis_b = lane3_scale(b->z, lanes_set(half_b));
+    lanes at[2];
+    closest(a->p, axis_a, b->p, axis_b, at);
+    const lane3 ra = lane3_scale(axis_a, at[0]), rb = lane3_scale(axis_b, at[1]);
+    const lane3 d = lane3_sub(lane3_add(b->p, rb), lane3_add(a->p, ra));
+    const lanes square = lane3_dot(d, d), least = lanes_set(pair->distance);
+    const lanes mask = lanes_and(lanes_less(lanes_set(1e-12f), square), lanes_less(square, lanes_mul(least, least)));
+    if (!lanes_any(mask)) return;
+    const lanes inverse = lanes_inverse_root(mask, square);
+    push_pair(a, ra, b, rb, mask, lane3_scale(d, inverse), lanes_sub(least, lanes_mul(square, inverse)));
+}
+
+/* ---- substeps ---- */
+
+static inline void predict(lane_body *b, lanes h, float seconds, float speed_max)
+{
+    const lanes free = lanes_less(lanes_set(0.0f), b->mass), top = lanes_set(speed_max);
+    b->p_before = b->p;
+    b->q_before = b->q;
+    b->v.y = lanes_choose(free, lanes_sub(b->v.y, lanes_set(NOH_GRAVITY * seconds)), b->v.y);
+    const lanes square = lane3_dot(b->v, b->v), fast = lanes_and(free, lanes_less(lanes_mul(top, top), square));
+    if (lanes_any(fast)) {
+        b->v = lane3_choose(fast, lane3_scale(b->v, lanes_mul(top, lanes_inverse_root(fast, square))), b->v);
+    }
+    b->p = lane3_madd(b->p, h, b->v);
+    b->q = lane4_normalize(lane4_turn(b->q, lane3_scale(b->w, h)));
+    b->z = lane4_axis_z(b->q);
+    for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
+}
+
+/* What leaves the world is stopped: nothing bounces. */
+static inline void stop_bounce(lane_body *b, const noh_ragdoll_constants *c)
+{
+    for (uint32_t point = 0; point < POINTS; point++) {
+        lanes mask = lanes_less(lanes_set(0.0f), b->pushed[point]);
+        if (!lanes_any(mask)) continue;
+        const lane3 n = b->normals[point], r = contact_arm(b, point, lanes_set(c->radius));
+        const lanes away = lane3_dot(lane3_add(b->v, lane3_cross(b->w, r)), n);
+        const lane3 cross = lane3_cross(r, n);
+        mask = lanes_and(mask, lanes_less(lanes_set(0.0f), away));
+        const lanes push = over_weight(mask, lanes_negate(away), push_weight(b, cross));
+        b->v = lane3_choose(mask, lane3_madd(b->v, lanes_mul(push, b->mass), n), b->v);
+        b->w = lane3_choose(mask, lane3_madd(b->w, push, inverse_inertia(b, cross)), b->w);
+    }
+}
+
+static inline void take_velocity(lane_body *b, lanes per_second)
+{
+    b->q = lane4_normalize(b->q);
+    b->v = lane3_scale(lane3_sub(b->p, b->p_before), per_second);
+    b->w = lane3_scale(lane4_turned(b->q, b->q_before), per_second);
+}
+
+/* Up to a torque, a joint does not turn. */
+static inline void rub_joint(const joint *j, float seconds)
+{
+    const lane3 d = lane3_sub(j->b->w, j->a->w);
+    const lanes square = lane3_dot(d, d), mask = lanes_less(lanes_set(1e-12f), square);
+    const lanes inverse = lanes_inverse_root(mask, square);
+    const lane3 n = lane3_scale(d, inverse);
+    const lanes weight = lanes_add(turn_weight(j->a, n), turn_weight(j->b, n));
+    const lanes whole = over_weight(mask, lanes_mul(square, inverse), weight);
+    const lanes held = lanes_min(whole, lanes_set(j->c->friction * seconds));
+    j->a->w = lane3_choose(mask, lane3_madd(j->a->w, held, inverse_inertia(j->a, n)), j->a->w);
+    j->b->w = lane3_choose(mask, lane3_madd(j->b->w, lanes_negate(held), inverse_inertia(j->b, n)), j->b->w);
+}
+
+static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *bodies, float seconds)
+{
+    const lanes h = lanes_set(seconds);
+    for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, seconds, shape->speed_max);
+    for (uint32_t i = 0; i < shape->pair_count; i++) solve_pair(shape, &shape->pairs[i], bodies);
+    for (uint32_t i = 1; i < shape->body_count; i++) {
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        solve_joint(&j, h);
+    }
+    for (uint32_t i = 0; world && i < shape->body_count; i++) solve_world(&bodies[i], &shape->bodies[i], world);
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        take_velocity(&bodies[i], lanes_set(1.0f / seconds));
+        if (world) stop_bounce(&bodies[i], &shape->bodies[i]);
+    }
+    for (uint32_t i = 1; i < shape->body_count; i++) {
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        if (j.c->friction > 0.0f) rub_joint(&j, seconds);
+    }
+}
+
+/* Held bodies arrive at their goals at the end of the step. */
+static void send_held(lane_body *b, lanes per_second)
+{
+    const lanes held = lanes_less(b->mass, lanes_set(1e-30f));
+    const lane3 v = lane3_scale(lane3_sub(b->goal_p, b->p), per_second);
+    const lane3 w = lane3_scale(lane4_difference(b->goal_q, b->q), per_second);
+    b->v = lane3_choose(held, v, b->v);
+    b->w = lane3_choose(held, w, b->w);
+}
+
+void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
+                      uint32_t count, float *scratch)
+{
+    lane_body *bodies = (lane_body *)(void *)scratch;
+    const float seconds = 1.0f / (60.0f * (float)shape->substeps);
+    for (uint32_t first = 0; first < count; first += NOH_LANES) {
+        const uint32_t lanes_used = count - first < NOH_LANES ? count - first : NOH_LANES;
+        for (uint32_t lane = 0; lane < NOH_LANES; lane++) { /* lanes without a doll repeat the last one */
+            load_doll(shape, dolls[first + (lane < lanes_used ? lane : lanes_used - 1u)], bodies, lane);
+        }
+        for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));
+        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, bodies, seconds);
+        for (uint32_t lane = 0; lane < lanes_used; lane++) store_doll(shape, dolls[first + lane], bodies, lane);
+    }
+}
