@@ -7,6 +7,12 @@
  * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers:
  * I^-1 v = across v + (along - across) z (z . v). */
 #include "base/assert.h"
+#include "base/compiler.h"
+#if defined(NOH_RAGDOLL_SCALAR) /* a float at a time: what the vectors are compared with */
+#undef NOH_AVX2
+#undef NOH_SSE2
+#undef NOH_NEON
+#endif
 #include "sim/lanes3_internal.h"
 #include "sim/ragdoll_internal.h"
 

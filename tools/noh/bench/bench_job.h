@@ -19,6 +19,7 @@
  *   bench_ear.c         row face/ear: live sound heard, against a frame drawn
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
+ *   bench_sim.c         rows sim/ragdoll: dolls that fall, by lanes
  *   bench_report.c      rows, storage, and how they are printed
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
@@ -219,6 +220,7 @@ int bench_look(bench_job *job);
 /* The skinned mesh of the most vertices; no rows where the pack has none. */
 int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);
+int bench_sim(bench_job *job);
 
 void bench_print(bench_job *job);
 int bench_print_json(bench_job *job);

@@ -43,6 +43,15 @@ static int make_rig(const pack_file *file, noh_ragdoll_rig *rig)
     return 0;
 }
 
+int drop_scene_can(const pack_file *file)
+{
+    noh_ragdoll_source source = { .pack = &file->pack };
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t count;
+    return noh_pack_skeleton_at(&file->pack, 0, &source.joints, NULL, NULL) == NOH_OK &&
+           noh_ragdoll_find_rows(&source, rows, &count, NULL) == NOH_OK;
+}
+
 /* ---- throws ---- */
 
 static void random_rotation(uint32_t *state, float q[4])

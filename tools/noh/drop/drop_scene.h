@@ -19,6 +19,9 @@ typedef struct drop_scene {
     double settled;       /* seconds after which the last one fell asleep */
 } drop_scene;
 
+/* Whether the pack's joints have names that make a ragdoll. */
+int drop_scene_can(const pack_file *file);
+
 /* Made and thrown. Prints an error and returns an exit code; 0 on success. */
 int drop_scene_open(drop_scene *s, const pack_file *file, uint32_t dolls, double seconds, uint32_t substeps,
                     uint32_t seed);

@@ -1,0 +1,137 @@
+/* Tests of runtime/sim/ragdoll_rig.c and ragdoll_names.c: real characters, and skeletons that are none. */
+#include "sim/ragdoll_rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clip/pack_clip.h"
+#include "support/support.h"
+#include "support/skin_asset.h"
+
+static noh_ragdoll_source source_of(const noh_pack *pack)
+{
+    noh_ragdoll_source s = { .pack = pack };
+    const noh_skeleton_header *header;
+    assert_int_equal(noh_pack_skeleton_at(pack, 0, &s.joints, &header, NULL), NOH_OK);
+    s.metres = header->unit_cm / 100.0f;
+    return s;
+}
+
+static noh_ragdoll_rig rig_of(const noh_ragdoll_source *s)
+{
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_rig rig;
+    uint32_t count;
+    assert_int_equal(noh_ragdoll_find_rows(s, rows, &count, NULL), NOH_OK);
+    assert_int_equal(noh_ragdoll_rig_make(s, rows, count, &rig, NULL), NOH_OK);
+    return rig;
+}
+
+static const char *const assets[] = { "hero/body.glb" };
+
+/* Sixteen bodies, each on the one it hangs on, at rest in the bind pose: all angles 0, all anchors together. */
+static void zero_is_the_bind_pose(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(assets); i++) {
+        skin_asset a;
+        skin_asset_open(&a, assets[i], NULL);
+        const noh_ragdoll_source s = source_of(&a.pack);
+        const noh_ragdoll_rig rig = rig_of(&s);
+        const noh_ragdolls_desc desc = { &rig, 1, 10 };
+        noh_ragdoll_measures m;
+        noh_ragdolls *set;
+        void *memory = malloc(noh_ragdolls_size(&desc));
+        assert_int_equal(rig.body_count, 16);
+        assert_true(rig.pair_count > 4);
+        assert_int_equal(noh_ragdolls_init(memory, noh_ragdolls_size(&desc), &desc, &set, NULL), NOH_OK);
+        noh_ragdoll_measure(set, 0, NULL, &m);
+        assert_true(m.limit < 1e-4f && m.separation < 1e-5f);
+        for (uint32_t k = 0; k < rig.body_count; k++) { /* bodies begin at their joints */
+            float position[3], rotation[4];
+            noh_ragdoll_bind(&s.joints, rig.bodies[k].joint, position, rotation);
+            for (int n = 0; n < 3 && k; n++) {
+                assert_true(fabsf(rig.joints[k].anchor[n] - position[n] * s.metres) < 1e-5f);
+            }
+        }
+        free(memory);
+        skin_asset_close(&a);
+    }
+}
+
+/* The source's head is a box of 0.3 by 0.2 by 0.2 m, whoever it belongs to. Here a doll of a tenth of the size has
+ * capsules of a tenth and a thousandth of the mass. */
+static void errata_C7_3_sizes_follow_the_skin(void **state)
+{
+    skin_asset a;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    noh_ragdoll_source s = source_of(&a.pack);
+    const noh_ragdoll_rig large = rig_of(&s);
+    float mass = 0.0f;
+    s.metres *= 0.1f;
+    const noh_ragdoll_rig small = rig_of(&s);
+    for (uint32_t i = 0; i < large.body_count; i++) {
+        const noh_ragdoll_body *b = &large.bodies[i], *c = &small.bodies[i];
+        assert_true(fabsf(c->radius / b->radius - 0.1f) < 0.002f && fabsf(c->half / b->half - 0.1f) < 0.002f);
+        assert_true(fabsf(c->mass / b->mass - 0.001f) < 0.0001f);
+        assert_true(b->radius > 0.015f && b->radius < 0.25f);
+        mass += b->mass;
+    }
+    assert_true(mass > 30.0f && mass < 90.0f);
+    skin_asset_close(&a);
+}
+
+/* Left and right are each other's mirror, but for the skin's asymmetry. */
+static void sides_are_alike(void **state)
+{
+    skin_asset a;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    const noh_ragdoll_source s = source_of(&a.pack);
+    const noh_ragdoll_rig rig = rig_of(&s);
+    uint32_t mirrored = 0;
+    for (uint32_t i = 0; i < rig.body_count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            const noh_ragdoll_body *b = &rig.bodies[i], *c = &rig.bodies[k];
+            if (fabsf(b->position[0] + c->position[0]) > 0.02f || fabsf(b->position[1] - c->position[1]) > 0.02f ||
+                fabsf(b->position[0]) < 0.03f) {
+                continue;
+            }
+            assert_true(fabsf(b->radius - c->radius) < 0.2f * b->radius);
+            assert_true(fabsf(rig.joints[i].twist_max - rig.joints[k].twist_max) < 0.1f);
+            mirrored++;
+        }
+    }
+    assert_int_equal(mirrored, 6);
+    skin_asset_close(&a);
+}
+
+static void rows_out_of_order_are_refused(void **state)
+{
+    skin_asset a;
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_rig rig;
+    noh_error error;
+    uint32_t count;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    const noh_ragdoll_source s = source_of(&a.pack);
+    assert_int_equal(noh_ragdoll_find_rows(&s, rows, &count, NULL), NOH_OK);
+    assert_int_equal(noh_ragdoll_rig_make(&s, rows, 0, &rig, NULL), NOH_ERR_LIMIT);
+    assert_int_equal(noh_ragdoll_rig_make(&s, rows + 1, count - 1, &rig, NULL), NOH_ERR_ARG);
+    rows[4].bend_max = NAN;
+    assert_int_equal(noh_ragdoll_rig_make(&s, rows, count, &rig, &error), NOH_ERR_ARG);
+    assert_int_equal(error.where, 4);
+    skin_asset_close(&a);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(zero_is_the_bind_pose),
+    cmocka_unit_test(errata_C7_3_sizes_follow_the_skin),
+    cmocka_unit_test(sides_are_alike),
+    cmocka_unit_test(rows_out_of_order_are_refused),
+};
+
+TEST_MAIN(tests, NULL, NULL)
