@@ -12,8 +12,7 @@ typedef struct drop_scene {
     uint32_t dolls, step, steps; /* steps of 1/60 s: made, to be made */
     noh_world world;
     noh_plane floor;
-    noh_ragdoll_measures
-        worst; /* of all steps and dolls; separation_mean: of the worst joint of each */
+    noh_ragdoll_measures worst; /* of all steps and dolls; separation_mean: of the worst joint of each */
     double separation_sum, cpu_ns;
     uint64_t awake_steps; /* steps of a doll that was awake */
     double settled;       /* seconds after which the last one fell asleep */
