@@ -69,6 +69,7 @@
 #define NOH_RAGDOLL_BODIES_MAX 16u /* of one doll */
 #define NOH_RAGDOLL_PAIRS_MAX 24u  /* of bodies of a doll that collide */
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
+#define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s in one call; what is left of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */

@@ -32,7 +32,6 @@ extern "C" {
 #endif
 
 #define NOH_RAGDOLL_STEP_TICKS 800u /* 1/60 s, of desc.substeps each */
-#define NOH_RAGDOLL_STEPS_MAX 4u    /* in one call; what is left of a longer time is dropped, and counted */
 
 /* ---- rigs ---- */
 
