@@ -32,7 +32,7 @@ typedef struct lane_body {
     lanes at[POINTS], pushed[POINTS]; /* where along the axis, and by how much in this substep */
 } lane_body;
 NOH_STATIC_ASSERT(sizeof(lane_body) == NOH_RAGDOLL_LANE_FLOATS * sizeof(lanes), lane_body);
-NOH_STATIC_ASSERT(NOH_LANES <= NOH_RAGDOLL_LANES_MAX, lanes);
+NOH_STATIC_ASSERT(NOH_LANES <= NOH_RAGDOLL_LANES_MAX, lane_count);
 
 /* ---- dolls in and out ---- */
 

@@ -166,8 +166,8 @@ static const option options[] = {
       .at = offsetof(bench_args, only),
       .value = "GROUP",
       .what =
-          "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face or "
-          "sim; default: all for which the packs have data",
+          "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear "
+          "or sim; default: all for which the packs have data",
       .example = "look" },
     { .name = "--source",
       .kind = OPTION_INPUT,
