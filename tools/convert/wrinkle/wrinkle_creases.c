@@ -8,7 +8,7 @@
 #include "convert/model/model_build.h"
 
 #define PI 3.14159265358979323846
-#define SPACINGS 38.0     /* creases along the diagonal of what targets move */
+#define SPACINGS 31.0     /* creases along the diagonal of what targets move */
 #define SHRINK_LEAST 0.01 /* where less is compressed, nothing is drawn */
 #define WAVE_LEAST 5.0    /* texels from crease to crease: finer ones would be noise, */
 #define WAVE_MOST 24.0    /* coarser ones take long to compute */
@@ -16,6 +16,9 @@
 #define REACH 0.8         /* of the filter, in distances from crease to crease */
 #define LEAN 10.0         /* degrees from the axis of its triangle alone that a slope may be off */
 #define GAIN 4.0          /* what is left of noise grows, what has grown stays */
+#define FOLD_FROM 0.05    /* compression that skin takes up almost as it is, */
+#define FOLD_ALL 0.3      /* and from which on all of it folds */
+#define FOLD_LEAST 0.25
 #define SLOPE_MOST 0.42   /* of a crease's side */
 #define SLOPE_BY_ROOT 1.1 /* a sine that hides a share c of a length has the slope 2 sqrt(c); skin hides less */
 
@@ -138,6 +141,13 @@ static void set_wave(const canvas *c, crease *to)
     to->reach = (int)(REACH * held + 0.5);
 }
 
+/* The share of a compression that folds. Skin takes up little of it as it is: it wrinkles where much is asked. */
+static double folded(double shrink)
+{
+    const double t = (shrink - FOLD_FROM) / (FOLD_ALL - FOLD_FROM), at = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
+    return FOLD_LEAST + (1.0 - FOLD_LEAST) * at * at * (3.0 - 2.0 * at);
+}
+
 static void set_crease(const canvas *c, size_t at)
 {
     crease *to = &c->creases[at];
@@ -155,7 +165,7 @@ static void set_crease(const canvas *c, size_t at)
     crease_axis(c->field->demand[c->raster->triangle[at]], to->u, to->v, own);
     lean(axis, own);
     vec_cross(normal, axis, to->across);
-    slope = SLOPE_BY_ROOT * sqrt(shrink);
+    slope = SLOPE_BY_ROOT * sqrt(shrink) * folded(shrink);
     to->depth *= (float)((slope < SLOPE_MOST ? slope : SLOPE_MOST) / PI); /* a sine's slope is pi * depth / length */
 }
 

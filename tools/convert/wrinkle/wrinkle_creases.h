@@ -3,7 +3,8 @@
  * Creases run along the direction of the larger stretch and repeat across it. A band-pass filter turned to that
  * direction at every texel, applied to noise over and over, lets stripes of that direction and distance grow together,
  * as they do in synthetic fingerprints (Cappelli, Maio, Maltoni: Synthetic fingerprint-image generation, ICPR 2000);
- * their profile is a narrow valley between broad ridges, as deep as the surface that is to be hidden in it asks for. */
+ * their profile is a narrow valley between broad ridges, as deep as the surface that is to be hidden in it asks for;
+ * of mild compression, which skin takes up, a part is shown. */
 #ifndef NOH_CONVERT_WRINKLE_WRINKLE_CREASES_H
 #define NOH_CONVERT_WRINKLE_WRINKLE_CREASES_H
 
