@@ -26,9 +26,10 @@ static noh_result check_header(const noh_check *check, const noh_transfer_header
         { offsetof(noh_transfer_header, order), h->order != 4 && h->order != 6 },
         { offsetof(noh_transfer_header, flags), (h->flags & ~NOH_TRANSFER_ON_NORMAL) != 0 },
         { offsetof(noh_transfer_header, ray_count), !h->ray_count },
+        { offsetof(noh_transfer_header, bounce), h->bounce > 255u },
     };
-    noh_result result = noh_check_fields(check, known, 3, "transfer has an unknown order or flag, or was not measured",
-                                         0);
+    noh_result result = noh_check_fields(
+        check, known, 4, "transfer has an unknown order or flag, reflects more than it gets, or was not measured", 0);
     for (unsigned i = 0; !result && i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
         if (h->reserved[i]) {
             result = noh_check_fail(check, "reserved field of a transfer is not zero",

@@ -199,7 +199,8 @@ typedef struct noh_rect {
 #define NOH_TRANSFER_ON_NORMAL 1u /* lobes lie about the normals, records have no axis */
 
 /* Record of a vertex:
- *   occlusion  unorm 8: the share of a white matte surface's light that reaches it in the bind pose
+ *   occlusion  unorm 8: the share of a white matte surface's light that reaches it in the bind pose; with `bounce` also
+ *              by one reflection
  *   shape      snorm 8 x (order - 1): for bands 1 and up the mean of the Legendre polynomial P_l of the angle to the
  *              lobe's axis
  *   axis       snorm 8 x 2, octahedral, model space; absent with ON_NORMAL
@@ -216,7 +217,9 @@ typedef struct noh_transfer_header {
     uint32_t deltas_offset;  /* int8_t[texel_count], in the order of the delta texels: delta * scale is the difference
                               * of occlusion at weight 1 of the target */
     uint32_t ray_count;      /* for reports: directions that were tried for each vertex, over the whole sphere */
-    uint32_t reserved[6];
+    uint32_t bounce;         /* 0..255: 255ths of its light that what stands in the way reflects; 0: light that was
+                              * reflected is not in the records */
+    uint32_t reserved[5];
 } noh_transfer_header;
 
 /* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the matrix. How much each target

@@ -36,6 +36,20 @@ expect 0 'verify'
 noh light "$work/arm4.noh" --rays 256
 expect 0 'a table'
 check 'of two poses' test "$(grep -c '^bind pose\|^posed' "$work/out")" = 2
+
+noh build "$build/demo/arm.glb" -o "$work/bounce.noh" --quiet --transfer 4 --bounce 0.5
+expect 0 'build with one reflection'
+noh info "$work/bounce.noh" --json
+check 'it is in the pack, in 255ths' grep -q '"bounce": 128' "$work/out"
+noh light "$work/bounce.noh" --rays 256
+expect 0 'measure it'
+noh build "$build/demo/arm.glb" -o "$work/x.noh" --bounce 0.5
+expect 2 'no reflection without a transfer'
+says '--transfer'
+noh build "$build/demo/arm.glb" -o "$work/x.noh" --transfer 4 --bounce 1.5
+expect 2 'more light than there is'
+says '--bounce wants a number from 0 to 1'
+
 noh light "$work/arm4.noh" --rays 10
 expect 2 'too few rays'
 says '--rays wants a whole number from 64 to 65536'

@@ -104,7 +104,7 @@ static void write_transfer(const char *folder)
 {
     const lod_face face = { 8, 7, 2, 0, 0 };
     const lod_settings two = { 2, 0, LOD_FAST };
-    const transfer_settings settings = { 4, 0, NULL };
+    const transfer_settings settings = { 4, 0, NULL, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     model *m = lod_face_model(&face);
     model_error error;

@@ -61,7 +61,7 @@ typedef struct lit_pack {
 /* The pack of these bytes, with transfers. */
 static void add_transfer(lit_pack *p, const uint8_t *bytes, size_t count, uint32_t order, uint32_t flags)
 {
-    const transfer_settings settings = { order, flags, NULL };
+    const transfer_settings settings = { order, flags, NULL, 0 };
     const noh_pack pack = test_open(bytes, count);
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error;
@@ -147,7 +147,7 @@ static float occlusion_at(const lit_pack *p, float x, float y, float z)
 }
 
 /* On the floor at the distance d from a wall of height h that has no end: of the light (1 - d / sqrt(d d + h h)) / 2
- * does not arrive. */
+ * does not arrive. The wall is open, so it reflects its albedo's share of that onto the floor. */
 static void plane_and_wall(void **state)
 {
     static const float distances[] = { 0.25f, 0.5f, 1.0f, 2.0f };
@@ -163,6 +163,7 @@ static void plane_and_wall(void **state)
     model *m;
     size_t count;
     uint8_t *bytes, blocked[4096];
+    static float direct[20][NOH_SH_COUNT_MAX];
     noh_pack pack;
     (void)state;
     for (int q = 0; q < 4; q++) { /* small floors, each with a corner at its distance */
@@ -176,6 +177,8 @@ static void plane_and_wall(void **state)
     assert_int_equal(light_surface_open(&pack, 0, &surface, &error), 0);
     assert_int_equal(light_rays_make(4096, &rays), 0);
     surface.least = 1e-3f; /* the wall's edges are long, and would make it long */
+    assert_int_equal(surface.mesh.header->vertex_count, 20);
+    for (uint32_t v = 0; v < 20; v++) light_rays_transfer(&rays, &surface, v, blocked, direct[v]);
     for (uint32_t v = 0, q; v < surface.mesh.header->vertex_count; v++) {
         const float *at = surface.position + 3u * (size_t)v;
         const double d = at[0];
@@ -185,6 +188,8 @@ static void plane_and_wall(void **state)
             light_rays_transfer(&rays, &surface, v, blocked, transfer);
             assert_true(fabs(3.5449077 * (double)transfer[0] - (1.0 - 0.5 * (1.0 - d / sqrt(d * d + 1.0)))) < 0.004);
             assert_true(transfer[3] > 0.02f); /* bent away from the wall */
+            light_rays_bounce(&rays, &surface, v, blocked, 0.6f, direct[0], NOH_SH_COUNT_MAX, transfer);
+            assert_true(fabs(3.5449077 * (double)transfer[0] - (1.0 - 0.2 * (1.0 - d / sqrt(d * d + 1.0)))) < 0.004);
             seen++;
         }
     }
@@ -518,7 +523,7 @@ static void every_lie_is_refused(void **state)
     (void)state;
     face_pack(&p, 6, 0);
     bytes = test_aligned(p.bytes, p.count);
-    for (int lie = 0; lie < 15; lie++) {
+    for (int lie = 0; lie < 16; lie++) {
         noh_transfer_header *h;
         uint8_t *chunk;
         noh_error error = { NOH_OK, NULL, 0, 0 };
@@ -539,8 +544,9 @@ static void every_lie_is_refused(void **state)
         case 8: h->scales_offset -= 16; break;
         case 9: h->deltas_offset ^= 64; break;
         case 10: h->ray_count = 0; break;
-        case 11: h->reserved[5] = 1; break;
+        case 11: h->reserved[4] = 1; break;
         case 12: chunk[h->records_offset + 7] = 0x80; break;
+        case 14: h->bounce = 256; break;
         case 13: memcpy(chunk + h->scales_offset + 4, lie % 2 ? &nan : &below, 4); break;
         default: chunk[h->deltas_offset + 1] = 0x80; break;
         }

@@ -50,10 +50,17 @@ float light_rays_sum(const light_rays *r, const float normal[3])
     return sum;
 }
 
-void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked)
+static void origin_of(const light_surface *s, uint32_t vertex, float origin[3])
 {
     const float *p = s->position + 3u * (size_t)vertex, *n = s->normal + 3u * (size_t)vertex;
-    const float origin[3] = { p[0] + s->least * n[0], p[1] + s->least * n[1], p[2] + s->least * n[2] };
+    for (int k = 0; k < 3; k++) origin[k] = p[k] + s->least * n[k];
+}
+
+void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked)
+{
+    const float *n = s->normal + 3u * (size_t)vertex;
+    float origin[3];
+    origin_of(s, vertex, origin);
     for (uint32_t i = 0; i < r->count; i++) {
         const float *d = r->directions + 3u * (size_t)i;
         blocked[i] = dot(n, d) > 0.0f && ray_tree_hit(&s->tree, origin, d, s->least);
@@ -73,6 +80,41 @@ void light_rays_transfer(const light_rays *r, const light_surface *s, uint32_t v
         const float *basis = r->basis + NOH_SH_COUNT_MAX * (size_t)i;
         for (uint32_t k = 0; k < NOH_SH_COUNT_MAX && blocked[i]; k++) {
             transfer[k] -= weight * basis[k];
+        }
+    }
+}
+
+/* Whether a ray meets the side of a triangle from which its corners go round anticlockwise. */
+static int meets_front(const float *triangle, const float d[3])
+{
+    float a[3], b[3];
+    for (int k = 0; k < 3; k++) {
+        a[k] = triangle[3 + k] - triangle[k];
+        b[k] = triangle[6 + k] - triangle[k];
+    }
+    return d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) +
+               d[2] * (a[0] * b[1] - a[1] * b[0]) <
+           0.0f;
+}
+
+void light_rays_bounce(const light_rays *r, const light_surface *s, uint32_t vertex, const uint8_t *blocked,
+                       float albedo, const float *values, uint32_t stride, float *sums)
+{
+    const float *n = s->normal + 3u * (size_t)vertex;
+    const float scale = albedo / light_rays_sum(r, n);
+    float origin[3];
+    origin_of(s, vertex, origin);
+    for (uint32_t i = 0; i < r->count; i++) {
+        const float *d = r->directions + 3u * (size_t)i;
+        ray_meeting m;
+        if (blocked[i] && ray_tree_nearest(&s->tree, origin, d, s->least, &m) && m.triangle < s->own_count &&
+            meets_front(s->triangles + 9u * (size_t)m.triangle, d)) {
+            const uint32_t *corners = s->corners + 3u * (size_t)m.triangle;
+            const float share[3] = { 1.0f - m.u - m.v, m.u, m.v }, weight = scale * dot(n, d);
+            for (uint32_t k = 0; k < 3u * stride; k++) {
+                sums[k % stride] += weight * share[k / stride] *
+                                    values[(size_t)corners[k / stride] * stride + k % stride];
+            }
         }
     }
 }

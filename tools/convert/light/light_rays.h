@@ -30,4 +30,10 @@ void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t ve
 void light_rays_transfer(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked,
                          float *transfer);
 
+/* Add what reaches a vertex by one reflection: where a ray of it is blocked by the front of a triangle of the same
+ * mesh, `albedo` of the value there, between those of its corners. Other meshes and backs reflect nothing.
+ * shapes  blocked[count] of light_rays_blocked; values[vertex_count][stride]; sums[stride] */
+void light_rays_bounce(const light_rays *r, const light_surface *s, uint32_t vertex, const uint8_t *blocked,
+                       float albedo, const float *values, uint32_t stride, float *sums);
+
 #endif

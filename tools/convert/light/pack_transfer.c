@@ -63,6 +63,7 @@ static int add_transfer(copier *c, uint32_t index)
     h.mesh = index;
     h.order = c->settings->order;
     h.flags = c->settings->flags;
+    h.bounce = c->settings->bounce;
     h.vertex_count = mesh.header->vertex_count;
     h.texel_count = mesh.header->texel_count;
     h.target_count = mesh.header->target_count;

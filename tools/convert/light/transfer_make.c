@@ -17,6 +17,7 @@ typedef struct maker {
     const transfer_settings *settings;
     uint8_t *blocked;   /* [rays->count] */
     float *normals;     /* [vertex_count][3] in the bind pose */
+    float *direct;      /* [vertex_count][NOH_SH_COUNT_MAX] in the bind pose, without reflections */
     float *transfers;   /* [vertex_count][NOH_SH_COUNT_MAX] that the lobes are of */
     float *occlusion;   /* [vertex_count] in the bind pose */
     float *brightest;   /* [vertex_count] of the transfers */
@@ -36,6 +37,7 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     texels = k->surface.mesh.header->texel_count;
     k->blocked = model_zeros(k->rays->count, 1);
     k->normals = model_zeros(vertices, 3u * sizeof(float));
+    k->direct = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
     k->transfers = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
     k->occlusion = model_zeros(vertices, sizeof(float));
     k->brightest = model_zeros(vertices, sizeof(float));
@@ -43,8 +45,8 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     k->turned = model_zeros(texels, 3u * sizeof(float));
     k->vertices = model_zeros(k->surface.mesh.header->touched_count, sizeof(uint32_t));
     k->weights = model_zeros(k->surface.mesh.header->target_count, sizeof(float));
-    return k->blocked && k->normals && k->transfers && k->occlusion && k->brightest && k->targets && k->turned &&
-                   k->vertices && k->weights
+    return k->blocked && k->normals && k->direct && k->transfers && k->occlusion && k->brightest && k->targets &&
+                   k->turned && k->vertices && k->weights
                ? 0
                : model_fail(error, k->surface.mesh.name, "out of memory");
 }
@@ -54,6 +56,7 @@ static void close(maker *k)
     light_surface_close(&k->surface);
     free(k->blocked);
     free(k->normals);
+    free(k->direct);
     free(k->transfers);
     free(k->occlusion);
     free(k->brightest);
@@ -69,14 +72,28 @@ static float integral(const float *transfer)
     return transfer[0] * 3.5449077f; /* sqrt(4 pi) */
 }
 
+/* One reflection, of which `blocked` says where; what reflects is lit as in the bind pose. */
+static void add_bounce(maker *k, uint32_t vertex, float *transfer)
+{
+    if (k->settings->bounce) {
+        light_rays_bounce(k->rays, &k->surface, vertex, k->blocked, (float)k->settings->bounce / 255.0f, k->direct,
+                          NOH_SH_COUNT_MAX, transfer);
+    }
+}
+
 static void measure_bind_pose(maker *k)
 {
     const uint32_t count = k->surface.mesh.header->vertex_count;
     memcpy(k->normals, k->surface.normal, 3u * sizeof(float) * (size_t)count);
+    for (uint32_t v = 0; v < count; v++) {
+        light_rays_transfer(k->rays, &k->surface, v, k->blocked, k->direct + NOH_SH_COUNT_MAX * (size_t)v);
+    }
+    memcpy(k->transfers, k->direct, NOH_SH_COUNT_MAX * sizeof(float) * (size_t)count);
     for (uint32_t v = count; v-- > 0;) {
         float *transfer = k->transfers + NOH_SH_COUNT_MAX * (size_t)v;
         const uint32_t texel = noh_mesh_accumulation_texel(&k->surface.mesh, v);
-        light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
+        if (k->settings->bounce) light_rays_blocked(k->rays, &k->surface, v, k->blocked);
+        add_bounce(k, v, transfer);
         k->occlusion[v] = k->brightest[v] = integral(transfer);
         if (texel < k->surface.mesh.header->touched_count) {
             k->vertices[texel] = v;
@@ -142,6 +159,7 @@ static int measure_target(maker *k, uint32_t target, model_error *error)
             continue;
         }
         light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
+        add_bounce(k, v, transfer);
         memcpy(k->turned + 3u * (size_t)texel, k->surface.normal + 3u * (size_t)v, 3u * sizeof(float));
         if (k->occlusion[v] < DARK && integral(transfer) > k->brightest[v]) {
             k->brightest[v] = integral(transfer);

@@ -9,9 +9,10 @@
 #define TRANSFER_RAYS 1024u /* directions over the sphere, half of them in front of a vertex */
 
 typedef struct transfer_settings {
-    uint32_t order; /* 4 or 6; 0: none */
-    uint32_t flags; /* NOH_TRANSFER_* */
-    FILE *progress; /* a terminal; NULL: none */
+    uint32_t order;  /* 4 or 6; 0: none */
+    uint32_t flags;  /* NOH_TRANSFER_* */
+    FILE *progress;  /* a terminal; NULL: none */
+    uint32_t bounce; /* as in noh_transfer_header */
 } transfer_settings;
 
 /* The arrays of a transfer chunk. */

@@ -20,7 +20,7 @@ typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
         *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
-    double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette;
+    double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette, bounce;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
 } build_args;
 
@@ -122,6 +122,10 @@ static int set_transfer(const build_args *a, convert_options *o)
             o->transfer.flags = all[i].flags;
         }
     }
+    if (!(a->bounce >= 0.0 && a->bounce <= 1.0)) {
+        return tool_usage("--bounce wants a number from 0 to 1");
+    }
+    o->transfer.bounce = (uint32_t)(255.0 * a->bounce + 0.5);
     return a->transfer && !o->transfer.order
                ? tool_usage("--transfer wants 4, 6, seed-4 or seed-6, not '%s'", a->transfer)
                : 0;
@@ -273,6 +277,15 @@ static const option options[] = {
           "precompute how each vertex answers to light from all around, with occlusion that follows the targets, by spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
       .example = "4",
       .excludes = "--only=anim" },
+    { .name = "--bounce",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, bounce),
+      .value = "ALBEDO",
+      .initial = "0",
+      .what =
+          "let --transfer have light that the mesh reflects onto itself once: the share of it that its surface reflects, 0 to 1",
+      .example = "0.5",
+      .needs = "--transfer" },
     { .name = "--wrinkles",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, wrinkles),

@@ -131,6 +131,7 @@ typedef struct mesh_work {
     uint8_t *seed_records, *blocked;
     uint8_t *kept;    /* [vertex_count] */
     float *occlusion; /* of the pose, stored */
+    float *direct;    /* [vertex_count][3 * LIGHT_COUNT] without reflections; NULL where the transfer has none */
 } mesh_work;
 
 /* What a vertex reflects, by brute force, under every light; and how much of the sky it sees. */
@@ -152,6 +153,24 @@ static double brute_force(const mesh_work *w, uint32_t vertex, float sums[3u * L
         for (uint32_t k = 0; k < 3u * LIGHT_COUNT; k++) {
             sums[k] += weight * radiance[k];
         }
+    }
+    return seen;
+}
+
+static void measure_direct(const mesh_work *w)
+{
+    for (uint32_t v = 0; w->direct && v < w->surface.mesh.header->vertex_count; v++) {
+        (void)brute_force(w, v, w->direct + 3u * LIGHT_COUNT * (size_t)v);
+    }
+}
+
+/* brute_force, with one reflection where the transfer has one. */
+static double brute_force_again(const mesh_work *w, uint32_t vertex, float sums[3u * LIGHT_COUNT])
+{
+    const double seen = brute_force(w, vertex, sums);
+    if (w->direct) {
+        light_rays_bounce(&w->m->rays, &w->surface, vertex, w->blocked, (float)w->stored.header->bounce / 255.0f,
+                          w->direct, 3u * LIGHT_COUNT, sums);
     }
     return seen;
 }
@@ -207,8 +226,9 @@ static int measure_poses(mesh_work *w, const float *weights, model_error *error)
     const uint32_t count = w->surface.mesh.header->vertex_count;
     float truth[3u * LIGHT_COUNT];
     keep_opaque(w);
+    measure_direct(w);
     for (uint32_t v = 0; v < count; v++) {
-        w->kept[v] = w->kept[v] && brute_force(w, v, truth) > SEEN_LEAST;
+        w->kept[v] = w->kept[v] && brute_force_again(w, v, truth) > SEEN_LEAST;
         if (w->kept[v]) {
             w->m->vertices++;
             add_errors(w, v, truth, 0);
@@ -218,10 +238,11 @@ static int measure_poses(mesh_work *w, const float *weights, model_error *error)
     if (light_surface_pose(&w->surface, weights, error)) {
         return 1;
     }
+    measure_direct(w);
     noh_transfer_accumulate(&w->surface.mesh, &w->stored, weights, w->occlusion);
     for (uint32_t v = 0; v < count; v++) {
         if (w->kept[v]) {
-            (void)brute_force(w, v, truth);
+            (void)brute_force_again(w, v, truth);
             add_errors(w, v, truth, 1);
         }
     }
@@ -241,12 +262,16 @@ int light_measure_mesh(light_measure *m, const noh_pack *pack, uint32_t mesh, co
         w.blocked = model_zeros(m->rays.count, 1);
         w.seed_records = model_zeros(h->vertex_count, SEED_ORDER);
         w.occlusion = model_zeros((size_t)h->morph_height << h->morph_width_log2, sizeof *w.occlusion);
-        failed = !w.kept || !w.blocked || !w.seed_records || !w.occlusion || make_seed(&w)
+        (void)noh_transfer_of(&w.surface.mesh, &w.stored, NULL);
+        if (w.stored.header->bounce) {
+            w.direct = model_zeros(h->vertex_count, 3u * LIGHT_COUNT * sizeof *w.direct);
+        }
+        failed = (w.stored.header->bounce && !w.direct) || !w.kept || !w.blocked || !w.seed_records || !w.occlusion ||
+                         make_seed(&w)
                      ? model_fail(error, w.surface.mesh.name, "out of memory")
                      : 0;
     }
     if (!failed) {
-        (void)noh_transfer_of(&w.surface.mesh, &w.stored, NULL);
         failed = measure_poses(&w, weights, error);
     }
     light_surface_close(&w.surface);
@@ -254,6 +279,7 @@ int light_measure_mesh(light_measure *m, const noh_pack *pack, uint32_t mesh, co
     free(w.blocked);
     free(w.seed_records);
     free(w.occlusion);
+    free(w.direct);
     return failed;
 }
 
