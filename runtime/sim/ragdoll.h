@@ -96,7 +96,7 @@ typedef struct noh_ragdoll_motion {
     float velocity[3], spin[3]; /* metres and radians per second */
 } noh_ragdoll_motion;
 
-/* The exact bytes of a set: about 1.9 KB a doll and 31 KB that they share. 0 for an impossible desc. */
+/* The exact bytes of a set: about 1.8 KB a doll and 28 KB that they share. 0 for an impossible desc. */
 size_t noh_ragdolls_size(const noh_ragdolls_desc *desc);
 
 /* errors  ARG memory is NULL or misaligned, or a number of the rig is out of its range (where: the body); LIMIT too
