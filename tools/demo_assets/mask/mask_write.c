@@ -213,7 +213,8 @@ void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer
     for (int i = 0; i < target_count(); i++) {
         buffer_print(json, "%s\"%s\"", i ? "," : "", target_name(i));
     }
-    buffer_print(json, "]}}");
+    /* Its lips are carved a little apart: at p, b and m they meet. */
+    buffer_print(json, "],\"recipe\":[\"PP mouthClose\",\"PP mouthPressLeft 0.2\",\"PP mouthPressRight 0.2\"]}}");
 }
 
 void mask_materials_write(Buffer *json)
