@@ -373,7 +373,8 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
         noh_ragdoll_state *s = &d->bodies[i];
         memcpy(s->position, bodies[i].position, sizeof s->position);
         memcpy(s->rotation, bodies[i].rotation, sizeof s->rotation);
-        memset(s->velocity, 0, sizeof s->velocity + sizeof s->spin);
+        memset(s->velocity, 0, sizeof s->velocity);
+        memset(s->spin, 0, sizeof s->spin);
         if (motions) {
             memcpy(s->velocity, motions[i].velocity, sizeof s->velocity);
             memcpy(s->spin, motions[i].spin, sizeof s->spin);

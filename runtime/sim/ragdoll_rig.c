@@ -233,7 +233,7 @@ static void place_capsule(noh_ragdoll_body *b, const float centre[3], const floa
 static int wide_capsule(const maker *m, uint32_t i)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
-    float axis[3], centre[3];
+    float axis[3] = { 0.0f, 0.0f, 0.0f }, centre[3];
     if (m->bones[i].child_count < 2 || !widest(m, i, axis)) return 0;
     noh_normalize3(axis, z);
     const probe along = probe_body(m, i, m->bones[i].start, axis, 0);

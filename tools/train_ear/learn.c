@@ -110,7 +110,10 @@ static void descend(const lesson *l, int rounds)
 {
     const int steps = l->count / BATCH;
     int *order = malloc((size_t)l->count * sizeof *order);
-    if (!order) voices_die("out of memory", "learn");
+    if (!order) {
+        voices_die("out of memory", "learn");
+        return;
+    }
     memcpy(order, l->middles, (size_t)l->count * sizeof *order);
     for (int round = 0, at = 0; round < rounds; round++) {
         double loss = 0;

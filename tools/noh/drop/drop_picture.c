@@ -162,8 +162,9 @@ static void draw_tile(const scene *w, drop_picture *p)
         uint32_t sum[3] = { 0, 0, 0 };
         uint8_t *out = p->rgba + 4 * ((size_t)row * DROP_TILES * p->side + p->drawn * p->side + column), one[4];
         for (uint32_t n = 0; n < 4; n++) {
-            const float x = (float)column + 0.25f + 0.5f * (float)(n % 2u);
-            const float y = (float)row + 0.25f + 0.5f * (float)(n / 2u);
+            const uint32_t right = n % 2u, below = n / 2u;
+            const float x = (float)column + 0.25f + 0.5f * (float)right;
+            const float y = (float)row + 0.25f + 0.5f * (float)below;
             const noh_ray ray = ray_at(x * step - 1.0f, 1.0f - y * step);
             draw_pixel(w, &ray, one);
             for (int i = 0; i < 3; i++) sum[i] += one[i];

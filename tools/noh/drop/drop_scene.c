@@ -78,12 +78,13 @@ static void throw_doll(drop_scene *s, uint32_t doll, uint32_t *state)
     speed[2] = SPEED * random_float(state);
     memset(motions, 0, sizeof motions);
     for (uint32_t i = 0; i < s->rig.body_count; i++) {
+        const uint32_t column = doll % 4u, row = doll / 4u;
         const noh_ragdoll_body *b = &s->rig.bodies[i];
         for (int k = 0; k < 3; k++) poses[i].position[k] = b->position[k] - first->position[k];
         noh_quat_rotate(turn, poses[i].position, poses[i].position);
-        poses[i].position[0] += 2.0f * (float)(doll % 4u) - 3.0f;
+        poses[i].position[0] += 2.0f * (float)column - 3.0f;
         poses[i].position[1] += HEIGHT;
-        poses[i].position[2] += 2.0f * (float)(doll / 4u) - 3.0f;
+        poses[i].position[2] += 2.0f * (float)row - 3.0f;
         noh_quat_mul(turn, b->rotation, poses[i].rotation);
         memcpy(motions[i].velocity, speed, sizeof speed);
     }
