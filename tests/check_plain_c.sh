@@ -32,7 +32,7 @@ if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! comm
 else
     for source in runtime/*/*.c; do
         case $source in runtime/gl/*) continue ;; esac
-        ${CC:-gcc} -std=c99 -O2 -m32 -march=i386 -mno-sse -Iruntime -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
+        ${CC:-gcc} -std=c99 -O2 -m32 -march=i386 -mno-sse -Iruntime "-I$build/gen" -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
     done
     nm -u "$work"/*.o | awk 'NF == 2 { print $2 }' | sort -u | grep -v '^noh_' >"$work/asked"
     # the compiler's own: 64-bit arithmetic, and where the program lies
