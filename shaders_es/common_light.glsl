@@ -159,12 +159,13 @@ vec3 noh_light(noh_surface s)
     vec3 h = normalize(noh_key + s.view);
 #endif
     float nv = max(dot(mirror, s.view), 1e-3);
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(h, s.view), 0.0), 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - clamp(dot(h, s.view), 0.0, 1.0), 5.0);
     vec3 sky = s.occlusion * noh_sky(s.normal.y);
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
     color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;
     color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic);
-    color += 0.10 * sky * pow(1.0 - nv, 3.0) * (1.0 - 0.6 * roughness);
+    float rim = max(1.0 - nv, 0.0); /* nv may pass 1 by a rounding */
+    color += 0.10 * sky * rim * rim * rim * (1.0 - 0.6 * roughness);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     color *= noh_v_open;
 #endif

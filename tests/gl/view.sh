@@ -128,6 +128,8 @@ figure() { # sets $shot
     while [ ! -f "$shot" ] && [ $tries -lt 900 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
 }
 same() { cmp -s "$1" "$2"; }
+# But for a rounding: creases and skin are lit by derivatives, and other programs round them otherwise.
+near() { "$build/tests/gl/picture_diff" "$1" "$2" 0.02 0.01 >/dev/null; }
 differ() { [ -f "$1" ] && [ -f "$2" ] && ! cmp -s "$1" "$2"; }
 moves() { # within some pictures the figure changes
     figure
@@ -217,7 +219,7 @@ click 100 55
 xdotool type cheekpuff
 drag 15 79 250 79
 "$build/noh" render "$mask" -o "$work/puff.png" --size "$(png_size "$rest")" --weight cheekPuff=1 >/dev/null
-check 'a slider moves the target that was searched for' same "$shot" "$work/puff.png"
+check 'a slider moves the target that was searched for' near "$shot" "$work/puff.png"
 click 255 55
 check 'reset lets it go' same "$rest" "$shot"
 
@@ -240,7 +242,7 @@ paused=$shot
 # The list of paths opens below its box; mrt is its third entry, 58 points below.
 click 1030 306
 click 1030 364
-check 'another path draws the same figure' same "$paused" "$shot"
+check 'another path draws the same figure' near "$paused" "$shot"
 
 xdotool key Tab
 figure
@@ -255,7 +257,7 @@ check 'F12 saves the window' test "$(png_size "$work/noh-window-$shots.png")" = 
 lose
 check 'F10 loses the context, and a new one comes' test "${window:-$lost}" != "$lost"
 figure
-check 'in which the figure is as it was, drawn the same way' same "$paused" "$shot"
+check 'in which the figure is as it was, drawn the same way' near "$paused" "$shot"
 
 if ${CC:-gcc} "$tests_gl/drop.c" -lX11 -o "$work/drop" >/dev/null 2>&1; then
     before=$shot
@@ -272,7 +274,7 @@ if ${CC:-gcc} "$tests_gl/drop.c" -lX11 -o "$work/drop" >/dev/null 2>&1; then
     check 'the reason is told' grep -q "^noh: $work/xvfb: " "$work/err"
     check 'the model of a pack is converted' "$work/drop" "$window" "$build/mask.glb"
     figure
-    check 'and looks as the pack' same "$rest" "$shot"
+    check 'and looks as the pack' near "$rest" "$shot"
 else
     skip 'drop' 'no X11 headers to compile a source of drops with'
 fi
