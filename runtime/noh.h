@@ -41,6 +41,7 @@
 /* ---- what a game calls first ---- */
 
 #include "stage/part.h"             /* what changes a pose before it is shown */
+#include "stage/springs.h"          /* chains of joints that swing on a stage */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/view.h"             /* cameras and lights for it */

@@ -61,11 +61,9 @@ static int is_good(const noh_spring_joint *j)
            noh_is_finite(j->radius) && j->gravity >= 0.0f && noh_is_finite(j->gravity);
 }
 
-noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
-                           noh_spring **spring, noh_error *error)
+noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
 {
-    noh_arena arena;
-    NOH_ASSERT(desc && carrier && spring);
+    NOH_ASSERT(desc);
     if (!noh_spring_size(desc)) {
         return noh_fail(error, NOH_ERR_LIMIT, "a spring has no joints, or more joints or colliders than the limit",
                         desc->joint_count, NOH_SPRING_JOINTS_MAX);
@@ -75,7 +73,17 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
             return noh_fail(error, NOH_ERR_ARG, "a spring's joint has no length, or a number out of its range", i, 0);
         }
     }
-    const noh_result result = noh_arena_open(&arena, memory, bytes, noh_spring_size(desc), error);
+    return NOH_OK;
+}
+
+noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
+                           noh_spring **spring, noh_error *error)
+{
+    noh_arena arena;
+    NOH_ASSERT(desc && carrier && spring);
+    noh_result result = noh_spring_check_desc(desc, error);
+    if (result) return result;
+    result = noh_arena_open(&arena, memory, bytes, noh_spring_size(desc), error);
     if (result) return result;
     noh_spring *s = memory;
     memset(s, 0, noh_spring_size(desc));
@@ -106,6 +114,50 @@ void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh
     spring->left = 0;
     memset(spring->moved, 0, sizeof spring->moved);
     memcpy(spring->turned, carrier->rotation, sizeof spring->turned);
+}
+
+/* ---- from outside ---- */
+
+/* Numbers that steps can go on from: squares of their differences stay finite. */
+static int are_sound(const float *v, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!(v[i] > -1e15f && v[i] < 1e15f)) return 0;
+    }
+    return 1;
+}
+
+static int turns(const float q[4])
+{
+    const float square = noh_quat_dot(q, q);
+    return square > 0.9f && square < 1.1f;
+}
+
+const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *desc)
+{
+    const noh_spring *s = spring;
+    NOH_ASSERT(spring && desc);
+    if (s->joint_count != desc->joint_count || s->collider_count != desc->collider_count) {
+        return "a spring is of another desc";
+    }
+    if (s->collides > 1u || s->left >= NOH_SPRING_STEP_TICKS || !turns(s->last.rotation) ||
+        !turns(s->stepped.rotation) || !turns(s->turned) || !are_sound(s->last.position, 3) ||
+        !are_sound(s->stepped.position, 3) || !are_sound(s->moved, 3)) {
+        return "a spring's time or carrier is out of range";
+    }
+    for (uint32_t i = 0; i < s->joint_count; i++) {
+        const point *p = &const_points_of(s)[i];
+        if (!are_sound(p->now, 3) || !are_sound(p->before, 3) || p->length != noh_length3(desc->joints[i].bone)) {
+            return "a spring's joint is out of range";
+        }
+    }
+    const noh_spring_collider *c = (const noh_spring_collider *)(const void *)(const_points_of(s) + s->joint_count);
+    for (uint32_t i = 0; i < s->collider_count; i++) {
+        if (!are_sound(c[i].from, 3) || !are_sound(c[i].to, 3) || !are_sound(&c[i].radius, 1)) {
+            return "a spring's collider is out of range";
+        }
+    }
+    return NULL;
 }
 
 /* ---- one step ---- */

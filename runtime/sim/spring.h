@@ -5,6 +5,7 @@
  *   noh_spring_step                    time moves on
  *   noh_spring_rotations               the local rotations of its joints
  *   noh_spring_ends                    where its joints end
+ *   noh_spring_check                   a spring that comes from outside
  *
  * Each joint's end is a point with inertia, pulled towards its rest direction, at a fixed distance from the joint. The
  * motion is that of the reference of VRMC_springBone 1.0 at 60 Hz, whatever the frame rate: the chain advances in steps
@@ -65,6 +66,10 @@ typedef struct noh_spring noh_spring;
 /* The exact bytes of a spring: 104, 28 a joint and 28 a collider, rounded up to 16. 0 for an impossible desc. */
 size_t noh_spring_size(const noh_spring_desc *desc);
 
+/* What noh_spring_init would say of a desc.
+ * errors  ARG, LIMIT: as there */
+noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error);
+
 /* A chain at rest.
  * errors  ARG memory is NULL or misaligned, a bone has no length, or a number is out of its range (where: the joint);
  *         LIMIT too many joints or colliders; MEMORY it is too small */
@@ -86,6 +91,10 @@ void noh_spring_rotations(const noh_spring *spring, const noh_spring_desc *desc,
 
 /* shapes  ends[joint_count][3], world space, as of the last step's carrier */
 void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, float *ends);
+
+/* What is wrong with a spring of this desc whose bytes come from outside, a constant text; NULL: it can go on.
+ * shapes  spring: noh_spring_size bytes, aligned to 16 */
+const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *desc);
 
 #ifdef __cplusplus
 }

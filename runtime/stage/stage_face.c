@@ -87,7 +87,7 @@ static void neck_space_of(const noh_stage_kind *k, const noh_part_work *w, neck_
     n->rotation[3] = 1.0f;
     memcpy(n->origin, head->at, sizeof n->origin);
     if (head->joint != NOH_NONE) {
-        noh_stage_face_joint_at(k, w->local, head->joint, n->rotation, n->origin);
+        noh_stage_joint_at(k, w->local, head->joint, n->rotation, n->origin);
         noh_quat_mul(n->rotation, head->axes, n->rotation);
     }
 }
@@ -117,7 +117,7 @@ static void turn_neck(const noh_stage_kind *k, noh_part_work *w, const neck_spac
 {
     const uint32_t joint = k->face->neck.joint;
     float own[4], at[3], in_model[4], back[4], way[3];
-    noh_stage_face_joint_at(k, w->local, joint, own, at);
+    noh_stage_joint_at(k, w->local, joint, own, at);
     noh_quat_conjugate(n->rotation, back);
     noh_quat_mul(n->rotation, share, in_model);
     noh_quat_mul(in_model, back, in_model);

@@ -75,7 +75,7 @@ static void chain(const noh_skeleton *skeleton, const noh_transform *local, uint
     }
 }
 
-void noh_stage_face_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
                              float at[3])
 {
     chain(&k->skeleton, local, joint, rotation, at);

@@ -551,7 +551,7 @@ uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
 uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
 void noh_stage_open_face(noh_stage_kind *k);
 /* Where a joint of a local pose stands in model space. */
-void noh_stage_face_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
                              float at[3]);
 /* The state of an actor's face; the kind has one. */
 noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index);

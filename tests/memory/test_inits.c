@@ -258,6 +258,16 @@ INIT(spring_init)
     return noh_spring_init(memory, bytes, &desc, &carrier, &spring, error);
 }
 
+INIT(springs_init)
+{
+    static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, 0.5f };
+    static const noh_spring_chain chain = { 0, 1, 1, { 0.0f, 1.0f, 0.0f } };
+    static const noh_spring_capsule capsule = { 0, { 0.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, 0.1f };
+    const noh_springs_desc desc = { s.skeleton, 1.0f, &row, 1, 1, &chain, &capsule, 1 };
+    noh_springs *springs;
+    return noh_springs_init(memory, bytes, &desc, &springs, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -380,6 +390,7 @@ static const struct {
     ROW(identity_init),
     ROW(ragdolls_init),
     ROW(spring_init),
+    ROW(springs_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),

@@ -1,0 +1,301 @@
+/* springs.c: chains of joints that swing, as a part of the stage.
+ *
+ * They swing in the world, in the model's units and from the model's scale: what a place says is divided by its scale,
+ * so an actor of twice the size swings as the small one does, twice as far. */
+#include "stage/springs.h"
+
+#include <string.h>
+
+#include "base/arena.h"
+#include "base/assert.h"
+#include "sim/vector_internal.h"
+#include "stage/stage_internal.h"
+
+/* A chain as jobs use it. */
+typedef struct swing {
+    noh_spring_desc desc;
+    uint32_t first_row;
+    uint32_t collides;
+    uint32_t state; /* where its spring lies in the state of an actor */
+} swing;
+
+struct noh_springs {
+    uint32_t row_count, chain_count, collider_count, joint_count;
+    uint32_t state_bytes, scratch_bytes;
+    uint32_t *joints;             /* [row_count] of the skeleton */
+    noh_spring_joint *rows;       /* [row_count] */
+    swing *swings;                /* [chain_count] */
+    noh_spring_capsule *capsules; /* [collider_count], radii in the skeleton's unit */
+};
+
+/* ---- size and init ---- */
+
+static void carve(noh_arena *arena, const noh_springs_desc *d, noh_springs **springs)
+{
+    noh_springs parts, *s = noh_arena_carve(arena, sizeof *s, 16);
+    memset(&parts, 0, sizeof parts);
+    parts.joints = noh_arena_carve(arena, d->row_count * sizeof *parts.joints, 16);
+    parts.rows = noh_arena_carve(arena, d->row_count * sizeof *parts.rows, 16);
+    parts.swings = noh_arena_carve(arena, d->chain_count * sizeof *parts.swings, 16);
+    parts.capsules = noh_arena_carve(arena, d->collider_count * sizeof *parts.capsules, 16);
+    if (s) *s = parts;
+    *springs = s;
+}
+
+size_t noh_springs_size(const noh_springs_desc *desc)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_springs *none;
+    NOH_ASSERT(desc);
+    if (!desc->row_count || desc->row_count > NOH_JOINTS_MAX || !desc->chain_count ||
+        desc->chain_count > desc->row_count || desc->collider_count > NOH_SPRING_COLLIDERS_MAX) {
+        return 0;
+    }
+    carve(&arena, desc, &none);
+    return arena.used;
+}
+
+static int is_finite3(const float v[3])
+{
+    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
+}
+
+/* Rows that are there, of no other chain, and each joint a child of the one before. `next`: the first free row. */
+static int chain_hangs_together(const noh_springs_desc *d, const noh_spring_chain *c, uint32_t next)
+{
+    const noh_skeleton *k = &d->skeleton;
+    if (c->first_row != next || !c->row_count || c->row_count > d->row_count - next) return 0;
+    for (uint32_t i = 0; i < c->row_count; i++) {
+        const uint32_t joint = d->rows[next + i].joint;
+        if (joint >= k->joint_count || k->parents[joint] == NOH_JOINT_ROOT) return 0;
+        if (i && k->parents[joint] != d->rows[next + i - 1u].joint) return 0;
+    }
+    return d->collider_count == 32u || !(c->collides >> d->collider_count);
+}
+
+/* 1: no joint stands in two rows. */
+static int joints_differ(const noh_springs_desc *d)
+{
+    uint8_t taken[NOH_JOINTS_MAX / 8u];
+    memset(taken, 0, sizeof taken);
+    for (uint32_t i = 0; i < d->row_count; i++) {
+        const uint32_t joint = d->rows[i].joint, bit = 1u << (joint & 7u);
+        if (taken[joint >> 3] & bit) return 0;
+        taken[joint >> 3] = (uint8_t)(taken[joint >> 3] | bit);
+    }
+    return 1;
+}
+
+static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
+{
+    uint32_t next = 0;
+    if (!(d->metres > 0.0f) || !noh_is_finite(d->metres) || d->skeleton.joint_count > NOH_JOINTS_MAX) {
+        return noh_fail(error, NOH_ERR_ARG, "springs: `metres` must be above 0, and the skeleton a good one", 0, 0);
+    }
+    for (uint32_t i = 0; i < d->chain_count; i++) {
+        if (!chain_hangs_together(d, &d->chains[i], next)) {
+            return noh_fail(error, NOH_ERR_ARG,
+                            "springs: a chain's rows do not follow those of the chain before, its joints are not "
+                            "parent and child below another one, or it collides with what is not there",
+                            i, 0);
+        }
+        next += d->chains[i].row_count;
+    }
+    if (next != d->row_count || !joints_differ(d)) {
+        return noh_fail(error, NOH_ERR_ARG, "springs: a row is in no chain, or a joint in two", next, 0);
+    }
+    for (uint32_t i = 0; i < d->collider_count; i++) {
+        const noh_spring_capsule *c = &d->colliders[i];
+        if (c->joint >= d->skeleton.joint_count || !is_finite3(c->from) || !is_finite3(c->to) || !(c->radius >= 0.0f) ||
+            !noh_is_finite(c->radius)) {
+            return noh_fail(error, NOH_ERR_ARG, "springs: a collider's joint is not there, or a number is bad", i, 0);
+        }
+    }
+    return NOH_OK;
+}
+
+static uint32_t bits_of(uint32_t mask)
+{
+    uint32_t count = 0;
+    for (; mask; mask &= mask - 1u) count++;
+    return count;
+}
+
+/* Lengths become units of the skeleton. */
+static void fill_rows(noh_springs *s, const noh_springs_desc *d, const noh_spring_chain *c)
+{
+    const float units = 1.0f / d->metres;
+    for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
+        const noh_spring_row *from = &d->rows[i];
+        const int is_last = i + 1u == c->first_row + c->row_count;
+        noh_spring_joint *row = &s->rows[i];
+        s->joints[i] = from->joint;
+        memcpy(row->bone, is_last ? c->end : d->skeleton.bind_pose[d->rows[i + 1u].joint].translation,
+               sizeof row->bone);
+        memcpy(row->rest, d->skeleton.bind_pose[from->joint].rotation, sizeof row->rest);
+        row->stiffness = from->stiffness * units;
+        row->drag = from->drag;
+        row->radius = from->radius * units;
+        row->gravity = from->gravity * units;
+    }
+}
+
+static noh_result fill(noh_springs *s, const noh_springs_desc *d, noh_error *error)
+{
+    size_t state = (d->chain_count * sizeof(uint32_t) + 15u) & ~(size_t)15u, longest = 0;
+    for (uint32_t i = 0; i < d->chain_count; i++) {
+        const noh_spring_chain *c = &d->chains[i];
+        swing *w = &s->swings[i];
+        memset(w, 0, sizeof *w);
+        fill_rows(s, d, c);
+        w->desc.joints = s->rows + c->first_row;
+        w->desc.joint_count = c->row_count;
+        w->desc.collider_count = bits_of(c->collides);
+        w->first_row = c->first_row;
+        w->collides = c->collides;
+        w->state = (uint32_t)state;
+        const noh_result result = noh_spring_check_desc(&w->desc, error);
+        if (result) return result;
+        state += noh_spring_size(&w->desc);
+        if (c->row_count > longest) longest = c->row_count;
+        if (state > NOH_STAGE_PART_BYTES_MAX) {
+            return noh_fail(error, NOH_ERR_MEMORY, "springs: the state of one actor would pass the limit", i,
+                            NOH_STAGE_PART_BYTES_MAX);
+        }
+    }
+    s->state_bytes = (uint32_t)state;
+    s->scratch_bytes = (uint32_t)(2u * d->collider_count * sizeof(noh_spring_collider) + longest * 4u * sizeof(float));
+    return NOH_OK;
+}
+
+noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
+                            noh_error *error)
+{
+    noh_arena arena;
+    noh_springs *s;
+    NOH_ASSERT(desc && springs);
+    if (!noh_springs_size(desc)) {
+        return noh_fail(error, NOH_ERR_LIMIT, "springs: no rows or chains, or more rows or colliders than the limit",
+                        desc->row_count, NOH_JOINTS_MAX);
+    }
+    noh_result result = check_desc(desc, error);
+    if (!result) result = noh_arena_open(&arena, memory, bytes, noh_springs_size(desc), error);
+    if (result) return result;
+    carve(&arena, desc, &s);
+    s->row_count = desc->row_count;
+    s->chain_count = desc->chain_count;
+    s->collider_count = desc->collider_count;
+    s->joint_count = desc->skeleton.joint_count;
+    for (uint32_t i = 0; i < desc->collider_count; i++) {
+        s->capsules[i] = desc->colliders[i];
+        s->capsules[i].radius /= desc->metres;
+    }
+    result = fill(s, desc, error);
+    if (!result) *springs = s;
+    return result;
+}
+
+/* ---- in a job ---- */
+
+/* From model space to where they swing. */
+static void to_world(const noh_place *place, const float model[3], float out[3])
+{
+    noh_quat_rotate(place->rotation, model, out);
+    noh_madd3(out, 1.0f / place->scale, place->position, out);
+}
+
+static void pose_capsule(const noh_part_work *w, const noh_spring_capsule *c, noh_spring_collider *out)
+{
+    float rotation[4], at[3];
+    noh_stage_joint_at(w->kind, w->local, c->joint, rotation, at);
+    noh_quat_rotate(rotation, c->from, out->from);
+    noh_quat_rotate(rotation, c->to, out->to);
+    noh_madd3(out->from, 1.0f, at, out->from);
+    noh_madd3(out->to, 1.0f, at, out->to);
+    to_world(&w->place, out->from, out->from);
+    to_world(&w->place, out->to, out->to);
+    out->radius = c->radius;
+}
+
+/* What carries a chain: its first joint's place, and the rotation of that joint's parent. */
+static noh_spring_carrier carrier_of(const noh_part_work *w, uint32_t joint)
+{
+    noh_spring_carrier c;
+    float own[4], at[3];
+    noh_stage_joint_at(w->kind, w->local, joint, c.rotation, at);
+    noh_quat_conjugate(w->local[joint].rotation, own);
+    noh_quat_mul(c.rotation, own, c.rotation);
+    noh_quat_mul(w->place.rotation, c.rotation, c.rotation);
+    noh_quat_normalize(c.rotation);
+    to_world(&w->place, at, c.position);
+    return c;
+}
+
+/* One chain and the colliders that it has. */
+static void swing_chain(const noh_part_work *w, const noh_springs *s, uint32_t chain,
+                        const noh_spring_collider *near_by, float *rotations)
+{
+    const swing *g = &s->swings[chain];
+    const uint32_t *joints = s->joints + g->first_row;
+    uint32_t *begun = (uint32_t *)w->state + chain;
+    noh_spring *spring = (noh_spring *)(void *)((uint8_t *)w->state + g->state);
+    if (joints[0] >= w->joint_count) {
+        *begun = 0;
+        return;
+    }
+    const noh_spring_carrier carrier = carrier_of(w, joints[0]);
+    if (w->cut || !*begun) {
+        *begun = noh_spring_init(spring, noh_spring_size(&g->desc), &g->desc, &carrier, &spring, NULL) == NOH_OK;
+        if (!*begun) return;
+    } else {
+        (void)noh_spring_step(spring, &g->desc, &carrier, near_by, w->ticks);
+    }
+    noh_spring_rotations(spring, &g->desc, rotations);
+    for (uint32_t i = 0; i < g->desc.joint_count; i++) {
+        memcpy(w->local[joints[i]].rotation, rotations + 4u * (size_t)i, 4 * sizeof *rotations);
+    }
+}
+
+static void modify(noh_part_work *w)
+{
+    const noh_springs *s = w->user;
+    noh_spring_collider *all = w->scratch, *near_by = all + s->collider_count;
+    if (w->skeleton->joint_count < s->joint_count) return;
+    for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &all[i]);
+    for (uint32_t i = 0; i < s->chain_count; i++) {
+        uint32_t count = 0;
+        for (uint32_t k = 0; k < s->collider_count; k++) {
+            if (s->swings[i].collides >> k & 1u) near_by[count++] = all[k];
+        }
+        swing_chain(w, s, i, near_by, (float *)(void *)(near_by + s->collider_count));
+    }
+}
+
+static const char *check(const void *user, const void *state)
+{
+    const noh_springs *s = user;
+    const uint32_t *begun = state;
+    for (uint32_t i = 0; i < s->chain_count; i++) {
+        const swing *g = &s->swings[i];
+        if (begun[i] > 1u) return "state: springs: a chain neither swings nor rests";
+        if (!begun[i]) continue;
+        const void *spring = (const uint8_t *)state + g->state;
+        const char *what = noh_spring_check(spring, &g->desc);
+        if (what) return what;
+    }
+    return NULL;
+}
+
+noh_stage_part noh_springs_part(const noh_springs *springs)
+{
+    noh_stage_part part;
+    NOH_ASSERT(springs);
+    memset(&part, 0, sizeof part);
+    part.name = "springs";
+    part.modify = modify;
+    part.check = check;
+    part.user = springs;
+    part.state_bytes = springs->state_bytes;
+    part.scratch_bytes = springs->scratch_bytes;
+    return part;
+}
