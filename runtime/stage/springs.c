@@ -86,6 +86,39 @@ static int joints_differ(const noh_springs_desc *d)
     return 1;
 }
 
+/* A joint of a chain as its spring has it: lengths in units of the skeleton. */
+static noh_spring_joint joint_of_row(const noh_springs_desc *d, const noh_spring_chain *c, uint32_t row)
+{
+    const float units = 1.0f / d->metres;
+    const noh_spring_row *from = &d->rows[row];
+    const int is_last = row + 1u == c->first_row + c->row_count;
+    noh_spring_joint j;
+    memcpy(j.bone, is_last ? c->end : d->skeleton.bind_pose[d->rows[row + 1u].joint].translation, sizeof j.bone);
+    memcpy(j.rest, d->skeleton.bind_pose[from->joint].rotation, sizeof j.rest);
+    j.stiffness = from->stiffness * units;
+    j.drag = from->drag;
+    j.radius = from->radius * units;
+    j.gravity = from->gravity * units;
+    return j;
+}
+
+static noh_result check_rows(const noh_springs_desc *d, const noh_spring_chain *c, noh_error *error)
+{
+    if (c->row_count > NOH_SPRING_JOINTS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "springs: a chain has more joints than the limit", c->row_count,
+                        NOH_SPRING_JOINTS_MAX);
+    }
+    for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
+        const noh_spring_joint joint = joint_of_row(d, c, i);
+        const noh_spring_desc alone = { &joint, 1, 0, { 0.0f, 0.0f, 0.0f } };
+        if (noh_spring_check_desc(&alone, NULL)) {
+            return noh_fail(error, NOH_ERR_ARG, "springs: a row's bone has no length, or a number is out of its range",
+                            i, 0);
+        }
+    }
+    return NOH_OK;
+}
+
 static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
 {
     uint32_t next = 0;
@@ -99,6 +132,8 @@ static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
                             "parent and child below another one, or it collides with what is not there",
                             i, 0);
         }
+        const noh_result result = check_rows(d, &d->chains[i], error);
+        if (result) return result;
         next += d->chains[i].row_count;
     }
     if (next != d->row_count || !joints_differ(d)) {
@@ -107,7 +142,7 @@ static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
     for (uint32_t i = 0; i < d->collider_count; i++) {
         const noh_spring_capsule *c = &d->colliders[i];
         if (c->joint >= d->skeleton.joint_count || !is_finite3(c->from) || !is_finite3(c->to) || !(c->radius >= 0.0f) ||
-            !noh_is_finite(c->radius)) {
+            !noh_is_finite(c->radius / d->metres)) {
             return noh_fail(error, NOH_ERR_ARG, "springs: a collider's joint is not there, or a number is bad", i, 0);
         }
     }
@@ -121,51 +156,43 @@ static uint32_t bits_of(uint32_t mask)
     return count;
 }
 
-/* Lengths become units of the skeleton. */
-static void fill_rows(noh_springs *s, const noh_springs_desc *d, const noh_spring_chain *c)
+static noh_spring_desc spring_of(const noh_spring_chain *c, const noh_spring_joint *joints)
 {
-    const float units = 1.0f / d->metres;
-    for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
-        const noh_spring_row *from = &d->rows[i];
-        const int is_last = i + 1u == c->first_row + c->row_count;
-        noh_spring_joint *row = &s->rows[i];
-        s->joints[i] = from->joint;
-        memcpy(row->bone, is_last ? c->end : d->skeleton.bind_pose[d->rows[i + 1u].joint].translation,
-               sizeof row->bone);
-        memcpy(row->rest, d->skeleton.bind_pose[from->joint].rotation, sizeof row->rest);
-        row->stiffness = from->stiffness * units;
-        row->drag = from->drag;
-        row->radius = from->radius * units;
-        row->gravity = from->gravity * units;
-    }
+    const noh_spring_desc spring = { joints, c->row_count, bits_of(c->collides), { 0.0f, 0.0f, 0.0f } };
+    return spring;
 }
 
-static noh_result fill(noh_springs *s, const noh_springs_desc *d, noh_error *error)
+/* Of one actor: what chains swing, then the springs of as many chains as are given. */
+static size_t state_bytes_of(const noh_springs_desc *d, uint32_t chains)
 {
-    size_t state = (d->chain_count * sizeof(uint32_t) + 15u) & ~(size_t)15u, longest = 0;
+    size_t bytes = (d->chain_count * sizeof(uint32_t) + 15u) & ~(size_t)15u;
+    for (uint32_t i = 0; i < chains; i++) {
+        const noh_spring_desc spring = spring_of(&d->chains[i], NULL);
+        bytes += noh_spring_size(&spring);
+    }
+    return bytes;
+}
+
+static void fill(noh_springs *s, const noh_springs_desc *d)
+{
+    size_t longest = 0, state = state_bytes_of(d, 0);
     for (uint32_t i = 0; i < d->chain_count; i++) {
         const noh_spring_chain *c = &d->chains[i];
         swing *w = &s->swings[i];
         memset(w, 0, sizeof *w);
-        fill_rows(s, d, c);
-        w->desc.joints = s->rows + c->first_row;
-        w->desc.joint_count = c->row_count;
-        w->desc.collider_count = bits_of(c->collides);
+        for (uint32_t row = c->first_row; row < c->first_row + c->row_count; row++) {
+            s->joints[row] = d->rows[row].joint;
+            s->rows[row] = joint_of_row(d, c, row);
+        }
+        w->desc = spring_of(c, s->rows + c->first_row);
         w->first_row = c->first_row;
         w->collides = c->collides;
         w->state = (uint32_t)state;
-        const noh_result result = noh_spring_check_desc(&w->desc, error);
-        if (result) return result;
         state += noh_spring_size(&w->desc);
         if (c->row_count > longest) longest = c->row_count;
-        if (state > NOH_STAGE_PART_BYTES_MAX) {
-            return noh_fail(error, NOH_ERR_MEMORY, "springs: the state of one actor would pass the limit", i,
-                            NOH_STAGE_PART_BYTES_MAX);
-        }
     }
     s->state_bytes = (uint32_t)state;
     s->scratch_bytes = (uint32_t)(2u * d->collider_count * sizeof(noh_spring_collider) + longest * 4u * sizeof(float));
-    return NOH_OK;
 }
 
 noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
@@ -179,6 +206,10 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
                         desc->row_count, NOH_JOINTS_MAX);
     }
     noh_result result = check_desc(desc, error);
+    if (!result && state_bytes_of(desc, desc->chain_count) > NOH_STAGE_PART_BYTES_MAX) {
+        result = noh_fail(error, NOH_ERR_LIMIT, "springs: the state of one actor would pass the limit of a part",
+                          desc->chain_count, NOH_STAGE_PART_BYTES_MAX);
+    }
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_springs_size(desc), error);
     if (result) return result;
     carve(&arena, desc, &s);
@@ -190,9 +221,9 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
         s->capsules[i] = desc->colliders[i];
         s->capsules[i].radius /= desc->metres;
     }
-    result = fill(s, desc, error);
-    if (!result) *springs = s;
-    return result;
+    fill(s, desc);
+    *springs = s;
+    return NOH_OK;
 }
 
 /* ---- in a job ---- */

@@ -60,8 +60,8 @@ typedef struct noh_springs noh_springs;
 size_t noh_springs_size(const noh_springs_desc *desc);
 
 /* errors  ARG memory is NULL or misaligned, a chain's rows are not there or not parent and child, a joint swings twice,
- *         or a number is out of its range (where: the chain, row or collider); LIMIT a count; MEMORY it is too small,
- *         or the state of one actor would have more than NOH_STAGE_PART_BYTES_MAX */
+ *         or a number is out of its range (where: the chain, row or collider); LIMIT a count, or the state of
+ *         one actor would have more than NOH_STAGE_PART_BYTES_MAX; MEMORY it is too small */
 noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
                             noh_error *error);
 
