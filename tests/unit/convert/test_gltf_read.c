@@ -655,6 +655,86 @@ static void primitives_are_concatenated(void **state)
     model_free(m);
 }
 
+/* Six vertices and their deltas, which two primitives share; no triangle uses the last one. */
+static scene *shared_vertices(void)
+{
+    const float positions[18] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 9, 9, 9 };
+    const float deltas[6] = { 0, 0, 3, 0, 0, 4 };
+    const uint16_t first[3] = { 0, 1, 2 }, second[6] = { 3, 2, 1, 3, 1, 4 }, moved[2] = { 3, 5 };
+    char rest[256];
+    scene *s = scene_new();
+    add_array(s, positions, sizeof positions, F32, 6, "VEC3");
+    snprintf(
+        rest, sizeof rest,
+        ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5123},\"values\":{\"bufferView\":"
+        "%d}}",
+        add_view(s, moved, sizeof moved, 0), add_view(s, deltas, sizeof deltas, 0));
+    add_accessor(s, F32, 6, "VEC3", rest);
+    add_array(s, first, sizeof first, U16, 3, "SCALAR");
+    add_array(s, second, sizeof second, U16, 6, "SCALAR");
+    for (int i = 2; i < 4; ++i)
+        APPEND(s->primitives, "%s{\"attributes\":{\"POSITION\":0},\"indices\":%d,\"targets\":[{\"POSITION\":1}]}",
+               i > 2 ? "," : "", i);
+    return s;
+}
+
+/* Each primitive has the vertices that its triangles use, in their order, and no others. */
+static void shared_vertices_are_dealt_out(void **state)
+{
+    (void)state;
+    model *m = load(shared_vertices());
+    const model_mesh *mesh = &m->meshes[0];
+    const float second[12] = { 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0 };
+    const uint32_t indices[9] = { 0, 1, 2, 5, 4, 3, 5, 3, 6 };
+    const float up[3] = { 0, 0, 3 };
+    assert_int_equal(mesh->vertex_count, 7);
+    assert_int_equal(mesh->submeshes[1].first_vertex, 3);
+    assert_int_equal(mesh->submeshes[1].vertex_count, 4);
+    assert_floats(mesh->position, triangle_positions, 9);
+    assert_floats(mesh->position + 9, second, 12);
+    assert_memory_equal(mesh->indices, indices, sizeof indices);
+    for (size_t v = 0; v < 7; ++v)
+        if (v != 5) assert_true(mesh->targets[0].position[v * 3 + 2] == 0.0f);
+    assert_floats(mesh->targets[0].position + 15, up, 3);
+    model_free(m);
+}
+
+/* A number of a vertex that is not used is not read. */
+static void unused_vertices_may_hold_anything(void **state)
+{
+    (void)state;
+    const float nan = (float)NAN;
+    scene *s = shared_vertices();
+    memcpy(s->bytes + 17 * sizeof nan, &nan, sizeof nan);
+    model_free(load(s));
+    s = shared_vertices();
+    memcpy(s->bytes + 14 * sizeof nan, &nan, sizeof nan);
+    refused(s, "NaN", "primitive 1 POSITION (accessor 0), element 4");
+}
+
+static void restart_indices_are_refused_by_name(void **state)
+{
+    (void)state;
+    const uint16_t index[3] = { 0, 1, 65535 };
+    scene *s = triangle("", ",\"indices\":1");
+    add_array(s, index, sizeof index, U16, 3, "SCALAR");
+    refused(s, "the index 65535 restarts a strip", "mesh 'm' primitive 0 indices (accessor 1), element 2");
+}
+
+static void other_signs_of_tangents_are_rounded(void **state)
+{
+    (void)state;
+    const float normals[9] = { 0, 0, 1, 0, 0, 1, 0, 0, 1 };
+    const float tangents[12] = { 1, 0, 0, 1, 1, 0, 0, 0.5f, 1, 0, 0, -2 };
+    scene *s = triangle(",\"NORMAL\":1,\"TANGENT\":2", "");
+    add_array(s, normals, sizeof normals, F32, 3, "VEC3");
+    add_array(s, tangents, sizeof tangents, F32, 3, "VEC4");
+    model *m = load(s);
+    assert_true(m->meshes[0].tangent[7] == 1.0f && m->meshes[0].tangent[11] == -1.0f);
+    assert_true(has_warning(m, "mesh 'm' primitive 0: its tangents have signs that are neither 1 nor -1"));
+    model_free(m);
+}
+
 static void target_names_are_made_unique(void **state)
 {
     (void)state;
@@ -787,7 +867,8 @@ static void normals_of_all_degenerate_triangles_are_unit(void **state)
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 3, "SCALAR");
     model *m = load(s);
-    for (size_t v = 0; v < 3; ++v) check_unit(m->meshes[0].normal + v * 3);
+    assert_int_equal(m->meshes[0].vertex_count, 2);
+    for (size_t v = 0; v < 2; ++v) check_unit(m->meshes[0].normal + v * 3);
     model_free(m);
 }
 
@@ -1055,6 +1136,26 @@ static void bad_skins_are_refused(void **state)
     }
 }
 
+/* Zeros for a bind matrix: the joint is bound where it rests, and named. */
+static void bind_matrices_of_zeros(void **state)
+{
+    (void)state;
+    const float binds[16] = { 0 };
+    scene *s = skinned_triangle();
+    add_array(s, binds, sizeof binds, F32, 1, "MAT4");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",\"translation\":[0,2,0],\"scale\":[2,2,2]}],"
+                    "\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
+    model *m = load(s);
+    assert_true(m->skins[0].inverse_bind[0] == 0.5f && m->skins[0].inverse_bind[13] == -1.0f);
+    assert_true(has_warning(m, "skin 0: the inverse bind matrix of joint 'hip' is all zeros"));
+    model_free(m);
+    s = skinned_triangle();
+    add_array(s, binds, sizeof binds, F32, 1, "MAT4");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",\"scale\":[2,0,2]}],"
+                    "\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
+    refused(s, "joint 'hip' is all zeros, and where it rests has no inverse", "skin 0");
+}
+
 static void matrices_are_decomposed(void **state)
 {
     (void)state;
@@ -1157,6 +1258,39 @@ static void animation_cubic(void **state)
     model_free(m);
 }
 
+/* The file's name for an animation that has none. */
+static void animations_without_names(void **state)
+{
+    (void)state;
+    scene *s = animated(two_times, two_values, sizeof two_values, "", F32, 2, "", WEIGHTS_OF_N);
+    char *rest = strstr(s->rest, "\"name\":\"a\",");
+    assert_non_null(rest);
+    memmove(rest, rest + 11, strlen(rest + 11) + 1);
+    s->rest[strlen(s->rest) - 1] = 0;
+    APPEND(s->rest, ",{\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N
+                    "}}],\"samplers\":[{\"input\":2,\"output\":3}]}]");
+    model *m = load(s);
+    assert_string_equal(m->clips[0].name, "test");
+    assert_string_equal(m->clips[1].name, "test_1");
+    model_free(m);
+}
+
+static void an_animated_matrix_is_told(void **state)
+{
+    (void)state;
+    const float moves[6] = { 0, 0, 0, 1, 0, 0 };
+    scene *s = triangle("", "");
+    add_array(s, two_times, sizeof two_times, F32, 2, "SCALAR");
+    add_array(s, moves, sizeof moves, F32, 2, "VEC3");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]}],"
+                    "\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":"
+                    "\"translation\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    model *m = load(s);
+    assert_true(has_warning(m, "node 'n': it has a matrix and is animated"));
+    assert_true(m->nodes[0].scale[0] == 2.0f);
+    model_free(m);
+}
+
 static void animation_without_a_target_is_skipped(void **state)
 {
     (void)state;
@@ -1212,7 +1346,7 @@ static void weights_of_a_mesh_without_targets_are_refused(void **state)
     add_array(s, two_values, sizeof two_values, F32, 2, "SCALAR");
     APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N
                     "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
-    refused(s, "mesh 'm' has no morph targets", "animation 'animation_0' channel 0");
+    refused(s, "mesh 'm' has no morph targets", "animation 'test' channel 0");
 }
 
 /* --- materials --- */
@@ -1714,6 +1848,10 @@ int main(void)
         cmocka_unit_test(strips_and_fans),
         cmocka_unit_test(points_and_lines_are_skipped),
         cmocka_unit_test(primitives_are_concatenated),
+        cmocka_unit_test(shared_vertices_are_dealt_out),
+        cmocka_unit_test(unused_vertices_may_hold_anything),
+        cmocka_unit_test(restart_indices_are_refused_by_name),
+        cmocka_unit_test(other_signs_of_tangents_are_rounded),
         cmocka_unit_test(target_names_are_made_unique),
         cmocka_unit_test(target_names_of_a_primitive),
         cmocka_unit_test(recipes_in_extras),
@@ -1739,12 +1877,15 @@ int main(void)
         cmocka_unit_test(nodes_parents_first),
         cmocka_unit_test(skinned_mesh_is_as_large_as_its_joints_make_it),
         cmocka_unit_test(bad_skins_are_refused),
+        cmocka_unit_test(bind_matrices_of_zeros),
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),
         cmocka_unit_test(node_weights),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),
+        cmocka_unit_test(animations_without_names),
+        cmocka_unit_test(an_animated_matrix_is_told),
         cmocka_unit_test(animation_without_a_target_is_skipped),
         cmocka_unit_test(animation_without_meshes),
         cmocka_unit_test(bad_animations_are_refused),

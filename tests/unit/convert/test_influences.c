@@ -164,12 +164,24 @@ static void weights_are_normalised_with_a_warning(void **state)
     model_free(m);
 }
 
-static void bad_influences_are_refused(void **state)
+/* Without any weight a vertex would have no place in any pose. */
+static void vertices_without_weights_follow_a_joint(void **state)
 {
     (void)state;
     skinned s = simple(1);
     s.weights[0][2][0] = 0.0f;
-    refused(&s, "sum to 0", "mesh 'm' primitive 0 vertex 2");
+    s.joints[0][2][0] = 4;
+    model *m = load(&s);
+    assert_true(has_warning(m, "mesh 'm': 2 vertices have no weight for any joint"));
+    assert_int_equal(m->meshes[0].joints[16], 4);
+    assert_true(m->meshes[0].joint_weights[16] == 1.0f && m->meshes[0].joint_weights[17] == 0.0f);
+    model_free(m);
+}
+
+static void bad_influences_are_refused(void **state)
+{
+    (void)state;
+    skinned s = simple(1);
     s.weights[0][2][0] = 1.5f;
     s.weights[0][2][1] = -0.5f;
     refused(&s, "negative", "vertex 2");
@@ -228,6 +240,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sorted_and_summed),
     cmocka_unit_test(more_than_eight_lose_the_weakest),
     cmocka_unit_test(weights_are_normalised_with_a_warning),
+    cmocka_unit_test(vertices_without_weights_follow_a_joint),
     cmocka_unit_test(bad_influences_are_refused),
     cmocka_unit_test(primitives_without_joints_follow_the_first),
     cmocka_unit_test(real_meshes),

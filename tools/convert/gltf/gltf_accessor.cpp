@@ -1,6 +1,7 @@
 /* gltf_accessor.cpp: accessors, dense and sparse, to floats and indices. */
 #include "gltf_internal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -222,30 +223,50 @@ static uint32_t sparse_index(const layout &l, const sparse_part &s, uint64_t i)
     return index;
 }
 
-static void apply_sparse(file &f, const layout &l, float *out)
+/* Where an element lies among those that are read; false: it is not. */
+static bool place_of(const vertex_list &vertices, uint32_t element, size_t &place)
+{
+    place = element;
+    if (vertices.used.empty()) return true;
+    auto found = std::lower_bound(vertices.used.begin(), vertices.used.end(), element);
+    place = static_cast<size_t>(found - vertices.used.begin());
+    return found != vertices.used.end() && *found == element;
+}
+
+static void apply_sparse(file &f, const layout &l, const vertex_list &vertices, float *out)
 {
     sparse_part s = read_sparse(f, l);
     for (uint64_t i = 0; i < s.count; ++i) {
         uint32_t element = sparse_index(l, s, i);
-        load_element(l, s.values.data + i * l.element_size, element, out + uint64_t{ element } * l.components);
+        size_t place;
+        if (place_of(vertices, element, place))
+            load_element(l, s.values.data + i * l.element_size, element, out + place * l.components);
     }
+}
+
+void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
+                   const std::string &where, float *out)
+{
+    layout l = check_type(f, accessor, components, accepted, where);
+    if (l.accessor->count != vertices.total)
+        fail(l.where, text("the accessor has %zu elements, but %llu are needed here", l.accessor->count,
+                           static_cast<unsigned long long>(vertices.total)));
+    span dense = dense_part(f, l);
+    for (size_t i = 0; i < vertices.count(); ++i) {
+        if (dense.data)
+            load_element(l, dense.data + vertices.at(i) * dense.stride, vertices.at(i), out + i * components);
+        else
+            memset(out + i * components, 0, components * sizeof(float));
+    }
+    if (l.accessor->sparse.isSparse) apply_sparse(f, l, vertices, out);
 }
 
 void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
                  const std::string &where, float *out)
 {
-    layout l = check_type(f, accessor, components, accepted, where);
-    if (l.accessor->count != count)
-        fail(l.where, text("the accessor has %zu elements, but %llu are needed here", l.accessor->count,
-                           static_cast<unsigned long long>(count)));
-    span dense = dense_part(f, l);
-    for (uint64_t i = 0; i < count; ++i) {
-        if (dense.data)
-            load_element(l, dense.data + i * dense.stride, i, out + i * components);
-        else
-            memset(out + i * components, 0, components * sizeof(float));
-    }
-    if (l.accessor->sparse.isSparse) apply_sparse(f, l, out);
+    vertex_list all;
+    all.total = count;
+    read_vertices(f, accessor, components, accepted, all, where, out);
 }
 
 static void check_index(uint32_t index, uint32_t limit, const std::string &where, uint64_t element)
@@ -253,6 +274,17 @@ static void check_index(uint32_t index, uint32_t limit, const std::string &where
     if (index >= limit)
         fail(element_of(where, element),
              text("the index %u is out of range: the primitive has %u vertices", index, limit));
+}
+
+/* The largest number of a type ends a strip elsewhere, and is no index in glTF (3.7.2.1). */
+static void check_restart(uint32_t index, const layout &l, uint64_t element)
+{
+    const uint32_t largest = l.component == c_u8 ? 0xffu : l.component == c_u16 ? 0xffffu : 0xffffffffu;
+    if (index == largest)
+        fail(element_of(l.where, element),
+             text("the index %u restarts a strip, which glTF does not allow: write one primitive for each strip, or "
+                  "triangles",
+                  index));
 }
 
 static void apply_sparse_indices(file &f, const layout &l, std::vector<uint32_t> &out)
@@ -271,7 +303,10 @@ std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const 
     for (size_t i = 0; dense.data && i < out.size(); ++i)
         out[i] = load_index(l.component, dense.data + i * dense.stride);
     if (l.accessor->sparse.isSparse) apply_sparse_indices(f, l, out);
-    for (size_t i = 0; i < out.size(); ++i) check_index(out[i], limit, l.where, i);
+    for (size_t i = 0; i < out.size(); ++i) {
+        check_restart(out[i], l, i);
+        check_index(out[i], limit, l.where, i);
+    }
     return out;
 }
 

@@ -143,6 +143,11 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
             leave_out(f, where, std::string(" was skipped: ") + reason);
             continue;
         }
+        if (path != MODEL_PATH_WEIGHTS && !f.json.nodes[static_cast<size_t>(a.channels[i].target_node)].matrix.empty())
+            leave_out(
+                f, "node '" + printable(f.out->nodes[node].name) + "'",
+                ": it has a matrix and is animated, which glTF forbids; what is not animated was taken out of the "
+                "matrix");
         model_channel &channel = out.channels[out.channel_count++];
         channel.node = node;
         channel.path = path;
@@ -152,10 +157,22 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
     }
 }
 
+/* An animation without a name takes the file's, as clips of other formats do; the second such is called NAME_1. */
+static std::string clip_name(const file &f, size_t index)
+{
+    const std::string &given = f.json.animations[index].name;
+    if (!given.empty()) return given;
+    std::string stem = f.path.substr(f.directory.size());
+    size_t unnamed = 0;
+    stem = stem.substr(0, stem.find_last_of('.'));
+    for (size_t i = 0; i < index; ++i) unnamed += f.json.animations[i].name.empty();
+    return unnamed ? stem + "_" + std::to_string(unnamed) : name_or(stem, "animation", index);
+}
+
 static void read_clip(file &f, size_t index)
 {
     const tinygltf::Animation &a = f.json.animations[index];
-    std::string name = name_or(a.name, "animation", index), where = "animation '" + printable(name) + "'";
+    std::string name = clip_name(f, index), where = "animation '" + printable(name) + "'";
     model_clip &clip = f.out->clips[f.out->clip_count++]; /* counted first, so that it is freed when reading fails */
     clip.name = copy_string(name);
     read_channels(f, a, where, clip);

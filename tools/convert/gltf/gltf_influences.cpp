@@ -37,12 +37,13 @@ bool has_influences(const tinygltf::Primitive &p)
 
 /* [vertex][set][4]; joints below 65536 are exact as floats */
 static std::vector<float> read_sets(file &f, const tinygltf::Primitive &p, const char *name, uint32_t accepted,
-                                    size_t sets, size_t vertex_count, const std::string &where)
+                                    size_t sets, const vertex_list &vertices, const std::string &where)
 {
+    const size_t vertex_count = vertices.count();
     std::vector<float> all(vertex_count * sets * 4), one(vertex_count * 4);
     for (size_t s = 0; s < sets; ++s) {
         std::string attribute = text("%s_%zu", name, s);
-        read_floats(f, p.attributes.at(attribute), 4, accepted, vertex_count, where + " " + attribute, one.data());
+        read_vertices(f, p.attributes.at(attribute), 4, accepted, vertices, where + " " + attribute, one.data());
         for (size_t v = 0; v < vertex_count; ++v) std::copy_n(&one[v * 4], 4, &all[(v * sets + s) * 4]);
     }
     return all;
@@ -69,8 +70,8 @@ static double sum_of(const std::vector<influence> &used)
     return sum;
 }
 
-/* Used influences of one vertex, the strongest first. A vertex without any has no position in any pose and is refused.
- */
+/* Used influences of one vertex, the strongest first. A vertex without any weight would have no position in any pose:
+ * it follows the joint that it lists first. */
 static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count,
                                               const std::string &where, size_t vertex)
 {
@@ -81,7 +82,7 @@ static std::vector<influence> sort_influences(const float *joints, const float *
                  text("the weight %g is negative", static_cast<double>(weights[i])));
         if (weights[i] > 0.0f) used.push_back({ static_cast<uint32_t>(joints[i]), weights[i] });
     }
-    if (used.empty()) fail(where + text(" vertex %zu", vertex), "its weights sum to 0: give it at least one joint");
+    if (used.empty()) return { { static_cast<uint32_t>(joints[0]), 1.0f } };
     std::stable_sort(used.begin(), used.end(),
                      [](const influence &a, const influence &b) { return a.weight > b.weight; });
     return used;
@@ -130,8 +131,8 @@ static void note_changes(const std::vector<influence> &used, double lost, double
     changes.most_lost = std::fmax(changes.most_lost, lost);
 }
 
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where,
-                     model_mesh &out, influence_changes &changes)
+void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &vertices, const model_submesh &part,
+                     const std::string &where, model_mesh &out, influence_changes &changes)
 {
     size_t sets = count_sets(p, where), count = part.vertex_count;
     if (sets == 0) {
@@ -140,12 +141,14 @@ void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh 
         return;
     }
     charge(f, uint64_t{ count } * sets, 8 * sizeof(float), where);
-    std::vector<float> joints = read_sets(f, p, "JOINTS", c_u8 | c_u16, sets, count, where);
-    std::vector<float> weights = read_sets(f, p, "WEIGHTS", c_f32 | c_u8n | c_u16n, sets, count, where);
+    std::vector<float> joints = read_sets(f, p, "JOINTS", c_u8 | c_u16, sets, vertices, where);
+    std::vector<float> weights = read_sets(f, p, "WEIGHTS", c_f32 | c_u8n | c_u16n, sets, vertices, where);
     const double rounding = weight_rounding(f, p, sets);
     for (size_t v = 0; v < count; ++v) {
-        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], &weights[v * sets * 4], sets * 4,
-                                                            where, v);
+        const float *given = &weights[v * sets * 4];
+        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], given, sets * 4, where,
+                                                            vertices.at(v));
+        changes.unbound += *std::max_element(given, given + sets * 4) <= 0.0f;
         note_changes(used, store_influences(used, part.first_vertex + v, out), rounding, changes);
     }
 }
@@ -155,6 +158,9 @@ void warn_influence_changes(file &f, const influence_changes &changes, const std
     if (changes.rescaled > 0)
         warn(f, "%s: the weights of %zu vertices do not sum to 1 and were divided by their sum, at worst %.4g",
              where.c_str(), changes.rescaled, changes.farthest_sum);
+    if (changes.unbound > 0)
+        warn(f, "%s: %zu vertices have no weight for any joint; each follows the joint that it lists first",
+             where.c_str(), changes.unbound);
     if (changes.truncated > 0)
         warn(f,
              "%s: %zu vertices have more than %u joints; the strongest were kept, up to %.2g of the weight was dropped",

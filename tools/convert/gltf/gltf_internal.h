@@ -165,6 +165,22 @@ const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::st
  * count       the number of elements in `out`; any other count in the file is an error */
 void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
                  const std::string &where, float *out);
+/* The vertices of a primitive: all elements of its accessors, or those that its triangles use. */
+struct vertex_list {
+    uint64_t total = 0;         /* elements of each accessor */
+    std::vector<uint32_t> used; /* increasing; empty: all of them */
+    size_t count() const
+    {
+        return used.empty() ? static_cast<size_t>(total) : used.size();
+    }
+    size_t at(size_t i) const
+    {
+        return used.empty() ? i : used[i];
+    }
+};
+/* The same for those elements alone. */
+void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
+                   const std::string &where, float *out);
 /* Read an accessor as vertex indices, each checked to be below limit. */
 std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const std::string &where);
 
@@ -176,11 +192,12 @@ void allocate_influences(file &f, const std::string &where, model_mesh &out);
 /* How the weights of one mesh's vertices were changed. */
 struct influence_changes {
     size_t truncated = 0, rescaled = 0; /* vertices: over MODEL_INFLUENCES_MAX joints; weights that do not sum to 1 */
+    size_t unbound = 0;                 /* vertices without any weight */
     double most_lost = 0.0;             /* the largest share of a vertex's weight that was dropped */
     double farthest_sum = 1.0;          /* the sum farthest from 1 */
 };
-void read_influences(file &f, const tinygltf::Primitive &p, const model_submesh &part, const std::string &where,
-                     model_mesh &out, influence_changes &changes);
+void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &vertices, const model_submesh &part,
+                     const std::string &where, model_mesh &out, influence_changes &changes);
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
 /* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
 /* The texture coordinates of a material's textures, and KHR_texture_transform on them: those of the first texture. */

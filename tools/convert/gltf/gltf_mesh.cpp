@@ -1,6 +1,7 @@
 /* gltf_mesh.cpp: meshes, their primitives and their morph targets. */
 #include "gltf_internal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -14,8 +15,9 @@ using attributes = std::map<std::string, int>;
 struct part {
     const tinygltf::Primitive *source;
     size_t number;                 /* in the file, for messages */
-    std::vector<uint32_t> indices; /* of triangles, within the primitive */
-    uint32_t first_vertex, vertex_count;
+    std::vector<uint32_t> indices; /* of triangles, within `vertices` */
+    uint32_t first_vertex;
+    vertex_list vertices;
 };
 
 struct mesh_job {
@@ -75,10 +77,11 @@ static uint32_t accepted_position_delta(const file &f)
 static std::vector<uint32_t> listed_vertices(file &f, const mesh_job &job, const part &p)
 {
     if (p.source->indices >= 0)
-        return read_indices(f, p.source->indices, p.vertex_count, where_of(job, p) + " indices");
-    charge(f, p.vertex_count, sizeof(uint32_t), where_of(job, p));
-    std::vector<uint32_t> list(p.vertex_count);
-    for (uint32_t i = 0; i < p.vertex_count; ++i) list[i] = i;
+        return read_indices(f, p.source->indices, static_cast<uint32_t>(p.vertices.total),
+                            where_of(job, p) + " indices");
+    charge(f, p.vertices.total, sizeof(uint32_t), where_of(job, p));
+    std::vector<uint32_t> list(p.vertices.total);
+    for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
     return list;
 }
 
@@ -116,6 +119,18 @@ static void read_triangles(file &f, const mesh_job &job, part &p)
     p.indices.swap(list);
 }
 
+/* Many exporters give all primitives of a mesh one set of accessors: each keeps the vertices that its triangles use. */
+static void keep_used_vertices(part &p)
+{
+    std::vector<uint32_t> used(p.indices);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    if (used.size() == p.vertices.total) return;
+    for (uint32_t &i : p.indices)
+        i = static_cast<uint32_t>(std::lower_bound(used.begin(), used.end(), i) - used.begin());
+    p.vertices.used.assign(used.begin(), used.end());
+}
+
 /* --- which primitives are kept --- */
 
 static const char *reason_to_skip(const tinygltf::Primitive &p)
@@ -142,7 +157,7 @@ static void find_parts(file &f, mesh_job &job)
     uint64_t vertices = 0, indices = 0;
     for (size_t i = 0; i < job.source->primitives.size(); ++i) {
         const tinygltf::Primitive &source = job.source->primitives[i];
-        part p = { &source, i, {}, static_cast<uint32_t>(vertices), 0 };
+        part p = { &source, i, {}, static_cast<uint32_t>(vertices), {} };
         std::string where = where_of(job, p);
         check_mode(source, where);
         if (const char *reason = reason_to_skip(source)) {
@@ -150,18 +165,19 @@ static void find_parts(file &f, mesh_job &job)
             continue;
         }
         int position = find(source.attributes, "POSITION");
-        uint64_t count = accessor_at(f, position, where + " POSITION").count;
-        if (count == 0) fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
-        check_vertex_total(job, vertices + count, indices);
-        charge(f, count, 12 * sizeof(float), where); /* about what its vertices will need */
-        p.vertex_count = static_cast<uint32_t>(count);
+        p.vertices.total = accessor_at(f, position, where + " POSITION").count;
+        if (p.vertices.total == 0)
+            fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
+        check_vertex_total(job, p.vertices.total, indices);
         read_triangles(f, job, p);
-        check_vertex_total(job, vertices + count, indices + p.indices.size());
         if (p.indices.empty()) {
-            leave_out(f, where, " was skipped: a strip or fan needs three vertices");
+            leave_out(f, where, " was skipped: it has no triangle");
             continue;
         }
-        vertices += count;
+        keep_used_vertices(p);
+        charge(f, p.vertices.count(), 12 * sizeof(float), where); /* about what its vertices will need */
+        check_vertex_total(job, vertices + p.vertices.count(), indices + p.indices.size());
+        vertices += p.vertices.count();
         indices += p.indices.size();
         job.parts.push_back(std::move(p));
     }
@@ -206,7 +222,7 @@ static void transform_uvs(const file &f, const mesh_job &job, const part &p, flo
     if (use.offset[0] == 0.0 && use.offset[1] == 0.0 && use.scale[0] == 1.0 && use.scale[1] == 1.0 &&
         use.rotation == 0.0)
         return;
-    for (size_t i = 0; i < size_t{ p.vertex_count }; ++i) {
+    for (size_t i = 0; i < p.vertices.count(); ++i) {
         const double u = static_cast<double>(uv[i * 2]) * use.scale[0];
         const double v = static_cast<double>(uv[i * 2 + 1]) * use.scale[1];
         uv[i * 2] = to_float(cosine * u + sine * v + use.offset[0], where);
@@ -246,22 +262,29 @@ static void read_color(file &f, const mesh_job &job, const part &p, float *out)
     int index = find(p.source->attributes, "COLOR_0");
     std::string where = where_of(job, p) + " COLOR_0";
     const uint32_t accepted = c_f32 | c_u8n | c_u16n;
-    for (uint64_t i = 0; i < uint64_t{ p.vertex_count } * 4; ++i) out[i] = 1.0f;
+    for (size_t i = 0; i < p.vertices.count() * 4; ++i) out[i] = 1.0f;
     if (index < 0) return;
     if (accessor_at(f, index, where).type == TINYGLTF_TYPE_VEC4) {
-        read_floats(f, index, 4, accepted, p.vertex_count, where, out);
+        read_vertices(f, index, 4, accepted, p.vertices, where, out);
         return;
     }
-    std::vector<float> rgb(size_t{ p.vertex_count } * 3);
-    read_floats(f, index, 3, accepted, p.vertex_count, where, rgb.data());
-    for (size_t v = 0; v < p.vertex_count; ++v) memcpy(out + v * 4, &rgb[v * 3], 3 * sizeof(float));
+    std::vector<float> rgb(p.vertices.count() * 3);
+    read_vertices(f, index, 3, accepted, p.vertices, where, rgb.data());
+    for (size_t v = 0; v < p.vertices.count(); ++v) memcpy(out + v * 4, &rgb[v * 3], 3 * sizeof(float));
 }
 
 static void read_tangent(file &f, const mesh_job &job, const part &p, float *out)
 {
-    read_floats(f, find(p.source->attributes, "TANGENT"), 4, accepted_normal(f), p.vertex_count,
-                where_of(job, p) + " TANGENT", out);
-    for (size_t v = 0; v < p.vertex_count; ++v) out[v * 4 + 3] = out[v * 4 + 3] < 0.0f ? -1.0f : 1.0f;
+    read_vertices(f, find(p.source->attributes, "TANGENT"), 4, accepted_normal(f), p.vertices,
+                  where_of(job, p) + " TANGENT", out);
+    bool others = false;
+    for (size_t v = 0; v < p.vertices.count(); ++v) {
+        float sign = out[v * 4 + 3] < 0.0f ? -1.0f : 1.0f;
+        others = others || out[v * 4 + 3] != sign;
+        out[v * 4 + 3] = sign;
+    }
+    if (others)
+        leave_out(f, where_of(job, p), ": its tangents have signs that are neither 1 nor -1; they were rounded");
 }
 
 static void read_base(file &f, mesh_job &job, const part &p, model_submesh &submesh)
@@ -270,11 +293,10 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
     const attributes &a = p.source->attributes;
     const std::string where = where_of(job, p);
     const size_t first = p.first_vertex;
-    read_floats(f, find(a, "POSITION"), 3, accepted_position(f), p.vertex_count, where + " POSITION",
-                m.position + first * 3);
+    read_vertices(f, find(a, "POSITION"), 3, accepted_position(f), p.vertices, where + " POSITION",
+                  m.position + first * 3);
     if (has(a, "NORMAL"))
-        read_floats(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertex_count, where + " NORMAL",
-                    m.normal + first * 3);
+        read_vertices(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertices, where + " NORMAL", m.normal + first * 3);
     else
         submesh.missing |= MODEL_MISSING_NORMAL;
     if (has(a, "TANGENT"))
@@ -285,7 +307,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
     if (has(a, uv)) {
         if (uv != text("TEXCOORD_%d", uv_use_of(f, *p.source).set))
             leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
-        read_floats(f, find(a, uv), 2, accepted_uv(f), p.vertex_count, where + " " + uv, m.uv + first * 2);
+        read_vertices(f, find(a, uv), 2, accepted_uv(f), p.vertices, where + " " + uv, m.uv + first * 2);
         transform_uvs(f, job, p, m.uv + first * 2);
     }
     if (m.color) read_color(f, job, p, m.color + first * 4);
@@ -296,7 +318,7 @@ static void read_submesh(mesh_job &job, const part &p, uint32_t first_index, mod
     out.first_index = first_index;
     out.index_count = static_cast<uint32_t>(p.indices.size());
     out.first_vertex = p.first_vertex;
-    out.vertex_count = p.vertex_count;
+    out.vertex_count = static_cast<uint32_t>(p.vertices.count());
     out.material = p.source->material >= 0 ? static_cast<uint32_t>(p.source->material) : MODEL_NONE;
     for (size_t i = 0; i < p.indices.size(); ++i) job.out->indices[first_index + i] = p.indices[i] + p.first_vertex;
 }
@@ -342,8 +364,8 @@ static void read_delta(file &f, const part &p, size_t t, const char *name, uint3
                        float *deltas)
 {
     float *out = deltas + size_t{ p.first_vertex } * 3;
-    read_floats(f, find(p.source->targets[t], name), 3, accepted, p.vertex_count, where + " " + name, out);
-    for (size_t i = 0; i < size_t{ p.vertex_count } * 3; ++i)
+    read_vertices(f, find(p.source->targets[t], name), 3, accepted, p.vertices, where + " " + name, out);
+    for (size_t i = 0; i < p.vertices.count() * 3; ++i)
         out[i] += 0.0f; /* -0 becomes 0, so that dense and sparse files give the same model */
 }
 
@@ -466,7 +488,7 @@ static void count_mesh(mesh_job &job)
 {
     model_mesh &m = *job.out;
     for (const part &p : job.parts) {
-        m.vertex_count += p.vertex_count;
+        m.vertex_count += static_cast<uint32_t>(p.vertices.count());
         m.index_count += static_cast<uint32_t>(p.indices.size());
         ++m.submesh_count;
     }
@@ -480,7 +502,8 @@ static void read_skinning(file &f, mesh_job &job)
     allocate_influences(f, job.where, *job.out);
     influence_changes changes;
     for (size_t i = 0; i < job.parts.size(); ++i)
-        read_influences(f, *job.parts[i].source, job.out->submeshes[i], where_of(job, job.parts[i]), *job.out, changes);
+        read_influences(f, *job.parts[i].source, job.parts[i].vertices, job.out->submeshes[i],
+                        where_of(job, job.parts[i]), *job.out, changes);
     warn_influence_changes(f, changes, job.where);
 }
 

@@ -1,4 +1,5 @@
 /* gltf_skin.cpp: skins, and the nodes whose meshes they move. */
+#include "convert/model/affine.h"
 #include "gltf_internal.h"
 
 #include <cmath>
@@ -39,6 +40,26 @@ static void fill_identities(model_skin &out)
         for (size_t i = 0; i < 4; ++i) out.inverse_bind[j * 16 + i * 5] = 1.0f;
 }
 
+static bool is_zero(const float *m)
+{
+    for (int i = 0; i < 16; ++i)
+        if (m[i] != 0.0f) return false;
+    return true;
+}
+
+/* Exporters that run out of time leave zeros: such a joint is bound where it rests, as if the file gave no matrix. */
+static void bind_at_rest(file &f, uint32_t joint, const std::string &where, float *m)
+{
+    const model_node &node = f.out->nodes[joint];
+    double inverse[16];
+    if (affine_invert(node.world, inverse))
+        fail(where, "the inverse bind matrix of joint '" + printable(node.name) +
+                        "' is all zeros, and where it rests has no inverse either");
+    for (int i = 0; i < 16; ++i) m[i] = static_cast<float>(inverse[i]);
+    leave_out(f, where + ": the inverse bind matrix of joint '" + printable(node.name) + "'",
+              " is all zeros; the joint was bound where it rests");
+}
+
 static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::string &where, model_skin &out)
 {
     out.inverse_bind = allocate<float>(f, uint64_t{ out.joint_count } * 16, where);
@@ -55,7 +76,11 @@ static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::s
     read_floats(f, skin.inverseBindMatrices, 16, c_f32, count, where, matrices.data());
     memcpy(out.inverse_bind, matrices.data(), size_t{ out.joint_count } * 64);
     for (uint32_t j = 0; j < out.joint_count; ++j) {
-        std::string element = where + text(" (accessor %d), element %u", skin.inverseBindMatrices, j);
+        const std::string joint = printable(f.out->nodes[out.joints[j]].name);
+        std::string element = where + text(" (accessor %d), element %u, joint '%s'", skin.inverseBindMatrices, j,
+                                           joint.c_str());
+        if (is_zero(out.inverse_bind + size_t{ j } * 16))
+            bind_at_rest(f, out.joints[j], where, out.inverse_bind + size_t{ j } * 16);
         repair_last_row(out.inverse_bind + size_t{ j } * 16, element);
         check_invertible(out.inverse_bind + size_t{ j } * 16, element);
     }
