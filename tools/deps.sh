@@ -41,6 +41,7 @@ libosmesa6:a second GL
 ?libespeak-ng1:noh speak
 ?espeak-ng-data:noh speak
 ?libsndfile1:noh speak on recordings
+?libwebp7:WebP textures
 binutils:the check of the archive'"'"'s symbols'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'

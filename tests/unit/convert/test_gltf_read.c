@@ -1402,11 +1402,53 @@ static void bad_images_are_warnings(void **state)
 {
     (void)state;
     check_left_out_texture("{\"uri\":\"nowhere.png\"}", "does not exist");
-    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG nor JPEG");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG, JPEG nor WebP");
     check_left_out_texture("{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAAAAAAA\"}", "damaged");
     check_left_out_texture("{\"bufferView\":99}", "buffer view 99 does not exist");
     check_left_out_texture("{\"uri\":\"/etc/hostname\"}", "not a relative path");
     check_left_out_texture("{}", "neither a 'uri' nor a 'bufferView'");
+}
+
+/* Red, and a blue that lets four fifths through: lossless WebP. */
+static const char webp_2x1[] = "UklGRiAAAABXRUJQVlA4TBQAAAAvAQAAEA8wgPs//6f5Dy1UIKL/AQ==";
+
+static scene *webp_scene(const char *texture, size_t length)
+{
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest,
+           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[%s],"
+           "\"images\":[{\"uri\":\"data:image/webp;base64,%.*s\"}]",
+           texture, (int)length, webp_2x1);
+    return s;
+}
+
+static void webp_textures(void **state)
+{
+    (void)state;
+    static const char texture[] = "{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}";
+    const uint8_t pixels[8] = { 255, 0, 0, 255, 0, 128, 255, 51 };
+    model *m = load(webp_scene(texture, sizeof webp_2x1 - 1));
+    if (has_warning(m, "libwebp is not here")) {
+        model_free(m);
+        printf("libwebp is missing\n");
+        skip();
+    }
+    assert_int_equal(m->texture_count, 1);
+    assert_true(m->textures[0].width == 2 && m->textures[0].height == 1);
+    assert_memory_equal(m->textures[0].rgba, pixels, sizeof pixels);
+    model_free(m);
+    for (size_t length = 24; length < sizeof webp_2x1 - 4; length += 4) {
+        m = load(webp_scene(texture, length));
+        assert_int_equal(m->texture_count, 0);
+        assert_true(m->warning_count > 0);
+        model_free(m);
+    }
+    m = load(webp_scene("{\"extensions\":{\"EXT_texture_webp\":{\"source\":7}}}", sizeof webp_2x1 - 1));
+    assert_true(has_warning(m, "image 7 does not exist"));
+    model_free(m);
+    m = load(webp_scene("{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}", sizeof webp_2x1 - 1));
+    assert_true(has_warning(m, "KHR_texture_basisu (KTX2), which is not read"));
+    model_free(m);
 }
 
 static void texture_transform_is_baked(void **state)
@@ -1892,6 +1934,7 @@ int main(void)
         cmocka_unit_test(weights_of_a_mesh_without_targets_are_refused),
         cmocka_unit_test(materials_and_textures),
         cmocka_unit_test(bad_images_are_warnings),
+        cmocka_unit_test(webp_textures),
         cmocka_unit_test(texture_transform_is_baked),
         cmocka_unit_test(not_gltf_is_refused),
         cmocka_unit_test(nothing_to_convert_is_refused),

@@ -37,10 +37,10 @@ static const integer_rule integer_rules[] = {
 };
 
 /* Extensions that are understood, or may be ignored if they are not required. */
-static const char *const supported[] = { "KHR_mesh_quantization",          "EXT_meshopt_compression",
-                                         "KHR_texture_transform",          "KHR_materials_unlit",
-                                         "KHR_materials_specular",         "KHR_materials_ior",
-                                         "KHR_materials_emissive_strength" };
+static const char *const supported[] = { "KHR_mesh_quantization",           "EXT_meshopt_compression",
+                                         "KHR_texture_transform",           "KHR_materials_unlit",
+                                         "KHR_materials_specular",          "KHR_materials_ior",
+                                         "KHR_materials_emissive_strength", "EXT_texture_webp" };
 
 bool is_supported(const std::string &name)
 {
@@ -204,10 +204,12 @@ static void check_required(const json &document)
     for (const json &name : *required) {
         std::string extension = name.is_string() ? name.get<std::string>() : "?";
         if (is_supported(extension)) continue;
-        fail("extensionsRequired",
-             "the file needs the extension " + printable(extension) + ", which is not supported: export it without" +
-                 (extension == "KHR_draco_mesh_compression" ? " Draco compression (EXT_meshopt_compression is read)"
-                                                            : ""));
+        const char *instead = extension == "KHR_draco_mesh_compression"
+                                  ? " Draco compression (EXT_meshopt_compression is read)"
+                              : extension == "KHR_texture_basisu" ? " KTX2 textures (PNG, JPEG and WebP are read)"
+                                                                  : "";
+        fail("extensionsRequired", "the file needs the extension " + printable(extension) +
+                                       ", which is not supported: export it without" + instead);
     }
 }
 

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 
 #include "base/limits.h"
+#include "convert/base/webp_file.h"
 #include "convert/model/surface_kind.h"
 #include "pack/format.h"
 
@@ -66,10 +68,27 @@ static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture 
     }
 }
 
+/* EXT_texture_webp */
+static void decode_webp(file &f, const bytes &data, model_texture &out, const std::string &where)
+{
+    model_error error = { "", "" };
+    unsigned char *rgba = nullptr;
+    if (webp_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &rgba, &error))
+        fail(where, error.what);
+    const std::unique_ptr<unsigned char, void (*)(void *)> held(rgba, free);
+    const size_t count = size_t{ out.width } * out.height * 4;
+    out.rgba = allocate<uint8_t>(f, count, where);
+    memcpy(out.rgba, rgba, count);
+}
+
 static void decode_image(file &f, const image &source, model_texture &out, const std::string &where)
 {
     bytes data = encoded_image(f, source, where);
-    if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG nor JPEG");
+    if (webp_begins(data.data(), data.size())) {
+        decode_webp(f, data, out, where);
+        return;
+    }
+    if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG, JPEG nor WebP");
     check_image_size(data, where);
     tinygltf::Image decoded;
     std::string error, warning;
@@ -111,15 +130,29 @@ static void read_sampler(file &f, int index, model_texture &out, const std::stri
     out.min_filter = filter_of(f, sampler.minFilter, where);
 }
 
+/* The image of a texture: the one that every reader understands, or else that of EXT_texture_webp. */
+static size_t image_of(const file &f, const tinygltf::Texture &texture, const std::string &where)
+{
+    int index = texture.source;
+    const auto webp = texture.extensions.find("EXT_texture_webp");
+    if (index < 0 && webp != texture.extensions.end() && webp->second.Has("source") &&
+        webp->second.Get("source").IsInt())
+        index = webp->second.Get("source").Get<int>();
+    if (index < 0 && texture.extensions.count("KHR_texture_basisu"))
+        fail(where, "its only image is that of KHR_texture_basisu (KTX2), which is not read: export PNG, JPEG or WebP");
+    if (index < 0) fail(where, "it has no image that can be read");
+    if (static_cast<size_t>(index) >= f.images.size())
+        fail(where, text("image %d does not exist: the file has %zu", index, f.images.size()));
+    return static_cast<size_t>(index);
+}
+
 static void read_texture(file &f, size_t index, model_texture &out)
 {
     const tinygltf::Texture &texture = f.json.textures[index];
     std::string where = text("texture %zu", index);
-    if (texture.source < 0) fail(where, "it has no image that can be read");
-    if (static_cast<size_t>(texture.source) >= f.images.size())
-        fail(where, text("image %d does not exist: the file has %zu", texture.source, f.images.size()));
-    const image &source = f.images[static_cast<size_t>(texture.source)];
-    where += text(" image %d", texture.source);
+    const size_t place = image_of(f, texture, where);
+    const image &source = f.images[place];
+    where += text(" image %zu", place);
     read_sampler(f, texture.sampler, out, where);
     decode_image(f, source, out, where);
     if (out.width > NOH_TEXTURE_SIZE_MAX || out.height > NOH_TEXTURE_SIZE_MAX)
