@@ -326,10 +326,15 @@ static int base_of(const source *all, int count)
 static int read_all(const char *const *inputs, int count, const convert_options *options, source *all,
                     convert_failure *failure)
 {
-    source_options reading = {
-        options->clip.sample_rate_hz, options->clip.unit_cm, options->skin,       options->two_streams,
-        options->two_stream_count,    options->identity,     options->split_eyes, options->lips
-    };
+    source_options reading = { options->clip.sample_rate_hz,
+                               options->clip.unit_cm,
+                               options->skin,
+                               options->two_streams,
+                               options->two_stream_count,
+                               options->identity,
+                               options->split_eyes,
+                               options->lips,
+                               options->targets };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
@@ -340,6 +345,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
             reading.identity = NULL;
             reading.split_eyes = 0;
             reading.lips = 0;
+            reading.targets = NULL;
         }
     }
     return 0;

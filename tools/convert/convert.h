@@ -26,6 +26,7 @@ typedef struct convert_options {
     const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
     uint32_t surface_count;
     const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
+    const char *targets;  /* a folder of .obj files: the targets of the first .obj model; NULL: none */
     int split_eyes;       /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;    /* a text file of callback keys; NULL: none */

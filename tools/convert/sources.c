@@ -12,6 +12,7 @@
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/two_stream.h"
+#include "convert/obj/obj_read.h"
 #include "convert/skin/eye_split.h"
 
 static int out_of_memory(model_error *error)
@@ -66,10 +67,16 @@ static int read_clip_file(const char *path, const source_options *options, sourc
     return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 
-static int read_gltf_file(const char *path, const source_options *options, source *s, model_error *error)
+static int read_model(const char *path, const source_options *options, model **out, model_error *error)
+{
+    const obj_options obj = { options->unit_cm, options->targets };
+    return has_ending(path, ".obj") ? obj_read(path, &obj, out, error) : model_read_gltf(path, out, error);
+}
+
+static int read_model_file(const char *path, const source_options *options, source *s, model_error *error)
 {
     sample_options sampling = { options->sample_rate_hz };
-    if (model_read_gltf(path, &s->m, error)) {
+    if (read_model(path, options, &s->m, error)) {
         return 1;
     }
     for (uint32_t i = 0; i < options->two_stream_count; i++) {
@@ -104,7 +111,7 @@ int source_read(const char *path, const source_options *options, source *s, mode
     if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
         return read_clip_file(path, options, s, error);
     }
-    return read_gltf_file(path, options, s, error);
+    return read_model_file(path, options, s, error);
 }
 
 void source_free(source *s)

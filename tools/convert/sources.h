@@ -19,13 +19,14 @@ typedef struct source {
 
 typedef struct source_options {
     double sample_rate_hz; /* 0: as the file has it */
-    double unit_cm;        /* of .bvh */
+    double unit_cm;        /* of .bvh and .obj; 0: 1 and 100 */
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
     const char *identity; /* a file of targets that make people, see identity_join.h; NULL: none */
     int split_eyes;       /* 1: eyeballs get joints, see eye_split.h */
     int lips;             /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
+    const char *targets;  /* of .obj: a folder of targets, see obj_read.h; NULL: none */
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

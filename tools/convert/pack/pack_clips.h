@@ -29,7 +29,7 @@ typedef struct encoded_clips {
 
 typedef struct clips_settings {
     double sample_rate_hz; /* 0: as the source has it */
-    double unit_cm;        /* of .bvh; 0: 1 */
+    double unit_cm;        /* of .bvh and .obj; 0: 1 and 100 */
     int check_loops;       /* mark every clip as a loop, and report the gap between its ends */
     int skeletons_only;    /* no clips, for a pack of meshes */
     clip_options clip;

@@ -18,9 +18,9 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
-        *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
+        *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
-    double error_um, rate, error_cm, shell_cm, unit_cm, influences, palette, bounce;
+    double error_um, rate, error_cm, shell_cm, influences, palette, bounce;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
 } build_args;
 
@@ -39,14 +39,17 @@ static int check_errors(const char *name, const option_list *list)
 
 static int set_clip(const build_args *a, convert_options *o)
 {
-    if (a->rate < 0.0 || a->rate > 1000.0 || a->error_cm <= 0.0 || a->shell_cm <= 0.0 || a->unit_cm <= 0.0) {
-        return tool_usage("--rate wants up to 1000 Hz; --error-cm, --shell-cm and --unit-cm want numbers over 0");
+    if (a->rate < 0.0 || a->rate > 1000.0 || a->error_cm <= 0.0 || a->shell_cm <= 0.0) {
+        return tool_usage("--rate wants up to 1000 Hz; --error-cm and --shell-cm want numbers over 0");
+    }
+    if (strcmp(a->unit_cm, "auto") != 0 &&
+        (tool_number(a->unit_cm, &o->clip.unit_cm) || !(o->clip.unit_cm > 0.0) || o->clip.unit_cm > 1e9)) {
+        return tool_usage("--unit-cm wants auto or a number over 0, at most 1e9, not '%s'", a->unit_cm);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
     }
     o->clip.sample_rate_hz = a->rate;
-    o->clip.unit_cm = a->unit_cm;
     o->clip.check_loops = a->loop;
     o->clip.clip.error_cm = a->error_cm;
     o->clip.clip.shell_cm = a->shell_cm;
@@ -184,6 +187,16 @@ static int fail_build(const convert_failure *f)
                              : tool_fail(f->file, "%s", f->error.what);
 }
 
+/* A folder of targets is an .obj model's. */
+static int check_targets(const build_args *a)
+{
+    for (int i = 0; a->targets && i < a->input_count; i++) {
+        const char *dot = strrchr(a->inputs[i], '.');
+        if (dot && (strcmp(dot, ".obj") == 0 || strcmp(dot, ".OBJ") == 0)) return 0;
+    }
+    return a->targets ? tool_usage("--targets is for an .obj model; a glTF file has its own") : 0;
+}
+
 static int run(void *args)
 {
     const build_args *a = args;
@@ -195,10 +208,12 @@ static int run(void *args)
     int status;
     memset(&o, 0, sizeof o);
     status = set_options(a, &o);
+    if (!status) status = check_targets(a);
     if (status) {
         return status;
     }
     o.identity = a->identity;
+    o.targets = a->targets;
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
     o.lips = a->lips;
@@ -436,6 +451,14 @@ static const option options[] = {
       .what =
           "find the two eyeballs, islands of a mesh whose vertices lie on spheres, and give them the joints LeftEye and RightEye at their centres, so that a gaze turns them",
       .excludes = "--only=anim" },
+    { .name = "--targets",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, targets),
+      .value = "FOLDER",
+      .what =
+          "of an .obj model: each other .obj file in the folder, with the same positions in the same order, is a morph target of its name",
+      .example = "expressions",
+      .excludes = "--only=anim" },
     { .name = "--lips",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, lips),
@@ -456,18 +479,18 @@ static const option options[] = {
           "targets whose names join those of others (jawOpen_smile), or add hundredths to one (jawOpen50), are targets like others, and not correctives that follow from them",
       .excludes = "--only=anim" },
     { .name = "--unit-cm",
-      .kind = OPTION_NUMBER,
+      .kind = OPTION_TEXT,
       .at = offsetof(build_args, unit_cm),
-      .value = "CM",
-      .initial = "1",
-      .what = "centimetres per unit of .bvh files, over 0",
+      .value = "auto|CM",
+      .initial = "auto",
+      .what = "centimetres per unit of .bvh and .obj files, over 0; auto: 1 for .bvh, 100 for .obj",
       .example = "2.54" },
 };
 
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .bvh and .rcl files to one pack: the first model, the clips of all",
+    .what = "convert .gltf, .glb, .obj, .bvh and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1",
     .options = options,

@@ -1,0 +1,277 @@
+/* test_obj_read.c: .obj files and folders of targets, written here. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "convert/obj/obj_read.h"
+#include "pack/format.h"
+
+static void save(const char *name, const char *text)
+{
+    test_write_file(test_path(name), text, strlen(text));
+}
+
+static model *load_with(const char *text, const obj_options *options)
+{
+    model *m = NULL;
+    model_error error = { "", "" };
+    save("face.obj", text);
+    if (obj_read(test_path("face.obj"), options, &m, &error)) fail_msg("refused: %s (%s)", error.what, error.where);
+    return m;
+}
+
+static model *load(const char *text)
+{
+    const obj_options plain = { 0.0, NULL };
+    return load_with(text, &plain);
+}
+
+static void refused(const char *text, const char *what, const char *where)
+{
+    const obj_options plain = { 0.0, NULL };
+    model *m = (model *)1;
+    model_error error = { "", "" };
+    save("face.obj", text);
+    assert_int_equal(obj_read(test_path("face.obj"), &plain, &m, &error), 1);
+    assert_null(m);
+    if (!strstr(error.what, what) || strcmp(error.where, where) != 0)
+        fail_msg("expected '%s' at '%s', got '%s' at '%s'", what, where, error.what, error.where);
+}
+
+static int has_warning(const model *m, const char *text)
+{
+    for (uint32_t i = 0; i < m->warning_count; i++)
+        if (strstr(m->warnings[i], text)) return 1;
+    return 0;
+}
+
+/* ---- the model ---- */
+
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static void polygons_are_fans(void **state)
+{
+    (void)state;
+    const uint32_t expected[9] = { 0, 1, 2, 0, 2, 3, 0, 3, 4 };
+    model *m = load("# five corners\n" SQUARE "v -0.5 0.5 0\ng any\ns off\nf 1 2 3 4 5\n");
+    const float up[3] = { 0, 0, 1 };
+    assert_int_equal(m->mesh_count, 1);
+    assert_string_equal(m->meshes[0].name, "face");
+    assert_int_equal(m->meshes[0].vertex_count, 5);
+    assert_int_equal(m->meshes[0].index_count, 9);
+    assert_memory_equal(m->meshes[0].indices, expected, sizeof expected);
+    assert_memory_equal(m->meshes[0].normal, up, sizeof up);
+    assert_null(m->meshes[0].uv);
+    assert_null(m->meshes[0].color);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+}
+
+/* A corner is a vertex of its own where UV or normal differ. V counts from the bottom. */
+static void corners_become_vertices(void **state)
+{
+    (void)state;
+    model *m = load(SQUARE "vt 0 0\nvt 1 0.25\nvn 0 0 1\nvn 0 0 2\n"
+                           "f 1/1/1 2/2/1 3/2/1\nf 1/1/1 3/2/1 4/1/1\nf -4/-2/-2 -2/-1/-1 -1/-2/-2\n");
+    const model_mesh *mesh = &m->meshes[0];
+    assert_int_equal(mesh->vertex_count, 5); /* position 3 has two normals */
+    assert_true(mesh->uv[0] == 0.0f && mesh->uv[1] == 1.0f && mesh->uv[3] == 0.75f);
+    assert_true(mesh->normal[14] == 1.0f); /* made unit */
+    assert_int_equal(mesh->indices[6], 0);
+    assert_int_equal(mesh->indices[7], 4);
+    assert_non_null(mesh->tangent);
+    model_free(m);
+}
+
+static void materials_are_submeshes(void **state)
+{
+    (void)state;
+    save("face.mtl",
+         "newmtl skin\nKd 0.5 0.25 1\nNs 6\nmap_Kd -bm 1 nowhere.png\nnewmtl unused\nKd 1 0 0\nnewmtl glass\n"
+         "Tr 0.75\n");
+    model *m = load("mtllib face.mtl\n" SQUARE
+                    "f 1 2 3\nusemtl glass\nf 1 2 3\nusemtl skin\nf 1 3 4\nusemtl glass\nf 1 3 4\n");
+    const model_mesh *mesh = &m->meshes[0];
+    assert_int_equal(mesh->submesh_count, 3);
+    assert_int_equal(mesh->submeshes[0].material, MODEL_NONE);
+    assert_int_equal(mesh->submeshes[1].index_count, 6);
+    assert_int_equal(mesh->submeshes[1].first_vertex, 3);
+    assert_int_equal(m->material_count, 2);
+    const model_material *glass = &m->materials[0], *skin = &m->materials[1];
+    assert_string_equal(glass->name, "glass");
+    assert_true(glass->alpha == MODEL_ALPHA_BLEND && glass->base_color[3] == 0.25f);
+    assert_true(skin->base_color[1] == 0.25f && skin->metallic == 0.0f && skin->surface == NOH_SURFACE_SKIN);
+    assert_true(fabs((double)skin->roughness - sqrt(0.5)) < 1e-6);
+    assert_true(has_warning(m, "material 'skin': the texture nowhere.png was left out"));
+    model_free(m);
+}
+
+static void missing_materials_are_told(void **state)
+{
+    (void)state;
+    model *m = load("mtllib nowhere.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
+    assert_true(has_warning(m, "the materials of nowhere.mtl were left out"));
+    assert_string_equal(m->materials[0].name, "a");
+    model_free(m);
+}
+
+static void colours_of_positions(void **state)
+{
+    (void)state;
+    const float expected[8] = { 1, 0.5f, 0, 1, 1, 1, 1, 1 };
+    model *m = load("v 0 0 0 1 0.5 -3\nv 1 0 0 1\nv 1 1 0\nf 1 2 3\n");
+    assert_memory_equal(m->meshes[0].color, expected, sizeof expected);
+    model_free(m);
+}
+
+static void units_and_sizes(void **state)
+{
+    (void)state;
+    const obj_options cm = { 1.0, NULL };
+    model *m = load_with("v 0 0 0\nv 25 0 0\nv 0 25 0\nf 1 2 3\n", &cm);
+    assert_true(fabsf(m->meshes[0].position[3] - 0.25f) < 1e-7f);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+    m = load("v 0 0 0\nv 25 0 0\nv 0 25 0\nf 1 2 3\n");
+    assert_true(m->meshes[0].position[3] == 25.0f);
+    assert_true(has_warning(m, "the model is 25 m large"));
+    model_free(m);
+}
+
+static void what_has_no_triangles_is_told(void **state)
+{
+    (void)state;
+    model *m = load(SQUARE "l 1 2\np 1\nf 1 2 \\\n 3\n");
+    assert_int_equal(m->meshes[0].index_count, 3);
+    assert_true(has_warning(m, "line 5: 'l' was left out, as were 1 more lines"));
+    model_free(m);
+}
+
+/* ---- targets ---- */
+
+/* An empty folder; the path stays, where test_path's is used again. */
+static const char *make_folder(void)
+{
+    static char path[256];
+    (void)snprintf(path, sizeof path, "%s", test_path("targets"));
+    (void)mkdir(path, 0777);
+    return path;
+}
+
+#define MOVED "v 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 -0.25\n"
+
+/* Two vertices of one position move alike; what the folder holds beside .obj files, and the model itself, is no target.
+ */
+static void a_folder_of_targets(void **state)
+{
+    (void)state;
+    const obj_options options = { 10.0, make_folder() };
+    save("targets/smile.obj", MOVED "f 1 2 3\n");
+    save("targets/frown.OBJ", SQUARE);
+    save("targets/face.obj", MOVED);
+    save("targets/notes.txt", "none");
+    model *m = load_with(SQUARE "vt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/1 2/2 4/2\n", &options);
+    const model_mesh *mesh = &m->meshes[0];
+    assert_int_equal(mesh->target_count, 2);
+    assert_string_equal(mesh->targets[0].name, "frown");
+    assert_string_equal(mesh->targets[1].name, "smile");
+    assert_int_equal(mesh->vertex_count, 5);
+    assert_true(fabsf(mesh->targets[1].position[5] - 0.05f) < 1e-8f);
+    assert_true(mesh->targets[1].position[5] == mesh->targets[1].position[11]);
+    assert_true(fabsf(mesh->targets[1].position[14] + 0.025f) < 1e-8f);
+    for (size_t i = 0; i < 15; i++) assert_true(mesh->targets[0].position[i] == 0.0f);
+    assert_true(mesh->targets[1].normal[3] != 0.0f); /* of the morphed surface */
+    assert_true(mesh->weights[0] == 0.0f && mesh->weights[1] == 0.0f);
+    model_free(m);
+    (void)remove(test_path("targets/smile.obj"));
+    (void)remove(test_path("targets/frown.OBJ"));
+    (void)remove(test_path("targets/face.obj"));
+}
+
+static void refused_targets(const char *folder, const char *what, const char *where)
+{
+    const obj_options options = { 0.0, folder };
+    model *m = NULL;
+    model_error error = { "", "" };
+    save("face.obj", SQUARE "f 1 2 3\n");
+    assert_int_equal(obj_read(test_path("face.obj"), &options, &m, &error), 1);
+    if (!strstr(error.what, what) || strcmp(error.where, where) != 0)
+        fail_msg("expected '%s' at '%s', got '%s' at '%s'", what, where, error.what, error.where);
+}
+
+static void bad_targets_are_refused(void **state)
+{
+    (void)state;
+    const char *folder = make_folder();
+    refused_targets("nowhere/at/all", "cannot be read", "");
+    refused_targets(folder, "there is no other .obj file", "");
+    save("targets/a.obj", SQUARE "v 0 0 0\n");
+    refused_targets(folder, "it has 5 positions, and the model has 4", "target a.obj");
+    save("targets/a.obj", "v 0 0 0\nv 0 zero 0\n");
+    refused_targets(folder, "'zero' is not a number", "target a.obj, line 2");
+    (void)remove(test_path("targets/a.obj"));
+}
+
+/* ---- bad input ---- */
+
+static void bad_lines_are_refused(void **state)
+{
+    (void)state;
+    refused("", "there is no position", "");
+    refused(SQUARE, "there is no face", "");
+    refused("v 1 2\n", "3 numbers are wanted here, and there are 2", "line 1");
+    refused("v 1 2 nan\n", "not finite", "line 1");
+    refused("v 1 2 1e30\n", "too large", "line 1");
+    refused(SQUARE "f 1 2\n", "a face wants three corners, and this one has 2", "line 5");
+    refused(SQUARE "f 1 2 5\n", "position 5 does not exist: the file has 4", "line 5");
+    refused(SQUARE "f 1 2 0\n", "position 0 does not exist", "line 5");
+    refused(SQUARE "f 1 2 -5\n", "position -5 does not exist", "line 5");
+    refused(SQUARE "f 1/1 2/1 3/1\n", "UV 1 does not exist", "line 5");
+    refused(SQUARE "f 1//1 2//1 3//1\n", "normal 1 does not exist", "line 5");
+    refused(SQUARE "f 1/1/1/1 2 3\n", "one number too many", "line 5");
+    refused(SQUARE "f 1 2 x\n", "'x' is not a whole number", "line 5");
+    refused("solid cube\n", "'solid' begins no line of an OBJ file", "line 1");
+}
+
+static void mutations_never_crash(void **state)
+{
+    (void)state;
+    const char *text = "mtllib m\n" SQUARE "vt 0 0\nvn 0 0 1\nusemtl a\nf 1/1/1 2/1/1 3//1 -1\n";
+    const char bytes[] = " \n0123456789-+.e/vtnfusml#\\\t\0\xff";
+    const obj_options plain = { 0.0, NULL };
+    test_random r = test_random_from(7);
+    uint32_t accepted = 0, rounds = 5000;
+    for (uint32_t i = 0; i < rounds; ++i) {
+        char changed[256];
+        const size_t length = strlen(text);
+        model *m = NULL;
+        model_error error = { "", "" };
+        memcpy(changed, text, length);
+        for (uint32_t n = 1 + test_random_below(&r, 4); n > 0; --n)
+            changed[test_random_below(&r, (uint32_t)length)] = bytes[test_random_below(&r, sizeof bytes - 1)];
+        test_write_file(test_path("mutated.obj"), changed, length);
+        if (!obj_read(test_path("mutated.obj"), &plain, &m, &error)) ++accepted;
+        model_free(m);
+    }
+    assert_true(accepted > 0 && accepted < rounds);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(polygons_are_fans),
+    cmocka_unit_test(corners_become_vertices),
+    cmocka_unit_test(materials_are_submeshes),
+    cmocka_unit_test(missing_materials_are_told),
+    cmocka_unit_test(colours_of_positions),
+    cmocka_unit_test(units_and_sizes),
+    cmocka_unit_test(what_has_no_triangles_is_told),
+    cmocka_unit_test(a_folder_of_targets),
+    cmocka_unit_test(bad_targets_are_refused),
+    cmocka_unit_test(bad_lines_are_refused),
+    cmocka_unit_test(mutations_never_crash),
+};
+
+TEST_MAIN(tests, NULL, NULL)

@@ -1,0 +1,205 @@
+#include "obj_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/base/image_file.h"
+#include "convert/base/input_file.h"
+#include "convert/model/model_build.h"
+#include "convert/model/surface_kind.h"
+
+/* A file of materials while those of the model are filled in. */
+typedef struct library {
+    const char *folder; /* with its slash, or "" */
+    text_scan scan;
+    model *m;
+    model_material *at; /* the one that the lines are about; NULL: none that is used */
+} library;
+
+/* ---- materials by name ---- */
+
+/* Dielectric, and rough until its lines say otherwise. */
+static model_material material_plain(void)
+{
+    model_material plain = model_material_default();
+    plain.metallic = 0.0f;
+    plain.roughness = 0.8f;
+    return plain;
+}
+
+static int make_materials(const obj_text *o, model *m)
+{
+    m->materials = model_zeros(obj_part_count(o), sizeof *m->materials);
+    m->textures = model_zeros(obj_part_count(o), sizeof *m->textures);
+    if (!m->materials || !m->textures) return 1;
+    for (uint32_t i = 0; i < obj_part_count(o); i++) {
+        const char *name = obj_part_at(o, i)->material;
+        if (!name) continue;
+        m->materials[m->material_count] = material_plain();
+        m->materials[m->material_count].name = model_string(name);
+        surface_kind_set(&m->materials[m->material_count], surface_kind_of_name(name));
+        if (!m->materials[m->material_count++].name) return 1;
+    }
+    return 0;
+}
+
+static model_material *material_of(model *m, text_word name)
+{
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        if (strlen(m->materials[i].name) == name.size && memcmp(m->materials[i].name, name.text, name.size) == 0) {
+            return &m->materials[i];
+        }
+    }
+    return NULL;
+}
+
+/* ---- textures ---- */
+
+/* What exporters write may be a path on another machine: then the file of that name beside the model is taken. */
+static int read_image(const char *folder, const char *name, image_file *image, model_error *error)
+{
+    char path[4096];
+    const char *last = name;
+    const int absolute = name[0] == '/' || strchr(name, ':') != NULL || strstr(name, "..") != NULL;
+    for (const char *c = name; *c; c++) {
+        if (*c == '/' || *c == '\\') last = c + 1;
+    }
+    (void)snprintf(path, sizeof path, "%s%s", folder, name);
+    if (!absolute && image_read(path, image, error) == 0) return 0;
+    if (last == name && !absolute) return 1;
+    (void)snprintf(path, sizeof path, "%s%s", folder, last);
+    return image_read(path, image, error);
+}
+
+static uint32_t find_texture(const model *m, const char *name)
+{
+    for (uint32_t i = 0; i < m->texture_count; i++) {
+        if (strcmp(m->textures[i].name, name) == 0) return i;
+    }
+    return MODEL_NONE;
+}
+
+static int add_texture(library *l, const char *name)
+{
+    image_file image;
+    model_error error = { "", "" };
+    model_texture *t = &l->m->textures[l->m->texture_count];
+    if (read_image(l->folder, name, &image, &error)) {
+        return model_warn(l->m, "material '%.60s': the texture %.80s was left out: %s", l->at->name, name, error.what);
+    }
+    t->name = model_string(name);
+    t->width = image.width;
+    t->height = image.height;
+    t->rgba = image.rgba;
+    t->wrap_s = t->wrap_t = 10497;
+    t->use = MODEL_TEXTURE_COLOR;
+    l->at->base_color_texture = l->m->texture_count++;
+    return !t->name;
+}
+
+/* map_Kd [-option value ...] FILE: the file is the last word, or the whole rest where there are no options. */
+static int read_texture(library *l)
+{
+    text_word rest = text_rest_of_line(&l->scan);
+    char *name;
+    int failed;
+    if (rest.size > 0 && rest.text[0] == '-') {
+        const char *end = rest.text + rest.size, *at = end;
+        while (at > rest.text && at[-1] != ' ' && at[-1] != '\t') at--;
+        rest.text = at;
+        rest.size = (size_t)(end - at);
+    }
+    if (rest.size == 0) return 0;
+    name = text_copy(rest);
+    if (!name) return 1;
+    l->at->base_color_texture = find_texture(l->m, name);
+    failed = l->at->base_color_texture == MODEL_NONE && add_texture(l, name);
+    free(name);
+    return failed;
+}
+
+/* ---- lines ---- */
+
+/* Up to three numbers; 0 where a line is not what it should be: such a line is skipped. */
+static uint32_t read_numbers(library *l, double out[3])
+{
+    uint32_t count = 0;
+    for (; count < 3; count++) {
+        const text_word word = text_next_on_line(&l->scan);
+        if (word.size == 0) break;
+        if (text_number(&l->scan, word, &out[count])) return 0;
+    }
+    return count;
+}
+
+static void set_color(library *l)
+{
+    double c[3];
+    if (read_numbers(l, c) != 3) return;
+    for (int k = 0; k < 3; k++) l->at->base_color[k] = (float)fmin(fmax(c[k], 0.0), 1.0);
+}
+
+static void set_opacity(library *l, int transparency)
+{
+    double d[3];
+    if (read_numbers(l, d) == 0) return;
+    l->at->base_color[3] = (float)fmin(fmax(transparency ? 1.0 - d[0] : d[0], 0.0), 1.0);
+    if (l->at->base_color[3] < 1.0f) l->at->alpha = MODEL_ALPHA_BLEND;
+}
+
+/* Blinn-Phong's exponent as a roughness of the same width (Walter et al. 2007). */
+static void set_exponent(library *l)
+{
+    double n[3];
+    if (read_numbers(l, n) == 0) return;
+    l->at->roughness = (float)sqrt(sqrt(2.0 / (fmax(n[0], 0.0) + 2.0)));
+}
+
+static int read_line(library *l)
+{
+    const text_word keyword = text_next_on_line(&l->scan);
+    if (text_is(keyword, "newmtl")) {
+        l->at = material_of(l->m, text_rest_of_line(&l->scan));
+        return 0;
+    }
+    if (!l->at) return 0;
+    if (text_is(keyword, "map_Kd")) return read_texture(l);
+    if (text_is(keyword, "Kd")) set_color(l);
+    if (text_is(keyword, "d")) set_opacity(l, 0);
+    if (text_is(keyword, "Tr")) set_opacity(l, 1);
+    if (text_is(keyword, "Ns")) set_exponent(l);
+    return 0;
+}
+
+static int read_library(library *l, const char *text, size_t bytes)
+{
+    model_error ignored;
+    text_start(&l->scan, text, bytes, &ignored);
+    while (text_next_line(&l->scan)) {
+        if (read_line(l)) return 1;
+        (void)text_rest_of_line(&l->scan);
+    }
+    return 0;
+}
+
+int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
+{
+    char folder[4096], path[8192];
+    const char *slash = strrchr(obj_path, '/');
+    library l = { .folder = folder, .m = m };
+    model_error error = { "", "" };
+    size_t bytes = 0;
+    char *text;
+    int failed;
+    if (make_materials(o, m)) return 1;
+    if (!o->library || m->material_count == 0) return 0;
+    (void)snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - obj_path + 1) : 0, obj_path);
+    (void)snprintf(path, sizeof path, "%s%s", folder, o->library);
+    text = input_read(path, &bytes, &error);
+    if (!text) return model_warn(m, "the materials of %.80s were left out: %s", o->library, error.what);
+    failed = read_library(&l, text, bytes);
+    free(text);
+    return failed;
+}
