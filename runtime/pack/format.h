@@ -31,6 +31,7 @@ extern "C" {
 #define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
 #define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
 #define NOH_CHUNK_RECIPE NOH_FOURCC('R', 'C', 'P', 'E')
+#define NOH_CHUNK_RAGDOLL NOH_FOURCC('R', 'G', 'D', 'L')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 #define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
 
@@ -418,6 +419,25 @@ typedef struct noh_recipe_row {
     uint32_t reserved[3];
 } noh_recipe_row;
 
+/* ---- CHUNK_RAGDOLL, none or one: header, rows. The bodies of a ragdoll, by the joints that they begin at, and what
+ * these can do: as noh_ragdoll_row has it (sim/ragdoll_rig.h), in any order, each joint once. Programs from before
+ * there was such a chunk refuse a pack that has one, as of an unknown type. ---- */
+
+typedef struct noh_pack_ragdoll_header {
+    uint32_t row_count, rows_offset; /* 1..NOH_RAGDOLL_BODIES_MAX */
+    uint32_t reserved[2];
+} noh_pack_ragdoll_header;
+
+typedef struct noh_pack_ragdoll_row {
+    uint32_t joint, joint_hash;
+    uint32_t hinge;           /* 0 or 1 */
+    uint32_t toward;          /* 0 forward, 1 backward, 2 upward */
+    float bend_min, bend_max; /* radians, -pi..0 and 0..pi */
+    float side, twist;        /* radians, 0..pi */
+    float friction;           /* N m in a body of 70 kg, 0..10,000 */
+    uint32_t reserved[3];
+} noh_pack_ragdoll_row;
+
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
  * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened
  * (graph/graph_pack.h). Kinds, conditions, curves, loops and flags are the numbers of graph/graph.h, anim/changes.h and
@@ -525,6 +545,8 @@ NOH_STATIC_ASSERT(sizeof(noh_pack_graph_space) == 8, graph_space);
 NOH_STATIC_ASSERT(sizeof(noh_pack_graph_param) == 28, graph_param);
 NOH_STATIC_ASSERT(sizeof(noh_pack_graph_mask) == 16, graph_mask);
 NOH_STATIC_ASSERT(sizeof(noh_pack_graph_name) == 12, graph_name);
+NOH_STATIC_ASSERT(sizeof(noh_pack_ragdoll_header) == 16, ragdoll_header);
+NOH_STATIC_ASSERT(sizeof(noh_pack_ragdoll_row) == 48, ragdoll_row);
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
 NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);

@@ -23,6 +23,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_CLIP: return 9;
     case NOH_CHUNK_GRAPH: return 10;
     case NOH_CHUNK_RECIPE: return 11;
+    case NOH_CHUNK_RAGDOLL: return 12;
     default: return -1;
     }
 }
@@ -198,6 +199,14 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
             pack->recipe_rows = (const noh_recipe_row *)(const void *)(check.bytes + h->rows_offset);
         }
         break;
+    case NOH_CHUNK_RAGDOLL:
+        result = noh_check_ragdoll(&check);
+        if (!result) {
+            const noh_pack_ragdoll_header *h = (const noh_pack_ragdoll_header *)(const void *)check.bytes;
+            pack->ragdoll_row_count = h->row_count;
+            pack->ragdoll_rows = (const noh_pack_ragdoll_row *)(const void *)(check.bytes + h->rows_offset);
+        }
+        break;
     default: /* a graph, which noh_pack_check_graph checks when it is opened */
         count_chunk(&pack->graph_count, &pack->first_graph, index);
         break;
@@ -227,7 +236,7 @@ static noh_result open_chunks(noh_pack *pack, noh_error *error)
         uint32_t type = pack->chunks[i].type;
         int rank = chunk_rank(type);
         int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES ||
-                     type == NOH_CHUNK_RECIPE;
+                     type == NOH_CHUNK_RECIPE || type == NOH_CHUNK_RAGDOLL;
         noh_result result;
         if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0)) {
             return noh_fail(error, NOH_ERR_DATA, "chunk of an unknown type, or out of order", table_at, 0);

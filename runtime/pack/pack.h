@@ -37,6 +37,8 @@ typedef struct noh_pack {
     uint32_t node_weight_count;
     uint32_t recipe_row_count; /* of the face's own recipe; 0: it has none */
     const noh_recipe_row *recipe_rows;
+    uint32_t ragdoll_row_count; /* of the ragdoll's own table; 0: it has none */
+    const noh_pack_ragdoll_row *ragdoll_rows;
 } noh_pack;
 
 typedef struct noh_texture {

@@ -1,9 +1,26 @@
-/* ragdoll_names.c: bodies of a ragdoll by the names of joints. */
+/* ragdoll_names.c: bodies of a ragdoll by the pack's table, or by the names of joints. */
+#include "base/name_internal.h"
 #include "base/trig.h"
 #include "clip/pack_clip.h"
 #include "sim/ragdoll_rig.h"
 
-typedef enum part { NONE, HEAD, UPPER_ARM, FOREARM, HAND, THIGH, SHIN, FOOT, PELVIS, SPINE, CHEST, PARTS } part;
+/* A hip is a thigh, a shoulder an upper arm, where no joint below it is. */
+typedef enum part {
+    NONE,
+    HEAD,
+    UPPER_ARM,
+    FOREARM,
+    HAND,
+    THIGH,
+    SHIN,
+    FOOT,
+    PELVIS,
+    SPINE,
+    CHEST,
+    PARTS,
+    HIP,
+    SHOULDER
+} part;
 
 #define DEGREES(a) ((a) * (NOH_PI / 180.0f))
 
@@ -29,13 +46,35 @@ static const struct word {
     const char *text;
     part means;
 } words[] = {
-    { "forearm", FOREARM },    { "lowerarm", FOREARM }, { "lowarm", FOREARM }, { "elbow", FOREARM },
-    { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },  { "thigh", THIGH },    { "upperleg", THIGH },
-    { "upleg", THIGH },        { "lowerleg", SHIN },    { "lowleg", SHIN },    { "shin", SHIN },
-    { "calf", SHIN },          { "knee", SHIN },        { "toe", NONE },       { "foot", FOOT },
-    { "ankle", FOOT },         { "finger", NONE },      { "thumb", NONE },     { "hand", HAND },
-    { "wrist", HAND },         { "headtop", NONE },     { "head", HEAD },      { "neck", HEAD },
-    { "armature", NONE },      { "arm", UPPER_ARM },    { "leg", SHIN },
+    { "forearm", FOREARM },
+    { "lowerarm", FOREARM },
+    { "lowarm", FOREARM },
+    { "elbow", FOREARM },
+    { "upperarm", UPPER_ARM },
+    { "uparm", UPPER_ARM },
+    { "thigh", THIGH },
+    { "upperleg", THIGH },
+    { "upleg", THIGH },
+    { "lowerleg", SHIN },
+    { "lowleg", SHIN },
+    { "shin", SHIN },
+    { "calf", SHIN },
+    { "knee", SHIN },
+    { "toe", NONE },
+    { "foot", FOOT },
+    { "ankle", FOOT },
+    { "finger", NONE },
+    { "thumb", NONE },
+    { "hand", HAND },
+    { "wrist", HAND },
+    { "headtop", NONE },
+    { "head", HEAD },
+    { "neck", HEAD },
+    { "armature", NONE },
+    { "arm", UPPER_ARM },
+    { "leg", SHIN },
+    { "shoulder", SHOULDER },
+    { "hip", HIP },
 };
 
 static char lower(char c)
@@ -71,9 +110,32 @@ static part part_of(const char *name)
     return NONE;
 }
 
-static part part_at(const noh_ragdoll_source *s, uint32_t joint)
+static part name_at(const noh_ragdoll_source *s, uint32_t joint)
 {
     return part_of(noh_pack_joint_name(s->pack, s->skeleton, joint));
+}
+
+/* Is there a joint of `below` whose nearest one above, of the names `weak` and `means`, is this? So 'Hips' and collar
+ * bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee' is. */
+static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part weak, part means, part below)
+{
+    for (uint32_t i = joint + 1u; i < s->joints.joint_count; i++) {
+        uint32_t up = s->joints.parents[i];
+        if (name_at(s, i) != below) continue;
+        while (up != NOH_JOINT_ROOT && up > joint && name_at(s, up) != weak && name_at(s, up) != means) {
+            up = s->joints.parents[up];
+        }
+        if (up == joint) return 1;
+    }
+    return 0;
+}
+
+static part part_at(const noh_ragdoll_source *s, uint32_t joint)
+{
+    const part name = name_at(s, joint);
+    if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
+    if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
+    return name;
 }
 
 /* The topmost joint of its part in its chain: fingers' names have "hand" too. */
@@ -127,11 +189,43 @@ static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
     return means != NONE && is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means : NONE;
 }
 
+/* ---- a table in the pack ---- */
+
+/* The first joint of that name; NOH_NONE: the skeleton has none. */
+static uint32_t joint_of(const noh_ragdoll_source *s, const noh_pack_ragdoll_row *row)
+{
+    const char *name = noh_pack_string(s->pack, row->joint);
+    for (uint32_t i = 0; i < s->joints.joint_count; i++) {
+        if (noh_names_equal(noh_pack_joint_name(s->pack, s->skeleton, i), name)) return i;
+    }
+    return NOH_NONE;
+}
+
+/* The pack's rows by rising joint. 0: it has none, or the skeleton lacks a joint. */
+static uint32_t rows_of_pack(const noh_ragdoll_source *s, noh_ragdoll_row *rows)
+{
+    for (uint32_t i = 0; i < s->pack->ragdoll_row_count; i++) {
+        const noh_pack_ragdoll_row *from = &s->pack->ragdoll_rows[i];
+        const uint32_t joint = joint_of(s, from);
+        uint32_t at = i;
+        if (joint == NOH_NONE) return 0;
+        while (at > 0 && rows[at - 1u].joint > joint) {
+            rows[at] = rows[at - 1u];
+            at--;
+        }
+        rows[at] = (noh_ragdoll_row){ joint,          from->hinge, from->toward, from->bend_min,
+                                      from->bend_max, from->side,  from->twist,  from->friction };
+    }
+    return s->pack->ragdoll_row_count;
+}
+
 noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_row *rows, uint32_t *count,
                                  noh_error *error)
 {
-    trunk t = { where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
-    *count = 0;
+    trunk t;
+    *count = rows_of_pack(source, rows);
+    if (*count) return NOH_OK;
+    t = (trunk){ where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
     if (t.pelvis == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no two joints of this skeleton have names of thighs: its ragdoll "

@@ -45,8 +45,9 @@ typedef struct noh_ragdoll_source {
 } noh_ragdoll_source;
 
 /* Pelvis, spine, chest, head, upper arms, forearms, hands, thighs, shins and feet, as far as joints have such names:
- * 'LeftUpLeg', 'thigh.L', 'L_UpperArm'. The pelvis is where the thighs meet, the chest where the upper arms do. Limits
- * are those of people.
+ * 'LeftUpLeg', 'thigh.L', 'L_UpperArm'; 'L_Hip' over a knee, 'L_Shoulder' over an elbow. The pelvis is where the thighs
+ * meet, the chest where the upper arms do. Limits are those of people.
+ * A pack with a table of its own (noh build --ragdoll) has the rows of that instead, for a skeleton with its joints.
  * shapes  rows[NOH_RAGDOLL_BODIES_MAX]; *count of them, by rising joint
  * source  limits after clinical ranges of motion, rounded
  * errors  NOT_FOUND there are no two thighs: rows are to be made by hand */

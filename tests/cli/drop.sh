@@ -28,6 +28,44 @@ noh drop "$work/puppet.noh" --seconds 1 --seed 2
 expect 0 'another seed'
 check 'falls otherwise' sh -c '! grep -q "$(sed -n "s/.*\"hash\": \"\(.*\)\".*/\1/p" "$2")" "$1"' - "$work/out" "$work/json"
 
+# an artist's own bodies, in any order
+cat >"$work/puppet.ragdoll" <<'END'
+# less than names would give
+shin.L hinge backward bend 0 140 friction 5
+"hips"
+thigh.L forward bend -20 95 side 40 twist 30 friction 5   # as names have it
+spine bend -15 25 side 15 twist 15 friction 5
+END
+noh build "$build/demo/puppet.glb" -o "$work/own.noh" --quiet --ragdoll "$work/puppet.ragdoll"
+expect 0 'a ragdoll of its own'
+noh drop "$work/own.noh" --dolls 4 --seconds 1 --json
+expect 0 'drop that'
+check 'it has those bodies' grep -q '"bodies": 4' "$work/out"
+bad() { # ROW MESSAGE
+    printf 'hips\n%s\n' "$1" >"$work/bad.ragdoll"
+    noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+    expect 1 "refused: $1"
+    check "line and cause of: $1" grep -q "bad.ragdoll:2: .*$2" "$work/err"
+    check 'and no pack is left' test ! -e "$work/bad.noh"
+}
+bad 'spine bend 5 25' 'bend, the least angle: 5 is not within -180 to 0'
+bad 'spine bend -5' 'bend, the largest angle: the number is missing'
+bad 'spine twist nan' ''
+bad 'spine friction -1' 'friction: -1 is not within 0 to 10000'
+bad 'spine hinge side 5' 'a hinge only bends'
+bad 'spine elastic' "'elastic' is no setting of a body"
+bad 'hips' 'this joint has a row already, in line 1'
+bad 'tail' "no skeleton has the joint 'tail'"
+bad '"spine' 'a quote is not closed'
+printf '# nothing\n' >"$work/bad.ragdoll"
+noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+expect 1 'an empty table'
+says 'the ragdoll has no body'
+printf 'thigh.L\nhead\n' >"$work/bad.ragdoll"
+noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+expect 1 'bodies that do not hang together'
+says 'not below the first'
+
 noh drop "$build/mask.noh"
 expect 1 'a mask has no skeleton'
 says 'nothing of it can fall'

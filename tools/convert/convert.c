@@ -11,7 +11,9 @@
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
 #include "convert/pack/pack_graph.h"
+#include "clip/pack_clip.h"
 #include "pack/pack.h"
+#include "sim/ragdoll_rig.h"
 #include "sources.h"
 
 /* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
@@ -84,6 +86,38 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
             model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->channel + 1)) {
             return out_of_memory(&failure->error);
         }
+    }
+    failure->line = 0;
+    failure->file = model_file;
+    return 0;
+}
+
+static int has_joint(const source *s, const char *name)
+{
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        const raw_skeleton *k = &s->sets[i]->skeleton;
+        for (uint32_t j = 0; j < k->joint_count; j++) {
+            if (strcmp(k->joints[j].name, name) == 0) return 1;
+        }
+    }
+    return 0;
+}
+
+/* The ragdoll of a text; *out NULL: there is none. A joint that is not there is an error: the body would lack it. */
+static int read_ragdoll(const convert_options *options, const source *s, ragdoll_text **out, convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    *out = NULL;
+    if (!options->ragdoll || options->only == CONVERT_CLIPS) return 0;
+    failure->file = options->ragdoll;
+    if (ragdoll_read(options->ragdoll, out, &failure->line, &failure->error)) return 1;
+    for (uint32_t i = 0; i < (*out)->count; i++) {
+        if (has_joint(s, (*out)->rows[i].joint)) continue;
+        failure->line = (*out)->rows[i].line;
+        (void)snprintf(failure->error.what, sizeof failure->error.what, "no skeleton has the joint '%s'",
+                       (*out)->rows[i].joint);
+        failure->error.where[0] = 0;
+        return 1;
     }
     failure->line = 0;
     failure->file = model_file;
@@ -194,6 +228,28 @@ static int encode_meshes(const model *m, const convert_options *options, encoded
     return failed;
 }
 
+/* Whether the rows of its table hang together. */
+static int check_ragdoll(const noh_pack *pack, model_error *error)
+{
+    for (uint32_t i = 0; pack->ragdoll_row_count && i < pack->skeleton_count; i++) {
+        noh_ragdoll_source s = { .pack = pack, .skeleton = i };
+        const noh_skeleton_header *header;
+        noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+        noh_ragdoll_rig rig;
+        noh_error refusal = { NOH_OK, "", 0, 0 };
+        uint32_t count;
+        if (noh_pack_skeleton_at(pack, i, &s.joints, &header, NULL)) continue;
+        s.metres = header->unit_cm / 100.0f;
+        if (noh_ragdoll_find_rows(&s, rows, &count, NULL) || count != pack->ragdoll_row_count) continue;
+        if (!noh_ragdoll_rig_make(&s, rows, count, &rig, &refusal)) continue;
+        (void)snprintf(error->what, sizeof error->what, "--ragdoll: %s ('%s')", refusal.what,
+                       noh_pack_joint_name(pack, i, rows[refusal.where < count ? refusal.where : 0].joint));
+        error->where[0] = 0;
+        return 1;
+    }
+    return 0;
+}
+
 /* Open the pack with the library's own reader: a pack that it refuses is never written. */
 static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
 {
@@ -207,7 +263,7 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
         buffer_free(out);
         return 1;
     }
-    if (pack_check_graphs(&pack, error)) {
+    if (pack_check_graphs(&pack, error) || check_ragdoll(&pack, error)) {
         buffer_free(out);
         return 1;
     }
@@ -278,7 +334,8 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
 }
 
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
-                          const convert_options *options, byte_buffer *out, model_error *error)
+                          const ragdoll_text *ragdoll, const convert_options *options, byte_buffer *out,
+                          model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -303,6 +360,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.graphs = graphs;
         made.recipe = recipe;
+        made.ragdoll = ragdoll;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -378,6 +436,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     source *all = calloc((size_t)input_count + 1u, sizeof *all);
     graph_file *graphs = NULL;
     recipe_text *recipe = NULL;
+    ragdoll_text *ragdoll = NULL;
     int failed, base;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
@@ -391,16 +450,18 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  make_surfaces(options, &all[base], &failure->error) ||
                  apply_events(options, &all[base], &failure->error) ||
                  read_graphs(options, &all[base], &graphs, failure) ||
-                 read_recipe(options, &all[base], &recipe, failure);
+                 read_recipe(options, &all[base], &recipe, failure) ||
+                 read_ragdoll(options, &all[base], &ragdoll, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
-        failed = failed || convert_source(&all[base], graphs, recipe, options, out, &failure->error);
+        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, options, out, &failure->error);
     }
     for (int i = 0; i < input_count; i++) {
         source_free(&all[i]);
     }
     graph_text_free(graphs);
     recipe_free(recipe);
+    ragdoll_free(ragdoll);
     free(all);
     return failed;
 }

@@ -32,6 +32,7 @@ typedef struct convert_options {
     const char *events;    /* a text file of callback keys; NULL: none */
     const char *graph;     /* a text file of animation graphs; NULL: none */
     const char *recipe;    /* a text file of what a face's targets are for; NULL: none */
+    const char *ragdoll;   /* a text file of a ragdoll's bodies; NULL: none */
     int lips;              /* 1: a target that brings the lower lip to the teeth */
     int no_correctives;    /* 1: names of targets do not make correctives */
     strip_levels lod_from; /* count 0: all levels stay */

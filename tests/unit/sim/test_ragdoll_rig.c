@@ -2,6 +2,7 @@
 #include "sim/ragdoll_rig.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -127,11 +128,65 @@ static void rows_out_of_order_are_refused(void **state)
     skin_asset_close(&a);
 }
 
+/* Give a joint another name: its place in the skeleton's names becomes that of a string behind the pack's own. */
+static void rename_joint(skin_asset *a, const char *from, const char *to)
+{
+    const noh_skeleton_header *h;
+    noh_skeleton joints;
+    assert_int_equal(noh_pack_skeleton_at(&a->pack, 0, &joints, &h, NULL), NOH_OK);
+    for (uint32_t i = 0; i < joints.joint_count; i++) {
+        uint32_t *name = (uint32_t *)(void *)(a->bytes + ((const uint8_t *)h - a->bytes) + h->names_offset) + i;
+        if (strcmp(noh_pack_joint_name(&a->pack, 0, i), from) != 0) continue;
+        char *strings = realloc((char *)(uintptr_t)a->pack.strings, a->pack.string_bytes + strlen(to) + 1u);
+        assert_non_null(strings);
+        *name = a->pack.string_bytes;
+        (void)strcpy(strings + *name, to);
+        a->pack.strings = strings;
+        a->pack.string_bytes += (uint32_t)strlen(to) + 1u;
+        return;
+    }
+    fail_msg("no joint has the name %s", from);
+}
+
+/* Names of other tools: the joints are the same, so the rows are. Their pelvis is named as a hip too, their collar
+ * bones as shoulders, and both have the limbs below them. */
+static void hips_and_shoulders_are_limbs_where_none_is_below(void **state)
+{
+    static const char *const sides[2][2] = { { "Left", "L_" }, { "Right", "R_" } };
+    static const char *const names[][2] = { { "UpLeg", "Hip" },    { "Leg", "Knee" },      { "Foot", "Ankle" },
+                                            { "Arm", "Shoulder" }, { "ForeArm", "Elbow" }, { "Hand", "Wrist" } };
+    noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t counts[2];
+    skin_asset a;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    const noh_ragdoll_source s = source_of(&a.pack);
+    assert_int_equal(noh_ragdoll_find_rows(&s, before, &counts[0], NULL), NOH_OK);
+    char *strings = malloc(a.pack.string_bytes);
+    assert_non_null(strings);
+    a.pack.strings = memcpy(strings, a.pack.strings, a.pack.string_bytes);
+    for (int side = 0; side < 2; side++) {
+        for (size_t i = 0; i < TEST_COUNT(names); i++) {
+            char from[32], to[32];
+            (void)snprintf(from, sizeof from, "%s%s", sides[side][0], names[i][0]);
+            (void)snprintf(to, sizeof to, "%s%s", sides[side][1], names[i][1]);
+            rename_joint(&a, from, to);
+        }
+    }
+    assert_int_equal(noh_ragdoll_find_rows(&s, after, &counts[1], NULL), NOH_OK);
+    assert_int_equal(counts[0], 16);
+    assert_int_equal(counts[1], 16);
+    assert_memory_equal(before, after, sizeof before);
+    free((char *)(uintptr_t)a.pack.strings);
+    skin_asset_close(&a);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(zero_is_the_bind_pose),
     cmocka_unit_test(errata_C7_3_sizes_follow_the_skin),
     cmocka_unit_test(sides_are_alike),
     cmocka_unit_test(rows_out_of_order_are_refused),
+    cmocka_unit_test(hips_and_shoulders_are_limbs_where_none_is_below),
 };
 
 TEST_MAIN(tests, NULL, NULL)

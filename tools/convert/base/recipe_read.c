@@ -9,26 +9,6 @@
 
 #define CHANNEL_ANY "blink-left, eye-right-up, lids-down, joy-upper, joy-mouth, PP, aa and so on (noh help FORMATS)"
 
-/* The next word of the line, or what is between quotes; of size 0 at the line's end and at a comment. */
-static int take_word(text_scan *s, text_word *out)
-{
-    const char *close;
-    *out = text_next_on_line(s);
-    if (out->size > 0 && out->text[0] == '#') {
-        s->at = out->text;
-        (void)text_rest_of_line(s);
-        out->size = 0;
-    }
-    if (out->size == 0 || out->text[0] != '"') return 0;
-    close = out->text + 1;
-    while (close < s->end && *close != '"' && *close != '\n') ++close;
-    if (close == s->end || *close != '"') return text_fail(s, out->line, "a quote is not closed");
-    out->text++;
-    out->size = (size_t)(close - out->text);
-    s->at = close + 1;
-    return out->size > 0 ? 0 : text_fail(s, out->line, "a name is empty");
-}
-
 /* The channels of a word: one, or the two of `blink`. */
 static uint32_t find_channels(text_word word, uint32_t channels[2])
 {
@@ -90,13 +70,13 @@ static int read_weight(text_scan *s, float *weight)
     text_word word;
     double value = 1.0;
     char shown[TEXT_SHOWN];
-    if (take_word(s, &word)) return 1;
+    if (text_take_on_line(s, &word)) return 1;
     if (word.size && text_number(s, word, &value)) return 1;
     if (!(value >= -4.0 && value <= 4.0) || value == 0.0) {
         return text_fail(s, word.line, "the weight %s is not within -4 to 4, or is 0", text_show(word, shown));
     }
     *weight = (float)value;
-    if (word.size && take_word(s, &word)) return 1;
+    if (word.size && text_take_on_line(s, &word)) return 1;
     return word.size ? text_fail(s, word.line, "'%s' is one word too many: a row is CHANNEL TARGET [WEIGHT]",
                                  text_show(word, shown))
                      : 0;
@@ -110,14 +90,14 @@ static int read_peak(text_scan *s, text_word *next, float *peak)
     double value;
     char shown[TEXT_SHOWN];
     *peak = 1.0f;
-    if (take_word(s, next)) return 1;
+    if (text_take_on_line(s, next)) return 1;
     if (!next->size || !((next->text[0] >= '0' && next->text[0] <= '9') || next->text[0] == '.')) return 0;
     if (text_number(s, *next, &value)) return 1;
     if (!(value > 0.0 && value <= 1.0)) {
         return text_fail(s, next->line, "the peak %s is not above 0 and at most 1", text_show(*next, shown));
     }
     *peak = (float)value;
-    return take_word(s, next);
+    return text_take_on_line(s, next);
 }
 
 /* Behind the word `corrective`. */
@@ -127,7 +107,7 @@ static int read_corrective(text_scan *s, recipe_text *recipe)
     text_word target, driver, next;
     char channel[NOH_NAME_BYTES_MAX] = "+";
     float peak;
-    if (take_word(s, &target) || take_word(s, &driver)) return 1;
+    if (text_take_on_line(s, &target) || text_take_on_line(s, &driver)) return 1;
     if (!target.size || !driver.size) {
         return text_fail(s, line, "a corrective is `corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ...`");
     }
@@ -160,14 +140,14 @@ static int read_line(text_scan *s, recipe_text *recipe)
     uint32_t channels[2], count;
     float weight = 1.0f;
     char shown[TEXT_SHOWN];
-    if (take_word(s, &channel)) return 1;
+    if (text_take_on_line(s, &channel)) return 1;
     if (!channel.size) return 0; /* a comment */
     if (text_is(channel, "corrective")) return read_corrective(s, recipe);
     count = find_channels(channel, channels);
     if (!count) {
         return text_fail(s, channel.line, "'%s' is no channel: they are " CHANNEL_ANY, text_show(channel, shown));
     }
-    if (take_word(s, &target)) return 1;
+    if (text_take_on_line(s, &target)) return 1;
     if (!target.size) {
         return text_fail(s, channel.line, "the target is missing: a row is CHANNEL TARGET [WEIGHT]");
     }

@@ -142,3 +142,22 @@ int text_count(text_scan *s, text_word word, uint32_t limit, uint32_t *out)
     *out = (uint32_t)value;
     return word.size > 0 ? 0 : text_fail(s, word.line, "a number is missing");
 }
+
+int text_take_on_line(text_scan *s, text_word *out)
+{
+    const char *close;
+    *out = text_next_on_line(s);
+    if (out->size > 0 && out->text[0] == '#') {
+        s->at = out->text;
+        (void)text_rest_of_line(s);
+        out->size = 0;
+    }
+    if (out->size == 0 || out->text[0] != '"') return 0;
+    close = out->text + 1;
+    while (close < s->end && *close != '"' && *close != '\n') ++close;
+    if (close == s->end || *close != '"') return text_fail(s, out->line, "a quote is not closed");
+    out->text++;
+    out->size = (size_t)(close - out->text);
+    s->at = close + 1;
+    return out->size > 0 ? 0 : text_fail(s, out->line, "a name is empty");
+}

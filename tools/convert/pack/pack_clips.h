@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "convert/base/ragdoll_read.h"
 #include "convert/base/recipe_read.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/codec/clip_errors.h"
@@ -23,8 +24,9 @@ typedef struct encoded_clips {
     uint32_t set_count;
     encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
-    const graph_file *graphs; /* borrowed; NULL: none */
+    const graph_file *graphs;  /* borrowed; NULL: none */
     const recipe_text *recipe; /* likewise */
+    const ragdoll_text *ragdoll;
 } encoded_clips;
 
 typedef struct clips_settings {

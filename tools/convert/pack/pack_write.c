@@ -306,6 +306,33 @@ static void write_recipe(writer *w)
     end_chunk(w);
 }
 
+static void write_ragdoll(writer *w)
+{
+    const ragdoll_text *ragdoll = w->clips->ragdoll;
+    noh_pack_ragdoll_header h;
+    if (!ragdoll) return;
+    memset(&h, 0, sizeof h);
+    h.row_count = ragdoll->count;
+    h.rows_offset = sizeof h;
+    begin_chunk(w, NOH_CHUNK_RAGDOLL, "");
+    buffer_append(&w->out, &h, sizeof h);
+    for (uint32_t i = 0; i < ragdoll->count; i++) {
+        const ragdoll_line *from = &ragdoll->rows[i];
+        noh_pack_ragdoll_row row;
+        memset(&row, 0, sizeof row);
+        name_of(&w->strings, from->joint, &row.joint, &row.joint_hash);
+        row.hinge = from->hinge;
+        row.toward = from->toward;
+        row.bend_min = from->bend_min;
+        row.bend_max = from->bend_max;
+        row.side = from->side;
+        row.twist = from->twist;
+        row.friction = from->friction;
+        buffer_append(&w->out, &row, sizeof row);
+    }
+    end_chunk(w);
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -343,7 +370,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 4 +
+    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 5 +
            (made ? (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
@@ -380,6 +407,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
             write_clips(&w);
             write_graphs(&w);
             write_recipe(&w);
+            write_ragdoll(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

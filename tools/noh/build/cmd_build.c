@@ -18,7 +18,7 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
-        *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
+        *ragdoll, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
@@ -216,6 +216,7 @@ static int run(void *args)
     o.targets = a->targets;
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
+    o.ragdoll = a->ragdoll;
     o.lips = a->lips;
     o.no_correctives = a->no_correctives;
     o.report = report;
@@ -471,6 +472,13 @@ static const option options[] = {
       .value = "FILE",
       .what = "what the face's targets are for: blinks, looks, emotions, mouth shapes, a text file (noh help FORMATS)",
       .example = "hero.recipe",
+      .excludes = "--only=anim" },
+    { .name = "--ragdoll",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, ragdoll),
+      .value = "FILE",
+      .what = "which joints begin a body of the ragdoll, and how far they turn, a text file (noh help FORMATS)",
+      .example = "hero.ragdoll",
       .excludes = "--only=anim" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,
