@@ -104,14 +104,15 @@
 
 /* ---- bodies ---- */
 
-#include "sim/ik.h"          /* two bones that reach a point, a head that looks at one */
-#include "sim/ik_chain.h"    /* chains of any length, with limits */
-#include "sim/motion.h"      /* fixed steps, integrators, a distance that is kept */
-#include "sim/ragdoll.h"     /* bodies that fall */
-#include "sim/ragdoll_rig.h" /* a ragdoll out of a character */
-#include "sim/shape.h"       /* boxes, rays */
-#include "sim/spring.h"      /* chains that swing: hair, sleeves, tails */
-#include "sim/world.h"       /* what bodies collide with: planes, capsules, boxes, a height field */
+#include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
+#include "sim/ik_chain.h"     /* chains of any length, with limits */
+#include "sim/motion.h"       /* fixed steps, integrators, a distance that is kept */
+#include "sim/ragdoll.h"      /* bodies that fall */
+#include "sim/ragdoll_pose.h" /* between its bodies and a pose */
+#include "sim/ragdoll_rig.h"  /* a ragdoll out of a character */
+#include "sim/shape.h"        /* boxes, rays */
+#include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
+#include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
 
 /* ---- parts, for tools and engines of your own ---- */
 
