@@ -331,13 +331,46 @@ noh_result noh_ragdolls_init(void *memory, size_t bytes, const noh_ragdolls_desc
     noh_result result = noh_ragdoll_rig_check(desc->rig, error);
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_ragdolls_size(desc), error);
     if (result) return result;
-    const layout l = carve(&arena, desc->count);
     memset(memory, 0, noh_ragdolls_size(desc));
-    l.set->count = desc->count;
-    set_shape(l.set, desc);
-    for (uint32_t i = 0; i < desc->count; i++) rest_doll(&l.dolls[i], desc->rig);
-    *set = l.set;
+    *set = noh_ragdolls_begin(memory, desc);
     return NOH_OK;
+}
+
+size_t noh_ragdolls_state_size(uint32_t count)
+{
+    return ((sizeof(noh_ragdolls) + 15u) & ~(size_t)15u) + count * sizeof(noh_ragdoll_doll);
+}
+
+noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc)
+{
+    noh_ragdolls *set = memory;
+    memset(memory, 0, noh_ragdolls_state_size(desc->count));
+    set->count = desc->count;
+    set_shape(set, desc);
+    for (uint32_t i = 0; i < desc->count; i++) rest_doll(&noh_ragdoll_dolls(set)[i], desc->rig);
+    return set;
+}
+
+static int good_state(const noh_ragdoll_state *s)
+{
+    return is_finite3(s->position) && is_unit4(s->rotation) && is_finite3(s->velocity) && is_finite3(s->spin) &&
+           is_finite3(s->goal_position) && is_unit4(s->goal_rotation);
+}
+
+const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy)
+{
+    if (copy->count != set->count || copy->size != set->size ||
+        memcmp(&copy->shape, &set->shape, sizeof set->shape) != 0) {
+        return "state: ragdolls of another rig";
+    }
+    for (uint32_t d = 0; d < set->count; d++) {
+        const noh_ragdoll_doll *doll = doll_of(copy, d);
+        for (uint32_t i = 0; i < set->shape.body_count; i++) {
+            if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
+                return "state: a ragdoll's body is not finite";
+        }
+    }
+    return NULL;
 }
 
 /* ---- in ---- */
@@ -490,14 +523,14 @@ static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
     }
 }
 
-static void step_all(noh_ragdolls *set, const noh_world *world)
+static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
 {
     noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set), *awake[NOH_RAGDOLL_LANES_MAX];
     uint32_t count = 0;
     for (uint32_t i = 0; i < set->count; i++) {
         if (!dolls[i].asleep) awake[count++] = &dolls[i];
         if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
-            noh_ragdoll_step_dolls(&set->shape, world, awake, count, noh_ragdoll_scratch(set));
+            noh_ragdoll_step_dolls(&set->shape, world, awake, count, scratch);
             for (uint32_t k = 0; k < count; k++) rest_or_go_on(set, awake[k]);
             count = 0;
         }
@@ -506,9 +539,14 @@ static void step_all(noh_ragdolls *set, const noh_world *world)
 
 uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks)
 {
+    return noh_ragdolls_step_with(set, world, ticks, noh_ragdoll_scratch(set));
+}
+
+uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch)
+{
     const uint32_t dropped = set->steps.dropped;
     const uint32_t steps = noh_steps_take(&set->steps, ticks, NOH_RAGDOLL_STEP_TICKS, NOH_RAGDOLL_STEPS_MAX);
-    for (uint32_t i = 0; i < steps; i++) step_all(set, world);
+    for (uint32_t i = 0; i < steps; i++) step_all(set, world, scratch);
     return set->steps.dropped - dropped;
 }
 

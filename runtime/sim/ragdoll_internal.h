@@ -71,6 +71,18 @@ struct noh_ragdolls {
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                       uint32_t count, float *scratch);
 
+/* A set without the memory that its dolls share, which a stage keeps apart from its state. It can be used as any other,
+ * but is stepped by noh_ragdolls_step_with alone.
+ * memory   noh_ragdolls_state_size bytes, aligned to 16; rig checked, count and substeps in range */
+size_t noh_ragdolls_state_size(uint32_t count);
+noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
+
+/* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; undefined before and after */
+uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch);
+
+/* What is wrong with a copy of the set from outside; NULL: it is good. */
+const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy);
+
 /* The dolls of a set, and the memory that they share. */
 noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set);
 float *noh_ragdoll_scratch(noh_ragdolls *set);

@@ -70,6 +70,7 @@ typedef struct noh_texture_set {
 
 struct noh_stage_part;
 struct noh_kind_face;
+struct noh_kind_ragdoll;
 
 /* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good value for all but mesh
  * and actor_count. */
@@ -105,6 +106,8 @@ typedef struct noh_kind_desc {
      * blanks; '*' at the end matches any rest. Default (NULL) none, at no cost. Read at init */
     const char *graphs;
     const struct noh_kind_face *face; /* faces that live (stage/stage_face.h); default (NULL) none, at no cost */
+    const struct noh_kind_ragdoll
+        *ragdoll; /* actors that fall (stage/stage_ragdoll.h); default (NULL) none, at no cost */
     /* What changes its poses before they are shown (stage/part.h), in this order; default (NULL) nothing, at no cost */
     const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
     uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */

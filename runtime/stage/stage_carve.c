@@ -242,6 +242,7 @@ static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stag
     k->slot_bytes = (uint32_t)n->slot_bytes;
     k->part_states = noh_arena_carve(arena, d->actor_count * n->part_bytes, 16);
     k->part_bytes = n->part_bytes;
+    k->dolls = noh_arena_carve(arena, noh_stage_doll_bytes(d), 16);
     *pools = noh_arena_carve(arena, n->pools_bytes, 16);
 }
 
@@ -367,6 +368,11 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
         face_links = CARVE(arena, n->face_link_max, noh_face_link);
         if (k->face) k->face->links = face_links;
         add(list, "faces", i, arena, &from);
+    }
+    if (d.ragdoll) {
+        k->ragdoll = CARVE(arena, 1, noh_stage_ragdoll_kind);
+        k->doll_scratch = noh_arena_carve(arena, noh_stage_doll_scratch_bytes(&d), 16);
+        add(list, "ragdolls", i, arena, &from);
     }
     b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
     if (n->graph_count) add(list, "graphs", i, arena, &from);

@@ -202,6 +202,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
         return "skeleton of a kind is none of its mesh pack's";
+    if (filled.ragdoll && noh_stage_bad_ragdoll(&filled)) return noh_stage_bad_ragdoll(&filled);
     if (filled.face && noh_stage_bad_face(&filled)) return noh_stage_bad_face(&filled);
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;
 }

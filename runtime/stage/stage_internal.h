@@ -14,6 +14,7 @@
  *   stage_graph_play.c  the graph of an actor
  *   stage_part.c     what changes a pose before it is shown
  *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
+ *   stage_ragdoll.c  actors that fall
  *   stage_step.c     time, callback keys, root motion
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
@@ -40,7 +41,10 @@
 #include "graph/graph_pack.h"
 #include "mesh/mesh.h"
 #include "stage/part.h"
+#include "sim/ragdoll_pose.h"
+#include "sim/ragdoll_rig.h"
 #include "stage/stage_face.h"
+#include "stage/stage_ragdoll.h"
 #include "stage/stage.h"
 
 #ifdef __cplusplus
@@ -100,6 +104,15 @@ typedef struct noh_stage_face {
         shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
 } noh_stage_face;
 
+/* After it, of a kind with ragdolls. */
+typedef struct noh_stage_body {
+    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* world, metres: of the last pose, and of the one before */
+    int64_t clocks[2];                                  /* of these poses */
+    uint32_t doll;                                      /* 1 + index in the kind's set; 0: it stands */
+    uint32_t poses;                                     /* how many of the two there are */
+    uint32_t reserved[2];
+} noh_stage_body;
+
 typedef struct noh_stage_free {
     uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
     uint32_t count;       /* actors that are there */
@@ -120,6 +133,7 @@ NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
+NOH_STATIC_ASSERT(sizeof(noh_stage_body) == NOH_ACTOR_RAGDOLL_BYTES, stage_body);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
@@ -190,6 +204,14 @@ typedef struct noh_stage_face_kind {
     uint32_t link_count;
 } noh_stage_face_kind;
 
+/* What the ragdolls of a kind have in common. */
+typedef struct noh_stage_ragdoll_kind {
+    noh_ragdoll_rig rig;
+    noh_ragdoll_fit fit;
+    const noh_world *world;
+    float metres; /* of one unit of the world */
+} noh_stage_ragdoll_kind;
+
 typedef struct noh_stage_kind {
     noh_kind_desc *desc; /* defaults filled in; `layers` is NULL afterwards */
     const noh_kind_plan *plan;
@@ -231,7 +253,9 @@ typedef struct noh_stage_kind {
     uint32_t slot_bytes;
     noh_stage_part *parts; /* [desc.part_count] */
     size_t part_bytes;
-    noh_stage_face_kind *face;        /* NULL: none */
+    noh_stage_face_kind *face;       /* NULL: none */
+    noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
+    uint8_t *doll_scratch;
     noh_corrective_term *correctives; /* [corrective_count] to the kind's floats */
     uint32_t corrective_count;
     noh_stage_sampler sampler; /* of `set` */
@@ -243,6 +267,7 @@ typedef struct noh_stage_kind {
     noh_stage_held *held; /* [actor_count][held_float_count] */
     uint8_t *graph_slots; /* [actor_count][slot_bytes] */
     uint8_t *part_states; /* [actor_count][part_bytes] */
+    noh_ragdolls *dolls;  /* of `ragdoll` */
     noh_lod_pools *pools; /* NULL: nothing is drawn */
     uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
     /* a frame's own */
@@ -533,8 +558,17 @@ noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, no
 /* Whether something changes poses before they are shown. */
 static inline int noh_stage_has_parts(const noh_kind_desc *kind)
 {
-    return kind->part_count || kind->face;
+    return kind->part_count || kind->face || kind->ragdoll;
 }
+
+const char *noh_stage_bad_ragdoll(const noh_kind_desc *d);
+size_t noh_stage_doll_bytes(const noh_kind_desc *d);
+size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d);
+noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error);
+noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index);
+void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
+void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks);
+const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
 
 /* Bind those of all meshes; k->correctives has room for term_max. */
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);

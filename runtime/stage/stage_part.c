@@ -18,19 +18,25 @@ size_t noh_stage_part_bytes(const noh_kind_desc *d)
 {
     size_t bytes = noh_stage_has_parts(d) ? sizeof(noh_stage_part_head) : 0;
     if (d->face) bytes += sizeof(noh_stage_face);
+    if (d->ragdoll) bytes += sizeof(noh_stage_body);
     for (uint32_t i = 0; i < d->part_count; i++) bytes += aligned(d->parts[i].state_bytes);
     return bytes;
 }
 
-/* The states of an actor: a head, its face, then each part's. */
+/* The states of an actor: a head, its face, its ragdoll, then each part's. */
 static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 {
     return k->part_states + (size_t)index * k->part_bytes;
 }
 
+static size_t body_offset(const noh_stage_kind *k)
+{
+    return sizeof(noh_stage_part_head) + (k->face ? sizeof(noh_stage_face) : 0);
+}
+
 static size_t state_offset(const noh_stage_kind *k, uint32_t part)
 {
-    size_t at = sizeof(noh_stage_part_head) + (k->face ? sizeof(noh_stage_face) : 0);
+    size_t at = body_offset(k) + (k->ragdoll ? sizeof(noh_stage_body) : 0);
     for (uint32_t i = 0; i < part; i++) at += aligned(k->parts[i].state_bytes);
     return at;
 }
@@ -55,6 +61,11 @@ noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, no
         return noh_fail(error, NOH_ERR_DATA, noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1)), 0,
                         0);
     }
+    if (k->ragdoll) {
+        const void *body = (const uint8_t *)states + body_offset(k);
+        const char *what = noh_stage_check_body(k, body);
+        if (what) return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
+    }
     for (uint32_t i = 0; i < k->desc->part_count; i++) {
         const noh_stage_part *part = &k->parts[i];
         const char *what = part->check ? part->check(part->user, (const uint8_t *)states + state_offset(k, i)) : NULL;
@@ -66,6 +77,11 @@ noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, no
 noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index)
 {
     return (noh_stage_face *)(void *)(states_of(k, index) + sizeof(noh_stage_part_head));
+}
+
+noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index)
+{
+    return (noh_stage_body *)(void *)(states_of(k, index) + body_offset(k));
 }
 
 /* ---- what a part may ask ---- */
@@ -149,10 +165,12 @@ void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, cons
         noh_stage_run_face(s, k, (noh_stage_face *)(void *)states, &w);
         states += sizeof(noh_stage_face);
     }
+    if (k->ragdoll) states += sizeof(noh_stage_body);
     for (uint32_t i = 0; i < k->desc->part_count; i++) {
         w.state = states;
         w.user = k->parts[i].user;
         k->parts[i].modify(&w);
         states += aligned(k->parts[i].state_bytes);
     }
+    if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, index), &w);
 }

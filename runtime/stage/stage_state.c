@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/math_internal.h"
+#include "sim/ragdoll_internal.h"
 #include "stage/stage_internal.h"
 
 const void *noh_stage_state(const noh_stage *stage, size_t *bytes)
@@ -114,6 +115,8 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
             result = noh_stage_check_parts(k, in_copy(r, k->part_states + (size_t)i * k->part_bytes), error);
         }
     }
+    if (k->ragdoll && result == NOH_OK) what = noh_ragdolls_check(k->dolls, in_copy(r, (const uint8_t *)k->dolls));
+    if (what) return noh_fail(error, NOH_ERR_DATA, what, kind, 0);
     what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
     if (!what && result == NOH_OK) {
         return noh_lod_pools_check(in_copy(r, k->pools), k->pools, error);

@@ -101,7 +101,8 @@ static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
         given.moved = noh_graph_root_motion(p.state, &p.graph->graph, &p.graph->clips);
     }
     a->moved = noh_controller_root_motion_given(c, &k->set, p.graph ? &given : NULL);
-    if (!k->desc->root_told && !a->parent) drive(a, &a->moved, k->desc->root_up);
+    if (!k->desc->root_told && !a->parent && !(k->ragdoll && noh_stage_body_of(k, index)->doll))
+        drive(a, &a->moved, k->desc->root_up);
 }
 
 /* ---- graphs ---- */
@@ -212,6 +213,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
         for (uint32_t a = 0; a < k->desc->actor_count; a++) {
             if (k->actors[a].alive) step_actor(stage, k, a, ticks);
         }
+        if (k->ragdoll) noh_stage_step_ragdolls(k, ticks);
     }
     stage->head->clock += ticks;
     stage->head->step_ticks = ticks;
