@@ -377,6 +377,35 @@ static void every_truncation_is_refused(void **state)
     }
 }
 
+static void check_size_warning(const char *offset, double unit_cm, const char *expected)
+{
+    const bvh_options options = { unit_cm, 0 };
+    char text[512];
+    (void)snprintf(text, sizeof text,
+                   "HIERARCHY\nROOT a\n{\nOFFSET 0 9 0\nCHANNELS 1 Xposition\nEnd Site\n{\nOFFSET %s\n}\n}\nMOTION\n"
+                   "Frames: 1\nFrame Time: 0.1\n1\n",
+                   offset);
+    raw_set *set = load_path(save(text), &options);
+    if (!expected) assert_null(set->warning);
+    if (expected && (!set->warning || !strstr(set->warning, expected)))
+        fail_msg("expected '%s', got '%s'", expected, set->warning ? set->warning : "no warning");
+    raw_set_free(set);
+}
+
+/* The format has no unit: a size that no person has is told, with the unit that would give one. */
+static void sizes_of_people(void **state)
+{
+    (void)state;
+    check_size_warning("0 -1.8 0", 0.0,
+                       "the skeleton is 1.8 cm large, its unit taken as 1 cm; for a person, about "
+                       "--unit-cm 100");
+    check_size_warning("0 -1.8 0", 100.0, NULL);
+    check_size_warning("1800 0 0", 0.0, "--unit-cm 0.1");
+    check_size_warning("0 0 28", 0.0, "--unit-cm 6.07");
+    check_size_warning("0 170 0", 0.0, NULL);
+    check_size_warning("0 0 0", 0.0, NULL);
+}
+
 static void bad_units_are_refused(void **state)
 {
     (void)state;
@@ -491,6 +520,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(one_frame_too_many_is_a_warning),
     cmocka_unit_test(huge_promises_need_no_memory),
     cmocka_unit_test(every_truncation_is_refused),
+    cmocka_unit_test(sizes_of_people),
     cmocka_unit_test(bad_units_are_refused),
     cmocka_unit_test(mutations_never_crash),
     cmocka_unit_test(real_walk),

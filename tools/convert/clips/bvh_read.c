@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -258,6 +259,48 @@ static int build_set(bvh_file *f, const char *path, double unit_cm)
     return skeleton->name && f->set->clips[0].name ? 0 : bvh_out_of_memory(f);
 }
 
+/* The largest side of a box round the joints as they rest, in the file's unit. */
+static double rest_size(const bvh_file *f)
+{
+    double low[3] = { 0.0, 0.0, 0.0 }, high[3] = { 0.0, 0.0, 0.0 }, size = 0.0;
+    double *places = model_zeros(f->joint_count, 3 * sizeof *places);
+    if (!places) return 0.0;
+    for (uint32_t j = 0; j < f->joint_count; ++j) {
+        const bvh_joint *joint = &f->joints[j];
+        for (uint32_t k = 0; k < 3; ++k) {
+            const double from = joint->parent == MODEL_NONE ? 0.0 : places[joint->parent * 3 + k] + joint->offset[k];
+            const double tip = from + joint->end[k];
+            places[j * 3 + k] = from;
+            low[k] = fmin(low[k], fmin(from, tip));
+            high[k] = fmax(high[k], fmax(from, tip));
+        }
+    }
+    for (uint32_t k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
+    free(places);
+    return size;
+}
+
+/* The unit in which a person would be so large: the metre or the millimetre, or what makes 1.7 m of it. */
+static double unit_of_person(double size)
+{
+    if (size >= 0.8 && size <= 2.5) return 100.0;
+    return size >= 800.0 && size <= 2500.0 ? 0.1 : 170.0 / size;
+}
+
+/* The format has no unit, and a person of 2 cm is one in metres. */
+static int warn_of_size(bvh_file *f, double unit_cm)
+{
+    const double size = rest_size(f), cm = size * unit_cm;
+    char text[256];
+    if (!(size > 0.0) || (cm >= 40.0 && cm <= 400.0) || f->set->warning) return 0;
+    (void)snprintf(text, sizeof text,
+                   "the skeleton is %.3g cm large, its unit taken as %g cm; for a person, about "
+                   "--unit-cm %.3g",
+                   cm, unit_cm, unit_of_person(size));
+    f->set->warning = model_string(text);
+    return f->set->warning ? 0 : bvh_out_of_memory(f);
+}
+
 static void close_file(bvh_file *f)
 {
     for (uint32_t j = 0; j < f->joint_count; ++j) free(f->joints[j].name);
@@ -276,7 +319,7 @@ int bvh_read(const char *path, const bvh_options *options, raw_set **out, model_
     if (!text) return 1;
     text_start(&f.text, text, size, error);
     f.end_joints = options && options->end_joints;
-    int failed = read_hierarchy(&f) || build_set(&f, path, unit_cm) || bvh_read_frames(&f);
+    int failed = read_hierarchy(&f) || build_set(&f, path, unit_cm) || bvh_read_frames(&f) || warn_of_size(&f, unit_cm);
     if (failed)
         raw_set_free(f.set);
     else
