@@ -1198,6 +1198,76 @@ static void node_weights(void **state)
     model_free(m);
 }
 
+/* --- VRM --- */
+
+/* A triangle with two targets on the node "face", below "Armature" and "J_Bip_C_Hips". */
+static scene *vrm_scene(const char *extensions)
+{
+    scene *s = triangle("", ",\"targets\":[{\"POSITION\":1},{\"POSITION\":1}]");
+    add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
+    APPEND(s->mesh_rest, ",\"extras\":{\"targetNames\":[\"Fcl Joy\",\"lids\"]}");
+    APPEND(s->rest,
+           ",\"nodes\":[{\"name\":\"Armature\",\"children\":[1],\"translation\":[1,2,3]},{\"name\":\"J_Bip_C_Hips\","
+           "\"children\":[2],\"translation\":[0,1,0]},{\"name\":\"face\",\"mesh\":0,\"translation\":[0,0,0.5]}],"
+           "\"extensions\":{%s}",
+           extensions);
+    return s;
+}
+
+static void vrm_expressions_are_recipes(void **state)
+{
+    (void)state;
+    model *m = load(vrm_scene(
+        "\"VRMC_vrm\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{\"node\":1},\"head\":{\"node\":9}}},"
+        "\"expressions\":{\"preset\":{\"happy\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,\"weight\":0.5},"
+        "{\"node\":2,\"index\":7,\"weight\":1}],\"materialColorBinds\":[{\"material\":0}]},\"blinkLeft\":{\"morphTargetBinds\":[{"
+        "\"node\":2,\"index\":1,\"weight\":1}]},\"blinkRight\":{\"morphTargetBinds\":[{\"node\":2,\"index\":1,\"weight\":0.25}]},\"blink\":{\"morphTargetBinds\":[{\"node\":2,"
+        "\"index\":1,\"weight\":1}]},\"relaxed\":{\"morphTargetBinds\":[{\"node\":2,\"index\":1,\"weight\":1}]}}}}"));
+    assert_string_equal(m->nodes[1].name, "hips");
+    assert_string_equal(m->nodes[0].name, "Armature");
+    assert_string_equal(m->meshes[0].recipe,
+                        "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n");
+    assert_true(has_warning(m, "VRM expression 'happy': what it changes of materials was left out"));
+    assert_true(m->nodes[2].world[14] == 3.5);
+    model_free(m);
+}
+
+/* Before 1.0 weights go to 100, binds name meshes, and figures face -z. */
+static void old_vrm_turns_round(void **state)
+{
+    (void)state;
+    model *m = load(vrm_scene(
+        "\"VRM\":{\"humanoid\":{\"humanBones\":[{\"bone\":\"hips\",\"node\":1},{\"bone\":\"spine\",\"node\":1}]},"
+        "\"blendShapeMaster\":{\"blendShapeGroups\":[{\"presetName\":\"Joy\",\"binds\":[{\"mesh\":0,\"index\":0,"
+        "\"weight\":100}]},{\"presetName\":\"blink\",\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]},"
+        "{\"presetName\":\"unknown\",\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]}]}}"));
+    const model_node *face = &m->nodes[2], *root = &m->nodes[0];
+    assert_string_equal(m->nodes[1].name, "spine");
+    assert_string_equal(m->meshes[0].recipe, "joy-upper \"Fcl Joy\" 1\nblink \"lids\" 0.5\n");
+    assert_true(face->world[12] == -1.0 && face->world[13] == 3.0 && face->world[14] == -3.5 && face->world[0] == -1.0);
+    assert_true(root->rotation[1] == 1.0f && root->rotation[3] == 0.0f && root->translation[0] == -1.0f);
+    model_free(m);
+}
+
+/* Nothing of it has the type that it should have: it is as if it were not there. */
+static void damaged_vrm_is_ignored(void **state)
+{
+    (void)state;
+    static const char *const all[] = {
+        "\"VRMC_vrm\":[]", "\"VRM\":7", "\"VRMC_vrm\":{\"humanoid\":[],\"expressions\":{\"preset\":[1]}}",
+        "\"VRM\":{\"humanoid\":{\"humanBones\":[1,{\"bone\":2,\"node\":\"x\"}]},\"blendShapeMaster\":{"
+        "\"blendShapeGroups\":[3,{\"presetName\":\"joy\",\"binds\":[{\"mesh\":-1},{\"mesh\":0,\"index\":0},7]}]}}",
+        "\"VRMC_vrm\":{\"expressions\":{\"preset\":{\"happy\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,"
+        "\"weight\":1e9}]}}}}"
+    };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        model *m = load(vrm_scene(all[i]));
+        assert_null(m->meshes[0].recipe);
+        assert_string_equal(m->nodes[1].name, "J_Bip_C_Hips");
+        model_free(m);
+    }
+}
+
 /* --- animations --- */
 
 /* A morphing triangle with two keys of weights: accessors 2 (times) and 3 (values). */
@@ -1923,6 +1993,9 @@ int main(void)
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),
         cmocka_unit_test(node_weights),
+        cmocka_unit_test(vrm_expressions_are_recipes),
+        cmocka_unit_test(old_vrm_turns_round),
+        cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

@@ -18,6 +18,7 @@
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
+ *   gltf_vrm.cpp       VRM: bones of a person, expressions, where it faces
  *   gltf_left_out.cpp  warnings about what the model has no place for */
 #ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
@@ -211,6 +212,9 @@ void check_influences(const model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
 void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);
+/* Whether the file's figure faces -z, as VRM's did before 1.0. */
+bool faces_back(const file &f);
+void read_vrm(file &f); /* after read_nodes and read_meshes */
 /* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
  * nodes outside the scene. */
 void find_left_out(file &f);

@@ -92,6 +92,7 @@ static void read_model(file &f)
     read_materials(f);
     read_meshes(f);
     read_nodes(f);
+    read_vrm(f);
     read_skins(f);
     read_animations(f);
     find_left_out(f);

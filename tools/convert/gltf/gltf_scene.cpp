@@ -216,6 +216,20 @@ static transform read_transform(file &f, const tinygltf::Node &node, const std::
     return t;
 }
 
+/* Half a turn about y, of a root. */
+static void turn_round(transform &t)
+{
+    const double q[4] = { t.rotation[0], t.rotation[1], t.rotation[2], t.rotation[3] };
+    const double turned[4] = { q[2], q[3], -q[0], -q[1] }; /* (0 1 0 0) times q */
+    for (int i = 0; i < 4; ++i) t.rotation[i] = turned[i];
+    t.translation[0] = -t.translation[0];
+    t.translation[2] = -t.translation[2];
+    for (int column = 0; column < 4; ++column) {
+        t.matrix[column * 4] = -t.matrix[column * 4];
+        t.matrix[column * 4 + 2] = -t.matrix[column * 4 + 2];
+    }
+}
+
 static void multiply(const double *a, const double *b, double *out)
 {
     for (int column = 0; column < 4; ++column)
@@ -277,7 +291,9 @@ static void read_node(file &f, const visit &v, model_node &out)
     out.skin = MODEL_NONE;
     read_mesh_of_node(f, node, out, where);
     read_weights(f, node, out, where);
-    store_transform(f, read_transform(f, node, where), out, where);
+    transform t = read_transform(f, node, where);
+    if (out.parent == MODEL_NONE && faces_back(f)) turn_round(t);
+    store_transform(f, t, out, where);
 }
 
 void read_nodes(file &f)

@@ -1,0 +1,221 @@
+/* gltf_vrm.cpp: what a VRM file says about its figure: which nodes are the bones of a person, what its expressions are,
+ * and, before VRM 1.0, that it faces -z.
+ *
+ * The bones take VRM's names for them, which are the same in every file: hips, leftUpperArm. Expressions become lines
+ * of a face's recipe (base/recipe_read.h). Sources: VRMC_vrm-1.0 and VRM 0.0 of the VRM Consortium's specifications. */
+#include "gltf_internal.h"
+
+#include <cstdlib>
+#include <set>
+
+namespace gltf
+{
+
+using value = tinygltf::Value;
+
+/* Expressions of VRM 1.0 and 0.0, and the channel of a recipe that shows them. Others stay targets like any. */
+static const struct {
+    const char *name, *old_name, *channel;
+} expressions[] = {
+    { "blinkLeft", "blink_l", "blink-left" },
+    { "blinkRight", "blink_r", "blink-right" },
+    { "blink", "blink", "blink" },
+    { "aa", "a", "aa" },
+    { "ih", "i", "ih" },
+    { "ou", "u", "ou" },
+    { "ee", "e", "E" },
+    { "oh", "o", "oh" },
+    { "happy", "joy", "joy-upper" },
+    { "angry", "angry", "anger-upper" },
+    { "sad", "sorrow", "sadness-upper" },
+    { "surprised", "surprised", "surprise-upper" },
+    { "lookUp", "lookup", "eye-left-up" }, /* one target turns both eyes: the left one's channels lead */
+    { "lookDown", "lookdown", "eye-left-down" },
+    { "lookLeft", "lookleft", "eye-left-out" },
+    { "lookRight", "lookright", "eye-right-out" },
+};
+
+static const value *member(const value &object, const char *key)
+{
+    return object.IsObject() && object.Has(key) ? &object.Get(key) : nullptr;
+}
+
+static const value *array_member(const value &object, const char *key)
+{
+    const value *found = member(object, key);
+    return found && found->IsArray() ? found : nullptr;
+}
+
+static std::string text_member(const value &object, const char *key)
+{
+    const value *found = member(object, key);
+    return found && found->IsString() ? found->Get<std::string>() : std::string();
+}
+
+/* A whole number below `limit`, or `limit`. */
+static size_t index_member(const value &object, const char *key, size_t limit)
+{
+    const value *found = member(object, key);
+    const int index = found && found->IsInt() ? found->Get<int>() : -1;
+    return index >= 0 && static_cast<size_t>(index) < limit ? static_cast<size_t>(index) : limit;
+}
+
+static const value *extension(const file &f, const char *name)
+{
+    const auto found = f.json.extensions.find(name);
+    return found != f.json.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+bool faces_back(const file &f)
+{
+    return extension(f, "VRM") && !extension(f, "VRMC_vrm");
+}
+
+/* --- bones --- */
+
+static std::set<std::string> names_taken(const file &f)
+{
+    std::set<std::string> taken;
+    for (uint32_t i = 0; i < f.out->node_count; ++i) taken.insert(f.out->nodes[i].name);
+    return taken;
+}
+
+/* A node keeps its own name where another has that of the bone. */
+static void name_bone(file &f, const std::string &bone, size_t node, std::set<std::string> &taken)
+{
+    if (bone.empty() || node >= f.node_of.size() || f.node_of[node] == MODEL_NONE) return;
+    model_node &out = f.out->nodes[f.node_of[node]];
+    if (out.name == bone || !taken.insert(bone).second) return;
+    char *name = copy_string(bone);
+    free(out.name);
+    out.name = name;
+}
+
+static void name_bones(file &f, const value &vrm)
+{
+    const value *humanoid = member(vrm, "humanoid"), *bones = humanoid ? member(*humanoid, "humanBones") : nullptr;
+    std::set<std::string> taken = names_taken(f);
+    if (!bones) return;
+    for (size_t i = 0; bones->IsArray() && i < bones->ArrayLen(); ++i) { /* 0.0 */
+        const value &bone = bones->Get(static_cast<int>(i));
+        name_bone(f, text_member(bone, "bone"), index_member(bone, "node", f.node_of.size()), taken);
+    }
+    if (!bones->IsObject()) return;
+    for (const std::string &bone : bones->Keys())
+        name_bone(f, bone, index_member(bones->Get(bone), "node", f.node_of.size()), taken);
+}
+
+/* --- expressions --- */
+
+/* The lines of each mesh's recipe, and all lines: meshes may have targets of the same name. */
+struct recipes {
+    std::map<uint32_t, std::string> of_mesh;
+    std::set<std::string> lines;
+};
+
+static std::string lower(std::string word)
+{
+    for (char &c : word)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return word;
+}
+
+static const char *channel_of(const std::string &name, bool old)
+{
+    for (const auto &e : expressions)
+        if (old ? lower(name) == e.old_name : name == e.name) return e.channel;
+    return nullptr;
+}
+
+static void add_line(file &f, const char *channel, uint32_t mesh, size_t target, double weight, recipes &r)
+{
+    const std::string name = f.out->meshes[mesh].targets[target].name;
+    if (name.find_first_of("\"\n\r") != std::string::npos || !(weight >= -4.0 && weight <= 4.0)) {
+        leave_out(f, "target '" + printable(name) + "'", ": its part in a VRM expression was left out");
+        return;
+    }
+    const std::string line = text("%s \"%s\" %.6g\n", channel, name.c_str(), weight);
+    if (r.lines.insert(line).second) r.of_mesh[mesh] += line;
+}
+
+/* One bind: 1.0 names the node that draws the mesh, and weights to 1; 0.0 the mesh, and weights to 100. */
+static void add_bind(file &f, const char *channel, const value &bind, bool old, recipes &r)
+{
+    const value *weight = member(bind, "weight");
+    uint32_t mesh = MODEL_NONE;
+    if (old) {
+        const size_t source = index_member(bind, "mesh", f.mesh_of.size());
+        if (source < f.mesh_of.size()) mesh = f.mesh_of[source];
+    } else {
+        const size_t node = index_member(bind, "node", f.node_of.size());
+        if (node < f.node_of.size() && f.node_of[node] != MODEL_NONE) mesh = f.out->nodes[f.node_of[node]].mesh;
+    }
+    if (mesh == MODEL_NONE || !weight || !weight->IsNumber()) return;
+    const size_t count = f.out->meshes[mesh].target_count, target = index_member(bind, "index", count);
+    if (target < count) add_line(f, channel, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
+}
+
+static void add_expression(file &f, const std::string &name, const value &expression, bool old, recipes &r)
+{
+    const char *channel = channel_of(name, old);
+    const value *binds = array_member(expression, old ? "binds" : "morphTargetBinds");
+    const value *colors = array_member(expression, old ? "materialValues" : "materialColorBinds");
+    if (colors && colors->ArrayLen() > 0)
+        leave_out(f, "VRM expression '" + printable(name) + "'", ": what it changes of materials was left out");
+    for (size_t i = 0; channel && binds && i < binds->ArrayLen(); ++i)
+        add_bind(f, channel, binds->Get(static_cast<int>(i)), old, r);
+}
+
+/* Both lids at once, unless each has its own: else they would shut twice. */
+static bool is_double(const std::string &name, bool both_lids)
+{
+    return both_lids && lower(name) == "blink";
+}
+
+static void add_new(file &f, const value &vrm, recipes &r)
+{
+    const value *all = member(vrm, "expressions"), *presets = all ? member(*all, "preset") : nullptr;
+    if (!presets || !presets->IsObject()) return;
+    const bool both = presets->Has("blinkLeft") && presets->Has("blinkRight");
+    for (const std::string &name : presets->Keys())
+        if (!is_double(name, both)) add_expression(f, name, presets->Get(name), false, r);
+}
+
+static void add_old(file &f, const value &vrm, recipes &r)
+{
+    const value *master = member(vrm, "blendShapeMaster");
+    const value *groups = master ? array_member(*master, "blendShapeGroups") : nullptr;
+    int lids = 0;
+    for (size_t i = 0; groups && i < groups->ArrayLen(); ++i)
+        lids += lower(text_member(groups->Get(static_cast<int>(i)), "presetName")).compare(0, 6, "blink_") == 0;
+    for (size_t i = 0; groups && i < groups->ArrayLen(); ++i) {
+        const value &group = groups->Get(static_cast<int>(i));
+        const std::string name = text_member(group, "presetName");
+        if (!is_double(name, lids >= 2)) add_expression(f, name, group, true, r);
+    }
+}
+
+/* An artist's own recipe in a mesh's extras comes first. */
+static void store_recipes(file &f, const recipes &r)
+{
+    for (const auto &entry : r.of_mesh) {
+        model_mesh &mesh = f.out->meshes[entry.first];
+        if (mesh.recipe) continue;
+        mesh.recipe = copy_string(entry.second);
+    }
+}
+
+void read_vrm(file &f)
+{
+    recipes r;
+    const value *now = extension(f, "VRMC_vrm"), *old = extension(f, "VRM");
+    if (!now && !old) return;
+    name_bones(f, now ? *now : *old);
+    if (now)
+        add_new(f, *now, r);
+    else
+        add_old(f, *old, r);
+    store_recipes(f, r);
+}
+
+} // namespace gltf
