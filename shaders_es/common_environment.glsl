@@ -2,8 +2,13 @@
  * gl_light.h says. It goes behind common_material.glsl: noh_gl_shader_prefix puts them together. Nothing of it is there
  * with NOH_DEPTH_ONLY. Defines, which noh_gl_variant_defines writes:
  *
- *   NOH_LIT   defined: the renderer is lit (noh_gl_renderer_desc.lit) */
+ *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)
+ *   NOH_SHADOW_TAPS  with it, 2 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
+ *                    fetches */
 #if defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
+#ifndef NOH_SHADOW_TAPS
+#define NOH_SHADOW_TAPS 4
+#endif
 uniform vec4 noh_lighting[18];
 uniform mediump samplerCube noh_environment;
 uniform highp sampler2DShadow noh_shadow_map;
@@ -28,7 +33,12 @@ vec3 noh_mirror(vec3 r, float roughness)
     return textureLod(noh_environment, d, 4.0 * roughness).rgb;
 }
 
-/* 1: the key light reaches the point, 0: something is in its way. Four taps, each of which the hardware filters. The
+float noh_shadow_tap(vec3 at, float x, float y)
+{
+    return texture(noh_shadow_map, at + noh_lighting[13].w * vec3(x, y, 0.0)); /* w: three quarters of a texel */
+}
+
+/* 1: the key light reaches the point, 0: something is in its way. Taps that the hardware filters, about a circle. The
  * point is moved along the normal by as much as a texel of the map may hide of a slope. */
 float noh_key_shadow(vec3 position, vec3 normal)
 {
@@ -39,11 +49,17 @@ float noh_key_shadow(vec3 position, vec3 normal)
     vec4 p = vec4(position + normal * (noh_lighting[13].z * (0.7 + 2.0 * slope)), 1.0);
     vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz * 0.5 + 0.5;
     at.z = min(at.z, 1.0) - 0.0003;
-    float step = noh_lighting[13].w; /* three quarters of a texel */
-    float sum = texture(noh_shadow_map, at + vec3(-step, -0.4 * step, 0.0)) + texture(noh_shadow_map, at + vec3(0.4 * step, -step, 0.0));
-    sum += texture(noh_shadow_map, at + vec3(step, 0.4 * step, 0.0)) + texture(noh_shadow_map, at + vec3(-0.4 * step, step, 0.0));
-    vec2 edge = step * 2.0 + abs(at.xy - 0.5);
-    return edge.x < 0.5 && edge.y < 0.5 ? 0.25 * sum : 1.0; /* outside the map nothing is known to be in the way */
+#if NOH_SHADOW_TAPS == 2
+    float sum = noh_shadow_tap(at, -0.9, -0.4) + noh_shadow_tap(at, 0.9, 0.4);
+#elif NOH_SHADOW_TAPS == 3
+    float sum = noh_shadow_tap(at, 0.4, -1.0) + noh_shadow_tap(at, 0.67, 0.85) + noh_shadow_tap(at, -1.07, 0.15);
+#else
+    float sum = noh_shadow_tap(at, -1.0, -0.4) + noh_shadow_tap(at, 0.4, -1.0);
+    sum += noh_shadow_tap(at, 1.0, 0.4) + noh_shadow_tap(at, -0.4, 1.0);
+#endif
+    vec2 edge = noh_lighting[13].w * 2.0 + abs(at.xy - 0.5);
+    bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map nothing is known to be in the way */
+    return inside ? sum / float(NOH_SHADOW_TAPS) : 1.0;
 }
 
 /* A linear colour after exposure and tone map. */

@@ -35,10 +35,10 @@ float noh_gloss_occlusion(float nv, float occlusion, float roughness)
     return clamp(pow(nv + occlusion, exp2(-16.0 * roughness * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 
-/* Of the key light, what a surface sends out again, by channel, over what makes white white. */
-vec3 noh_key_matte(noh_surface s)
+/* Of the key light, what a surface sends out again, by channel, over what makes white white.
+ * shadow: of noh_key_shadow, which is asked once for matte light and gloss */
+vec3 noh_key_matte(noh_surface s, float shadow)
 {
-    float shadow = noh_key_shadow(s.position, s.geometric);
 #ifdef NOH_SKIN
     float facing = dot(s.geometric, noh_key);
     vec3 through = pow(vec3(mix(1.0, shadow, smoothstep(-0.1, 0.1, facing))), vec3(0.6, 1.0, 1.2));
@@ -49,9 +49,9 @@ vec3 noh_key_matte(noh_surface s)
 }
 
 /* What reaches a matte surface, over what makes white white. */
-vec3 noh_matte_light(noh_surface s)
+vec3 noh_matte_light(noh_surface s, float shadow)
 {
-    return noh_ambient(s.normal) * s.occlusion + noh_key_color * noh_key_matte(s);
+    return noh_ambient(s.normal) * s.occlusion + noh_key_color * noh_key_matte(s, shadow);
 }
 
 /* What glosses of the key light, over its colour: no reflectance in it. normal: the one that mirrors */
@@ -84,12 +84,12 @@ vec3 noh_light(noh_surface s)
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and by further bounces between the facets */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
     vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, s.occlusion, roughness);
-    vec3 color = matte * noh_matte_light(s);
+    float shadow = noh_key_shadow(s.position, s.geometric);
+    vec3 color = matte * noh_matte_light(s, shadow);
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
         float away = clamp(1.0 - dot(h, s.view), 0.0, 1.0), away2 = away * away;
         vec3 fresnel = f0 + (1.0 - f0) * (away2 * away2 * away);
-        float shadow = noh_key_shadow(s.position, s.geometric);
         color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * shadow * noh_key_glossed(mirror, h, nv, roughness));
     }
 #if defined(NOH_SKIN) || defined(NOH_TEETH)

@@ -80,7 +80,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     mapped = noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x);
 #endif
 #ifdef NOH_WRINKLES
-    s.wrinkles = noh_wrinkle_by_model(uv);
+    s.wrinkles = noh_wrinkle_by_model();
     mapped = noh_wrinkled(mapped, texture(noh_wrinkle_texture, uv).rgb, s.wrinkles);
 #endif
     s.normal = noh_map_normal(mapped, s.geometric, tangent);

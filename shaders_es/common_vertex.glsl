@@ -23,12 +23,14 @@ layout(location = 4) in vec4 noh_a_color;
 
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
 uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
+uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
+uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k, channel c of map k; not in crowds */
+uniform mediump sampler2D noh_wrinkle_weights_0;
+uniform mediump sampler2D noh_wrinkle_weights_1;
+uniform mediump sampler2D noh_wrinkle_weights_2;
 out vec3 noh_v_rest;
 out vec3 noh_v_moved;
-#ifdef NOH_CROWD
-uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
-flat out vec4 noh_v_regions[3];
-#endif
+out vec2 noh_v_wrinkles; /* 0..1 by regions and by channels */
 #endif
 
 /* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
@@ -44,13 +46,32 @@ struct noh_vertex {
     vec3 model;    /* position in the mesh's own space: morphed and skinned, not placed */
 };
 
-#if defined(NOH_CROWD) && defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-/* Three regions of 8 bits in each component. */
-void noh_fetch_regions()
+#if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
+/* The weights of regions of one map; in a crowd's rows three regions of 8 bits are in each component. */
+vec4 noh_regions_of(int map)
 {
+#ifdef NOH_CROWD
     ivec4 bits = (noh_wrinkle_models.x & 8) != 0 ? ivec4(noh_crowd_row(4)) : ivec4(0);
-    for (int k = 0; k < 3; k++) {
-        noh_v_regions[k] = vec4(bits >> 8 * k & 255) / 255.0;
+    return vec4(bits >> 8 * map & 255) / 255.0;
+#else
+    return noh_wrinkle_regions[map];
+#endif
+}
+
+/* How much a vertex is wrinkled by regions and by channels. */
+void noh_wrinkle_vertex(vec2 uv)
+{
+    noh_v_wrinkles = vec2(0.0);
+    if ((noh_wrinkle_models.x & 6) != 0) {
+        vec4 regions = noh_regions_of(0), first = textureLod(noh_wrinkle_weights_0, uv, 0.0);
+        if ((noh_wrinkle_models.x & 2) != 0) {
+            vec4 second = textureLod(noh_wrinkle_weights_1, uv, 0.0) * noh_regions_of(1);
+            vec4 all = max(first * regions, max(second, textureLod(noh_wrinkle_weights_2, uv, 0.0) * noh_regions_of(2)));
+            noh_v_wrinkles.x = max(max(all.x, all.y), max(all.z, all.w));
+        }
+        if ((noh_wrinkle_models.x & 4) != 0) {
+            noh_v_wrinkles.y = min(dot(first.rgb, vec3(1.0, regions.yz)), 1.0);
+        }
     }
 }
 #endif
@@ -119,9 +140,7 @@ noh_vertex noh_fetch()
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
     noh_v_rest = noh_a_position - noh_center;
     noh_v_moved = v.model - noh_a_position;
-#ifdef NOH_CROWD
-    noh_fetch_regions();
-#endif
+    noh_wrinkle_vertex(noh_uv.xy + noh_uv.zw * noh_a_uv);
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_EYE

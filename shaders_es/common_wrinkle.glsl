@@ -1,26 +1,18 @@
-/* common_wrinkle.glsl: noh_wrinkle_weight, how much a pixel is wrinkled, and normals blended by it. It goes in front of
- * common_material.glsl, with NOH_WRINKLES only.
+/* common_wrinkle.glsl: noh_wrinkle_by_model, how much a pixel is wrinkled, and normals blended by it. It goes in front
+ * of common_material.glsl, with NOH_WRINKLES only.
  *
  * Three models, of which the largest counts. A material chooses by bits of noh_wrinkle_models:
  *   1  area: how far the surface has shrunk in the pose, by derivatives
  *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
- *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6 */
+ *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6
+ * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. */
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-#ifdef NOH_CROWD
-flat in vec4 noh_v_regions[3];
-#define NOH_REGIONS noh_v_regions
-#else
-uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k, channel c of map k */
-#define NOH_REGIONS noh_wrinkle_regions
-#endif
 uniform highp ivec2 noh_wrinkle_models; /* those that show; 255 times how strongly they do */
 uniform mediump sampler2D noh_wrinkle_texture;
-uniform mediump sampler2D noh_wrinkle_weights_0;
-uniform mediump sampler2D noh_wrinkle_weights_1;
-uniform mediump sampler2D noh_wrinkle_weights_2;
 
-in vec3 noh_v_rest;  /* about the middle of the mesh, before targets and joints */
-in vec3 noh_v_moved; /* what targets add to it */
+in vec3 noh_v_rest;     /* about the middle of the mesh, before targets and joints */
+in vec3 noh_v_moved;    /* what targets add to it */
+in vec2 noh_v_wrinkles; /* 0..1 by regions and by channels */
 
 /* Area in the pose over area at rest: of the triangle, in bind space, whatever the camera and the joints do. Both areas
  * are spanned by the same two pixels, so their ratio is exact for a plane triangle. */
@@ -41,20 +33,9 @@ float noh_wrinkle_by_area(float ratio)
 }
 
 /* One value by each model: area, regions, channels. */
-vec3 noh_wrinkle_by_model(vec2 uv)
+vec3 noh_wrinkle_by_model()
 {
-    vec3 by = vec3(0.0);
-    if ((noh_wrinkle_models.x & 6) != 0) {
-        vec4 first = texture(noh_wrinkle_weights_0, uv);
-        if ((noh_wrinkle_models.x & 2) != 0) {
-            vec4 all = max(first * NOH_REGIONS[0], max(texture(noh_wrinkle_weights_1, uv) * NOH_REGIONS[1],
-                                                               texture(noh_wrinkle_weights_2, uv) * NOH_REGIONS[2]));
-            by.y = max(max(all.x, all.y), max(all.z, all.w));
-        }
-        if ((noh_wrinkle_models.x & 4) != 0) {
-            by.z = min(dot(first.rgb, vec3(1.0, NOH_REGIONS[0].yz)), 1.0);
-        }
-    }
+    vec3 by = vec3(0.0, noh_v_wrinkles);
     if ((noh_wrinkle_models.x & 1) != 0) {
         by.x = noh_wrinkle_by_area(noh_area_ratio());
     }

@@ -19,7 +19,7 @@ layout(location = 0) out vec4 o_color;
 vec3 matte_light(noh_surface s)
 {
 #ifdef NOH_LIT
-    return noh_expose(noh_matte_light(s));
+    return noh_expose(noh_matte_light(s, noh_key_shadow(s.position, s.geometric)));
 #else
     s.f0 = vec3(0.0);
     return noh_light(s);

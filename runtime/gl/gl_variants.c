@@ -87,6 +87,16 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
+/* How often a lit pixel reads the shadow map: 4 times, or what its other textures leave of 8 fetches. */
+static unsigned shadow_taps(uint32_t features)
+{
+    static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP, NOH_FEATURE_EMISSIVE,
+                                     NOH_FEATURE_WRINKLES };
+    unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
+    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
+    return left < 4u ? left : 4u;
+}
+
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES])
 {
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_WRINKLE);
@@ -115,6 +125,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
     at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
+    if (key.lit) at = put_digit(text, at, "#define NOH_SHADOW_TAPS ", shadow_taps(key.features));
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         at = put_text(text, at, flags[i].on ? flags[i].line : "");
     }

@@ -71,6 +71,7 @@ static float float_at(const uint8_t *rgba, size_t pixel)
 
 static const char cover_vertex[] = "void main() {\n"
                                    "    noh_v_rest = noh_v_moved = vec3(0.0);\n"
+                                   "    noh_wrinkle_vertex(vec2(0.5));\n"
                                    "    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0,\n"
                                    "                       float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);\n"
                                    "}\n";
@@ -139,7 +140,7 @@ static void normals_are_those_of_the_cpu(void **state)
 
 static const char channel_fragment[] =
     "void main() {\n"
-    "    vec3 by = noh_wrinkle_by_model(vec2(0.5));\n"
+    "    vec3 by = noh_wrinkle_by_model();\n"
     "    vec3 n = noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by);\n"
     "    show(test_pick < 3 ? n[test_pick] : by[test_pick - 3]);\n"
     "}\n";
@@ -217,6 +218,7 @@ static const char area_vertex[] = "layout(location = 8) in vec3 test_moved;\n"
                                   "    vec3 p = (noh_a_position + test_moved - noh_center) * test_camera.x;\n"
                                   "    noh_v_rest = noh_a_position - noh_center;\n"
                                   "    noh_v_moved = test_moved;\n"
+                                  "    noh_v_wrinkles = vec2(0.0);\n"
                                   "    v_id = test_id;\n"
                                   "    p = vec3(p.xy - test_camera.zw, test_camera.y - p.z);\n"
                                   "    gl_Position = vec4(2.0 * p.xy, p.z * 0.5 - 0.1, p.z);\n"
