@@ -105,6 +105,7 @@
 
 /* ---- bodies ---- */
 
+#include "sim/hair.h"         /* control hairs of a head */
 #include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
 #include "sim/ik_chain.h"     /* chains of any length, with limits */
 #include "sim/motion.h"       /* fixed steps, integrators, a distance that is kept */

@@ -75,6 +75,10 @@
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */
 #define NOH_SPRING_STEPS_MAX 15u     /* of 1/60 s in one call; what is left of a longer time is dropped */
+#define NOH_HAIRS_MAX 256u           /* control hairs of one head */
+#define NOH_HAIR_POINTS_MAX 32u      /* of a control hair */
+#define NOH_HAIR_SPHERES_MAX 8u      /* that stand for the head */
+#define NOH_HAIR_STEPS_MAX 15u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- controllers and graphs ---- */
 

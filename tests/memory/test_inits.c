@@ -258,6 +258,16 @@ INIT(spring_init)
     return noh_spring_init(memory, bytes, &desc, &carrier, &spring, error);
 }
 
+INIT(hair_init)
+{
+    static const float rest[2][3][3] = { { { 0, 1, 0 }, { 0, 2, 0 }, { 0, 3, 0 } },
+                                         { { 1, 1, 0 }, { 1, 2, 0 }, { 1, 3, 0 } } };
+    const noh_hair_desc desc = { rest[0][0], 2, 3, NULL, 0, 1, 0.02f, 0.01f, 2.0f, 0.0f };
+    const noh_hair_carrier carrier = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, { 0.0f, 0.0f, 0.0f } };
+    noh_hair *hair;
+    return noh_hair_init(memory, bytes, &desc, &carrier, &hair, error);
+}
+
 INIT(springs_init)
 {
     static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, 0.5f };
@@ -391,6 +401,7 @@ static const struct {
     ROW(ragdolls_init),
     ROW(spring_init),
     ROW(springs_init),
+    ROW(hair_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),
