@@ -93,7 +93,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o
 
-.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check check-validator bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -107,6 +107,7 @@ help:
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
+	@echo 'make check-validator DIR=...  what noh build says to the glTF validator'"'"'s broken files'
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
@@ -332,6 +333,10 @@ bench: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/lod_compare
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
+
+# What noh build says to the files of the glTF validator's own tests.
+check-validator: $(BUILD)/noh
+	$(Q)NOH_BUILD=$(BUILD) sh tests/validator_files.sh $(DIR)
 
 # Only the comparison of LOD levels.
 bench-lod: deps-build

@@ -1126,8 +1126,7 @@ static void bad_skins_are_refused(void **state)
     static const char *const rests[][2] = {
         { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist" },
         { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "joint node 7 does not exist" },
-        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]",
-          "needs a matrix" }
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]", "needs MAT4" }
     };
     for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
         scene *s = triangle("", "");
@@ -1575,6 +1574,35 @@ static void deep_json_is_refused(void **state)
     file_refused("nested deeper", "JSON byte");
 }
 
+/* What must be there and is not is told with its place. */
+static void missing_members_are_refused_by_name(void **state)
+{
+    (void)state;
+    static const char *const all[][3] = {
+        { "\"accessors\":[{\"componentType\":5126,\"count\":3}]", "'type' is missing", "glTF JSON/accessors/0" },
+        { "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC9\"}]", "the type 'VEC9' is none of",
+          "glTF JSON/accessors/0" },
+        { "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{"
+          "\"bufferView\":0},\"values\":{\"bufferView\":0}}}]",
+          "'componentType' is missing", "glTF JSON/accessors/0/sparse/indices" },
+        { "\"bufferViews\":[{\"buffer\":0,\"byteLength\":8,\"byteStride\":6}]", "'byteStride' is 6",
+          "glTF JSON/bufferViews/0" },
+        { "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}},{\"mode\":4}]}]", "'attributes' is missing",
+          "glTF JSON/meshes/0/primitives/1" },
+        { "\"meshes\":[{\"primitives\":[7]}]", "this must be an object", "glTF JSON/meshes/0/primitives/0" },
+        { "\"animations\":[{\"samplers\":[],\"channels\":[{\"sampler\":0,\"target\":{\"node\":0}}]}]",
+          "'path' is missing", "glTF JSON/animations/0/channels/0/target" },
+        { "\"skins\":[{}]", "'joints' is missing", "glTF JSON/skins/0" },
+        { "\"skins\":[{\"joints\":3}]", "'joints' must be an array", "glTF JSON/skins/0" },
+    };
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        char text[512];
+        (void)snprintf(text, sizeof text, "{\"asset\":{\"version\":\"2.0\"},%s}", all[i][0]);
+        write_text("test.gltf", text);
+        file_refused(all[i][1], all[i][2]);
+    }
+}
+
 static void required_extensions_are_refused_by_name(void **state)
 {
     (void)state;
@@ -2012,6 +2040,7 @@ int main(void)
         cmocka_unit_test(not_gltf_is_refused),
         cmocka_unit_test(nothing_to_convert_is_refused),
         cmocka_unit_test(deep_json_is_refused),
+        cmocka_unit_test(missing_members_are_refused_by_name),
         cmocka_unit_test(required_extensions_are_refused_by_name),
         cmocka_unit_test(unknown_extensions_are_warnings),
         cmocka_unit_test(every_truncation_of_a_glb_is_refused),

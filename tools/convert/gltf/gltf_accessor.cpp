@@ -73,7 +73,10 @@ static const char *type_name(int type)
     case TINYGLTF_TYPE_VEC2: return "VEC2";
     case TINYGLTF_TYPE_VEC3: return "VEC3";
     case TINYGLTF_TYPE_VEC4: return "VEC4";
-    default: return "a matrix";
+    case TINYGLTF_TYPE_MAT2: return "MAT2";
+    case TINYGLTF_TYPE_MAT3: return "MAT3";
+    case TINYGLTF_TYPE_MAT4: return "MAT4";
+    default: return "unknown";
     }
 }
 

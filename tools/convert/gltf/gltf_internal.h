@@ -6,6 +6,7 @@
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
+ *   gltf_members.cpp   members that must be there
  *   gltf_file.cpp      failures, warnings, names
  *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression

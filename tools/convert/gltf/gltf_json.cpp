@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include <nlohmann/json.hpp>
+#include "json_internal.h"
 
 using nlohmann::json;
 
@@ -360,6 +360,7 @@ void parse_json(file &f, const char *text_begin, size_t size)
     check_required(document);
     check_top_level(document);
     check_value(document, "", "");
+    check_members(document);
     find_unsupported(f, document);
     take_buffers(f, document);
     take_images(f, document);
