@@ -116,6 +116,10 @@
 #include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
 #include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
 
+/* ---- many of them, on the ground ---- */
+
+#include "crowd/crowd.h" /* agents that walk to their goals and stay out of each other's way */
+
 /* ---- parts, for tools and engines of your own ---- */
 
 #include "base/arena.h"      /* carve a block */
@@ -155,6 +159,7 @@
  *   callback key         a named moment of a clip that is reported when a track passes it
  *   stage, kind, actor   a cast out of one block; a sort of character on it; one character
  *   layer                one thing that an actor can do at a time: walk, wave, talk
+ *   agent                one of a crowd: a disc on the ground, with a goal
  *   tick                 1/48,000 second, of time and nothing else
  *   sample rate          frames per second that a clip was made with
  *   playback speed       how fast a track runs: 1 is as made

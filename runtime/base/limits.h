@@ -80,6 +80,13 @@
 #define NOH_HAIR_SPHERES_MAX 8u      /* that stand for the head */
 #define NOH_HAIR_STEPS_MAX 15u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
+/* ---- crowds ---- */
+
+#define NOH_CROWD_AGENTS_MAX (1u << 18)
+#define NOH_CROWD_OBSTACLES_MAX 1024u
+#define NOH_CROWD_JOBS_MAX 64u
+#define NOH_CROWD_STEPS_MAX 4u /* of 1/30 s in one call; what is left of a longer time is dropped */
+
 /* ---- controllers and graphs ---- */
 
 #define NOH_TRACKS_MAX 64u

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh crowd, and the rows of a crowd and of a stage in noh bench: what they refuse, draw and measure.
+# noh crowd, agents in its scenes, and the rows of a crowd and of a stage in noh bench: what they refuse, draw and measure.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -23,6 +23,48 @@ expect 2 'a crowd of no bodies'
 noh bench "$pack" --only crwod
 expect 2 'an unknown group of rows'
 says "did you mean 'crowd'"
+
+# ---- scenes of agents, which need neither a pack nor a GL ----
+
+for refused in '--test circel250' '--test door200 --agents 0.5' '--test door200 --seconds -1' '--test door200 --seed 1e10' '--agents 10'; do
+    # shellcheck disable=SC2086 # words
+    noh crowd $refused
+    expect 2 "crowd $refused"
+done
+noh crowd --test circel250
+says "did you mean 'circle250'"
+noh crowd "$pack" --test door200
+expect 2 'a scene takes no pack'
+noh crowd --test door200 --seconds 0.1 --dump "$work/none/agents.csv"
+expect 1 'a dump that cannot be written'
+
+# NAME CONDITION...: of the JSON of the last run, as an awk expression over its keys.
+bound() {
+    check "$1" awk -v RS=, '{ gsub(/[ \n{}"]/, ""); split($0, pair, ":"); value[pair[1]] = pair[2] } END { exit !('"$2"') }' "$work/out"
+}
+for seed in 1 5; do
+    noh crowd --test circle250 --seed $seed --json
+    expect 0 "circle250, seed $seed"
+    bound 'all are through in 250 s' 'value["done_s"] > 200 && value["done_s"] <= 250'
+    bound 'overlapped by at most 8 %' 'value["overlap_max_pct"] <= 8'
+    noh crowd --test door200 --seed $seed --json
+    expect 0 "door200, seed $seed"
+    bound 'all are out in 40 s' 'value["done_s"] > 10 && value["done_s"] <= 40'
+    bound 'overlapped by at most 50 mm of 500' 'value["overlap_max_pct"] <= 10'
+    bound 'none stands still with room in front' 'value["stuck_max_s"] < 2'
+    noh crowd --test dense1000 --seed $seed --json
+    expect 0 "dense1000, seed $seed"
+    bound 'progress of 60 %' 'value["progress_pct"] >= 60 && value["progress_pct"] < 100'
+    bound 'overlapped by more than 5 % in less than a thousandth of steps' 'value["overlapped_pct"] < 0.1'
+    bound 'none stands still with room in front' 'value["stuck_max_s"] < 2'
+done
+noh crowd --test open10000 --seconds 5 --json
+expect 0 'open10000'
+bound 'progress of 90 %' 'value["progress_pct"] >= 90 && value["progress_pct"] < 100'
+bound 'ten thousand in 96 bytes each' 'value["agents"] == 10000 && value["bytes"] <= 960000'
+noh crowd --test door200 --agents 40 --seconds 1 --dump "$work/agents.csv"
+expect 0 'a dump'
+check 'it has a line for each agent and step' awk -F, 'NR == 1 { head = $0 == "frame,agent,x,z,vx,vz,radius"; next } NF != 7 || $7 != 0.25 { bad = 1 } END { exit !(head && !bad && NR == 1201) }' "$work/agents.csv"
 
 # ---- with a GL ----
 

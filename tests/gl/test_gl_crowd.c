@@ -1,4 +1,4 @@
-/* A crowd on a stage (tools/noh/crowd/crowd.h), with and without LOD: sixty tubes that bend, bulge and fire callback
+/* A crowd on a stage (tools/noh/crowd/crowd_bodies.h), with and without LOD: sixty tubes that bend, bulge and fire callback
  * keys while the camera moves in among them and back. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
-#include "crowd/crowd.h"
+#include "crowd/crowd_bodies.h"
 #include "stage/stage_internal.h"
 
 #define BODIES 60u

@@ -278,6 +278,14 @@ INIT(springs_init)
     return noh_springs_init(memory, bytes, &desc, &springs, error);
 }
 
+INIT(crowd_init)
+{
+    static const noh_crowd_obstacle wall = { { -3.0f, 0.0f }, { 5.0f, 1.0f }, 0.1f };
+    const noh_crowd_desc desc = { 33, 2, { -10.0f, -5.0f }, { 20.0f, 10.0f }, 2.0f, 1, &wall };
+    noh_crowd *crowd;
+    return noh_crowd_init(memory, bytes, &desc, &crowd, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -402,6 +410,7 @@ static const struct {
     ROW(spring_init),
     ROW(springs_init),
     ROW(hair_init),
+    ROW(crowd_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),

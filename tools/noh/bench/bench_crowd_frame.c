@@ -1,4 +1,4 @@
-/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd.h), at
+/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd_bodies.h), at
  * several allowed errors in pixels, against the same stage without detail. None where a pack has no skinned mesh with
  * levels, or no clips.
  *
@@ -11,7 +11,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "crowd/crowd.h"
+#include "crowd/crowd_bodies.h"
 #include "gpu/canvas.h"
 
 #define SAMPLE_NS 2e7

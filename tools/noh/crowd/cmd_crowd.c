@@ -1,9 +1,10 @@
-/* cmd_crowd.c: draw a crowd, and say what it took. */
+/* cmd_crowd.c: draw a crowd, and say what it took; or run agents through a scene, and measure them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "crowd.h"
+#include "crowd_bodies.h"
+#include "crowd_test.h"
 #include "gpu/canvas.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
@@ -15,10 +16,10 @@
 #define FRAME_TICKS 800u /* 60 frames a second */
 
 typedef struct crowd_args {
-    const char *pack, *output, *debug, *driver;
-    double pixels, instances, time_s;
+    const char *pack, *output, *debug, *driver, *test, *dump;
+    double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
-    int plain;
+    int plain, as_json;
     crowd_options options;
 } crowd_args;
 
@@ -117,10 +118,29 @@ static int draw_pack(const pack_file *file, const crowd_args *a)
     return status;
 }
 
+static int is_whole(double value, double high)
+{
+    return value >= 0.0 && value <= high && value == (double)(uint32_t)value;
+}
+
+static int test(const crowd_args *a)
+{
+    const crowd_scene_options options = { a->test, (uint32_t)a->agents, a->seconds, (uint32_t)a->seed, 1 };
+    if (!is_whole(a->agents, NOH_CROWD_AGENTS_MAX)) {
+        return tool_usage("--agents wants a whole number from 1 to %u; 0: as many as the scene's name says",
+                          NOH_CROWD_AGENTS_MAX);
+    }
+    if (!(a->seconds >= 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds wants a number up to 3600");
+    if (!is_whole(a->seed, 4294967295.0)) return tool_usage("--seed wants a whole number below 2^32");
+    return crowd_test_run(&options, a->dump, a->as_json);
+}
+
 static int run(void *args)
 {
     crowd_args *a = args;
     pack_file file;
+    if (a->test) return test(a);
+    if (!a->output) return tool_usage("noh crowd wants -o OUT.png, or --test SCENE");
     int status = check_args(a);
     if (!status) status = pack_file_open(&file, a->pack);
     if (!status) {
@@ -136,10 +156,10 @@ static const option options[] = {
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(crowd_args, output),
-      .required = 1,
       .value = "OUT.png",
-      .what = "the picture",
-      .example = "crowd.png" },
+      .what = "the picture; wanted, unless --test is given",
+      .example = "crowd.png",
+      .excludes = "--test" },
     OPTION_INSTANCES(crowd_args, instances, "1000", .what = "number of bodies, 1 to 65536"),
     { .name = "--pixels",
       .kind = OPTION_NUMBER,
@@ -173,16 +193,61 @@ static const option options[] = {
       .what = "size of the picture, pixels, 1 to 8192 each",
       .example = "1920x1080" },
     OPTION_DRIVER(crowd_args, driver, .initial = "egl"),
+    { .name = "--test",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, test),
+      .value = "circle250|door200|dense1000|open10000",
+      .what = "draw nothing: run agents through this scene, and measure how they get on" },
+    { .name = "--agents",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(crowd_args, agents),
+      .value = "N",
+      .initial = "0",
+      .what = "how many, up to 262144; 0: as many as the scene's name says. The room for each stays the same",
+      .example = "2000",
+      .needs = "--test" },
+    { .name = "--seconds",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(crowd_args, seconds),
+      .value = "S",
+      .initial = "0",
+      .what = "how long at most, up to 3600; 0: 300 for circle250, 120 for door200, else 30",
+      .example = "10",
+      .needs = "--test" },
+    { .name = "--seed",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(crowd_args, seed),
+      .value = "N",
+      .initial = "1",
+      .what = "of where they start and want to go",
+      .example = "7",
+      .needs = "--test" },
+    { .name = "--dump",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(crowd_args, dump),
+      .value = "OUT.csv",
+      .what = "where every agent is in every step of 1/30 s: frame,agent,x,z,vx,vz,radius",
+      .example = "agents.csv",
+      .needs = "--test" },
+    { .name = "--json",
+      .kind = OPTION_FLAG,
+      .at = offsetof(crowd_args, as_json),
+      .what = "print JSON on stdout; errors too: {\"error\": {...}}",
+      .needs = "--test" },
 };
 
 const verb verb_crowd = {
     .name = "crowd",
     .files = "PACK",
     .what = "draw a crowd of a pack's skinned mesh, each body at the LOD level that its size in pixels needs",
-    .example = "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod",
+    .more =
+        "--test runs agents without a pack. circle250: 250 of 3 m across, at 2 m/s, on a circle of 200 m, each to the opposite side. door200: 200 of half a metre, at 1.3 m/s, a metre apart, out through a door of 1.6 m. dense1000: 1,000 of half a metre on a square with a square metre for each, to one random place after the other; open10000: 10,000 of 0.6 m with 4 square metres for each. Printed are when half and all of them were there, the worst overlap of two, how often one overlapped by more than 5 %, the mean speed towards the goal (of the speed that they like), the longest time in which one stood still with room in front, CPU time and bytes, and a hash of where all are: the same on every processor.",
+    .example =
+        "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod\n--test door200 --seed 2 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
+    .instead = "--test",
     .files_at = offsetof(crowd_args, pack),
     .args = &arguments,
     .run = run,

@@ -1,5 +1,5 @@
-/* crowd.h: bodies of one pack, spread over a field, on a stage (stage/stage.h): what `noh crowd` draws and `noh bench`
- * times. Each has a place, a clip, a phase and a playback speed of its own, and a clip of the face over it.
+/* crowd_bodies.h: bodies of one pack, spread over a field, on a stage (stage/stage.h): what `noh crowd` draws and `noh
+ * bench` times. Each has a place, a clip, a phase and a playback speed of its own, and a clip of the face over it.
  *
  *   crowd_open      plan, make, place
  *   crowd_frame     a frame of the stage
@@ -10,8 +10,8 @@
  *
  * Clips that end by themselves play ping-pong, so that every body keeps moving. Root motion on the ground is taken out:
  * bodies stay in place. One unit of the pack is a metre; y is up. */
-#ifndef NOH_NOH_CROWD_CROWD_H
-#define NOH_NOH_CROWD_CROWD_H
+#ifndef NOH_NOH_CROWD_CROWD_BODIES_H
+#define NOH_NOH_CROWD_CROWD_BODIES_H
 
 #include "file/pack_file.h"
 #include "gpu/gpu.h"

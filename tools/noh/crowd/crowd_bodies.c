@@ -1,4 +1,4 @@
-#include "crowd.h"
+#include "crowd_bodies.h"
 
 #include <math.h>
 #include <stdio.h>

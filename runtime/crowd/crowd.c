@@ -1,0 +1,254 @@
+/* crowd.c: a crowd's block, its agents, and the phases of its steps. */
+#include "crowd/crowd_internal.h"
+
+#include "base/arena.h"
+#include "base/hash.h"
+
+#define REACH 3.0f      /* by default */
+#define FAR 1e6f        /* of places: squares and differences keep their digits */
+#define SPEED_MAX 15.0f /* in radii per second: a step is shorter than a radius, even of one who is pushed */
+
+/* ---- size and init ---- */
+
+static noh_crowd_desc with_defaults(const noh_crowd_desc *desc)
+{
+    noh_crowd_desc d = *desc;
+    if (!d.job_count) d.job_count = 1;
+    if (!(d.reach > 0.0f)) d.reach = REACH;
+    return d;
+}
+
+static int is_place(const float at[2])
+{
+    return at[0] >= -FAR && at[0] <= FAR && at[1] >= -FAR && at[1] <= FAR;
+}
+
+static int is_length(float length)
+{
+    return length > 0.0f && length <= FAR;
+}
+
+static noh_result check(const noh_crowd_desc *desc, noh_error *error)
+{
+    if (!desc->agent_max || desc->agent_max > NOH_CROWD_AGENTS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has no agents, or more than the limit", 0, desc->agent_max);
+    }
+    if (desc->job_count > NOH_CROWD_JOBS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more jobs than the limit", 0, desc->job_count);
+    }
+    if (desc->obstacle_count > NOH_CROWD_OBSTACLES_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more obstacles than the limit", 0, desc->obstacle_count);
+    }
+    if (!is_place(desc->origin) || !is_length(desc->extent[0]) || !is_length(desc->extent[1]) ||
+        !(desc->reach >= 0.0f && desc->reach <= FAR)) {
+        return noh_fail(error, NOH_ERR_ARG, "a crowd's origin, extent or reach is out of its range", 0, 0);
+    }
+    for (uint32_t i = 0; i < desc->obstacle_count; i++) {
+        const noh_crowd_obstacle *o = &desc->obstacles[i];
+        if (!is_place(o->from) || !is_place(o->to) || !(o->radius >= 0.0f && o->radius <= FAR)) {
+            return noh_fail(error, NOH_ERR_ARG, "an obstacle of a crowd is not where one can be, or has no radius", i,
+                            0);
+        }
+    }
+    return NOH_OK;
+}
+
+static uint32_t take(uint32_t *bytes, uint32_t each, uint32_t count)
+{
+    const uint32_t at = *bytes;
+    *bytes += each * count;
+    return at;
+}
+
+/* The arrays of a desc that is good. */
+static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
+{
+    const uint32_t n = desc->agent_max;
+    uint32_t bytes = sizeof *c;
+    memset(c, 0, sizeof *c);
+    c->agent_max = n;
+    c->job_count = desc->job_count;
+    c->obstacle_count = desc->obstacle_count;
+    c->reach = desc->reach;
+    c->cells = noh_crowd_cells_of(desc);
+    const uint32_t cell_count = c->cells.width * c->cells.depth;
+    c->body = take(&bytes, sizeof(crowd_body), n);
+    c->wish = take(&bytes, sizeof(crowd_wish), n);
+    c->position = take(&bytes, sizeof(vec2), n);
+    c->velocity = take(&bytes, sizeof(vec2), n);
+    c->plan[0] = take(&bytes, sizeof(vec2), n);
+    c->plan[1] = take(&bytes, sizeof(vec2), n);
+    c->neighbor = take(&bytes, CROWD_NEIGHBORS * sizeof(uint16_t), n);
+    c->id = take(&bytes, sizeof(uint32_t), n);
+    c->waited = take(&bytes, sizeof(uint32_t), n);
+    c->start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
+    if (c->obstacle_count) {
+        c->obstacle = take(&bytes, sizeof(noh_crowd_obstacle), c->obstacle_count);
+        c->near_start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
+        c->near = take(&bytes, sizeof(uint16_t), noh_crowd_near(&c->cells, desc, NULL, NULL));
+    }
+    c->bytes = (bytes + 15u) & ~15u;
+}
+
+size_t noh_crowd_size(const noh_crowd_desc *desc)
+{
+    noh_crowd c;
+    NOH_ASSERT(desc && (desc->obstacles || !desc->obstacle_count));
+    if (check(desc, NULL)) return 0;
+    const noh_crowd_desc d = with_defaults(desc);
+    lay_out(&c, &d);
+    return c.bytes;
+}
+
+noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc, noh_crowd **crowd, noh_error *error)
+{
+    noh_arena arena;
+    noh_crowd c;
+    NOH_ASSERT(desc && crowd && (desc->obstacles || !desc->obstacle_count));
+    noh_result result = check(desc, error);
+    if (result) return result;
+    const noh_crowd_desc d = with_defaults(desc);
+    lay_out(&c, &d);
+    result = noh_arena_open(&arena, memory, bytes, c.bytes, error);
+    if (result) return result;
+    memset(memory, 0, c.bytes);
+    *crowd = memory;
+    **crowd = c;
+    if (c.obstacle_count) {
+        memcpy(CROWD_ARRAY(noh_crowd_obstacle, *crowd, obstacle), d.obstacles, d.obstacle_count * sizeof *d.obstacles);
+        noh_crowd_near(&c.cells, &d, CROWD_ARRAY(uint32_t, *crowd, near_start), CROWD_ARRAY(uint16_t, *crowd, near));
+    }
+    return NOH_OK;
+}
+
+/* ---- agents ---- */
+
+noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error)
+{
+    NOH_ASSERT(crowd && agent && index < crowd->agent_max);
+    if (!is_place(agent->position) || !is_place(agent->goal) || !is_place(agent->velocity) ||
+        !(agent->radius > 0.0f && agent->radius <= 0.5f * crowd->reach) ||
+        !(agent->speed >= 0.0f && agent->speed <= SPEED_MAX * agent->radius)) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "an agent is too far away, too fast, or its radius is not within 0 and half "
+                        "of the crowd's reach",
+                        index, 0);
+    }
+    crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
+    w->goal = v2(agent->goal[0], agent->goal[1]);
+    w->radius = agent->radius;
+    w->speed = agent->speed;
+    CROWD_ARRAY(vec2, crowd, position)[index] = v2(agent->position[0], agent->position[1]);
+    CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(agent->velocity[0], agent->velocity[1]);
+    CROWD_ARRAY(uint32_t, crowd, id)[index] = agent->id;
+    CROWD_ARRAY(uint32_t, crowd, waited)[index] = 0;
+    return NOH_OK;
+}
+
+void noh_crowd_remove(noh_crowd *crowd, uint32_t index)
+{
+    NOH_ASSERT(crowd && index < crowd->agent_max);
+    CROWD_ARRAY(crowd_wish, crowd, wish)[index].radius = 0.0f;
+}
+
+static float within(float x, float low, float high)
+{
+    return x >= low ? x <= high ? x : high : low; /* NaN: low */
+}
+
+void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
+{
+    NOH_ASSERT(crowd && goal && index < crowd->agent_max);
+    CROWD_ARRAY(crowd_wish, crowd, wish)[index].goal = v2(within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR));
+}
+
+void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed)
+{
+    NOH_ASSERT(crowd && index < crowd->agent_max);
+    crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
+    w->speed = within(speed, 0.0f, SPEED_MAX * w->radius);
+}
+
+int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent)
+{
+    NOH_ASSERT(crowd && agent && index < crowd->agent_max);
+    const crowd_wish *w = CROWD_CONST(crowd_wish, crowd, wish) + index;
+    if (!(w->radius > 0.0f)) return 0;
+    memcpy(agent->position, CROWD_CONST(vec2, crowd, position) + index, sizeof agent->position);
+    memcpy(agent->velocity, CROWD_CONST(vec2, crowd, velocity) + index, sizeof agent->velocity);
+    memcpy(agent->goal, &w->goal, sizeof agent->goal);
+    agent->radius = w->radius;
+    agent->speed = w->speed;
+    agent->id = CROWD_CONST(uint32_t, crowd, id)[index];
+    return 1;
+}
+
+int noh_crowd_agent_at(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent)
+{
+    if (!noh_crowd_agent_stepped(crowd, index, agent)) return 0;
+    const float ago = CROWD_STEP_S * (1.0f - (float)crowd->time.left * (1.0f / (float)NOH_CROWD_STEP_TICKS));
+    agent->position[0] -= ago * agent->velocity[0];
+    agent->position[1] -= ago * agent->velocity[1];
+    return 1;
+}
+
+uint32_t noh_crowd_hash(const noh_crowd *crowd)
+{
+    uint32_t sum = 0;
+    NOH_ASSERT(crowd);
+    for (uint32_t i = 0; i < crowd->agent_max; i++) {
+        noh_crowd_agent agent;
+        if (noh_crowd_agent_stepped(crowd, i, &agent)) sum += noh_crc32c(0, &agent, sizeof agent);
+    }
+    return sum;
+}
+
+/* ---- steps ---- */
+
+enum { SORT, SEE, ITERATE, FINISH = ITERATE + CROWD_ITERATIONS }; /* phases: SORT is over before jobs begin */
+
+uint32_t noh_crowd_begin(noh_crowd *crowd, uint32_t ticks)
+{
+    NOH_ASSERT(crowd && !crowd->to_do);
+    crowd->to_do = noh_steps_take(&crowd->time, ticks, NOH_CROWD_STEP_TICKS, NOH_CROWD_STEPS_MAX);
+    crowd->phase = SORT;
+    return crowd->to_do;
+}
+
+uint32_t noh_crowd_jobs(noh_crowd *crowd)
+{
+    NOH_ASSERT(crowd);
+    if (!crowd->to_do) return 0;
+    if (crowd->phase == FINISH) {
+        crowd->phase = SORT;
+        if (!--crowd->to_do) return 0;
+    }
+    if (crowd->phase++ == SORT) noh_crowd_sort(crowd);
+    return crowd->job_count;
+}
+
+void noh_crowd_job(noh_crowd *crowd, uint32_t job)
+{
+    NOH_ASSERT(crowd && job < crowd->job_count && crowd->phase >= SEE && crowd->phase <= FINISH);
+    const uint32_t begin = (uint32_t)((uint64_t)crowd->present * job / crowd->job_count);
+    const uint32_t end = (uint32_t)((uint64_t)crowd->present * (job + 1u) / crowd->job_count);
+    for (uint32_t rank = begin; rank < end; rank++) {
+        if (crowd->phase == SEE) {
+            noh_crowd_see(crowd, rank);
+            noh_crowd_plan(crowd, rank);
+        } else if (crowd->phase < FINISH) {
+            noh_crowd_iterate(crowd, rank, crowd->phase - (uint32_t)ITERATE);
+        } else {
+            noh_crowd_finish(crowd, rank);
+        }
+    }
+}
+
+uint32_t noh_crowd_step(noh_crowd *crowd, uint32_t ticks)
+{
+    const uint32_t steps = noh_crowd_begin(crowd, ticks);
+    for (uint32_t count; (count = noh_crowd_jobs(crowd)) > 0;) {
+        for (uint32_t i = 0; i < count; i++) noh_crowd_job(crowd, i);
+    }
+    return steps;
+}

@@ -1,0 +1,112 @@
+/* crowd.h: many agents that walk to their goals and stay out of each other's way.
+ *
+ *   noh_crowd_size, noh_crowd_init   a crowd in one block
+ *   noh_crowd_put, noh_crowd_remove  an agent enters, leaves
+ *   noh_crowd_aim, noh_crowd_pace    where it wants to go, how fast
+ *   noh_crowd_step                   time moves on
+ *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
+ *   noh_crowd_agent_at               where an agent is, as shown; noh_crowd_agent_stepped: as of the last step
+ *   noh_crowd_hash                   of all agents, in any order
+ *
+ * Agents are discs on the ground, which is the plane of x and z. In steps of 1/30 s each sees its nearest neighbours in
+ * a uniform grid, plans the velocity that it would like, and corrects it a few times: sideways, by how soon it would
+ * meet a neighbour, and apart, by how much they would overlap after the step. Both of a pair yield half of that; an
+ * agent whose speed is 0 holds its place, and others make way. What an agent reads was written in the step or iteration
+ * before, so that neither the order of agents nor the number of threads changes a bit. Obstacles are walls and posts
+ * that do not move; a wish that leads into one is turned past its nearer end, and no agent is ever pushed through.
+ * Behind a maze of walls a goal is not found this way.
+ *
+ * A crowd is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
+ * source   Weiss, Litteneker, Jiang, Terzopoulos: Position-Based Multi-Agent Dynamics for Real-Time Crowd Simulation,
+ *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations)
+ * Threads: a crowd belongs to one thread at a time; noh_crowd_job alone may be called from several at once. */
+#ifndef NOH_CROWD_CROWD_H
+#define NOH_CROWD_CROWD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/limits.h"
+#include "base/result.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NOH_CROWD_STEP_TICKS 1600u /* 1/30 s */
+
+/* What agents walk around: a wall where `from` and `to` differ, with rounded ends, a post where they are equal. */
+typedef struct noh_crowd_obstacle {
+    float from[2], to[2]; /* x, z */
+    float radius;         /* 0.., of a post; half the thickness of a wall */
+} noh_crowd_obstacle;
+
+typedef struct noh_crowd_desc {
+    uint32_t agent_max;      /* 1..NOH_CROWD_AGENTS_MAX */
+    uint32_t job_count;      /* noh_crowd_job may run this many at once, 1..NOH_CROWD_JOBS_MAX; default (0) 1 */
+    float origin[2];         /* of the grid: its least x and z; agents may leave it, obstacles are known within it */
+    float extent[2];         /* of the grid along x and z, above 0 */
+    float reach;             /* how far an agent looks for neighbours and obstacles; default (0) 3 */
+    uint32_t obstacle_count; /* 0..NOH_CROWD_OBSTACLES_MAX */
+    const noh_crowd_obstacle *obstacles; /* [obstacle_count]; copied by init */
+} noh_crowd_desc;
+
+/* An agent as it enters, and as it is asked for. */
+typedef struct noh_crowd_agent {
+    float position[2]; /* x, z */
+    float velocity[2]; /* metres per second */
+    float goal[2];     /* it slows down before its goal, and stays there */
+    float radius;      /* above 0, at most half of the reach */
+    float speed;       /* that it likes to walk at, 0..15 radii per second; 0: it holds its place */
+    uint32_t id; /* tells agents apart whatever their indices are: equal in each run, no two of a crowd the same */
+} noh_crowd_agent;
+
+typedef struct noh_crowd noh_crowd;
+
+/* The exact bytes of a crowd: 132, 88 an agent, 4 a cell of the grid; with obstacles 4 a cell more, 20 an obstacle and
+ * 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
+ * many as agents, and one. 0 for an impossible desc. */
+size_t noh_crowd_size(const noh_crowd_desc *desc);
+
+/* A crowd without agents.
+ * errors  ARG memory is NULL or misaligned, a number is out of its range (where: the obstacle); LIMIT no agents, or too
+ *         many agents, jobs or obstacles; MEMORY it is too small */
+noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc, noh_crowd **crowd, noh_error *error);
+
+/* An agent enters at an index of the caller's choice, in place of the one that is there.
+ * errors  ARG a number is out of its range (where: the index) */
+noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error);
+void noh_crowd_remove(noh_crowd *crowd, uint32_t index);
+
+/* goal[2] finite */
+void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
+/* speed 0..15 radii per second: what is outside is clamped */
+void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed);
+
+/* Time passes, in any pieces; in one call by NOH_CROWD_STEPS_MAX steps, what is left of a longer time is dropped.
+ * returns  steps that were made */
+uint32_t noh_crowd_step(noh_crowd *crowd, uint32_t ticks);
+
+/* The same on several threads. Agents enter, leave and change their minds when all jobs are done.
+ *   noh_crowd_begin(crowd, ticks);
+ *   while ((count = noh_crowd_jobs(crowd)) > 0)
+ *       noh_crowd_job(crowd, i) for each i below count, on any threads, in any order; wait for all
+ * returns  steps that will be made */
+uint32_t noh_crowd_begin(noh_crowd *crowd, uint32_t ticks);
+uint32_t noh_crowd_jobs(noh_crowd *crowd);
+void noh_crowd_job(noh_crowd *crowd, uint32_t job);
+
+/* An agent as shown: between its last two steps.
+ * returns  0 where there is none: `agent` is untouched */
+int noh_crowd_agent_at(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent);
+/* As of the last step. */
+int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent);
+
+/* Of all agents as of the last step, whatever their indices are: equal on every processor, for any number of jobs. */
+uint32_t noh_crowd_hash(const noh_crowd *crowd);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

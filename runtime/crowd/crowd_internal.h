@@ -1,0 +1,136 @@
+/* crowd_internal.h: a crowd's block, and what the phases of a step share. Threads: as crowd.h. */
+#ifndef NOH_CROWD_CROWD_INTERNAL_H
+#define NOH_CROWD_CROWD_INTERNAL_H
+
+#include "base/assert.h"
+#include "base/math_internal.h"
+#include "crowd/crowd.h"
+#include "sim/motion.h"
+
+#define CROWD_STEP_S (1.0f / 30.0f)
+#define CROWD_STEPS_PER_S 30.0f
+#define CROWD_NEIGHBORS 8u
+#define CROWD_ITERATIONS 5u
+#define CROWD_NO_NEIGHBOR 0xffffu
+#define CROWD_RUN_MAX 0x3fffu   /* agents of three cells in a row that are looked at: a neighbour's name has 14 bits */
+#define CROWD_HOLDS 0x80000000u /* of crowd_body.item: it stands, and is not pushed */
+#define CROWD_FAST 1.5f         /* times the speed that an agent likes: the most that it is pushed to */
+
+typedef struct vec2 {
+    float x, z;
+} vec2;
+
+/* What an agent wants. */
+typedef struct crowd_wish {
+    vec2 goal;
+    float radius; /* 0: there is no agent */
+    float speed;
+} crowd_wish;
+
+/* An agent as a step sees it. These are in the order of their cells; their index is called a rank. */
+typedef struct crowd_body {
+    vec2 at;
+    float radius;
+    uint32_t item; /* the agent's index, CROWD_HOLDS */
+} crowd_body;
+
+typedef struct crowd_cells {
+    vec2 origin;
+    float edge, per_edge;
+    uint32_t width, depth;
+} crowd_cells;
+
+/* Behind it lie arrays, at these offsets: no pointers. */
+struct noh_crowd {
+    uint32_t agent_max, job_count, obstacle_count;
+    uint32_t phase, to_do, present; /* of the step; steps to make, with this one; agents in the grid */
+    float reach;
+    noh_steps time;
+    crowd_cells cells;
+    uint32_t position, velocity, wish, id, waited; /* by agent */
+    uint32_t body, plan[2], neighbor;              /* by rank; neighbor: names [CROWD_NEIGHBORS] of each */
+    uint32_t start;                                /* by cell: its first rank; one more at the end */
+    uint32_t obstacle, near_start, near;           /* obstacles; by cell: its first in near; indices of obstacles */
+    uint32_t bytes, reserved[3];
+};
+NOH_STATIC_ASSERT(sizeof(noh_crowd) == 128, crowd);
+NOH_STATIC_ASSERT(sizeof(crowd_body) == 16 && sizeof(crowd_wish) == 16, crowd_records);
+
+#define CROWD_ARRAY(type, crowd, name) ((type *)(void *)((char *)(crowd) + (crowd)->name))
+#define CROWD_CONST(type, crowd, name) ((const type *)(const void *)((const char *)(crowd) + (crowd)->name))
+
+static inline vec2 v2(float x, float z)
+{
+    vec2 v;
+    v.x = x;
+    v.z = z;
+    return v;
+}
+
+static inline vec2 v2_sub(vec2 a, vec2 b)
+{
+    return v2(a.x - b.x, a.z - b.z);
+}
+
+static inline vec2 v2_madd(vec2 a, float s, vec2 b)
+{
+    return v2(a.x + s * b.x, a.z + s * b.z);
+}
+
+static inline vec2 v2_scale(vec2 a, float s)
+{
+    return v2(a.x * s, a.z * s);
+}
+
+static inline float v2_dot(vec2 a, vec2 b)
+{
+    return a.x * b.x + a.z * b.z;
+}
+
+static inline float v2_cross(vec2 a, vec2 b)
+{
+    return a.x * b.z - a.z * b.x;
+}
+
+static inline float v2_length(vec2 a)
+{
+    return noh_sqrt(v2_dot(a, a));
+}
+
+/* ---- crowd_grid.c ---- */
+
+/* As many cells as are useful: none smaller than the reach, at most one for two agents. */
+crowd_cells noh_crowd_cells_of(const noh_crowd_desc *desc);
+/* The cell of a place, and of its row and column; what is outside is in the cells of the edge. */
+uint32_t noh_crowd_cell_at(const crowd_cells *cells, vec2 at, uint32_t *column, uint32_t *row);
+/* Which obstacles are within reach of a cell. returns how many entries that makes; start and list: NULL, or filled */
+uint32_t noh_crowd_near(const crowd_cells *cells, const noh_crowd_desc *desc, uint32_t *start, uint16_t *list);
+void noh_crowd_sort(noh_crowd *c);
+
+/* The up to three runs of ranks in the cells around a place. returns how many */
+uint32_t noh_crowd_runs(const noh_crowd *c, vec2 at, uint32_t first[3], uint32_t end[3]);
+
+/* Neighbours are named by run and place in the run, in 2 and 14 bits. */
+static inline uint32_t noh_crowd_rank_of(const uint32_t first[3], uint32_t name)
+{
+    return first[name >> 14] + (name & CROWD_RUN_MAX);
+}
+
+/* ---- crowd_see.c ---- */
+
+void noh_crowd_see(noh_crowd *c, uint32_t rank);
+
+/* ---- crowd_obstacle.c ---- */
+
+/* The unit direction in which to walk towards what lies `distance` away in a unit direction. */
+vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance);
+/* Where a step from `from` to `to` ends: outside of everything. */
+vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
+
+/* ---- crowd_plan.c, crowd_avoid.c: the phases of a body's step ---- */
+
+void noh_crowd_plan(noh_crowd *c, uint32_t rank);
+void noh_crowd_iterate(noh_crowd *c, uint32_t rank, uint32_t iteration);
+void noh_crowd_finish(noh_crowd *c, uint32_t rank);
+
+#endif

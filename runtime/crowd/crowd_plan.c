@@ -1,0 +1,110 @@
+/* crowd_plan.c: the velocity that an agent would like: towards its goal, past walls, no faster than those in front let
+ * it, and aside where that gets it further.
+ *
+ * source   Moussaid, Helbing, Theraulaz: How simple rules determine pedestrian behavior and crowd disasters, PNAS 2011
+ *          (a direction by how far one gets in it; here a fan of five, and what those in front leave of the speed) */
+#include "crowd/crowd_internal.h"
+
+#define ARRIVE 2.0f    /* per second and metre: the speed before a goal, which is braked for over half a second's way */
+#define BLEND 0.2f     /* of the way from the velocity to the wish that a step makes */
+#define HEADWAY_S 0.1f /* time in which a gap may be used up */
+#define IN_FRONT 0.7f  /* of the radii: who is further aside than this is not in front */
+#define ONCOMING 0.2f  /* of the speed: who comes nearer faster than this is not waited for, but passed */
+#define ASIDE 0.8f     /* of the speed: an agent that can have so much does not look for another way */
+#define LEFT 0.3f      /* what a way to the left counts beside one to the right: most meet by passing on one side */
+#define WAIT_STEPS 15.0f /* at less than a fifth of its speed, after which it begins to push */
+#define PUSH_STEPS 60.0f /* per which its push grows by its speed */
+#define PUSH_MAX 0.4f    /* of the speed */
+
+/* Neighbours as one agent sees them. */
+typedef struct view {
+    vec2 to[CROWD_NEIGHBORS], velocity[CROWD_NEIGHBORS];
+    float radii[CROWD_NEIGHBORS]; /* of both */
+    uint32_t count;
+} view;
+
+static void look(const noh_crowd *c, uint32_t rank, view *v)
+{
+    const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
+    const vec2 *velocities = CROWD_CONST(vec2, c, plan[1]);
+    const uint16_t *names = CROWD_CONST(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
+    uint32_t first[3], end[3];
+    noh_crowd_runs(c, b->at, first, end);
+    for (v->count = 0; v->count < CROWD_NEIGHBORS && names[v->count] != CROWD_NO_NEIGHBOR; v->count++) {
+        const uint32_t j = noh_crowd_rank_of(first, names[v->count]);
+        v->to[v->count] = v2_sub(bodies[j].at, b->at);
+        v->velocity[v->count] = velocities[j];
+        v->radii[v->count] = b->radius + bodies[j].radius;
+    }
+}
+
+/* How fast those in front let it go. */
+static float speed_along(const view *v, vec2 direction, float speed)
+{
+    float most = speed;
+    for (uint32_t k = 0; k < v->count; k++) {
+        const float along = v2_dot(v->to[k], direction), across = v2_cross(direction, v->to[k]), r = v->radii[k];
+        const float lead = v2_dot(v->velocity[k], direction);
+        if (along <= 0.0f || across * across > IN_FRONT * IN_FRONT * r * r || lead < -ONCOMING * speed) continue;
+        const float gap = along - noh_sqrt(r * r - across * across);
+        const float may = (lead > 0.0f ? lead : 0.0f) + (gap > 0.0f ? gap : 0.0f) * (1.0f / HEADWAY_S);
+        if (may < most) most = may;
+    }
+    return most;
+}
+
+/* The best of five directions, by how far along the wished one they get it. */
+static vec2 way_through(const view *v, vec2 direction, float speed, float most)
+{
+    static const float cosine[4] = { 0.8192f, 0.8192f, 0.342f, 0.342f }; /* 35 and 70 degrees */
+    static const float sine[4] = { -0.5736f, 0.5736f, -0.9397f, 0.9397f };
+    vec2 best = v2_scale(direction, most);
+    float gain = most;
+    for (uint32_t k = 0; k < 4u; k++) {
+        const vec2 try = v2(direction.x * cosine[k] - direction.z * sine[k],
+                            direction.x * sine[k] + direction.z * cosine[k]);
+        const float go = speed_along(v, try, speed), more = go * cosine[k] * (k & 1u ? LEFT : 1.0f);
+        if (more > gain) {
+            gain = more;
+            best = v2_scale(try, go);
+        }
+    }
+    return best;
+}
+
+/* Who waits begins to push, and so do the others around: knots come undone. */
+static float push_of(float waited)
+{
+    const float push = (waited - WAIT_STEPS) * (1.0f / PUSH_STEPS);
+    return push < 0.0f ? 0.0f : push > PUSH_MAX ? PUSH_MAX : push;
+}
+
+/* Slower before the goal, within v^2 / 2a for a braking of its speed per second, and so that it does not pass it. */
+static float speed_at(const crowd_wish *w, float distance)
+{
+    const float slow = ARRIVE * distance;
+    return slow < w->speed ? slow : w->speed;
+}
+
+static vec2 wish_of(const noh_crowd *c, uint32_t rank)
+{
+    const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
+    const uint32_t item = b->item & ~CROWD_HOLDS;
+    const crowd_wish *w = CROWD_CONST(crowd_wish, c, wish) + item;
+    const vec2 to = v2_sub(w->goal, b->at);
+    const float distance = v2_length(to), speed = speed_at(w, distance);
+    view v;
+    if (!(distance > 1e-6f) || !(speed > 0.0f)) return v2(0.0f, 0.0f);
+    const vec2 direction = noh_crowd_detour(c, b->at, b->radius, v2_scale(to, 1.0f / distance), distance);
+    look(c, rank, &v);
+    const float push = push_of((float)CROWD_CONST(uint32_t, c, waited)[item]) * speed;
+    float most = speed_along(&v, direction, speed);
+    if (most < push) most = push;
+    return most < ASIDE * speed ? way_through(&v, direction, speed, most) : v2_scale(direction, most);
+}
+
+void noh_crowd_plan(noh_crowd *c, uint32_t rank)
+{
+    const vec2 now = CROWD_CONST(vec2, c, plan[1])[rank], wish = wish_of(c, rank);
+    CROWD_ARRAY(vec2, c, plan[0])[rank] = v2_madd(now, BLEND, v2_sub(wish, now));
+}

@@ -1,0 +1,22 @@
+/* crowd_measure.h: how agents stand to each other: overlaps, and who could walk but does not. */
+#ifndef NOH_NOH_CROWD_CROWD_MEASURE_H
+#define NOH_NOH_CROWD_CROWD_MEASURE_H
+
+#include "crowd_scene.h"
+
+/* Agents by cells, found anew in each step. */
+typedef struct crowd_meter {
+    uint32_t *head, *next, *slow; /* [CROWD_METER_SIDE^2], [count], [count] */
+    uint32_t count;
+} crowd_meter;
+
+#define CROWD_METER_SIDE 256u
+
+/* returns 0 when there is no memory: close it all the same */
+int crowd_meter_open(crowd_meter *meter, uint32_t count);
+void crowd_meter_close(crowd_meter *meter);
+
+/* Add a step: before[count] and now[count] are the agents on both sides of it. */
+void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now, crowd_measures *m);
+
+#endif
