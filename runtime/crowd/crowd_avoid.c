@@ -3,7 +3,7 @@
 
 #include "base/trig.h"
 
-#define MARGIN 1.02f       /* of the radii: what is kept free between two */
+#define MARGIN 1.03f       /* of the radii: what is kept free between two */
 #define OVER 1.5f          /* over-relaxation of contacts, whose corrections are averaged */
 #define HORIZON_S 4.0f     /* meetings that are further off than this are left alone */
 #define SIDEWAYS 1.5f      /* stiffness of passing someone who is about to be met */
