@@ -44,6 +44,7 @@
 #include "stage/springs.h"          /* chains of joints that swing on a stage */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/stage_face.h"       /* faces of its actors */
+#include "stage/stage_feet.h"       /* actors that stand on the ground */
 #include "stage/stage_ragdoll.h"    /* actors that fall */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
@@ -105,6 +106,7 @@
 
 /* ---- bodies ---- */
 
+#include "sim/feet.h"         /* feet that stand on the ground */
 #include "sim/hair.h"         /* control hairs of a head */
 #include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
 #include "sim/ik_chain.h"     /* chains of any length, with limits */
