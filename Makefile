@@ -268,6 +268,10 @@ $(BUILD)/demo/puppet.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --puppet $@
 
+$(BUILD)/demo/get_up.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --get-up $@
+
 $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --arm $@
@@ -279,6 +283,10 @@ $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --wrinkles auto --quiet
+
+# With what gets up from a fall.
+$(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
+	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --quiet
 
 PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
@@ -318,7 +326,7 @@ view: deps-view
 
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 # Under ThreadSanitizer, with gcc and with clang.
@@ -452,7 +460,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 CROSS       ?=
 CROSS_SKIP  := feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
-               joint_order clip_errors lod_pack strip stage stage_between stage_face stage_graph stage_part stage_desc_file graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads) \
+               joint_order clip_errors lod_pack strip stage stage_between stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads) \
                $(if $(SAN),,stage_threads)
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \

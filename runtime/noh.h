@@ -45,7 +45,7 @@
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
-#include "stage/stage_ragdoll.h"    /* actors that fall */
+#include "stage/stage_ragdoll.h"    /* actors that fall and get up */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */

@@ -14,7 +14,7 @@
  *   stage_graph_play.c  the graph of an actor
  *   stage_part.c     what changes a pose before it is shown
  *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
- *   stage_ragdoll.c  actors that fall
+ *   stage_ragdoll.c  actors that fall; stage_get_up.c: and get up again
  *   stage_step.c     time, callback keys, root motion
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
@@ -104,13 +104,28 @@ typedef struct noh_stage_face {
         shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
 } noh_stage_face;
 
+typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_ON } noh_stage_rise;
+
 /* After it, of a kind with ragdolls. */
 typedef struct noh_stage_body {
-    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* world, metres: of the last pose, and of the one before */
-    int64_t clocks[2];                                  /* of these poses */
-    uint32_t doll;                                      /* 1 + index in the kind's set; 0: it stands */
-    uint32_t poses;                                     /* how many of the two there are */
-    uint32_t reserved[2];
+    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* world, metres: of the last pose, and of the one before; while
+                                                         * it falls those of its ragdoll, and where its clips have them
+                                                         */
+    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX]; /* RISE_BEGINS: of bodies[0]. RISE_GOES_ON: of each body's joint
+                                                         * how far it is turned from its clips, and how fast: radians */
+    float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit */
+    float hertz[NOH_RAGDOLL_BODIES_MAX], animated[NOH_RAGDOLL_BODIES_MAX]; /* noh_body_hold */
+    uint32_t held;                                                         /* bit i: body i */
+    uint32_t rise_ticks;                                                   /* for how long it gets up */
+    int64_t rise_clock;                                                    /* since then */
+    int64_t clocks[2];                                                     /* of the two poses */
+    uint32_t doll;                                                         /* 1 + index in the kind's set; 0: none */
+    uint32_t poses;                                                        /* how many of the two there are */
+    uint8_t state;                                                         /* noh_body_state, of the first three */
+    uint8_t rise;                                                          /* noh_stage_rise */
+    uint8_t dead;
+    uint8_t goals; /* 1: bodies[1] is where its clips have them */
+    uint32_t reserved[3];
 } noh_stage_body;
 
 typedef struct noh_stage_free {
@@ -568,6 +583,20 @@ noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error);
 noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index);
 void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
 void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks);
+/* *b stays as it is where the result is not NOH_OK. */
+noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
+                               noh_stage_body **b, noh_error *error);
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place);
+void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
+void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
+/* Whether a ragdoll moves its place. */
+static inline int noh_stage_is_carried(const noh_stage_body *b)
+{
+    return b->state != NOH_BODY_STANDS && !(b->held & 1u);
+}
+/* A clip alone on a layer from now on; with room for inertia what leaps decays, but for some joints. */
+noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t clip, uint32_t ticks,
+                             const uint32_t *but, uint32_t but_count, noh_error *error);
 const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
 
 /* Bind those of all meshes; k->correctives has room for term_max. */
@@ -586,7 +615,7 @@ uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
 void noh_stage_open_face(noh_stage_kind *k);
 /* Where a joint of a local pose stands in model space. */
 void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
-                             float at[3]);
+                        float at[3]);
 /* The state of an actor's face; the kind has one. */
 noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index);
 void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed);

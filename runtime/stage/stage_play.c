@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "anim/controller_pose.h"
+#include "pose/inertial_internal.h"
 #include "stage/stage_internal.h"
 
 #define FADE_TICKS 9600u
@@ -313,6 +314,22 @@ static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_erro
         set_started(p->a, p->layer_index, track);
         noh_character_wake(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
     }
+    return result;
+}
+
+noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t clip, uint32_t ticks,
+                             const uint32_t *but, uint32_t but_count, noh_error *error)
+{
+    noh_play play = { .fade_ticks = 1, .loop = NOH_LOOP_ONCE };
+    noh_inertia_joint *left;
+    player p;
+    noh_result result = open_player(stage, actor, layer, &p, error);
+    if (result != NOH_OK) return result;
+    if (!p.k->desc->inertia) return begin(&p, clip, &play, error);
+    play.fade_ticks = ticks;
+    result = leap(&p, clip, &play, error);
+    left = (noh_inertia_joint *)(void *)((uint8_t *)p.c + p.c->inertia_offset);
+    for (uint32_t i = 0; i < but_count && result == NOH_OK; i++) memset(&left[but[i]], 0, sizeof *left);
     return result;
 }
 

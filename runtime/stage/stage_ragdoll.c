@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "anim/clock_internal.h"
 #include "base/assert.h"
 #include "base/math_internal.h"
 #include "sim/ragdoll_internal.h"
@@ -58,7 +59,7 @@ noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error)
 
 /* ---- poses ---- */
 
-static noh_ragdoll_frame frame_of(const noh_stage_kind *k, const noh_place *place)
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place)
 {
     noh_ragdoll_frame f;
     for (int i = 0; i < 3; i++) f.position[i] = place->position[i] * k->ragdoll->metres;
@@ -67,10 +68,17 @@ static noh_ragdoll_frame frame_of(const noh_stage_kind *k, const noh_place *plac
     return f;
 }
 
+void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights)
+{
+    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) {
+        weights[i] = b->held >> i & 1u ? 0.0f : 1.0f - b->animated[i];
+    }
+}
+
 /* Where its bodies are now, and where they were in the pose before. */
 static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
 {
-    const noh_ragdoll_frame frame = frame_of(k, &w->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place);
     if (w->cut) b->poses = 0;
     if (b->poses && w->clock > b->clocks[0]) {
         memcpy(b->bodies[1], b->bodies[0], sizeof b->bodies[1]);
@@ -82,33 +90,73 @@ static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_
     noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[0]);
 }
 
+/* Whether its ragdoll has to know where clips have its bodies. */
+static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
+{
+    int some = b->held != 0;
+    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) some |= b->hertz[i] > 0.0f;
+    return some;
+}
+
+static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
+{
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place);
+    float weights[NOH_RAGDOLL_BODIES_MAX];
+    b->goals = b->doll && has_goals(k, b);
+    if (b->goals) noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[1]);
+    noh_stage_ragdoll_weights(k, b, weights);
+    noh_ragdoll_to_pose(&k->ragdoll->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
+}
+
 void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w)
 {
-    const noh_ragdoll_frame frame = frame_of(k, &w->place);
-    if (!b->doll) {
-        remember(k, b, w);
-    } else {
-        noh_ragdoll_to_pose(&k->ragdoll->fit, w->skeleton, &frame, b->bodies[0], NULL, w->local);
+    if (b->state != NOH_BODY_STANDS) {
+        show_doll(k, b, w);
+        return;
     }
+    if (b->rise) noh_stage_run_get_up(k, b, w);
+    remember(k, b, w);
 }
 
 /* ---- time ---- */
 
-/* The place goes where the first body goes. */
+/* The place goes where the first body goes, unless that is held. */
 static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_actor *a)
 {
     noh_ragdoll_pose now[NOH_RAGDOLL_BODIES_MAX];
     noh_ragdoll_bodies(k->dolls, b->doll - 1u, now);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3 && noh_stage_is_carried(b); i++) {
         a->place.position[i] += (now[0].position[i] - b->bodies[0][0].position[i]) / k->ragdoll->metres;
     }
     memcpy(b->bodies[0], now, k->ragdoll->rig.body_count * sizeof now[0]);
+    if (b->dead && noh_ragdoll_sleeps(k->dolls, b->doll - 1u)) {
+        b->state = NOH_BODY_LIES;
+        b->doll = 0;
+    }
+}
+
+/* Dolls learn what their clips want; those that are free cost nothing. */
+static void tell_dolls(const noh_stage_kind *k)
+{
+    uint8_t used[NOH_RAGDOLLS_MAX];
+    memset(used, 0, sizeof used);
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        const noh_stage_body *b = noh_stage_body_of(k, i);
+        if (!k->actors[i].alive || !b->doll) continue;
+        used[b->doll - 1u] = 1;
+        (void)noh_ragdoll_follow(k->dolls, b->doll - 1u, b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held,
+                                 b->hertz, NULL);
+    }
+    for (uint32_t i = 0; i < k->desc->ragdoll->count; i++) {
+        if (!used[i]) noh_ragdoll_dolls(k->dolls)[i].asleep = 1;
+    }
 }
 
 void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks)
 {
     uint8_t *scratch = k->doll_scratch;
     scratch += (32u - (uintptr_t)scratch % 32u) % 32u;
+    tell_dolls(k);
     (void)noh_ragdolls_step_with(k->dolls, k->ragdoll->world, ticks, (float *)(void *)scratch);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
@@ -118,8 +166,8 @@ void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks)
 
 /* ---- calls ---- */
 
-static noh_result open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
-                            noh_stage_body **b, noh_error *error)
+noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
+                               noh_stage_body **b, noh_error *error)
 {
     const noh_result result = noh_stage_change(stage, actor, a, k, error);
     if (result != NOH_OK) return result;
@@ -148,12 +196,13 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
 {
     const uint32_t count = k->ragdoll->rig.body_count;
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
-    if (!b->poses) {
-        const noh_ragdoll_frame frame = frame_of(k, &a->place);
+    const int stands = b->state == NOH_BODY_STANDS;
+    if (stands && !b->poses) {
+        const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place);
         noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, k->skeleton.bind_pose, &frame, b->bodies[0]);
     }
     memset(motions, 0, sizeof motions);
-    if (b->poses == 2u) {
+    if (stands && b->poses == 2u) {
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
@@ -176,6 +225,10 @@ static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_bo
     result = place_doll(k, a, b, doll, error);
     if (result != NOH_OK) return result;
     b->doll = doll;
+    b->state = NOH_BODY_FALLS;
+    b->rise = NOH_RISE_NOT;
+    b->goals = 0;
+    b->poses = 0;
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
     return NOH_OK;
 }
@@ -184,9 +237,9 @@ noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error)
 {
     noh_stage_actor *a;
     noh_stage_kind *k;
-    noh_stage_body *b;
-    const noh_result result = open_body(stage, actor, &a, &k, &b, error);
-    return result == NOH_OK ? fall(k, a, b, error) : result;
+    noh_stage_body *b = NULL;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    return b ? fall(k, a, b, error) : result;
 }
 
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
@@ -194,10 +247,10 @@ noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3]
 {
     noh_stage_actor *a;
     noh_stage_kind *k;
-    noh_stage_body *b;
-    noh_result result = open_body(stage, actor, &a, &k, &b, error);
+    noh_stage_body *b = NULL;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     NOH_ASSERT(point && impulse);
-    if (result != NOH_OK) return result;
+    if (!b) return result;
     for (int i = 0; i < 3; i++) {
         if (!noh_is_finite(point[i]) || !noh_is_finite(impulse[i]))
             return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not finite", (uint64_t)i, 0);
@@ -207,28 +260,100 @@ noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3]
     return result;
 }
 
-int noh_actor_falls(const noh_stage *stage, noh_actor actor)
+noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (!b) return result;
+    if (b->state != NOH_BODY_LIES) result = fall(k, a, b, error);
+    if (result == NOH_OK) b->dead = 1;
+    return result;
+}
+
+noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (b) b->dead = 0;
+    return result;
+}
+
+static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
+{
+    while (joint != above && joint != NOH_JOINT_ROOT) joint = skeleton->parents[joint];
+    return joint == above;
+}
+
+noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint, const noh_body_hold *hold,
+                               noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    uint32_t found = 0;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    NOH_ASSERT(hold);
+    if (!b) return result;
+    if (!(hold->hertz >= 0.0f) || !noh_is_finite(hold->hertz) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is below 0, or animated not in 0..1", joint, 0);
+    for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < k->ragdoll->rig.body_count; i++) {
+        if (!is_below(&k->skeleton, k->ragdoll->fit.joints[i], joint)) continue;
+        b->held = (b->held & ~(1u << i)) | (hold->held ? 1u << i : 0u);
+        b->hertz[i] = hold->hertz;
+        b->animated[i] = hold->animated;
+        found = 1;
+    }
+    return found ? NOH_OK : noh_fail(error, NOH_ERR_ARG, "no body begins at that joint, nor below it", joint, 0);
+}
+
+noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     const noh_stage_body *b = a && k->ragdoll ? noh_stage_body_of(k, noh_stage_index(k, a)) : NULL;
-    if (!b || !b->doll) return 0;
-    return noh_ragdoll_sleeps(k->dolls, b->doll - 1u) ? 2 : 1;
+    if (!b) return NOH_BODY_STANDS;
+    if (b->doll) return noh_ragdoll_sleeps(k->dolls, b->doll - 1u) ? NOH_BODY_LIES : NOH_BODY_FALLS;
+    if (b->state == NOH_BODY_LIES) return NOH_BODY_LIES;
+    return b->rise && noh_clock_since(stage->head->clock, b->rise_clock) < (int64_t)b->rise_ticks ? NOH_BODY_GETS_UP
+                                                                                                  : NOH_BODY_STANDS;
 }
 
 /* ---- state from outside ---- */
 
+static int is_finite_pose(const noh_ragdoll_pose *pose)
+{
+    float sum = 0.0f;
+    for (int n = 0; n < 3; n++) sum += pose->position[n] - pose->position[n];
+    for (int n = 0; n < 4; n++) sum += pose->rotation[n] - pose->rotation[n];
+    return sum == 0.0f;
+}
+
+static int is_finite_hold(const noh_stage_body *b, uint32_t i)
+{
+    float sum = 0.0f;
+    for (int n = 0; n < 3; n++) {
+        sum += b->motions[i].velocity[n] - b->motions[i].velocity[n];
+        sum += b->motions[i].spin[n] - b->motions[i].spin[n];
+        sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n];
+    }
+    return sum == 0.0f && b->hertz[i] >= 0.0f && noh_is_finite(b->hertz[i]) && b->animated[i] >= 0.0f &&
+           b->animated[i] <= 1.0f;
+}
+
 const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b)
 {
-    if (b->doll > k->desc->ragdoll->count || b->poses > 2u || (b->poses == 2u && b->clocks[0] <= b->clocks[1])) {
+    if (b->doll > k->desc->ragdoll->count || b->poses > 2u || (b->poses == 2u && b->clocks[0] <= b->clocks[1]) ||
+        b->state > NOH_BODY_LIES || (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->rise > NOH_RISE_GOES_ON ||
+        (b->rise && !b->rise_ticks) || b->dead > 1u || b->goals > 1u) {
         return "state: bad ragdoll of an actor";
     }
-    for (uint32_t i = 0; i < 2u * NOH_RAGDOLL_BODIES_MAX; i++) {
-        const noh_ragdoll_pose *pose = &b->bodies[i / NOH_RAGDOLL_BODIES_MAX][i % NOH_RAGDOLL_BODIES_MAX];
-        float sum = 0.0f;
-        for (int n = 0; n < 3; n++) sum += pose->position[n] - pose->position[n];
-        for (int n = 0; n < 4; n++) sum += pose->rotation[n] - pose->rotation[n];
-        if (sum != 0.0f) return "state: an actor's ragdoll is not finite";
+    for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
+        if (!is_finite_pose(&b->bodies[0][i]) || !is_finite_pose(&b->bodies[1][i]) || !is_finite_hold(b, i))
+            return "state: an actor's ragdoll is not finite";
     }
     return NULL;
 }

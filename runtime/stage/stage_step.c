@@ -101,7 +101,7 @@ static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
         given.moved = noh_graph_root_motion(p.state, &p.graph->graph, &p.graph->clips);
     }
     a->moved = noh_controller_root_motion_given(c, &k->set, p.graph ? &given : NULL);
-    if (!k->desc->root_told && !a->parent && !(k->ragdoll && noh_stage_body_of(k, index)->doll))
+    if (!k->desc->root_told && !a->parent && !(k->ragdoll && noh_stage_is_carried(noh_stage_body_of(k, index))))
         drive(a, &a->moved, k->desc->root_up);
 }
 

@@ -1,5 +1,6 @@
 /* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
  * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
+ * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
  * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning. */
 #include "mask/gltf_write.h"
 #include "shared/grab.h"
@@ -62,6 +63,18 @@ static int make_puppet(const char *path)
     return good;
 }
 
+static int make_get_up(const char *path)
+{
+    Buffer file = { 0 };
+    PuppetCensus census = get_up_write(&file);
+    int good = save(path, &file);
+    if (good) {
+        printf("%s: %d joints, %d animations, %d bytes\n", path, census.joints, census.animations, file.count);
+    }
+    buffer_free(&file);
+    return good;
+}
+
 static int make_arm(const char *path)
 {
     Buffer file = { 0 };
@@ -83,10 +96,12 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--puppet")) {
         return make_puppet(argv[2]) ? 0 : 1;
     }
+    if (argc == 3 && !strcmp(argv[1], "--get-up")) {
+        return make_get_up(argv[2]) ? 0 : 1;
+    }
     if (argc == 3 && !strcmp(argv[1], "--arm")) {
         return make_arm(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr,
-            "usage: demo_assets OUT.glb\n       demo_assets --puppet OUT.glb\n       demo_assets --arm OUT.glb\n");
+    fprintf(stderr, "usage: demo_assets [--puppet|--get-up|--arm] OUT.glb\n");
     return 2;
 }

@@ -1,5 +1,5 @@
-/* Ragdolls of actors: a puppet that walks, is hit, falls and lies; how many may fall; states saved, put back and
- * tampered with; the same bits for any number of jobs. */
+/* Ragdolls of actors: a puppet that walks, is hit, falls, lies and gets up; parts that fall, joints with strength; how
+ * many may fall, who is dead; states saved, put back and tampered with; the same bits for any number of jobs. */
 #include "support/stage_fixture.h"
 
 #include <math.h>
@@ -12,12 +12,13 @@ static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .fri
 static void open_cast(cast *c, uint32_t actors, const noh_kind_ragdoll *ragdoll, uint32_t jobs)
 {
     memset(c, 0, sizeof *c);
-    cast_map(c, PUPPETS, "demo/puppet_levels.noh");
+    cast_map(c, PUPPETS, "demo/puppet_falls.noh");
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
     c->kinds[0].ragdoll = ragdoll;
+    c->kinds[0].inertia = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     c->desc.job_count = jobs;
@@ -77,11 +78,11 @@ static void who_walks_falls_and_lies(void **state)
     cast_make(&c, NULL);
     actor = enter(&c, 0.0f);
     run(&c, 40);
-    assert_int_equal(noh_actor_falls(c.stage, actor), 0);
+    assert_int_equal(noh_actor_body(c.stage, actor), 0);
     assert_int_equal(noh_actor_fall(c.stage, actor, &said), NOH_OK);
-    assert_int_equal(noh_actor_falls(c.stage, actor), 1);
+    assert_int_equal(noh_actor_body(c.stage, actor), 1);
     for (size_t i = 0; i < TEST_COUNT(names); i++) joint_at(&c, actor, names[i], before[i]);
-    for (; frames < 480 && noh_actor_falls(c.stage, actor) == 1; frames++) {
+    for (; frames < 480 && noh_actor_body(c.stage, actor) == 1; frames++) {
         run(&c, 1);
         for (size_t i = 0; i < TEST_COUNT(names); i++) {
             joint_at(&c, actor, names[i], now);
@@ -90,7 +91,7 @@ static void who_walks_falls_and_lies(void **state)
             memcpy(before[i], now, sizeof now);
         }
     }
-    assert_int_equal(noh_actor_falls(c.stage, actor), 2);
+    assert_int_equal(noh_actor_body(c.stage, actor), 2);
     assert_true(before[0][1] < 0.5f && before[5][1] < 0.5f);
     assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
     assert_true(hypotf(place.position[0] - before[5][0], place.position[2] - before[5][2]) < 0.3f);
@@ -158,7 +159,7 @@ static void what_cannot_fall_is_told(void **state)
     actors[1] = enter(&c, 2.0f);
     assert_int_equal(noh_actor_fall(c.stage, gone, NULL), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_actor_hit(c.stage, actors[0], bad, zero, NULL), NOH_ERR_ARG);
-    assert_int_equal(noh_actor_falls(c.stage, actors[0]), 0);
+    assert_int_equal(noh_actor_body(c.stage, actors[0]), 0);
     assert_int_equal(noh_actor_fall(c.stage, actors[0], NULL), NOH_OK); /* out of the bind pose: not shown yet */
     assert_int_equal(noh_actor_fall(c.stage, actors[1], &said), NOH_ERR_LIMIT);
     assert_int_equal(said.need, 2);
@@ -173,6 +174,280 @@ static void what_cannot_fall_is_told(void **state)
     ragdoll.count = 0;
     c.kinds[0].ragdoll = &ragdoll;
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
+    close_cast(&c);
+}
+
+/* ---- getting up ---- */
+
+static const char *const rises[] = { "get_up_back", "get_up_front" };
+static const noh_get_up rise = { .clips = rises, .clip_count = 2 };
+static const char *const tracked[] = { "head", "hand.L", "hand.R", "foot.L", "foot.R", "hips", "index_tip.L" };
+
+static void track(const cast *c, noh_actor actor, float at[TEST_COUNT(tracked)][3])
+{
+    for (size_t i = 0; i < TEST_COUNT(tracked); i++) joint_at(c, actor, tracked[i], at[i]);
+}
+
+/* The largest change of a joint's speed, metres a frame, from before a call to after it. */
+static float jolt(float at[3][TEST_COUNT(tracked)][3])
+{
+    float most = 0.0f;
+    for (size_t i = 0; i < TEST_COUNT(tracked); i++) {
+        float d[3];
+        for (int k = 0; k < 3; k++) d[k] = at[2][i][k] - 2.0f * at[1][i][k] + at[0][i][k];
+        most = fmaxf(most, sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    }
+    return most;
+}
+
+static void fall_with(const cast *c, noh_actor actor, float push)
+{
+    const float impulse[3] = { 0.0f, 0.0f, push };
+    float chest[3];
+    joint_at(c, actor, "chest", chest);
+    assert_int_equal(noh_actor_hit(c->stage, actor, chest, impulse, NULL), NOH_OK);
+}
+
+/* Pushed from the front it lies on its back, and from behind on its front. It gets up by the clip for that, stands
+ * where it lay, on the ground, and from frame to frame nothing leaps. */
+static void who_lies_gets_up(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    (void)state;
+    for (uint32_t front = 0; front < 2; front++) {
+        float at[3][TEST_COUNT(tracked)][3], lay[3];
+        uint32_t chosen = 7;
+        noh_place place;
+        noh_actor actor;
+        cast c;
+        open_cast(&c, 1, &ragdoll, 1);
+        cast_make(&c, NULL);
+        actor = enter(&c, 0.0f);
+        run(&c, 40);
+        fall_with(&c, actor, front ? 60.0f : -90.0f);
+        for (int f = 0; f < 480 && noh_actor_body(c.stage, actor) != NOH_BODY_LIES; f++) run(&c, 1);
+        track(&c, actor, at[0]);
+        run(&c, 1);
+        track(&c, actor, at[1]);
+        memcpy(lay, at[1][5], sizeof lay);
+        assert_int_equal(noh_actor_get_up(c.stage, actor, &rise, &chosen, &said), NOH_OK);
+        assert_int_equal(chosen, front);
+        assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_GETS_UP);
+        for (int f = 0; f < 240; f++) {
+            run(&c, 1);
+            track(&c, actor, at[2]);
+            if (f == 0) print_message("first frame of getting up: %.2f mm\n", 1e3 * (double)jolt(at));
+            assert_true(jolt(at) < (f == 0 ? 1e-3f : 0.02f));
+            memmove(at[0], at[1], 2 * sizeof at[0]);
+        }
+        assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_STANDS);
+        assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
+        assert_true(fabsf(place.position[1]) < 1e-4f);
+        assert_true(at[1][5][1] > 0.8f && at[1][3][1] < 0.12f && at[1][3][1] > 0.03f);
+        assert_true(hypotf(at[1][5][0] - lay[0], at[1][5][2] - lay[2]) < 0.7f);
+        close_cast(&c);
+    }
+}
+
+/* In the middle of a fall, where bodies are fast: neither places nor speeds leap. */
+static void who_falls_gets_up_at_speed(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1 };
+    float at[3][TEST_COUNT(tracked)][3], fastest = 0.0f, before;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &ragdoll, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, 0.0f);
+    run(&c, 40);
+    fall_with(&c, actor, 90.0f);
+    run(&c, 11);
+    for (int i = 0; i < 3; i++) {
+        run(&c, 1);
+        track(&c, actor, at[i]);
+    }
+    before = jolt(at);
+    memmove(at[0], at[1], 2 * sizeof at[0]);
+    for (size_t i = 0; i < TEST_COUNT(tracked); i++) fastest = fmaxf(fastest, distance(at[0][i], at[1][i]));
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &rise, NULL, &said), NOH_OK);
+    run(&c, 1);
+    track(&c, actor, at[2]);
+    print_message("at %.1f mm a frame speeds change by %.2f mm, and by %.2f in the fall\n", 1e3 * (double)fastest,
+                  1e3 * (double)jolt(at), 1e3 * (double)before);
+    assert_true(fastest > 0.03f);
+    assert_true(jolt(at) < before + 0.05f * fastest); /* limbs that turn change their direction in the fall, too */
+    close_cast(&c);
+}
+
+/* Without a clip it goes back to what plays, where it lies. */
+static void without_a_clip_it_goes_on(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    uint32_t chosen = 0;
+    float hips[3];
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &ragdoll, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, 0.0f);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, &chosen, NULL), NOH_OK); /* it stands */
+    run(&c, 10);
+    assert_int_equal(noh_actor_fall(c.stage, actor, NULL), NOH_OK);
+    run(&c, 60);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, &chosen, NULL), NOH_OK);
+    assert_int_equal(chosen, NOH_NONE);
+    run(&c, 40);
+    joint_at(&c, actor, "hips", hips);
+    assert_true(hips[1] > 0.8f);
+    close_cast(&c);
+}
+
+/* ---- in part ---- */
+
+static void hold(const cast *c, noh_actor actor, const char *joint, const noh_body_hold *how)
+{
+    const uint32_t index = noh_stage_find(c->stage, 0, NOH_NAME_JOINT, joint);
+    assert_int_equal(noh_actor_hold_body(c->stage, actor, index, how, &said), NOH_OK);
+}
+
+/* An arm hangs from one who walks: all else is as it is without, and the arm is not. */
+static void an_arm_falls_alone(void **state)
+{
+    static const noh_body_hold held = { .held = 1 }, limp = { 0 };
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    float walks[TEST_COUNT(tracked)][3], falls[TEST_COUNT(tracked)][3];
+    noh_actor actors[2];
+    cast c;
+    (void)state;
+    open_cast(&c, 2, &ragdoll, 1);
+    cast_make(&c, NULL);
+    for (int i = 0; i < 2; i++) actors[i] = enter(&c, 0.0f);
+    run(&c, 20);
+    hold(&c, actors[1], "hips", &held);
+    hold(&c, actors[1], "upper_arm.L", &limp);
+    assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK);
+    run(&c, 120);
+    assert_int_equal(noh_actor_body(c.stage, actors[1]), NOH_BODY_FALLS);
+    track(&c, actors[0], walks);
+    track(&c, actors[1], falls);
+    for (size_t i = 0; i < TEST_COUNT(tracked); i++) {
+        const float apart = distance(walks[i], falls[i]);
+        if (i == 1 || i == 6) {
+            assert_true(apart > 0.05f && apart < 0.8f);
+        } else {
+            assert_true(apart < 1e-4f);
+        }
+    }
+    assert_int_equal(noh_actor_get_up(c.stage, actors[1], NULL, NULL, NULL), NOH_OK);
+    run(&c, 60);
+    track(&c, actors[0], walks);
+    track(&c, actors[1], falls);
+    for (size_t i = 0; i < TEST_COUNT(tracked); i++) assert_true(distance(walks[i], falls[i]) < 1e-4f);
+    close_cast(&c);
+}
+
+/* Two who are hit alike in the air: joints with strength keep the pose of the clip, limp ones do not; and what is shown
+ * as clips have it has no strength, but shows it. */
+static void joints_have_strength(void **state)
+{
+    static const noh_body_hold strong = { .hertz = 15.0f }, shown = { .animated = 1.0f };
+    static const float impulse[3] = { 0.0f, 12.0f, 0.0f };
+    const noh_kind_ragdoll ragdoll = { .count = 3 };
+    float reach[4];
+    noh_actor actors[4];
+    cast c;
+    (void)state;
+    open_cast(&c, 4, &ragdoll, 1);
+    cast_make(&c, NULL);
+    for (int i = 0; i < 4; i++) actors[i] = enter(&c, 0.0f);
+    run(&c, 20);
+    hold(&c, actors[2], "hips", &strong);
+    hold(&c, actors[3], "hips", &shown);
+    for (int i = 1; i < 4; i++) {
+        float hand[3];
+        joint_at(&c, actors[i], "hand.L", hand);
+        assert_int_equal(noh_actor_hit(c.stage, actors[i], hand, impulse, NULL), NOH_OK);
+    }
+    run(&c, 20);
+    for (int i = 0; i < 4; i++) {
+        float hand[3], foot[3];
+        joint_at(&c, actors[i], "hand.L", hand);
+        joint_at(&c, actors[i], "foot.R", foot);
+        reach[i] = distance(hand, foot);
+    }
+    print_message("hand to foot: %.0f walking, %.0f limp, %.0f with strength, %.0f shown as the clip has it, mm\n",
+                  1e3 * (double)reach[0], 1e3 * (double)reach[1], 1e3 * (double)reach[2], 1e3 * (double)reach[3]);
+    assert_true(fabsf(reach[1] - reach[0]) > 0.1f);
+    assert_true(fabsf(reach[2] - reach[0]) < 0.35f * fabsf(reach[1] - reach[0]));
+    assert_true(fabsf(reach[3] - reach[0]) < 1e-3f);
+    close_cast(&c);
+}
+
+/* The dead do not get up, and give their ragdoll back once they lie; a hit takes one again. */
+static void the_dead_lie(void **state)
+{
+    static const float impulse[3] = { 0.0f, 0.0f, 30.0f };
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    float chest[2][3];
+    noh_actor actors[2];
+    cast c;
+    (void)state;
+    open_cast(&c, 2, &ragdoll, 1);
+    cast_make(&c, NULL);
+    for (int i = 0; i < 2; i++) actors[i] = enter(&c, 2.0f * (float)i);
+    run(&c, 20);
+    assert_int_equal(noh_actor_kill(c.stage, actors[0], NULL), NOH_OK);
+    assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_ERR_LIMIT);
+    for (int f = 0; f < 480 && noh_actor_body(c.stage, actors[0]) != NOH_BODY_LIES; f++) run(&c, 1);
+    assert_int_equal(noh_actor_get_up(c.stage, actors[0], &rise, NULL, NULL), NOH_ERR_ARG);
+    joint_at(&c, actors[0], "chest", chest[0]);
+    assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK);
+    run(&c, 60);
+    joint_at(&c, actors[0], "chest", chest[1]);
+    assert_true(distance(chest[0], chest[1]) < 1e-3f);
+    assert_int_equal(noh_actor_hit(c.stage, actors[0], chest[1], impulse, NULL), NOH_ERR_LIMIT);
+    assert_int_equal(noh_actor_get_up(c.stage, actors[1], &rise, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_hit(c.stage, actors[0], chest[1], impulse, NULL), NOH_OK);
+    run(&c, 20);
+    joint_at(&c, actors[0], "chest", chest[1]);
+    assert_true(chest[1][2] > chest[0][2] + 0.02f);
+    for (int f = 0; f < 480 && noh_actor_body(c.stage, actors[0]) != NOH_BODY_LIES; f++) run(&c, 1);
+    assert_int_equal(noh_actor_revive(c.stage, actors[0], NULL), NOH_OK);
+    assert_int_equal(noh_actor_get_up(c.stage, actors[0], &rise, NULL, NULL), NOH_OK);
+    run(&c, 220);
+    joint_at(&c, actors[0], "chest", chest[1]);
+    assert_true(chest[1][1] > 0.9f);
+    close_cast(&c);
+}
+
+static void what_cannot_get_up_is_told(void **state)
+{
+    static const char *const unknown[] = { "get_up_back", "no such clip" };
+    static const noh_get_up bad = { .clips = unknown, .clip_count = 2 };
+    noh_body_hold hold_by = { .hertz = -1.0f };
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    uint32_t hips;
+    noh_actor actor, gone = { 0 };
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &ragdoll, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, 0.0f);
+    hips = noh_stage_find(c.stage, 0, NOH_NAME_JOINT, "hips");
+    assert_int_equal(noh_actor_get_up(c.stage, gone, NULL, NULL, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_hold_body(c.stage, actor, hips, &hold_by, NULL), NOH_ERR_ARG);
+    hold_by = (noh_body_hold){ .animated = 1.5f };
+    assert_int_equal(noh_actor_hold_body(c.stage, actor, hips, &hold_by, NULL), NOH_ERR_ARG);
+    hold_by.animated = 0.0f;
+    assert_int_equal(noh_actor_hold_body(c.stage, actor, 4000, &hold_by, NULL), NOH_ERR_ARG);
+    run(&c, 5);
+    assert_int_equal(noh_actor_fall(c.stage, actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &bad, NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(said.where, 1);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &(noh_get_up){ rises, 2, 9, 0 }, NULL, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_FALLS);
     close_cast(&c);
 }
 
@@ -196,7 +471,7 @@ static void every_byte_is_planned(void **state)
     close_cast(&c);
 }
 
-/* Five fall one after another. */
+/* Five fall one after another, and four get up. */
 static uint64_t five_fall(uint32_t jobs, int restored)
 {
     static const float impulse[3] = { 20.0f, 10.0f, -30.0f };
@@ -220,6 +495,15 @@ static uint64_t five_fall(uint32_t jobs, int restored)
         }
     }
     run(&c, 60);
+    for (uint32_t i = 0; i < 4; i++) assert_int_equal(noh_actor_get_up(c.stage, actors[i], &rise, NULL, NULL), NOH_OK);
+    run(&c, 10);
+    if (copy) {
+        free(copy);
+        copy = test_aligned(noh_stage_state(c.stage, &bytes), (size_t)c.plan.state_bytes);
+        run(&c, 90);
+        assert_int_equal(noh_stage_set_state(c.stage, copy, (size_t)c.plan.state_bytes, NULL), NOH_OK);
+    }
+    run(&c, 30);
     hash = noh_stage_hash(c.stage);
     if (copy) { /* any bit of the dolls may be wrong: refused, or finite */
         uint8_t *state = copy;
@@ -249,6 +533,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(speeds_are_handed_over),
     cmocka_unit_test(a_hit_pushes),
     cmocka_unit_test(what_cannot_fall_is_told),
+    cmocka_unit_test(who_lies_gets_up),
+    cmocka_unit_test(who_falls_gets_up_at_speed),
+    cmocka_unit_test(without_a_clip_it_goes_on),
+    cmocka_unit_test(an_arm_falls_alone),
+    cmocka_unit_test(joints_have_strength),
+    cmocka_unit_test(the_dead_lie),
+    cmocka_unit_test(what_cannot_get_up_is_told),
     cmocka_unit_test(every_byte_is_planned),
     cmocka_unit_test(the_same_bits_for_any_jobs_and_after_a_restore),
 };

@@ -40,4 +40,4 @@ static int cues(Cue *list)
     return 1;
 }
 
-const Clip clip_bow = { "bow", STEPS, stance, face, cues };
+const Clip clip_bow = { "bow", STEPS, stance, face, cues, 0 };

@@ -196,4 +196,4 @@ static int cues(Cue *list)
     return count;
 }
 
-const Clip clip_dance = { "dance", STEPS, stance, face, cues };
+const Clip clip_dance = { "dance", STEPS, stance, face, cues, 0 };

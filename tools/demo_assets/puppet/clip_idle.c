@@ -37,4 +37,4 @@ static int cues(Cue *list)
     return 0;
 }
 
-const Clip clip_idle = { "idle", STEPS, stance, face, cues };
+const Clip clip_idle = { "idle", STEPS, stance, face, cues, 0 };

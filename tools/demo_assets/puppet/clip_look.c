@@ -59,4 +59,4 @@ static int cues(Cue *list)
     return 0;
 }
 
-const Clip clip_look_round = { "look_round", STEPS, stance, face, cues };
+const Clip clip_look_round = { "look_round", STEPS, stance, face, cues, 0 };

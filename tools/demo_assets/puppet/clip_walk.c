@@ -60,4 +60,4 @@ static int cues(Cue *list)
     return 2;
 }
 
-const Clip clip_walk = { "walk", STEPS, stance, face, cues };
+const Clip clip_walk = { "walk", STEPS, stance, face, cues, 0 };

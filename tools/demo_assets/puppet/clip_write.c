@@ -82,12 +82,12 @@ static int write_times(Writer *w, int frames)
     return accessor;
 }
 
-/* All are loops. The syntax is the converter's. */
+/* The syntax is the converter's. */
 static void write_cues(Buffer *json, const Clip *clip)
 {
     Cue cues[CUES_MAX];
-    int count = clip->cues(cues);
-    buffer_print(json, ",\"extras\":{\"loop\":true");
+    int count = clip->cues ? clip->cues(cues) : 0;
+    buffer_print(json, ",\"extras\":{\"loop\":%s", clip->once ? "false" : "true");
     for (int i = 0; i < count; i++) {
         buffer_print(json, "%s{\"time\":%.6g,\"name\":\"%s\"", i ? ",\n" : ",\"events\":[", cues[i].time_s,
                      cues[i].name);
@@ -112,7 +112,9 @@ void clip_write(Writer *w, Buffer *json, const Clip *clip, int mask_node)
     for (int joint = 0; joint < JOINT_COUNT; joint++) {
         add_turns(&animation, frames, joint);
     }
-    add_face(&animation, clip, mask_node);
+    if (clip->face) {
+        add_face(&animation, clip, mask_node);
+    }
     buffer_print(json, "{\"name\":\"%s\",\"samplers\":[", clip->name);
     buffer_append(json, &animation.samplers);
     buffer_print(json, "],\n\"channels\":[");

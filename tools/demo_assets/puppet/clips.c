@@ -11,6 +11,12 @@ const Clip *clip_number(int number)
     return clips[number];
 }
 
+const Clip *get_up_number(int number)
+{
+    static const Clip *const clips[GET_UP_COUNT] = { &clip_get_up_back, &clip_get_up_front };
+    return clips[number];
+}
+
 double glide(const Key *keys, int count, double x)
 {
     for (int i = 0; i + 1 < count; i++) {
@@ -40,28 +46,28 @@ void face_add(double *weights, const char *target, double amount)
 }
 
 /* A sleeve trails behind the hand: it hangs in the wind of the hand's movement. */
-static V3 find_drift(V3 before, V3 after, double step_s)
+static V3 find_drift(V3 hang, V3 before, V3 after, double step_s)
 {
     V3 velocity = v3_scale(v3_sub(after, before), 1 / step_s);
-    return v3_unit(v3_add(v3(0, -1, 0), v3_scale(velocity, -0.22)));
+    return v3_unit(v3_add(hang, v3_scale(velocity, -0.22)));
 }
 
 Posed clip_frame(const Clip *clip, int frame)
 {
     const double late_s = 0.10, span_s = 0.12;
     Stance first = clip->stance(0), last = clip->stance((double)clip->steps / CLIP_RATE_HZ);
-    /* The last frame is the first one, at another position of the root. */
-    double time_s = (double)(frame % clip->steps) / CLIP_RATE_HZ;
+    /* The last frame of a loop is the first one, at another position of the root. */
+    double time_s = (double)(clip->once ? frame : frame % clip->steps) / CLIP_RATE_HZ;
     Stance stance = clip->stance(time_s);
     Stance before = clip->stance(time_s - late_s - span_s / 2), after = clip->stance(time_s - late_s + span_s / 2);
     V3 wrists[2][SIDES];
     stance_solve(&before, wrists[0]);
     stance_solve(&after, wrists[1]);
     for (int side = 0; side < SIDES; side++) {
-        stance.drift[side] = find_drift(wrists[0][side], wrists[1][side], span_s);
+        stance.drift[side] = find_drift(stance.hang, wrists[0][side], wrists[1][side], span_s);
     }
     Posed posed = stance_solve(&stance, NULL);
-    if (frame == clip->steps) {
+    if (frame == clip->steps && !clip->once) {
         posed.root = v3_add(posed.root, v3_sub(last.root, first.root));
     }
     return posed;

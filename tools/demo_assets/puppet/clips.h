@@ -1,10 +1,11 @@
-/* The puppet's clips: functions from time to stance and face, sampled at 30 Hz. */
+/* The puppet's clips: functions from time to stance and face, sampled at 30 Hz. All are loops but those that get up,
+ * which are in a file of their own. */
 #ifndef PUPPET_CLIPS_H
 #define PUPPET_CLIPS_H
 
 #include "stance.h"
 
-enum { CLIP_COUNT = 5, CLIP_RATE_HZ = 30, CUES_MAX = 48 };
+enum { CLIP_COUNT = 5, GET_UP_COUNT = 2, CLIP_RATE_HZ = 30, CUES_MAX = 48 };
 
 /* A callback key. */
 typedef struct {
@@ -19,14 +20,16 @@ typedef struct {
     Stance (*stance)(double time_s);              /* also a little before the start and after the end */
     void (*face)(double time_s, double *weights); /* fills zeros: a weight for each of the mask's targets */
     int (*cues)(Cue *cues);                       /* in time order; returns their number, up to CUES_MAX */
+    int once;                                     /* 1: it does not end as it begins */
 } Clip;
 
-extern const Clip clip_idle, clip_walk, clip_bow, clip_look_round, clip_dance;
+extern const Clip clip_idle, clip_walk, clip_bow, clip_look_round, clip_dance, clip_get_up_back, clip_get_up_front;
 
 const Clip *clip_number(int number);
+const Clip *get_up_number(int number);
 
-/* A frame of the clip, with sleeves that trail behind the hands. The last frame equals the first to the bit, but for
- * the root displacement. */
+/* A frame of the clip, with sleeves that trail behind the hands. The last frame of a loop equals the first to the bit,
+ * but for the root displacement. */
 Posed clip_frame(const Clip *clip, int frame);
 
 /* --- for the clips --- */

@@ -11,7 +11,7 @@
 /* Nodes: the joints, the body, the mask. */
 enum { BODY_NODE = JOINT_COUNT, MASK_NODE };
 
-static void write_joint(Buffer *json, int joint)
+static void write_joint(Buffer *json, int joint, const char *end)
 {
     int parent = joint_parent(joint), children = 0;
     V3 place = joint_place(joint);
@@ -22,14 +22,14 @@ static void write_joint(Buffer *json, int joint)
             buffer_print(json, children++ ? ",%d" : ",\"children\":[%d", child);
         }
     }
-    buffer_print(json, children ? "]},\n" : "},\n");
+    buffer_print(json, children ? "]}%s" : "}%s", end);
 }
 
 static void write_nodes(Buffer *json)
 {
     buffer_print(json, "\"scene\":0,\"scenes\":[{\"nodes\":[0,%d,%d]}],\n\"nodes\":[\n", BODY_NODE, MASK_NODE);
     for (int joint = 0; joint < JOINT_COUNT; joint++) {
-        write_joint(json, joint);
+        write_joint(json, joint, ",\n");
     }
     buffer_print(json, "{\"name\":\"body\",\"mesh\":0,\"skin\":0},\n{\"name\":\"mask\",\"mesh\":1,\"skin\":0}],\n");
 }
@@ -109,6 +109,29 @@ static PuppetCensus take_census(const Body *body, const Mask *mask)
         census.mask_vertices += mask->model.parts[i].seed_count;
         census.triangles += mask->model.parts[i].index_count / 3;
     }
+    return census;
+}
+
+PuppetCensus get_up_write(Buffer *file)
+{
+    PuppetCensus census = { .joints = JOINT_COUNT, .animations = GET_UP_COUNT };
+    Writer w = { 0 };
+    Buffer json = { 0 };
+    buffer_print(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"noh demo_assets\"},\n");
+    buffer_print(&json, "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\n\"nodes\":[\n");
+    for (int joint = 0; joint < JOINT_COUNT; joint++) {
+        write_joint(&json, joint, joint + 1 == JOINT_COUNT ? "\n" : ",\n");
+    }
+    buffer_print(&json, "],\n");
+    write_skin(&w, &json);
+    buffer_print(&json, "\"animations\":[\n");
+    for (int i = 0; i < GET_UP_COUNT; i++) {
+        buffer_print(&json, i ? ",\n" : "");
+        clip_write(&w, &json, get_up_number(i), -1);
+    }
+    buffer_print(&json, "],\n");
+    writer_finish(&w, &json, file);
+    buffer_free(&json);
     return census;
 }
 

@@ -9,7 +9,8 @@ typedef struct {
     int body_vertices, mask_vertices, triangles, joints, animations;
 } PuppetCensus;
 
-/* The buffer receives the file. */
+/* The buffer receives the file: all of it; its skeleton with the clips that get up. */
 PuppetCensus puppet_write(Buffer *file);
+PuppetCensus get_up_write(Buffer *file);
 
 #endif

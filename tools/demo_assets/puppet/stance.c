@@ -10,9 +10,11 @@ typedef struct {
 
 Stance stance_calm(void)
 {
-    Stance stance = {
-        .hips = { 0, -0.024, -0.012 }, .hips_turn = { 0.06, 0, 0 }, .waist = { 0.05, 0, 0 }, .head = { -0.09, 0, 0 }
-    };
+    Stance stance = { .hips = { 0, -0.024, -0.012 },
+                      .hips_turn = { 0.06, 0, 0 },
+                      .waist = { 0.05, 0, 0 },
+                      .head = { -0.09, 0, 0 },
+                      .hang = { 0, -1, 0 } };
     HandStance hand = { .wrist = { 0.255, -0.215, 0.195 },
                         .elbow = { 0.85, -0.15, -0.50 },
                         .roll = 0.15,
@@ -111,7 +113,7 @@ static void pose_leg(World *world, const FootStance *foot, int side)
     V3 lifted = v3_add(v3_sub(pivot, v3(ankle.x, 0, ankle.z)),
                        quat_rotate(quat_about(v3(1, 0, 0), -foot->pitch), v3_sub(ankle, pivot)));
     V3 target = v3_add(foot->place, quat_rotate(heading, lifted));
-    V3 ahead = quat_rotate(heading, v3(0.10 * side_sign(side), 0, 1));
+    V3 ahead = quat_rotate(heading, v3(0.10 * side_sign(side), sin(foot->knee), cos(foot->knee)));
     hang_turned(world, leg.upper, quat_none());
     reach(world, &leg, target, ahead);
     hang(world, leg.end, turn);

@@ -11,6 +11,7 @@ typedef struct {
     V3 place;       /* of the sole below the ankle, in the scene */
     double heading; /* to the left, from +z */
     double pitch;   /* above 0 the toes are raised, below 0 the heel */
+    double knee;    /* where the knee points: 0 ahead, above 0 upwards */
 } FootStance;
 
 typedef struct {
@@ -29,6 +30,7 @@ typedef struct {
     double jaw;         /* radians open */
     FootStance feet[SIDES];
     HandStance hands[SIDES];
+    V3 hang;         /* where sleeves hang to at rest; of length 1 */
     V3 drift[SIDES]; /* of each sleeve, where it hangs towards instead of straight down; of length 1 */
 } Stance;
 
