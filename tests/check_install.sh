@@ -163,7 +163,7 @@ echo '#include <stdio.h>
 int main(void) { return 0; }' >"$work/alone.c"
 if gcc -m32 "$work/alone.c" -o "$work/alone32" >/dev/null 2>&1; then
     headers 'gcc -m32, C99' gcc -m32 -std=c99
-    check '-m32: the amalgam builds' gcc -m32 -std=c99 -O2 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
+    check '-m32: the amalgam builds' gcc -m32 -msse2 -mfpmath=sse -std=c99 -O2 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
     check '-m32: the program links, without libm' gcc -m32 -std=gnu99 -O2 "-I$build/amalgam" "$work/smile.c" "$work/noh32.o" -o "$work/smile32"
     if "$work/alone32" 2>/dev/null; then runs '-m32' smile "$work/smile32"; else skip '-m32: the program runs' 'no 32-bit programs run here'; fi
 else

@@ -452,7 +452,7 @@ EMSCRIPTEN_KEEPALIVE float *web_view(void)
 /* Move time on. In a lost context it goes on, too. */
 EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 {
-    return (int)noh_stage_step(web.stage, (uint32_t)noh_ticks_from_seconds(seconds), NULL, NULL, &web.error);
+    return (int)noh_stage_step(web.stage, noh_frame_clock_advance(&web.clock, seconds), NULL, NULL, &web.error);
 }
 
 static void begin_frame(uint32_t width, uint32_t height)

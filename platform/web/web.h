@@ -40,6 +40,7 @@ struct web {
     noh_pack pack;
     web_cast cast;
     noh_stage *stage;
+    noh_frame_clock clock; /* of its steps */
     noh_stage_bytes parts[WEB_PARTS_MAX];
     uint32_t part_count;
     web_figure figures[WEB_ACTORS_MAX];

@@ -12,6 +12,15 @@ int64_t noh_ticks_from_seconds(double seconds)
     return (int64_t)(ticks < 0.0 ? ticks - 0.5 : ticks + 0.5);
 }
 
+uint32_t noh_frame_clock_advance(noh_frame_clock *clock, double seconds)
+{
+    const double step = !(seconds > 0.0) ? 0.0 : seconds < NOH_FRAME_SECONDS_MAX ? seconds : NOH_FRAME_SECONDS_MAX;
+    const double ticks = clock->left_ticks + step * (double)NOH_TICKS_PER_SECOND;
+    const uint32_t whole = (uint32_t)(ticks + 0.5); /* to the nearest, as noh_ticks_from_seconds */
+    clock->left_ticks = ticks - (double)whole;
+    return whole;
+}
+
 int64_t noh_position_of(int64_t ticks)
 {
     ticks = ticks > POSITION_TICKS_MAX ? POSITION_TICKS_MAX : ticks < -POSITION_TICKS_MAX ? -POSITION_TICKS_MAX : ticks;

@@ -6,6 +6,7 @@
  * of a position (pose, events, root motion) is a function of the whole history of passes, in closed form.
  *
  *   noh_ticks_from_seconds   ticks of a time in seconds
+ *   noh_frame_clock_advance  ticks of a frame, without drift
  *   noh_time_advance         where play is after a number of ticks
  *   noh_time_clip            the position inside the clip, folded by the loop mode
  *   noh_time_legs            how many durations have been passed
@@ -39,6 +40,18 @@ typedef enum noh_loop {
 /* Ticks nearest to a time in seconds.
  * ranges  |seconds| <= 1e9, else 0 */
 int64_t noh_ticks_from_seconds(double seconds);
+
+/* What is left over when the seconds of a frame become whole ticks. {0} at first. A frame at 144 Hz is 333.3 ticks
+ * long: rounded for itself, each would lose a third of one, a second in 17 minutes. */
+typedef struct noh_frame_clock {
+    double left_ticks; /* -0.5 to 0.5 */
+} noh_frame_clock;
+
+/* The ticks of a frame, for noh_stage_step and its like: summed over frames they are the ticks nearest to the sum of
+ * the seconds. ranges  seconds 0 to NOH_FRAME_SECONDS_MAX; negative ones and NaN count as 0, more is held there: time
+ * that stood still in a debugger is not made up for */
+#define NOH_FRAME_SECONDS_MAX 3600.0
+uint32_t noh_frame_clock_advance(noh_frame_clock *clock, double seconds);
 
 /* The position of a number of whole ticks.
  * ranges  |ticks| < 2^47, 93 years; more is held there */

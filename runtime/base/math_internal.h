@@ -6,15 +6,25 @@
  *   noh_normalize3
  *
  * Everything is +, -, *, / and square roots, each rounded once, with contraction off: the same bits on every machine
- * whose float arithmetic is IEEE 754 in single precision (x87, which keeps 80 bits, is not).
+ * whose float arithmetic is IEEE 754 in single precision. x87 keeps 80 bits, so it is refused.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_MATH_INTERNAL_H
 #define NOH_BASE_MATH_INTERNAL_H
 
+#include <float.h>
 #include <stdint.h>
 #include <string.h>
 
 #include "base/compiler.h"
+
+/* 16: gcc's word for half floats that are kept as they are, and floats, too. */
+#if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 && !defined(NOH_ALLOW_X87)
+#error \
+    "floats have more digits here than on other machines, and noh promises the same bits on all: compile with -msse2 -mfpmath=sse, or define NOH_ALLOW_X87 to do without the promise"
+#endif
+#if defined(__BYTE_ORDER__) && defined(__ORDER_LITTLE_ENDIAN__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "packs are little-endian and read where they lie: noh does not run on big-endian processors"
+#endif
 
 /* Neither an infinity nor a NaN. */
 static inline int noh_is_finite(float x)

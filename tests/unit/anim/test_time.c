@@ -113,7 +113,40 @@ static void seconds_become_the_nearest_tick(void **state)
     assert_int_equal(noh_ticks_from_seconds((double)NAN), 0);
 }
 
+/* Frames of any length: after minutes the ticks are those of the sum, where rounding each frame is far off. */
+static void a_clock_does_not_drift(void **state)
+{
+    (void)state;
+    static const double rates[] = { 144.0, 59.94, 30.0, 1000.0, 7.0 };
+    for (size_t r = 0; r < COUNT(rates); r++) {
+        noh_frame_clock clock = { 0.0 };
+        const uint32_t frames = (uint32_t)(rates[r] * 1020.0); /* 17 minutes */
+        const double expected = (double)frames / rates[r] * 48000.0;
+        double sum = 0.0, rounded = 0.0;
+        for (uint32_t i = 0; i < frames; i++) {
+            sum += (double)noh_frame_clock_advance(&clock, 1.0 / rates[r]);
+            rounded += (double)noh_ticks_from_seconds(1.0 / rates[r]);
+        }
+        assert_true(fabs(sum - expected) <= 0.501);
+        if (r == 0) assert_true(expected - rounded > 48000.0); /* a second */
+    }
+}
+
+static void bad_seconds_are_no_time(void **state)
+{
+    (void)state;
+    noh_frame_clock clock = { 0.0 };
+    assert_int_equal(noh_frame_clock_advance(&clock, -1.0), 0);
+    assert_int_equal(noh_frame_clock_advance(&clock, (double)NAN), 0);
+    assert_true(clock.left_ticks == 0.0);
+    assert_int_equal(noh_frame_clock_advance(&clock, 0.375 / 48000.0), 0);
+    assert_int_equal(noh_frame_clock_advance(&clock, 0.375 / 48000.0), 1);
+    assert_true(clock.left_ticks < 0.0);
+    assert_int_equal(noh_frame_clock_advance(&clock, 1e30), 3600 * 48000);
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_clock_does_not_drift),          cmocka_unit_test(bad_seconds_are_no_time),
     cmocka_unit_test(every_position_lies_in_its_clip), cmocka_unit_test(ping_pong_is_mirrored_at_zero),
     cmocka_unit_test(advancing_never_overflows),       cmocka_unit_test(positions_of_ticks_are_held),
     cmocka_unit_test(rebasing_keeps_the_place),        cmocka_unit_test(seconds_become_the_nearest_tick),

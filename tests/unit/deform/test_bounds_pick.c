@@ -6,7 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#if defined(__SANITIZE_ADDRESS__) /* minutes otherwise */
+#define TIMES 1
+#else
 #define TIMES 4
+#endif
 
 /* One mesh in one pose. */
 typedef struct scene_pose {
@@ -143,7 +147,7 @@ static void contains_all(const scene_pose *p, test_random *r, void *context)
 static void check_boxes(const char *name, const char *dual_quaternion)
 {
     double worst = 0.0;
-    each_pose(name, dual_quaternion, 10, contains_all, &worst);
+    each_pose(name, dual_quaternion, 2 * TIMES, contains_all, &worst);
     print_message("%s%s: the box's diagonal is at most %.2f of the tightest one's\n", name,
                   dual_quaternion ? " by dual quaternions" : "", worst);
     assert_true(worst > 1.0 && worst < 4.0);

@@ -323,9 +323,10 @@ static int animate(view_app *a, double seconds)
     noh_gl_camera camera;
     int status;
     if (!stands) {
-        view_step(a->model, seconds * (double)(a->playing ? a->speed : 1.0f), log_event, &a->log);
+        view_step(a->model, noh_frame_clock_advance(&a->model->clock, seconds * (double)(a->playing ? a->speed : 1.0f)),
+                  log_event, &a->log);
     } else if (a->model->touched) {
-        view_step(a->model, 1.0 / NOH_TICKS_PER_SECOND, log_event, &a->log);
+        view_step(a->model, 1, log_event, &a->log);
     }
     view_pad_frame(&a->pad, a->model);
     view_model_hold(a->model);

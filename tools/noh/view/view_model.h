@@ -69,6 +69,7 @@ typedef struct view_model {
     figure *figure;
     int root_motion;
     int has_graphs;                    /* actors may play those of clips_of, of a figure with one kind */
+    noh_frame_clock clock;             /* what is left over of the seconds of frames */
     int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
     bones *bones[NOH_STAGE_KINDS_MAX]; /* where bones are drawn: of each kind with joints */
     int show_bones;
@@ -178,6 +179,6 @@ typedef struct view_passed {
 typedef void (*view_event_fn)(void *user, const view_passed *event);
 
 /* Advance time; fn gets every callback key that fires. */
-void view_step(view_model *m, double seconds, view_event_fn fn, void *user);
+void view_step(view_model *m, uint32_t ticks, view_event_fn fn, void *user);
 
 #endif

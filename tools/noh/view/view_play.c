@@ -224,9 +224,9 @@ static void pass_event(void *user, noh_stage *stage, const noh_stage_event *even
     l->fn(l->user, &passed);
 }
 
-void view_step(view_model *m, double seconds, view_event_fn fn, void *user)
+void view_step(view_model *m, uint32_t ticks, view_event_fn fn, void *user)
 {
     listener l = { m, fn, user };
-    (void)noh_stage_step(m->figure->stage, (uint32_t)noh_ticks_from_seconds(seconds), pass_event, &l, NULL);
+    (void)noh_stage_step(m->figure->stage, ticks, pass_event, &l, NULL);
     m->touched = 0;
 }
