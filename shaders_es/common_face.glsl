@@ -39,7 +39,7 @@ out float noh_v_open; /* 0..1: how much of the light outside reaches the place *
 void noh_face_vertex(vec3 rest, vec3 model)
 {
     float open = dot(rest, noh_surface_values.xyz) + noh_surface_values.w + noh_surface_more[0].x * length(model - rest);
-    noh_v_open = noh_surface_more[0].x > 0.0 ? mix(0.04, 0.6, smoothstep(0.0, 1.0, open)) : 1.0;
+    noh_v_open = noh_surface_more[0].x > 0.0 ? mix(0.04, 0.9, smoothstep(0.0, 1.0, open)) : 1.0;
 }
 #endif
 

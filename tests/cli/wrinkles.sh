@@ -5,7 +5,7 @@
 
 noh build "$build/mask.glb" -o "$work/auto.noh" --wrinkles auto --only mesh
 expect 0 'build --wrinkles auto'
-check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 512 x 512, weights 128 x 128, 12 regions" "$work/out"
+check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 256 x 256, weights 64 x 64, 12 regions" "$work/out"
 noh build "$build/mask.glb" -o "$work/again.noh" --wrinkles auto --only mesh --quiet
 check 'the same bytes again' cmp "$work/auto.noh" "$work/again.noh"
 noh verify "$work/auto.noh"
@@ -13,6 +13,13 @@ expect 0 'verify'
 noh strip "$work/auto.noh" -o "$work/again.noh" --from-level 0 --quiet
 check 'strip keeps them' cmp "$work/auto.noh" "$work/again.noh"
 
+noh build "$build/mask.glb" -o "$work/small.noh" --wrinkles auto --wrinkle-size 64 --only mesh
+check 'a size that is asked for' grep -q 'normals 64 x 64, weights 16 x 16' "$work/out"
+check 'takes fewer bytes' test "$(wc -c <"$work/small.noh")" -lt "$(wc -c <"$work/auto.noh")"
+for size in 100 32 4096 -64; do
+    noh build "$build/mask.glb" -o "$work/no.noh" --wrinkles auto --wrinkle-size $size
+    expect 2 "a size of $size"
+done
 noh build "$build/mask.glb" -o "$work/no.noh" --wrinkles all
 expect 2 'an unknown way'
 noh build "$build/mask.glb" -o "$work/no.noh" --region-mask "$work/none.png"

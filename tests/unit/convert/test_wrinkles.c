@@ -324,13 +324,13 @@ static void creases_follow_the_principal_axis(void **state)
     (void)state;
     char path[1024];
     snprintf(path, sizeof path, "%s/mask.glb", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build");
-    check_face(path, 512);
+    check_face(path, 256);
 }
 
 static void creases_of_a_human_head(void **state)
 {
     (void)state;
-    check_face(test_asset("hero/head.glb"), 1024);
+    check_face(test_asset("hero/head.glb"), 512);
 }
 
 int main(void)

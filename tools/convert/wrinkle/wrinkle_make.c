@@ -1,5 +1,6 @@
 #include "wrinkle_make.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,10 +10,10 @@
 #include "wrinkle_regions.h"
 
 #define MAP_SIZE_LEAST 256u /* of a generated normal map, */
-#define MAP_SIZE_MOST 1024u /* by how many texels lie from crease to crease */
-#define WAVE_TEXELS 8.0
-#define WEIGHTS_SHARE 4u  /* of the side of a normal map is the side of generated weight maps: they are smooth */
-#define OVERLAP_MOST 0.25 /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
+#define MAP_SIZE_MOST 512u  /* by how many texels lie from crease to crease; --wrinkle-size goes beyond it */
+#define WAVE_TEXELS 5.0     /* fewer widen them: WAVE_LEAST of wrinkle_creases.c */
+#define WEIGHTS_SHARE 4u    /* of the side of a normal map is the side of generated weight maps: they are smooth */
+#define OVERLAP_MOST 0.25   /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
 #define SHRINKING_LEAST 0.002 /* mean compression of a material's area by all of a mesh's targets together */
 
 /* The textures and the matrix of one mesh, before the model has them. */
@@ -84,20 +85,26 @@ static const char *objection(const model_mesh *mesh, const wrinkle_field *f)
     return NULL;
 }
 
-/* The smallest size whose texels show creases, by the mean edge of a texel where the surface is compressed. */
-static int choose_size(const wrinkle_field *f, wrinkle_raster *out)
+/* The mean edge of a texel where the surface is compressed. */
+static double texel_edge(const wrinkle_field *f, const wrinkle_raster *r)
 {
-    double area = 0.0, spacing = wrinkle_spacing(f);
+    double area = 0.0, texels = 0.0;
     for (uint32_t i = 0; i < f->triangle_count; i++) {
         area += f->largest[i] >= 0.03f ? f->area[i] : 0.0;
     }
-    for (uint32_t size = MAP_SIZE_LEAST;; size *= 2) {
-        uint32_t texels = 0;
+    for (size_t at = 0; at < (size_t)r->width * r->height; at++) {
+        texels += r->triangle[at] != MODEL_NONE && f->largest[r->triangle[at]] >= 0.03f;
+    }
+    return texels > 0.0 ? sqrt(area / texels) : 0.0;
+}
+
+/* asked: 0: the smallest size whose texels show creases */
+static int choose_size(const wrinkle_field *f, uint32_t asked, wrinkle_raster *out)
+{
+    const double spacing = wrinkle_spacing(f);
+    for (uint32_t size = asked ? asked : MAP_SIZE_LEAST;; size *= 2) {
         if (wrinkle_raster_make(f, size, size, out)) return 1;
-        for (size_t at = 0; at < (size_t)size * size; at++) {
-            texels += out->triangle[at] != MODEL_NONE && f->largest[out->triangle[at]] >= 0.03f;
-        }
-        if (size == MAP_SIZE_MOST || spacing * spacing * texels >= WAVE_TEXELS * WAVE_TEXELS * area) return 0;
+        if (asked || size == MAP_SIZE_MOST || spacing >= WAVE_TEXELS * texel_edge(f, out)) return 0;
         wrinkle_raster_free(out);
     }
 }
@@ -290,7 +297,7 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     int failed = choose_surface(m, mesh, &f) && out_of_memory(error);
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
-        failed = choose_size(&f, &r) && out_of_memory(error);
+        failed = choose_size(&f, settings->size, &r) && out_of_memory(error);
         if (!failed && overlaps(&r)) {
             why =
                 "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";

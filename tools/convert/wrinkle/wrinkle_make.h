@@ -16,6 +16,7 @@ typedef struct wrinkle_settings {
     const char *map;  /* a painted normal map, tangent space, +y up; NULL: generated */
     const char *mask; /* a painted region mask (region_mask.h); NULL: generated */
     uint32_t models;  /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
+    uint32_t size;    /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
     FILE *report;     /* NULL: quiet */
 } wrinkle_settings;
 

@@ -20,7 +20,7 @@ typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
         *ragdoll, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
-    double error_um, rate, error_cm, shell_cm, influences, palette, bounce;
+    double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
 } build_args;
 
@@ -151,6 +151,10 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     }
     if (!o->wrinkles.models) {
         return tool_usage("--wrinkle-model wants auto, area, region or channel, not '%s'", a->wrinkle_models);
+    }
+    o->wrinkles.size = a->wrinkle_size >= 64.0 && a->wrinkle_size <= 2048.0 ? (uint32_t)a->wrinkle_size : 0;
+    if (a->wrinkle_size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
+        return tool_usage("--wrinkle-size wants a power of two from 64 to 2048, or 0 to choose it");
     }
     o->wrinkles.automatic = a->wrinkles != NULL;
     o->wrinkles.map = a->wrinkle_map;
@@ -332,6 +336,15 @@ static const option options[] = {
       .what =
           "what shows the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
       .example = "area",
+      .excludes = "--only=anim" },
+    { .name = "--wrinkle-size",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, wrinkle_size),
+      .value = "N",
+      .initial = "0",
+      .what =
+          "side of a generated map of creases, texels, a power of two from 64 to 2048; half the side is a quarter of its bytes; 0: 256 or 512, the smallest that shows each crease",
+      .example = "256",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,
