@@ -102,7 +102,7 @@ all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/noh.1 $(BUILD)/noh.bash
 help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
-	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, looks round and dances'
+	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, dances, falls and gets up'
 	@echo 'make demo-face  the puppet and the mask say a sentence: sound, strips, a film'
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
@@ -312,7 +312,7 @@ demo: deps-build
 	@sh tools/demo.sh $(BUILD)
 
 demo-body: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/demo/arm.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
 
 demo-face: deps-build

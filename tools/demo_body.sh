@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo_body.sh BUILD: convert the puppet, make it move, and print what it costs; the same arm bent and twisted by each
+# demo_body.sh BUILD: convert the puppet, make it move, push it, and print what it costs; the same arm bent and twisted by each
 # kind of skinning; and, where $NOH_ASSETS has it, hero/body.glb.
 set -eu
 build=$1
@@ -15,6 +15,14 @@ for clip in walk bow look_round dance; do
 done
 "$noh" sheet "$out/puppet.noh" -o "$out/puppet_bones.png" --clip dance --bones --camera 25,4 --tiles 8 --columns 8 --tile 240
 "$noh" budget "$out/puppet.noh"
+
+# A push: it falls, and gets up by the clip for how it lies.
+"$noh" build "$out/puppet.glb" "$out/get_up.glb" -o "$out/puppet_falls.noh" --quiet
+"$noh" sheet "$out/puppet_falls.noh" -o "$out/puppet_falls.png" --clip walk --push 0,0,-90 --camera 50,12 --tiles 16 \
+    --columns 8 --tile 200
+"$noh" sheet "$out/puppet_falls.noh" -o "$out/puppet_stumbles.png" --clip walk --push 20,0,60 --camera 50,12 --tiles 16 \
+    --columns 8 --tile 200
+"$noh" drop "$out/puppet_falls.noh" -o "$out/puppet_drop.png"
 
 echo
 "$noh" build "$out/arm.glb" -o "$out/arm.noh" --dual-quaternion twisted_dual --two-stream stream_a=stream_b --quiet

@@ -176,6 +176,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     if (!status) {
         set_held(f);
         if (desc->alive) add_faces(f);
+        figure_want_fall(f);
         status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
     }
     if (!status && desc->clips && desc->clips->pack.clip_count) status = check_clips(f);

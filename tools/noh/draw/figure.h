@@ -6,6 +6,7 @@
  *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
  *   figure_pose            a frame that no view sees, for what follows
  *   figure_find_faces      where the eyes are; figure_feel, figure_live: faces that live
+ *   figure_fall            pushed, it falls and gets up
  *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
  *   figure_look            a frame that a camera sees; figure_draw draws it; figure_view
  *   figure_views           the views of such a frame; figure_frame, figure_shade: the same in steps
@@ -49,6 +50,7 @@ typedef struct figure_desc {
     uint32_t root_axes;        /* NOH_ROOT_* that clips move it by; y is up */
     uint32_t held_float_count; /* floats held at one time, FIGURE_HELD_ALL: all targets; 0: none */
     int inertia;               /* 1: room for NOH_PLAY_INERTIA */
+    int falls;                 /* 1: its first skeleton can fall, onto the ground at a height of 0 */
     int pickable;              /* 1: noh_stage_pick finds it */
     int tangents;              /* 1: accumulators with tangents, even where no view shows them */
     noh_morph_path path;
@@ -140,6 +142,14 @@ uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_
 int figure_feel(figure *f, const option_list *emotions);
 /* Time moves on, clips and faces, 60 steps a second. */
 int figure_live(figure *f, double seconds);
+
+/* --push X,Y,Z, newton seconds. */
+int figure_read_push(const char *text, float impulse[3]);
+/* Called while its kinds are made. */
+void figure_want_fall(figure *f);
+/* Time moves on: half a second in it is pushed at its chest and falls, and once it lies it gets up by its clips whose
+ * names begin with get_up. */
+int figure_fall(figure *f, const float impulse[3], double seconds);
 
 /* The world bounds of all meshes as posed, of their coarsest levels, whichever is shown: pictures of all levels can be
  * compared, also with those of a stripped pack. face: only of vertices that targets move. */

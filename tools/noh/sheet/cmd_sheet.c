@@ -57,6 +57,13 @@ static bounds move_box(bounds box, const double by[3], double sign)
 }
 
 /* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
+/* What the camera goes along with: who walks, but not who falls. */
+static void find_anchor(const sheet *s, const picture *p, double anchor[3])
+{
+    figure_anchor(&p->figure, anchor);
+    if (s->tiles.push) memset(anchor, 0, 3 * sizeof *anchor);
+}
+
 static int measure_tiles(sheet *s, picture *p, int face)
 {
     int status = 0;
@@ -65,7 +72,7 @@ static int measure_tiles(sheet *s, picture *p, int face)
         bounds box;
         status = sheet_tiles_pose(&s->tiles, &p->figure, tile);
         if (status) break;
-        figure_anchor(&p->figure, anchor);
+        find_anchor(s, p, anchor);
         box = move_box(picture_bounds(p, face), anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
@@ -77,7 +84,7 @@ static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
     const view_options o = { s->camera, s->tile, s->tile };
     double anchor[3];
     bounds box;
-    figure_anchor(&p->figure, anchor);
+    find_anchor(s, p, anchor);
     box = move_box(s->box, anchor, 1.0);
     return view_camera(&o, &box, camera);
 }
@@ -189,6 +196,7 @@ static int check_args(sheet_args *a)
         status = tool_usage("--faces wants a whole number from 1 to 1024, --seed one from 0 to 4294965999");
     }
     if (!status) status = check_clips(&s->tiles, a->transition);
+    if (!status && s->tiles.push) status = figure_read_push(s->tiles.push, s->tiles.impulse);
     if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
     s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
@@ -294,6 +302,15 @@ static const option options[] = {
       .what = "how long the transition takes, seconds, over 0, at most 60",
       .example = "0.5",
       .needs = "--to" },
+    { .name = "--push",
+      .kind = OPTION_TEXT,
+      .at = offsetof(sheet_args, s.tiles.push),
+      .value = "X,Y,Z",
+      .what =
+          "half a second into the clip it is pushed by so many newton seconds, falls onto the ground, and gets up by its clips whose names begin with get_up",
+      .example = "0,0,-90",
+      .needs = "--clip",
+      .excludes = "--blend --to" },
     { .name = "--lods",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.lods),
@@ -358,7 +375,7 @@ const verb verb_sheet = {
     .what =
         "draw a contact sheet: every target at full weight, a clip over time, people by seed, models of wrinkles, or the LOD levels",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

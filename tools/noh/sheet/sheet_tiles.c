@@ -110,6 +110,7 @@ static double lead_s(const sheet_tiles *t)
 static double tile_time(const sheet_tiles *t, uint32_t tile)
 {
     double from, to;
+    if (t->push) return SHEET_FALL_S * fraction(tile, t->clip_tiles);
     if (!t->to) {
         return t->clip_seconds * fraction(tile, t->clip_tiles);
     }
@@ -170,6 +171,7 @@ void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
     desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
     desc->held_float_count = t->face_count || t->wrinkled ? FIGURE_HELD_ALL : 1u;
     desc->inertia = t->inertia;
+    desc->falls = t->push != NULL;
     desc->face_layer = t->clips.count > 1;
 }
 
@@ -231,6 +233,9 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
         status = pose_blend(t, f, tile);
     } else if (t->to) {
         status = pose_transition(t, f, tile);
+    } else if (t->push) {
+        status = figure_play_options(f, &t->clips, 0.0);
+        if (!status) status = figure_fall(f, t->impulse, tile_time(t, tile));
     } else if (t->clip) {
         status = figure_play_options(f, &t->clips, t->alive ? 0.0 : tile_time(t, tile));
         if (!status && t->alive) status = figure_feel(f, &t->emotions);
@@ -270,6 +275,6 @@ void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t b
         snprintf(text, bytes, "%s %+.2f s", time_s < lead_s(t) + t->over_s ? (t->inertia ? "inertia" : "fade") : t->to,
                  time_s - lead_s(t));
     } else {
-        snprintf(text, bytes, "%s %.2f s", t->clip, time_s);
+        snprintf(text, bytes, "%s %.2f s", t->push ? "pushed" : t->clip, t->push ? time_s - 0.5 : time_s);
     }
 }

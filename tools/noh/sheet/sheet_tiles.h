@@ -7,6 +7,7 @@
 #include "sheet_faces.h"
 #include "sheet_wrinkles.h"
 
+#define SHEET_FALL_S 6.0    /* a push, a fall, and time to get up */
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
 /* What one tile shows. */
@@ -23,6 +24,8 @@ typedef struct sheet_tiles {
     const char *clip, *blend, *to; /* clip names; NULL: none */
     int inertia;                   /* the transition to `to`: 1 inertialization, 0 a cross-fade */
     double over_s;                 /* its duration */
+    const char *push;              /* NULL: none */
+    float impulse[3];              /* of it */
     double clip_seconds;
     uint32_t clip_tiles;   /* columns in time */
     option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */
