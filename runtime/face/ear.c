@@ -14,12 +14,12 @@ enum {
     SHUT = 0,
     REST = 5,
     /* 1/256 octaves of probability that other lips must gather */
-    TO_SHUT = 700,
-    TO_REST = 3000,
+    TO_SHUT = 800,
+    TO_REST = 3400,
     TO_OTHER = 2200,
-    FROM_SHUT = 1200,  /* to others, from lips that are shut or at rest */
+    FROM_SHUT = 1300,  /* to others, from lips that are shut or at rest */
     LEAST_LIKELY = 32, /* 1/32768: no frame counts for less */
-    OTHER_SHAPE = 60,  /* halves: by which another shape of the same lips must lead */
+    OTHER_SHAPE = 200, /* halves: by which another shape of the same lips must lead */
     SMOOTHED = 3       /* frames whose weights are averaged */
 };
 

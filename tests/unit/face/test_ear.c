@@ -243,7 +243,7 @@ static void every_processor_has_the_same_bits(void **state)
 {
     (void)state;
     make_voice(SECOND * 4, 16000);
-    assert_int_equal(hash_frames(hear_at(16000, SECOND * 4)), 0x1b589c9du);
+    assert_int_equal(hash_frames(hear_at(16000, SECOND * 4)), 0xca2cfc9du);
 }
 
 /* ---- people ---- */
@@ -379,10 +379,10 @@ static void people_are_read_as_well_as_measured(void **state)
     printf("# ear: fifteen %.3f, five %.3f, opening %.3f, p b m shut %.0f/%.0f, vowels shut %.3f, changes %.1f/s\n",
            s.fifteen / s.count, s.five / s.count, opening, s.shut, s.lips, s.shut_vowels / s.vowels,
            s.changes / s.count * 100);
-    assert_true(s.five / s.count >= 0.65);
-    assert_true(opening >= 0.71);
+    assert_true(s.five / s.count >= 0.655);
+    assert_true(opening >= 0.715);
     assert_true(s.shut >= 0.85 * s.lips && s.shut_vowels <= 0.06 * s.vowels);
-    assert_true(s.changes / s.count * 100 <= 9.5);
+    assert_true(s.changes / s.count * 100 <= 8.0 && s.changes / s.count * 100 >= 4.0);
 }
 
 int main(int argc, char **argv)
