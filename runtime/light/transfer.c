@@ -6,30 +6,22 @@
 #include "base/math_internal.h"
 #include "base/octahedral_internal.h"
 
-static const uint8_t *chunk_bytes(const noh_pack *pack, uint32_t chunk)
-{
-    return pack->bytes + pack->chunks[chunk].offset;
-}
-
 noh_result noh_transfer_of(const noh_mesh *mesh, noh_transfer *transfer, noh_error *error)
 {
-    const noh_pack *pack;
-    NOH_ASSERT(mesh && mesh->pack && transfer);
-    pack = mesh->pack;
-    for (uint32_t i = 0; i < pack->transfer_count; i++) {
-        const uint8_t *bytes = chunk_bytes(pack, pack->first_transfer + i);
-        const noh_transfer_header *h = (const noh_transfer_header *)(const void *)bytes;
-        const uint8_t *first = (const uint8_t *)(mesh->header - (mesh->header->level - mesh->header->level_first));
-        if (chunk_bytes(pack, pack->first_mesh + h->mesh) == first) {
-            transfer->header = h;
-            transfer->records = bytes + h->records_offset;
-            transfer->scales = (const float *)(const void *)(bytes + h->scales_offset);
-            transfer->deltas = (const int8_t *)(const void *)(bytes + h->deltas_offset);
-            return NOH_OK;
-        }
+    const noh_transfer_header *h;
+    const uint8_t *bytes;
+    NOH_ASSERT(mesh && transfer);
+    h = mesh->transfer;
+    if (!h) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the mesh has no transfer: build its pack with --transfer 4 or 6", 0,
+                        0);
     }
-    return noh_fail(error, NOH_ERR_NOT_FOUND, "the mesh has no transfer: build its pack with --transfer 4 or 6", 0,
-                    pack->transfer_count);
+    bytes = (const uint8_t *)h;
+    transfer->header = h;
+    transfer->records = bytes + h->records_offset;
+    transfer->scales = (const float *)(const void *)(bytes + h->scales_offset);
+    transfer->deltas = (const int8_t *)(const void *)(bytes + h->deltas_offset);
+    return NOH_OK;
 }
 
 static void accumulate_target(const noh_mesh *mesh, const noh_transfer *transfer, uint32_t index, float scale,

@@ -33,6 +33,15 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
 }
 
+static const noh_transfer_header *transfer_of(const noh_pack *pack, uint32_t mesh)
+{
+    for (uint32_t i = pack->first_transfer; i < pack->first_transfer + pack->transfer_count; i++) {
+        const noh_transfer_header *h = (const void *)(pack->bytes + pack->chunks[i].offset);
+        if (h->mesh == mesh) return h;
+    }
+    return NULL;
+}
+
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(pack && mesh);
@@ -43,6 +52,7 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
     }
     mesh->pack = pack;
     mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
+    mesh->transfer = transfer_of(pack, index);
     view_of((const noh_mesh_header *)(const void *)(pack->bytes + pack->chunks[pack->first_mesh + index].offset), mesh);
     return NOH_OK;
 }

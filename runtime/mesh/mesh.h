@@ -27,7 +27,8 @@ typedef struct noh_mesh {
     const uint32_t *influences; /* [vertex_count][NOH_INFLUENCE_WORDS(influence_count)] */
     const noh_palette *palettes;
     const uint16_t *palette_joints;
-    const float *joint_boxes; /* [the skin's joint_count][6] */
+    const float *joint_boxes;            /* [the skin's joint_count][6] */
+    const noh_transfer_header *transfer; /* its arrays follow it; NULL: none (light/transfer.h) */
 } noh_mesh;
 
 /* The joints that move a mesh. A view likewise. */

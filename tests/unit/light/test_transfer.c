@@ -444,6 +444,33 @@ static void transfers_are_made_alike(void **state)
     free(b.bytes);
 }
 
+/* A view whose headers were copied, and whose pack is another one, keeps the transfer of its own: so does the room for
+ * levels that come later, which has the materials of the coarse pack. */
+static void copied_headers_keep_the_transfer(void **state)
+{
+    const test_model_desc desc = { 1, 3, 1, 0, 1 };
+    noh_transfer transfer = { NULL, NULL, NULL, NULL };
+    noh_mesh_header header;
+    noh_pack plain;
+    noh_mesh copy;
+    size_t count;
+    uint8_t *bytes = test_pack(&desc, &count);
+    lit_pack p;
+    (void)state;
+    face_pack(&p, 4, 0);
+    plain = test_open(bytes, count);
+    copy = p.mesh;
+    header = *copy.header;
+    copy.header = &header;
+    copy.pack = &plain;
+    assert_int_equal(noh_transfer_of(&copy, &transfer, NULL), NOH_OK);
+    assert_ptr_equal(transfer.header, p.transfer.header);
+    assert_ptr_equal(transfer.records, p.transfer.records);
+    assert_int_equal(transfer.header->vertex_count, header.vertex_count);
+    free(bytes);
+    free(p.bytes);
+}
+
 /* Shade all vertices of a level at half of every target. */
 static float *shaded(const noh_mesh *mesh, uint32_t *count)
 {
@@ -606,6 +633,7 @@ int main(void)
         cmocka_unit_test(bent_axes_come_nearer),
         cmocka_unit_test(a_pack_without_transfer_says_so),
         cmocka_unit_test(transfers_are_made_alike),
+        cmocka_unit_test(copied_headers_keep_the_transfer),
         cmocka_unit_test(levels_are_prefixes_of_transfers),
         cmocka_unit_test(every_lie_is_refused),
         cmocka_unit_test(every_flip_is_safe),
