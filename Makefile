@@ -62,7 +62,7 @@ DEMO_C     := $(call sources,tools/demo_assets,*.c)
 EXAMPLE_C  := $(sort $(wildcard tools/examples/*.c))
 STAGES     := vert geom frag
 # What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
-SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%)) $(foreach text,layers attributes skin face vertex fade fragment wrinkle material environment scatter eye light,shaders_es/common_$(text).glsl)
+SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%)) $(foreach text,layers attributes skin face transfer vertex fade fragment wrinkle material environment scatter eye light,shaders_es/common_$(text).glsl)
 TOOL_SHADERS := $(call sources,tools/noh,$(STAGES:%=*.%))
 TEST_C     := $(call sources,tests,test_*.c)
 VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)

@@ -120,10 +120,12 @@ vec3 noh_eye_light(inout noh_surface s)
     }
     if (noh_surface_more[0].x > noh_surface_more[1].x) {
         vec3 from = noh_from_lids(s);
-        float lids = noh_lids(from);
         mirror = noh_wet_line(from, mirror);
+#if NOH_TRANSFER == 0 /* else the transfer knows the lids */
+        float lids = noh_lids(from);
         s.occlusion *= lids;
         s.albedo *= 0.7 + 0.3 * lids;
+#endif
     }
     return mirror;
 }

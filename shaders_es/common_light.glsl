@@ -48,10 +48,46 @@ vec3 noh_key_matte(noh_surface s, float shadow)
 #endif
 }
 
-/* What reaches a matte surface, over what makes white white. */
+#if NOH_TRANSFER > 0
+in vec4 noh_v_transfer; /* common_transfer.glsl */
+
+/* Of the light from all around, what reaches a matte surface. Maps bend the vertices' light by what they would change
+ * without a transfer, and darken it where they are darker than the mesh is already. */
+vec3 noh_rest_light(noh_surface s)
+{
+    if (!gl_FrontFacing) {
+        return noh_ambient(s.normal) * s.occlusion; /* the transfer is of the other side */
+    }
+    vec3 bent = min(noh_ambient(s.normal) / max(noh_ambient(s.geometric), vec3(1e-3)), vec3(4.0));
+    return max(noh_v_transfer.rgb, vec3(0.0)) * bent * min(1.0, s.occlusion / max(noh_v_transfer.a, 1e-3));
+}
+
+/* Of what is mirrored. */
+float noh_rest_occlusion(noh_surface s)
+{
+    return gl_FrontFacing ? min(s.occlusion, clamp(noh_v_transfer.a, 0.0, 1.0)) : s.occlusion;
+}
+#else
+vec3 noh_rest_light(noh_surface s)
+{
+    return noh_ambient(s.normal) * s.occlusion;
+}
+
+float noh_rest_occlusion(noh_surface s)
+{
+    return s.occlusion;
+}
+#endif
+
+/* What reaches a matte surface, over what makes white white. In a mouth the key light is dimmed by the place, the rest
+ * by the transfer where there is one. */
 vec3 noh_matte_light(noh_surface s, float shadow)
 {
-    return noh_ambient(s.normal) * s.occlusion + noh_key_color * noh_key_matte(s, shadow);
+    vec3 key = noh_key_color * noh_key_matte(s, shadow);
+#if NOH_TRANSFER > 0 && (defined(NOH_SKIN) || defined(NOH_TEETH))
+    key *= noh_v_open;
+#endif
+    return noh_rest_light(s) + key;
 }
 
 /* What glosses of the key light, over its colour: no reflectance in it. normal: the one that mirrors */
@@ -83,16 +119,19 @@ vec3 noh_light(noh_surface s)
     vec3 gloss = f0 * (part.x - part.y) + part.y; /* reflected of an even light, once */
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and by further bounces between the facets */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
-    vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, s.occlusion, roughness);
+    vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
     float shadow = noh_key_shadow(s.position, s.geometric);
     vec3 color = matte * noh_matte_light(s, shadow);
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
         float away = clamp(1.0 - dot(h, s.view), 0.0, 1.0), away2 = away * away;
         vec3 fresnel = f0 + (1.0 - f0) * (away2 * away2 * away);
+#if NOH_TRANSFER > 0 && (defined(NOH_SKIN) || defined(NOH_TEETH))
+        shadow *= noh_v_open;
+#endif
         color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * shadow * noh_key_glossed(mirror, h, nv, roughness));
     }
-#if defined(NOH_SKIN) || defined(NOH_TEETH)
+#if NOH_TRANSFER == 0 && (defined(NOH_SKIN) || defined(NOH_TEETH))
     color *= noh_v_open;
 #endif
     return noh_expose(color + s.emissive);

@@ -1,6 +1,6 @@
 /* common_vertex.glsl: noh_fetch, a vertex of a noh_gl_mesh morphed, skinned and placed in the world.
  *
- * It goes behind common_layers.glsl, common_attributes.glsl and common_skin.glsl: noh_gl_shader_prefix puts them
+ * It goes behind common_layers.glsl, common_attributes.glsl, common_skin.glsl and common_transfer.glsl: noh_gl_shader_prefix puts them
  * together. Defines of its own, which noh_gl_variant_defines writes:
  *
  *   NOH_DEPTH_ONLY   defined: depth alone is drawn. Normals and tangents are neither fetched nor computed, their deltas
@@ -154,6 +154,10 @@ noh_vertex noh_fetch()
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
+#if NOH_TRANSFER > 0
+    noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_normal), normalize(v.normal));
+    noh_v_transfer = noh_lobe_shade(lobe, normalize(noh_world_normal(x, y, z, lobe.axis)));
+#endif
     p = vec4(v.model, 1.0);
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY

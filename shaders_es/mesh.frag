@@ -79,7 +79,11 @@ void main()
     o_color = vec4(matte_light(s), 1.0);
 #elif NOH_DEBUG_VIEW == 6
     noh_cut(base.a);
+#ifdef NOH_LIT
+    o_color = vec4(vec3(noh_rest_occlusion(s)), 1.0);
+#else
     o_color = vec4(vec3(s.occlusion), 1.0);
+#endif
 #else
     noh_cut(base.a);
     o_color = vec4(noh_material.w > 0.5 ? base.rgb : noh_light(s), base.a);

@@ -62,6 +62,15 @@ void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light,
     renderer->lighting = lighting;
 }
 
+/* The array has as many elements as the transfer's order asks for. */
+static void set_rest(const noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    const uint32_t order = v->key.transfer & ~NOH_TRANSFER_ON_NORMAL;
+    float rows[NOH_SH_COUNT_MAX][4];
+    noh_lighting_pack_rest(r->lighting, rows);
+    r->gl->Uniform4fv(v->u_rest, (GLsizei)NOH_SH_COUNT(order), rows[0]);
+}
+
 static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
 {
     float rows[NOH_LIGHTING_ROWS][4];
@@ -69,6 +78,7 @@ static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
     noh_lighting_pack(r->lighting, r->light->desc.shadow_px, rows);
     r->gl->Uniform4fv(v->u_lighting, NOH_LIGHTING_ROWS, rows[0]);
     r->gl->Uniform3fv(v->u_key, 1, r->lighting->key_direction);
+    if (v->key.transfer) set_rest(r, v);
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
     r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, r->light->cube.name);
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);

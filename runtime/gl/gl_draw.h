@@ -39,6 +39,8 @@ extern "C" {
 #define NOH_ATTRIBUTE_INFLUENCES 5u /* uint, uvec2, uvec3 or uvec4: the first words of a vertex's influences */
 #define NOH_ATTRIBUTE_MORE_INFLUENCES 6u /* uvec3: the last three of seven words */
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
+#define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer's record; only with a transfer */
+#define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of it */
 
 typedef struct noh_gl_mesh {
     noh_mesh mesh; /* the finest LOD level that was uploaded */
@@ -46,6 +48,7 @@ typedef struct noh_gl_mesh {
         *room; /* of the finest level that the buffers have room for: that of `mesh`, or a finer one */
     GLuint vertex_array;
     noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
+    noh_gl_buffer transfer;                                   /* records; none without a transfer */
     GLenum index_type;
 } noh_gl_mesh;
 

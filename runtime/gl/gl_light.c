@@ -4,6 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "light/sh_internal.h"
 
 /* ---- what shaders are told ---- */
 
@@ -50,6 +51,19 @@ void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float r
     rows[13][2] = shadow_px ? l->shadow_texel : 0.0f;
     rows[13][3] = shadow_px ? 0.75f / (float)shadow_px : 0.0f;
     memcpy(rows[14], l->shadow, sizeof l->shadow);
+}
+
+void noh_lighting_pack_rest(const noh_lighting *lighting, float rows[NOH_SH_COUNT_MAX][4])
+{
+    const noh_light *rest = &lighting->rest;
+    NOH_ASSERT(lighting && rows);
+    memset(rows, 0, NOH_SH_COUNT_MAX * sizeof *rows);
+    for (uint32_t l = 0, i = 0; l < rest->order; l++) {
+        for (; i < NOH_SH_COUNT(l + 1u); i++) {
+            const uint32_t middle = l * (l + 1u), m = i < middle ? middle - i : i - middle;
+            for (uint32_t c = 0; c < 3u; c++) rows[i][c] = rest->coefs[i][c] * noh_sh_normalisation(l, m);
+        }
+    }
 }
 
 /* ---- textures ---- */

@@ -60,6 +60,10 @@ void noh_lighting_shadow(noh_lighting *lighting, const float view_projection[16]
  * shadow_px  as in noh_gl_light_desc */
 void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float rows[NOH_LIGHTING_ROWS][4]);
 
+/* The uniform noh_rest of common_transfer.glsl, likewise: coefficients of `rest` times the factors of the spherical
+ * harmonics' polynomials, 0 past its order. */
+void noh_lighting_pack_rest(const noh_lighting *lighting, float rows[NOH_SH_COUNT_MAX][4]);
+
 typedef struct noh_gl_light_desc {
     const noh_reflection *reflection; /* required; must stay, with its texels, as long as the light */
     uint32_t shadow_px;               /* side of the shadow map; 0: none */

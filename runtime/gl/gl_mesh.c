@@ -41,10 +41,27 @@ static uint64_t influence_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * NOH_INFLUENCE_WORDS(mesh->header->influence_count) * 4u;
 }
 
+static uint32_t record_bytes(const noh_mesh *mesh)
+{
+    const noh_transfer_header *h = mesh->transfer;
+    return h ? NOH_TRANSFER_RECORD_BYTES(h->order, h->flags) : 0;
+}
+
+static uint64_t transfer_bytes(const noh_mesh *mesh)
+{
+    return (uint64_t)mesh->header->vertex_count * record_bytes(mesh);
+}
+
+static const uint8_t *records_of(const noh_mesh *mesh)
+{
+    return mesh->transfer ? (const uint8_t *)mesh->transfer + mesh->transfer->records_offset : NULL;
+}
+
 uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh)
 {
     NOH_ASSERT(mesh && mesh->header);
-    return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + index_bytes(mesh);
+    return position_bytes(mesh) + attribute_bytes(mesh) + influence_bytes(mesh) + transfer_bytes(mesh) +
+           index_bytes(mesh);
 }
 
 static void set_attribute(const noh_gl_api *gl, GLuint location, GLint size, GLenum type, GLboolean normalized,
@@ -83,12 +100,28 @@ static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
     }
 }
 
+/* The bytes of a record as common_transfer.glsl reads them. */
+static void set_lobe(const noh_gl_api *gl, const noh_gl_mesh *m)
+{
+    const GLint bytes = (GLint)record_bytes(&m->mesh);
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->transfer.name);
+    gl->EnableVertexAttribArray(NOH_ATTRIBUTE_LOBE);
+    gl->VertexAttribIPointer(NOH_ATTRIBUTE_LOBE, 4, GL_BYTE, bytes, NULL);
+    if (bytes > 4) {
+        gl->EnableVertexAttribArray(NOH_ATTRIBUTE_MORE_LOBE);
+        gl->VertexAttribIPointer(NOH_ATTRIBUTE_MORE_LOBE, bytes - 4, GL_BYTE, bytes, (const void *)(uintptr_t)4u);
+    }
+}
+
 static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     noh_gl_label(gl, GL_BUFFER, m->positions.name, "positions of", m->mesh.name);
     noh_gl_label(gl, GL_BUFFER, m->attributes.name, "attributes of", m->mesh.name);
     if (m->influences.name) {
         noh_gl_label(gl, GL_BUFFER, m->influences.name, "influences of", m->mesh.name);
+    }
+    if (m->transfer.name) {
+        noh_gl_label(gl, GL_BUFFER, m->transfer.name, "transfer of", m->mesh.name);
     }
     noh_gl_label(gl, GL_BUFFER, m->indices.name, "indices of", m->mesh.name);
     noh_gl_label(gl, GL_VERTEX_ARRAY, m->vertex_array, "mesh", m->mesh.name);
@@ -112,6 +145,9 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
     if (m->influences.name) {
         set_influences(gl, m);
     }
+    if (m->transfer.name) {
+        set_lobe(gl, m);
+    }
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, m->indices.name);
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
@@ -122,7 +158,7 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
 static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room, const noh_mesh *mesh,
                        const noh_mesh *contents, noh_gl_mesh *out, noh_error *error)
 {
-    noh_gl_mesh m = { *mesh, room->header, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
+    noh_gl_mesh m = { *mesh, room->header, 0, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, { 0, 0 }, 0 };
     static const uint32_t no_indices = 0;
     const void *indices = !contents ? NULL : index_count(mesh) ? mesh->indices : &no_indices;
     noh_result result;
@@ -142,6 +178,10 @@ static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_m
     if (!result && influence_bytes(room)) {
         result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, influence_bytes(room),
                                       contents ? contents->influences : NULL, GL_STATIC_DRAW, &m.influences, error);
+    }
+    if (!result && transfer_bytes(room)) {
+        result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, transfer_bytes(room),
+                                      contents ? records_of(contents) : NULL, GL_STATIC_DRAW, &m.transfer, error);
     }
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ELEMENT_ARRAY_BUFFER, index_bytes(room), indices, GL_STATIC_DRAW,
@@ -214,7 +254,8 @@ static void sent(const filler *f, uint32_t bytes)
 static void fill_array(filler *f, const noh_gl_buffer *to, const void *data, uint64_t count)
 {
     uint64_t from;
-    const uint32_t bytes = next_bytes(f, count, &from) & ~3u; /* arrays are words */
+    uint32_t bytes = next_bytes(f, count, &from);
+    if (from + bytes < count) bytes &= ~3u; /* pieces are words, but for the end of records of odd bytes */
     if (bytes) {
         f->gl->BindBuffer(GL_ARRAY_BUFFER, to->name);
         f->gl->BufferSubData(GL_ARRAY_BUFFER, (GLintptr)from, (GLsizeiptr)bytes, (const uint8_t *)data + from);
@@ -269,6 +310,9 @@ int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_m
     fill_array(&f, &mesh->positions, from->positions, position_bytes(from));
     fill_array(&f, &mesh->attributes, from->attributes, attribute_bytes(from));
     fill_array(&f, &mesh->influences, from->influences, influence_bytes(from));
+    if (record_bytes(from) == record_bytes(&mesh->mesh)) {
+        fill_array(&f, &mesh->transfer, records_of(from), transfer_bytes(from));
+    }
     fill_indices(&f, mesh, from);
     return *at >= f.begin;
 }
@@ -299,6 +343,7 @@ void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mes
     noh_gl_buffer_delete(api, ledger, &mesh->positions);
     noh_gl_buffer_delete(api, ledger, &mesh->attributes);
     noh_gl_buffer_delete(api, ledger, &mesh->influences);
+    noh_gl_buffer_delete(api, ledger, &mesh->transfer);
     noh_gl_buffer_delete(api, ledger, &mesh->indices);
 }
 

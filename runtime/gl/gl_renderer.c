@@ -31,6 +31,7 @@ static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int
 {
     key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
     key.lit = (uint8_t)(lit && !key.depth);
+    if (!key.lit) key.transfer = 0;
     key.two_layers = (uint8_t)(without_tangents && !key.depth);
     return key;
 }

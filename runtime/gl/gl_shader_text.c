@@ -23,6 +23,7 @@ const char *noh_gl_shader_text(const char *name)
                   { "common_attributes.glsl", noh_shader_common_attributes_glsl },
                   { "common_skin.glsl", noh_shader_common_skin_glsl },
                   { "common_face.glsl", noh_shader_common_face_glsl },
+                  { "common_transfer.glsl", noh_shader_common_transfer_glsl },
                   { "common_vertex.glsl", noh_shader_common_vertex_glsl },
                   { "common_fade.glsl", noh_shader_common_fade_glsl },
                   { "common_fragment.glsl", noh_shader_common_fragment_glsl },

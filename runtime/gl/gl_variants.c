@@ -36,6 +36,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     key.texels = (h->flags & NOH_MESH_TEXELS) != 0;
     key.layers_uint = layers_uint != 0;
     key.view = (uint8_t)view;
+    if (mesh->transfer) key.transfer = (uint8_t)(mesh->transfer->order | mesh->transfer->flags);
     return key;
 }
 
@@ -61,7 +62,7 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 {
     key.view = NOH_VIEW_LIT;
-    key.encode_srgb = key.two_layers = key.features = key.lit = 0;
+    key.encode_srgb = key.two_layers = key.features = key.lit = key.transfer = 0;
     key.depth = 1;
     key.cut = cut != 0;
     return key;
@@ -115,6 +116,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.two_layers, "#define NOH_TWO_LAYERS\n" },
                   { key.cut, "#define NOH_ALPHA_CUT\n" },
                   { key.lit, "#define NOH_LIT\n" },
+                  { key.lit && key.transfer & NOH_TRANSFER_ON_NORMAL, "#define NOH_TRANSFER_ON_NORMAL\n" },
                   { key.features & NOH_FEATURE_NORMAL_MAP, "#define NOH_NORMAL_MAP\n" },
                   { key.features & NOH_FEATURE_SURFACE_MAP, "#define NOH_SURFACE_MAP\n" },
                   { key.features & NOH_FEATURE_EMISSIVE, "#define NOH_EMISSIVE\n" },
@@ -126,6 +128,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
     at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
     if (key.lit) at = put_digit(text, at, "#define NOH_SHADOW_TAPS ", shadow_taps(key.features));
+    at = put_digit(text, at, "#define NOH_TRANSFER ", key.lit ? key.transfer & ~NOH_TRANSFER_ON_NORMAL : 0);
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         at = put_text(text, at, flags[i].on ? flags[i].line : "");
     }
@@ -143,6 +146,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_attributes_glsl;
         pieces[count++] = noh_shader_common_skin_glsl;
         pieces[count++] = noh_shader_common_face_glsl;
+        pieces[count++] = noh_shader_common_transfer_glsl;
         pieces[count++] = noh_shader_common_vertex_glsl;
     } else {
         pieces[count++] = noh_shader_common_fade_glsl;
@@ -245,6 +249,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_surface_values", offsetof(noh_gl_variant, u_surface_values) },
                      { "noh_surface_more", offsetof(noh_gl_variant, u_surface_more) },
                      { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
+                     { "noh_rest", offsetof(noh_gl_variant, u_rest) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },
                      { "noh_wrinkle_regions", offsetof(noh_gl_variant, u_wrinkle_regions) },
                      { "noh_wrinkle_models", offsetof(noh_gl_variant, u_wrinkle_models) } };

@@ -50,6 +50,7 @@ typedef struct noh_gl_variant_key {
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
     uint8_t features;        /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t lit;             /* 1: light is that of gl_light.h; with depth 0 */
+    uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
 } noh_gl_variant_key;
 
 /* What a material has: a variant pays for nothing else. */
@@ -67,7 +68,7 @@ typedef struct noh_gl_variant {
     GLuint program;
     GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_surface_values, u_surface_more;
+        u_wrinkle_models, u_surface_values, u_surface_more, u_rest;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
@@ -100,7 +101,7 @@ noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 /* Texture fetches of a pixel, at most, whatever its material has (tests/gl/test_gl_fetches.c). */
 #define NOH_GL_FETCHES_MAX 8u
 
-#define NOH_GL_DEFINES_BYTES 640u
+#define NOH_GL_DEFINES_BYTES 736u
 
 /* Write the key as lines of #define, zero-terminated. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);

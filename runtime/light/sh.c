@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "base/math_internal.h"
+#include "light/sh_internal.h"
 
 #define BANDS NOH_SH_ORDER_MAX
 #define BAND_WIDTH (2u * BANDS - 1u) /* functions of the last band */
@@ -22,6 +23,12 @@ static const float normalisation[BANDS][BANDS] = {
 static const float zonal_scale[BANDS] = { 3.5449077f, 2.04665342f, 1.58533092f, 1.33984917f, 1.1816359f, 1.06882989f };
 
 const float noh_sh_cosine_lobe[NOH_SH_ORDER_MAX] = { 1.0f, 2.0f / 3.0f, 0.25f, 0.0f, -1.0f / 24.0f, 0.0f };
+
+float noh_sh_normalisation(uint32_t l, uint32_t m)
+{
+    NOH_ASSERT(m <= l && l < BANDS);
+    return normalisation[m][l - m];
+}
 
 /* One m: the associated Legendre functions without their factor (1 - z^2)^(m/2), which is in (x + i y)^m, by the
  * recurrence in l; `cosine` and `sine` are that power's parts. */

@@ -144,15 +144,17 @@ typedef struct noh_stage_desc {
     uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh: whoever
                                 * waits is drawn coarser, or without targets as long as it has no slot. 1 counts as 2;
                                 * default (0) no bound. A frame with a cut has none */
-    int tangents;        /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
-                          * library's do not */
-    int halves;          /* 1: 16-bit accumulators; -1: 32-bit ones, which are not given up either */
-    int encode_srgb;     /* 1: shaders encode to sRGB, for targets that do not, such as WebGL's canvas */
-    int full_detail;     /* 1: each actor is shown at its kind's finest level, or at noh_look.level, with everything
-                          * else in full: no tables of LOD, no programs that fade or take fewer influences */
-    int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
-    int without_shader;  /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
-    uint32_t morph_path; /* noh_morph_path of gl_morph.h; default (0) the cheapest */
+    int tangents;         /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
+                           * library's do not */
+    int halves;           /* 1: 16-bit accumulators; -1: 32-bit ones, which are not given up either */
+    int encode_srgb;      /* 1: shaders encode to sRGB, for targets that do not, such as WebGL's canvas */
+    int full_detail;      /* 1: each actor is shown at its kind's finest level, or at noh_look.level, with everything
+                           * else in full: no tables of LOD, no programs that fade or take fewer influences */
+    int without_depth;    /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
+    int without_shader;   /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
+    int without_transfer; /* 1: meshes with a transfer (light/transfer.h) are lit as those without, and their records
+                           * are not on the GPU; without `light` they are not either */
+    uint32_t morph_path;  /* noh_morph_path of gl_morph.h; default (0) the cheapest */
     /* gl_light.h: what is mirrored, and the shadow map. Shaders are then lit by noh_stage_set_lighting. Must outlive
      * the stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;

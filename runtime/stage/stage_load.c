@@ -17,6 +17,18 @@ noh_mesh noh_stage_whole_mesh(const noh_kind_desc *kind, uint32_t mesh)
     return found;
 }
 
+/* Of what levels up to a vertex count use: a finer pack's records must go on where a coarse one's end. */
+static uint32_t hash_transfer(uint32_t hash, const noh_transfer_header *h, uint32_t vertex_count)
+{
+    const uint32_t kind[2] = { h->order, h->flags };
+    const uint8_t *bytes = (const uint8_t *)h;
+    hash = noh_crc32c(hash, kind, sizeof kind);
+    hash = noh_crc32c(hash, bytes + h->records_offset,
+                      (size_t)(vertex_count < h->vertex_count ? vertex_count : h->vertex_count) *
+                          NOH_TRANSFER_RECORD_BYTES(h->order, h->flags));
+    return noh_crc32c(hash, bytes + h->scales_offset, 4u * (size_t)h->target_count);
+}
+
 uint32_t noh_stage_hash_levels(const noh_mesh *mesh, uint32_t level)
 {
     uint32_t hash = 0;
@@ -29,6 +41,9 @@ uint32_t noh_stage_hash_levels(const noh_mesh *mesh, uint32_t level)
         h.influences_offset = h.palettes_offset = h.palette_joints_offset = h.joint_boxes_offset = 0;
         hash = noh_crc32c(hash, &h, sizeof h);
         hash = noh_crc32c(hash, at.submeshes, h.submesh_count * sizeof *at.submeshes);
+    }
+    if (mesh->transfer && level < mesh->header->level_count) {
+        hash = hash_transfer(hash, mesh->transfer, noh_mesh_at_lod(mesh, level).header->vertex_count);
     }
     return hash;
 }

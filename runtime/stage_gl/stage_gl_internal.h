@@ -123,6 +123,8 @@ typedef struct noh_gl_tiles {
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);
 /* The index of a site's first pool in the tiles of its owner. */
 uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
+/* A level of a mesh, without its transfer where that is not drawn. */
+noh_mesh noh_gl_as_lit(const noh_stage_desc *desc, const noh_mesh *mesh, uint32_t level);
 noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site); /* finest level */
 /* The finest that is in the kind's own pack. Returns 0 where that is the finest of all: none comes later. */
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);

@@ -66,7 +66,7 @@ static noh_mesh brought(const noh_stage *s, const noh_gl_model *model)
     noh_mesh mesh;
     (void)noh_pack_mesh_at(s->kinds[model->load_kind].loaded, model->mesh_index, &mesh, NULL);
     mesh.pack = model->coarse.pack;
-    return noh_mesh_at_lod(&mesh, model->room.header->level);
+    return noh_gl_as_lit(&s->desc, &mesh, model->room.header->level);
 }
 
 static int load_model(const noh_stage *s, noh_gl_model *model, uint32_t *bytes)

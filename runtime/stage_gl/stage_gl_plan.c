@@ -32,17 +32,24 @@ static uint32_t finest_of(const noh_stage_plan *plan, noh_gl_site site)
     return k->levels[k->finest_level].mesh_levels[site.item];
 }
 
+noh_mesh noh_gl_as_lit(const noh_stage_desc *desc, const noh_mesh *mesh, uint32_t level)
+{
+    noh_mesh at = noh_mesh_at_lod(mesh, level);
+    if (!desc->light || desc->without_transfer) at.transfer = NULL;
+    return at;
+}
+
 noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
     const noh_mesh mesh = noh_stage_whole_mesh(&desc->kinds[site.kind], item_of(desc, site).mesh);
-    return noh_mesh_at_lod(&mesh, finest_of(plan, site));
+    return noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
 }
 
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse)
 {
     noh_mesh mesh;
     (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, item_of(desc, site).mesh, &mesh, NULL);
-    *coarse = noh_mesh_at_lod(&mesh, finest_of(plan, site));
+    *coarse = noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
     return coarse->header->level > finest_of(plan, site) && desc->kinds[site.kind].finer;
 }
 

@@ -37,6 +37,15 @@ noh light "$work/small.noh" --rays 256
 expect 0 'the stripped pack still has it'
 noh render "$work/sheet4.noh" -o "$work/with.png" --size 100x100
 expect 0 'render'
+noh render "$work/sheet4.noh" -o "$work/without.png" --size 100x100 --transfer off
+expect 0 'render without it'
+check 'it changes the picture' sh -c '! cmp -s "$1" "$2"' - "$work/with.png" "$work/without.png"
+noh render "$work/sheet.noh" -o "$work/lacks.png" --size 100x100
+noh render "$work/sheet.noh" -o "$work/lacks_off.png" --size 100x100 --transfer off
+check 'but not of a pack that has none' cmp "$work/lacks.png" "$work/lacks_off.png"
+noh render "$work/sheet4.noh" -o "$work/x.png" --transfer soft
+expect 2 'an unknown switch'
+says "--transfer wants on or off, not 'soft'"
 noh verify "$work/sheet4.noh"
 expect 0 'verify'
 
@@ -85,5 +94,8 @@ else
                 v["seed_rms_soft"] > 3 * v["rms_soft"] && v["seed_rms_morphed_soft"] > 1.5 * v["rms_morphed_soft"] &&
                 v["rms_soft"] > 0 && v["rms_morphed_soft"] > v["rms_soft"]) }' "$work/out"
     done
+    noh bench "$work/head.noh" --only look --quick --json
+    expect 0 'a bench of looks'
+    check 'with a row for the transfer' grep -q '"look/transfer"' "$work/out"
 fi
 finish

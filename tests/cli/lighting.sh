@@ -66,4 +66,5 @@ for row in environment environment-shadow environment-tonemap environment-backdr
     check "with a row for $row" grep -q "\"look/$row\"" "$work/out"
 done
 check 'none for maps that the pack lacks' sh -c '! grep -q look/surface-map "$1"' - "$work/out"
+check 'and none for a transfer that it lacks' sh -c '! grep -q look/transfer "$1"' - "$work/out"
 finish

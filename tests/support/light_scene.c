@@ -95,16 +95,23 @@ static void open_light(scene *s, const noh_gl_device *device, const noh_environm
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,
                 const char *own)
 {
+    size_t count;
+    uint8_t *bytes = make_pack(material, &count);
+    scene_open_pack(s, bytes, count, lit, shadow_px, own);
+}
+
+void scene_open_pack(scene *s, uint8_t *bytes, size_t count, const noh_environment *lit, uint32_t shadow_px,
+                     const char *own)
+{
     const noh_gl_shader_desc shaders = { .name = "own", .fragment = own };
     noh_gl_renderer_desc d;
     char log[1024] = "";
-    size_t count;
     memset(s, 0, sizeof *s);
     memset(&d, 0, sizeof d);
     s->g = fixture_gpu();
     s->eye[2] = 1000.0f;
     s->key[2] = 1.0f;
-    s->bytes = make_pack(material, &count);
+    s->bytes = bytes;
     s->pack = test_open(s->bytes, count);
     for (uint32_t i = 0; i < MESHES; i++) {
         s->meshes[i] = test_mesh(&s->pack, i);

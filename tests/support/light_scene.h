@@ -38,6 +38,9 @@ model_material scene_material(const float values[4]);
  * own: a fragment shader in place of the library's, for colour alone; or NULL */
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,
                 const char *own);
+/* The same with a pack of yours, of MESHES meshes, which scene_close frees. */
+void scene_open_pack(scene *s, uint8_t *bytes, size_t count, const noh_environment *lit, uint32_t shadow_px,
+                     const char *own);
 void scene_close(scene *s);
 
 /* Parallel, along -z, of -1..1 in x and y. */

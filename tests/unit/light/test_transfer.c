@@ -10,6 +10,7 @@
 #include "convert/light/transfer_fit.h"
 #include "convert/model/model_build.h"
 #include "convert/pack/pack_strip.h"
+#include "stage/stage.h"
 #include "support/lod_fixture.h"
 #include "support/pack_walk.h"
 
@@ -536,6 +537,57 @@ static void levels_are_prefixes_of_transfers(void **state)
     model_free(m);
 }
 
+static uint8_t *strip(const noh_pack *from, uint32_t level, noh_pack *pack)
+{
+    byte_buffer out = { NULL, 0, 0, 0 };
+    model_error error;
+    uint8_t *bytes;
+    assert_int_equal(pack_strip(from, &level, &out, &error), 0);
+    bytes = test_aligned(out.bytes, out.count);
+    *pack = test_open(bytes, out.count);
+    buffer_free(&out);
+    return bytes;
+}
+
+/* Finer levels bring records that go on where the coarse pack's end: of another transfer, or of none, they would not.
+ */
+static void finer_packs_have_the_same_transfer(void **state)
+{
+    const lod_face face = { 12, 10, 2, 0, 0 };
+    const lod_settings two = { 2, 0, LOD_FAST };
+    model *m = lod_face_model(&face);
+    lit_pack fours, sixes;
+    noh_pack plain, coarse[3];
+    const noh_pack *finer[3];
+    uint8_t *bytes[3];
+    lod_pack from;
+    (void)state;
+    lod_pack_make(m, &two, 0, &from);
+    plain = test_open(from.bytes, from.byte_count);
+    add_transfer(&fours, from.bytes, from.byte_count, 4, 0);
+    add_transfer(&sixes, from.bytes, from.byte_count, 6, 0);
+    finer[0] = &plain;
+    finer[1] = &fours.pack;
+    finer[2] = &sixes.pack;
+    for (int i = 0; i < 3; i++) bytes[i] = strip(finer[i], 1, &coarse[i]);
+    for (int i = 0; i < 9; i++) {
+        const noh_kind_desc kind = {
+            .mesh = &coarse[i / 3], .finer = finer[i % 3], .skeleton = NOH_NONE, .actor_count = 1
+        };
+        const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1 };
+        noh_stage_plan plan;
+        noh_error error = { NOH_OK, "", 0, 0 };
+        const noh_result result = noh_stage_plan_make(&desc, NULL, &plan, &error);
+        assert_int_equal(result, i / 3 == i % 3 ? NOH_OK : NOH_ERR_ARG);
+        if (result) assert_non_null(strstr(error.what, "not the pack that its mesh was stripped from"));
+    }
+    for (int i = 0; i < 3; i++) free(bytes[i]);
+    free(fours.bytes);
+    free(sixes.bytes);
+    lod_pack_free(&from);
+    model_free(m);
+}
+
 /* ---- lies ---- */
 
 static noh_transfer_header *header_of(uint8_t *bytes, const noh_pack *pack)
@@ -635,6 +687,7 @@ int main(void)
         cmocka_unit_test(transfers_are_made_alike),
         cmocka_unit_test(copied_headers_keep_the_transfer),
         cmocka_unit_test(levels_are_prefixes_of_transfers),
+        cmocka_unit_test(finer_packs_have_the_same_transfer),
         cmocka_unit_test(every_lie_is_refused),
         cmocka_unit_test(every_flip_is_safe),
     };

@@ -21,7 +21,8 @@ enum {
     KEEP_CHANNEL = 32,
     KEEP_SKIN = 64,
     KEEP_EYE = 128,
-    KEEP_ALL = 255
+    KEEP_TRANSFER = 256,
+    KEEP_ALL = 511
 };
 
 typedef struct look {
@@ -45,6 +46,7 @@ static const look looks[] = {
     { "environment-backdrop", 0, "studio", "none", "off", "light" },
     { "environment-skin", KEEP_SKIN, "studio", "none", "off", "plain" },
     { "environment-eyes", KEEP_EYE, "studio", "none", "off", "plain" },
+    { "transfer", KEEP_TRANSFER, "studio", "none", "off", "plain" },
     { "all", KEEP_ALL, "studio", "filmic", "on", "light" },
 };
 
@@ -66,7 +68,7 @@ static unsigned material_has(const noh_material *m)
 
 static unsigned pack_has(const noh_pack *pack)
 {
-    unsigned has = 0;
+    unsigned has = pack->transfer_count ? KEEP_TRANSFER : 0;
     for (uint32_t i = 0; i < pack->material_count; i++) has |= material_has(&pack->materials[i]);
     return has;
 }
@@ -117,7 +119,8 @@ static int copy_pack(scene *s, const pack_file *from, unsigned keeps)
 
 static int open_light(scene *s, const look *l)
 {
-    const light_options o = { l->light, l->tonemap, l->shadow, l->background, 0.0 };
+    const light_options o = { l->light,      l->tonemap, l->shadow, l->keeps & KEEP_TRANSFER ? "on" : "off",
+                              l->background, 0.0 };
     int status = 0;
     if (l->light) {
         status = lighting_open(&s->light, &o);

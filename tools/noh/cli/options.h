@@ -116,6 +116,14 @@
           .what = "whether the strongest part of that light casts shadows",                                            \
           .example = "off",                                                                                            \
           __VA_ARGS__ },                                                                                               \
+        { .name = "--transfer",                                                                                        \
+          .kind = OPTION_TEXT,                                                                                         \
+          .at = offsetof(T, m.transfer),                                                                               \
+          .value = "on|off",                                                                                           \
+          .initial = "on",                                                                                             \
+          .what = "whether the mesh shades itself from that light, in packs built with --transfer",                    \
+          .example = "off",                                                                                            \
+          __VA_ARGS__ },                                                                                               \
     {                                                                                                                  \
         .name = "--background", .kind = OPTION_TEXT, .at = offsetof(T, m.background), .value = "light|gradient|plain", \
         .initial = "light", .what = "what is behind: that light, blurred; its colours from below and above; grey",     \

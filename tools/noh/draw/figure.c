@@ -168,6 +168,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
     d->light = desc->light && caps ? &desc->light->desc : NULL;
+    d->without_transfer = desc->light && desc->light->without_transfer;
     d->without_depth = !d->light || !d->light->shadow_px;
     d->without_shader = desc->view != NOH_VIEW_LIT && d->without_depth; /* its own draws shadows */
     d->gpu = caps ? &noh_stage_on_gl : NULL;

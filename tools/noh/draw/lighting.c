@@ -73,13 +73,14 @@ static int read_light(lighting *l, const char *name)
 
 int lighting_open(lighting *l, const light_options *o)
 {
-    static const char *const tonemaps[] = { "filmic", "none" }, *const shadows[] = { "on", "off" };
+    static const char *const tonemaps[] = { "filmic", "none" }, *const switches[] = { "on", "off" };
     static const char *const backgrounds[] = { "light", "gradient", "plain" };
-    int tonemap, shadow, background;
+    int tonemap, shadow, transfer, background;
     int status;
     memset(l, 0, sizeof *l);
     status = choose("--tonemap", o->tonemap, tonemaps, 2, &tonemap);
-    if (!status) status = choose("--shadow", o->shadow, shadows, 2, &shadow);
+    if (!status) status = choose("--shadow", o->shadow, switches, 2, &shadow);
+    if (!status) status = choose("--transfer", o->transfer, switches, 2, &transfer);
     if (!status) status = choose("--background", o->background, backgrounds, 3, &background);
     if (!status) status = read_light(l, o->light);
     if (status) {
@@ -87,6 +88,7 @@ int lighting_open(lighting *l, const light_options *o)
         return status;
     }
     l->has_shadow = !shadow;
+    l->without_transfer = transfer;
     l->background = background == 0 ? BACKGROUND_LIGHT : background == 1 ? BACKGROUND_GRADIENT : BACKGROUND_PLAIN;
     l->told.tonemap = tonemap ? NOH_TONEMAP_NONE : NOH_TONEMAP_FILMIC;
     l->desc.reflection = &l->reflection;

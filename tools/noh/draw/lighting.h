@@ -6,8 +6,8 @@
 #include "gpu/gpu.h"
 
 typedef struct light_options {
-    const char *light, *tonemap, *shadow, *background; /* of OPTIONS_LIGHT; NULL: their defaults */
-    double rotate;                                     /* degrees about the vertical axis */
+    const char *light, *tonemap, *shadow, *transfer, *background; /* of OPTIONS_LIGHT; NULL: their defaults */
+    double rotate;                                                /* degrees about the vertical axis */
 } light_options;
 
 #define LIGHTING_SHADOW_PX 1024u
@@ -21,7 +21,7 @@ typedef struct lighting {
     noh_light light; /* not turned */
     noh_gl_light_desc desc;
     noh_lighting told;
-    int has_shadow;
+    int has_shadow, without_transfer;
     double degrees; /* how far it is turned */
     lighting_background background;
 } lighting;
