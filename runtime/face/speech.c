@@ -7,9 +7,10 @@
 #include "base/trig.h"
 #include "face/face_internal.h"
 
-#define NEIGHBOURS 8u         /* phones on each side of a tick that can be seen at it */
-#define HARD_TICKS 1632u      /* 34 ms */
-#define HARD_RAMP_TICKS 1440u /* 30 ms, on each side */
+#define NEIGHBOURS 8u        /* phones on each side of a tick that can be seen at it */
+#define HARD_TICKS 1632      /* 34 ms */
+#define HARD_RAMP_TICKS 1440 /* 30 ms, on each side */
+#define MEET_TICKS 576       /* 12 ms: the shortest of them */
 
 /* How long before its middle a phone begins to rule, and how fast it lets go (1/s), and how much it rules at all. */
 typedef struct dominance {
@@ -85,35 +86,40 @@ static float silence(const noh_speech *s, int64_t tick)
     return d->amount * (within <= 0 ? 1.0f : noh_exp2(-1.44269504f * d->rise * (float)within / NOH_FACE_TICKS_PER_S));
 }
 
-/* How shut the lips are for the phone: 1 for HARD_TICKS around its middle or for as long as it lasts, whichever is
- * longer, with ramps outside of that. */
-static float shut_at(const noh_speech *s, uint32_t phone, int64_t tick)
+/* How far a tick lies outside of the time in which the lips must be shut for the phone: HARD_TICKS around its middle,
+ * or for as long as it lasts, whichever is longer. 0 within. */
+static int64_t outside(const noh_speech *s, uint32_t phone, int64_t tick)
 {
     const int64_t start = s->phones[phone].start, end = end_of(s, phone), middle = (start + end) / 2;
-    const int64_t half = end - start > (int64_t)HARD_TICKS ? (end - start) / 2 : (int64_t)HARD_TICKS / 2;
+    const int64_t half = end - start > HARD_TICKS ? (end - start) / 2 : HARD_TICKS / 2;
     const int64_t from = tick > middle ? tick - middle : middle - tick;
-    if (from <= half) {
-        return 1.0f;
-    }
-    return from - half < (int64_t)HARD_RAMP_TICKS ? 1.0f - (float)(from - half) / (float)HARD_RAMP_TICKS : 0.0f;
+    return from > half ? from - half : 0;
 }
 
-/* Shut lips take their share from all that is there. Of two that meet the nearer one has more. */
+static float ramp(int64_t ticks, int64_t length)
+{
+    return ticks < length ? 1.0f - (float)ticks / (float)length : 0.0f;
+}
+
+/* Shut lips take their share from all that is there. Where a lip on teeth is near, lips that meet let go and close the
+ * faster, down to MEET_TICKS: two that stand side by side each have their time. */
 static void shut_lips(const noh_speech *s, uint32_t first, uint32_t end, int64_t tick, float *visemes)
 {
-    float shut[2] = { 0.0f, 0.0f }, all, scale;
+    int64_t away[2] = { HARD_RAMP_TICKS, HARD_RAMP_TICKS };
+    float met, bitten;
     for (uint32_t i = first; i < end; i++) {
         const uint32_t v = s->phones[i].viseme;
         if (v == NOH_VISEME_PP || v == NOH_VISEME_FF) {
-            const float now = shut_at(s, i, tick);
-            shut[v - NOH_VISEME_PP] = now > shut[v - NOH_VISEME_PP] ? now : shut[v - NOH_VISEME_PP];
+            const int64_t now = outside(s, i, tick);
+            away[v - NOH_VISEME_PP] = now < away[v - NOH_VISEME_PP] ? now : away[v - NOH_VISEME_PP];
         }
     }
-    all = shut[0] + shut[1];
-    scale = all > 1.0f ? 1.0f / all : 1.0f;
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) visemes[v] *= 1.0f - all * scale;
-    visemes[NOH_VISEME_PP] += shut[0] * scale;
-    visemes[NOH_VISEME_FF] += shut[1] * scale;
+    met = ramp(away[0], MEET_TICKS + (HARD_RAMP_TICKS - MEET_TICKS) * away[1] / HARD_RAMP_TICKS);
+    bitten = ramp(away[1], HARD_RAMP_TICKS);
+    bitten = bitten < 1.0f - met ? bitten : 1.0f - met;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) visemes[v] *= 1.0f - (met + bitten);
+    visemes[NOH_VISEME_PP] += met;
+    visemes[NOH_VISEME_FF] += bitten;
 }
 
 void noh_speech_visemes(const noh_speech *speech, int64_t tick, float *visemes)

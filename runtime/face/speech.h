@@ -7,7 +7,7 @@
  * wants it. So each phone dominates a stretch of time around its middle, rising and falling at rates of its class, and
  * shapes are shared out by dominance (Cohen and Massaro, "Modeling coarticulation in synthetic visual speech", 1993).
  * Lips that must be shut come last, after everything that is smooth: p, b and m for 34 ms at least, which is one frame
- * at 30 Hz, and f and v likewise, whatever stands beside them.
+ * at 30 Hz, whatever stands beside them, and the lip on the teeth of f and v in what time p, b and m leave.
  *
  * Threads: no state; any thread. */
 #ifndef NOH_FACE_SPEECH_H
