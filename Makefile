@@ -281,8 +281,9 @@ $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
 PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
-$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --wrinkles auto --quiet
+PUPPET_SPRINGS := tools/demo_assets/puppet/puppet.springs
+$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRINGS) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --springs $(PUPPET_SPRINGS) --wrinkles auto --quiet
 
 # With what gets up from a fall.
 $(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
@@ -458,7 +459,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 # The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
+CROSS_SKIP  := gltf_springs springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
                joint_order clip_errors lod_pack strip stage stage_between stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads) \
                $(if $(SAN),,stage_threads)

@@ -7,7 +7,7 @@ out=$build/demo
 noh=$build/noh
 
 echo
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --wrinkles auto
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto
 echo
 "$noh" render "$out/puppet.noh" -o "$out/puppet.png" --size 640x720 --clip dance --time 14.73 --camera 15,4
 for clip in walk bow look_round dance; do

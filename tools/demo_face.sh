@@ -7,7 +7,7 @@ out=$build/demo
 noh=$build/noh
 text=${NOH_TEXT:-'Bob and Mabel pump up five balloons before supper.'}
 
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --wrinkles auto \
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto \
     --lips --quiet
 "$noh" build "$build/mask.glb" -o "$out/mask_says_pack.noh" --wrinkles auto --lips --quiet
 if ! "$noh" speak "$text" --face "$out/puppet.noh" -o "$out/says.noh" --wav "$out/says.wav"; then

@@ -34,6 +34,7 @@ extern "C" {
 #define NOH_CHUNK_RAGDOLL NOH_FOURCC('R', 'G', 'D', 'L')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 #define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
+#define NOH_CHUNK_SPRINGS NOH_FOURCC('S', 'P', 'R', 'G')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -438,6 +439,42 @@ typedef struct noh_pack_ragdoll_row {
     uint32_t reserved[3];
 } noh_pack_ragdoll_row;
 
+/* ---- CHUNK_SPRINGS, none or one for a skeleton, in the order of skeletons: header, then three arrays. Chains of its
+ * joints that swing (stage/springs.h), and capsules that they stay out of. ---- */
+
+/* A joint that swings. */
+typedef struct noh_spring_row {
+    uint32_t joint;
+    float stiffness;  /* metres per second by which its rest direction pulls, 0..; VRM's, usually 0..4 */
+    float drag;       /* share of its speed that it loses in 1/60 s, 0..1 */
+    float radius;     /* of its end against colliders, metres, 0.. */
+    float gravity[3]; /* metres per second by which gravity pulls, world */
+} noh_spring_row;
+
+/* Rows whose joints each are a child of the one before; the first has a parent. */
+typedef struct noh_spring_chain {
+    uint32_t first_row, row_count; /* 1..NOH_SPRING_JOINTS_MAX; the rows of the chain before end at the first */
+    uint32_t collides;             /* bit i: with collider i */
+    float end[3];                  /* where the last joint's bone ends, in its space, in the skeleton's unit */
+} noh_spring_chain;
+
+/* A capsule that goes along with a joint; a sphere where `from` and `to` are equal. */
+typedef struct noh_spring_capsule {
+    uint32_t joint;
+    float from[3], to[3]; /* in the joint's space, in the skeleton's unit */
+    float radius;         /* metres, 0.. */
+} noh_spring_capsule;
+
+typedef struct noh_springs_header {
+    uint32_t skeleton;                         /* the n-th skeleton chunk */
+    uint32_t joint_count;                      /* that skeleton's */
+    uint32_t row_count, rows_offset;           /* noh_spring_row[row_count], each joint in one at most */
+    uint32_t chain_count, chains_offset;       /* noh_spring_chain[chain_count] they come in this order: one that hangs
+                                                * on another behind it */
+    uint32_t collider_count, colliders_offset; /* noh_spring_capsule[collider_count] */
+    uint32_t reserved[4];
+} noh_springs_header;
+
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
  * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened
  * (graph/graph_pack.h). Kinds, conditions, curves, loops and flags are the numbers of graph/graph.h, anim/changes.h and
@@ -547,6 +584,10 @@ NOH_STATIC_ASSERT(sizeof(noh_pack_graph_mask) == 16, graph_mask);
 NOH_STATIC_ASSERT(sizeof(noh_pack_graph_name) == 12, graph_name);
 NOH_STATIC_ASSERT(sizeof(noh_pack_ragdoll_header) == 16, ragdoll_header);
 NOH_STATIC_ASSERT(sizeof(noh_pack_ragdoll_row) == 48, ragdoll_row);
+NOH_STATIC_ASSERT(sizeof(noh_springs_header) == 48, springs_header);
+NOH_STATIC_ASSERT(sizeof(noh_spring_row) == 28, spring_row);
+NOH_STATIC_ASSERT(sizeof(noh_spring_chain) == 24, spring_chain);
+NOH_STATIC_ASSERT(sizeof(noh_spring_capsule) == 32, spring_capsule);
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
 NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);

@@ -24,6 +24,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_GRAPH: return 10;
     case NOH_CHUNK_RECIPE: return 11;
     case NOH_CHUNK_RAGDOLL: return 12;
+    case NOH_CHUNK_SPRINGS: return 13;
     default: return -1;
     }
 }
@@ -206,6 +207,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
             pack->ragdoll_row_count = h->row_count;
             pack->ragdoll_rows = (const noh_pack_ragdoll_row *)(const void *)(check.bytes + h->rows_offset);
         }
+        break;
+    case NOH_CHUNK_SPRINGS:
+        result = noh_check_springs(&check);
+        count_chunk(&pack->springs_count, &pack->first_springs, index);
         break;
     default: /* a graph, which noh_pack_check_graph checks when it is opened */
         count_chunk(&pack->graph_count, &pack->first_graph, index);

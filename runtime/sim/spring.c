@@ -58,7 +58,7 @@ static int is_good(const noh_spring_joint *j)
     const float square = noh_dot3(j->bone, j->bone), unit = noh_quat_dot(j->rest, j->rest);
     return square > 1e-16f && noh_is_finite(square) && unit > 0.99f && unit < 1.01f && j->stiffness >= 0.0f &&
            noh_is_finite(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
-           noh_is_finite(j->radius) && j->gravity >= 0.0f && noh_is_finite(j->gravity);
+           noh_is_finite(j->radius) && noh_is_finite(noh_dot3(j->gravity, j->gravity));
 }
 
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
@@ -209,11 +209,8 @@ static void turn_towards(const float rest[4], const float at_rest[3], const floa
 static void step(noh_spring *s, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
                  const obstacle *obstacles)
 {
-    static const float down[3] = { 0.0f, -1.0f, 0.0f };
     const float seconds = (float)NOH_SPRING_STEP_TICKS / 48000.0f;
-    float rotation[4], head[3] = { 0.0f, 0.0f, 0.0f }, gravity[3];
-    memcpy(gravity, desc->gravity_direction, sizeof gravity);
-    noh_normalize3(gravity, down);
+    float rotation[4], head[3] = { 0.0f, 0.0f, 0.0f };
     memcpy(rotation, carrier->rotation, sizeof rotation);
     noh_sub3(carrier->position, s->stepped.position, s->moved);
     memcpy(s->turned, s->stepped.rotation, sizeof s->turned);
@@ -226,7 +223,7 @@ static void step(noh_spring *s, const noh_spring_desc *desc, const noh_spring_ca
         for (int c = 0; c < 3; c++) {
             const float inertia = (p->now[c] - p->before[c]) * (1.0f - j->drag);
             tail[c] = p->now[c] - s->moved[c] + inertia +
-                      seconds * (j->stiffness * pull[c] / p->length + j->gravity * gravity[c]);
+                      seconds * (j->stiffness * pull[c] / p->length + j->gravity[c]);
             p->before[c] = p->now[c] - s->moved[c];
         }
         noh_sub3(tail, head, bone);

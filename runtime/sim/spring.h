@@ -33,12 +33,12 @@ extern "C" {
 #define NOH_SPRING_STEP_TICKS 800u /* 1/60 s */
 
 typedef struct noh_spring_joint {
-    float bone[3];   /* from the joint to the next one, or to the chain's end, in the joint's space; longer than 0 */
-    float rest[4];   /* local rotation at rest */
-    float stiffness; /* metres per second by which the rest direction pulls, 0..; VRM's, usually 0..4 */
-    float drag;      /* share of its speed that it loses in a step, 0..1 */
-    float radius;    /* of its end, against colliders */
-    float gravity;   /* metres per second by which gravity pulls, 0.. */
+    float bone[3];    /* from the joint to the next one, or to the chain's end, in the joint's space; longer than 0 */
+    float rest[4];    /* local rotation at rest */
+    float stiffness;  /* metres per second by which the rest direction pulls, 0..; VRM's, usually 0..4 */
+    float drag;       /* share of its speed that it loses in a step, 0..1 */
+    float radius;     /* of its end, against colliders */
+    float gravity[3]; /* metres per second by which gravity pulls, world */
 } noh_spring_joint;
 
 /* What springs of one kind have in common. */
@@ -46,7 +46,6 @@ typedef struct noh_spring_desc {
     const noh_spring_joint *joints; /* [joint_count] from the first to the last */
     uint32_t joint_count;           /* 1..NOH_SPRING_JOINTS_MAX */
     uint32_t collider_count;        /* 0..NOH_SPRING_COLLIDERS_MAX */
-    float gravity_direction[3];     /* unit; default (zeros) down, -Y */
 } noh_spring_desc;
 
 /* Where the first joint is, and how what carries it is turned: world space. */

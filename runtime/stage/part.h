@@ -34,6 +34,8 @@
 extern "C" {
 #endif
 
+#define NOH_PART_FULL_DETAIL 1e9f
+
 /* What a part is given. */
 typedef struct noh_part_work {
     noh_actor actor;
@@ -41,7 +43,7 @@ typedef struct noh_part_work {
     noh_transform *local;         /* [skeleton->joint_count] read and write; parents come before their children */
     uint32_t joint_count;         /* the first so many were sampled at this detail; the others have the bind pose */
     uint32_t level;               /* of the actor, 0 the finest */
-    float pixels_per_metre;       /* at the actor's nearest point */
+    float pixels_per_metre;       /* at the actor's nearest point; NOH_PART_FULL_DETAIL where all is shown in full */
     noh_place place;              /* of the actor after the last step. Of one that hangs on another it is the other's:
                                    * where the joint is, is not known yet */
     int64_t clock;                /* tick of the stage's clock that the pose is for: the present one, or a later one */

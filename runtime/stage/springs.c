@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "base/assert.h"
+#include "clip/pack_clip.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
@@ -17,6 +18,7 @@ typedef struct swing {
     uint32_t first_row;
     uint32_t collides;
     uint32_t state; /* where its spring lies in the state of an actor */
+    float length;   /* stretched out, metres */
 } swing;
 
 struct noh_springs {
@@ -27,6 +29,32 @@ struct noh_springs {
     swing *swings;                /* [chain_count] */
     noh_spring_capsule *capsules; /* [collider_count], radii in the skeleton's unit */
 };
+
+/* ---- of a pack ---- */
+
+int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc)
+{
+    NOH_ASSERT(pack && desc);
+    for (uint32_t i = 0; i < pack->springs_count; i++) {
+        const uint8_t *bytes = pack->bytes + pack->chunks[pack->first_springs + i].offset;
+        const noh_springs_header *h = (const noh_springs_header *)(const void *)bytes;
+        const noh_skeleton_header *s;
+        if (h->skeleton != skeleton) continue;
+        s = (const noh_skeleton_header *)(const void *)(pack->bytes +
+                                                        pack->chunks[pack->first_skeleton + skeleton].offset);
+        memset(desc, 0, sizeof *desc);
+        (void)noh_pack_skeleton_at(pack, skeleton, &desc->skeleton, NULL, NULL);
+        desc->metres = s->unit_cm / 100.0f;
+        desc->rows = (const noh_spring_row *)(const void *)(bytes + h->rows_offset);
+        desc->row_count = h->row_count;
+        desc->chains = (const noh_spring_chain *)(const void *)(bytes + h->chains_offset);
+        desc->chain_count = h->chain_count;
+        desc->colliders = (const noh_spring_capsule *)(const void *)(bytes + h->colliders_offset);
+        desc->collider_count = h->collider_count;
+        return 1;
+    }
+    return 0;
+}
 
 /* ---- size and init ---- */
 
@@ -86,6 +114,24 @@ static int joints_differ(const noh_springs_desc *d)
     return 1;
 }
 
+/* A vector in a joint's space at rest, as long as it is in model space: the scales of the joint and of those above it
+ * are taken along. */
+static void scale_vector(const noh_skeleton *skeleton, uint32_t joint, const float v[3], float out[3])
+{
+    float turn[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, back[4];
+    memcpy(out, v, 3 * sizeof *out);
+    for (uint32_t up = joint; up != NOH_JOINT_ROOT; up = skeleton->parents[up]) {
+        const noh_transform *t = &skeleton->bind_pose[up];
+        if (t->scale[0] != 1.0f || t->scale[1] != 1.0f || t->scale[2] != 1.0f) {
+            noh_quat_rotate(turn, out, out);
+            for (int i = 0; i < 3; i++) out[i] *= t->scale[i];
+            noh_quat_conjugate(turn, back);
+            noh_quat_rotate(back, out, out);
+        }
+        noh_quat_mul(t->rotation, turn, turn);
+    }
+}
+
 /* A joint of a chain as its spring has it: lengths in units of the skeleton. */
 static noh_spring_joint joint_of_row(const noh_springs_desc *d, const noh_spring_chain *c, uint32_t row)
 {
@@ -93,12 +139,13 @@ static noh_spring_joint joint_of_row(const noh_springs_desc *d, const noh_spring
     const noh_spring_row *from = &d->rows[row];
     const int is_last = row + 1u == c->first_row + c->row_count;
     noh_spring_joint j;
-    memcpy(j.bone, is_last ? c->end : d->skeleton.bind_pose[d->rows[row + 1u].joint].translation, sizeof j.bone);
+    scale_vector(&d->skeleton, from->joint,
+                 is_last ? c->end : d->skeleton.bind_pose[d->rows[row + 1u].joint].translation, j.bone);
     memcpy(j.rest, d->skeleton.bind_pose[from->joint].rotation, sizeof j.rest);
     j.stiffness = from->stiffness * units;
     j.drag = from->drag;
     j.radius = from->radius * units;
-    j.gravity = from->gravity * units;
+    for (int i = 0; i < 3; i++) j.gravity[i] = from->gravity[i] * units;
     return j;
 }
 
@@ -110,7 +157,7 @@ static noh_result check_rows(const noh_springs_desc *d, const noh_spring_chain *
     }
     for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
         const noh_spring_joint joint = joint_of_row(d, c, i);
-        const noh_spring_desc alone = { &joint, 1, 0, { 0.0f, 0.0f, 0.0f } };
+        const noh_spring_desc alone = { &joint, 1, 0 };
         if (noh_spring_check_desc(&alone, NULL)) {
             return noh_fail(error, NOH_ERR_ARG, "springs: a row's bone has no length, or a number is out of its range",
                             i, 0);
@@ -158,7 +205,7 @@ static uint32_t bits_of(uint32_t mask)
 
 static noh_spring_desc spring_of(const noh_spring_chain *c, const noh_spring_joint *joints)
 {
-    const noh_spring_desc spring = { joints, c->row_count, bits_of(c->collides), { 0.0f, 0.0f, 0.0f } };
+    const noh_spring_desc spring = { joints, c->row_count, bits_of(c->collides) };
     return spring;
 }
 
@@ -173,9 +220,20 @@ static size_t state_bytes_of(const noh_springs_desc *d, uint32_t chains)
     return bytes;
 }
 
+void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes)
+{
+    size_t longest = 0;
+    NOH_ASSERT(desc && state_bytes && scratch_bytes);
+    for (uint32_t i = 0; i < desc->chain_count; i++) {
+        if (desc->chains[i].row_count > longest) longest = desc->chains[i].row_count;
+    }
+    *state_bytes = state_bytes_of(desc, desc->chain_count);
+    *scratch_bytes = 2u * desc->collider_count * sizeof(noh_spring_collider) + longest * 4u * sizeof(float);
+}
+
 static void fill(noh_springs *s, const noh_springs_desc *d)
 {
-    size_t longest = 0, state = state_bytes_of(d, 0);
+    size_t bytes, scratch, state = state_bytes_of(d, 0);
     for (uint32_t i = 0; i < d->chain_count; i++) {
         const noh_spring_chain *c = &d->chains[i];
         swing *w = &s->swings[i];
@@ -183,16 +241,24 @@ static void fill(noh_springs *s, const noh_springs_desc *d)
         for (uint32_t row = c->first_row; row < c->first_row + c->row_count; row++) {
             s->joints[row] = d->rows[row].joint;
             s->rows[row] = joint_of_row(d, c, row);
+            w->length += noh_length3(s->rows[row].bone) * d->metres;
         }
         w->desc = spring_of(c, s->rows + c->first_row);
         w->first_row = c->first_row;
         w->collides = c->collides;
         w->state = (uint32_t)state;
         state += noh_spring_size(&w->desc);
-        if (c->row_count > longest) longest = c->row_count;
     }
-    s->state_bytes = (uint32_t)state;
-    s->scratch_bytes = (uint32_t)(2u * d->collider_count * sizeof(noh_spring_collider) + longest * 4u * sizeof(float));
+    for (uint32_t i = 0; i < d->collider_count; i++) {
+        const noh_spring_capsule *from = &d->colliders[i];
+        s->capsules[i] = *from;
+        s->capsules[i].radius /= d->metres;
+        scale_vector(&d->skeleton, from->joint, from->from, s->capsules[i].from);
+        scale_vector(&d->skeleton, from->joint, from->to, s->capsules[i].to);
+    }
+    noh_springs_measure(d, &bytes, &scratch);
+    s->state_bytes = (uint32_t)bytes;
+    s->scratch_bytes = (uint32_t)scratch;
 }
 
 noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
@@ -217,10 +283,6 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
     s->chain_count = desc->chain_count;
     s->collider_count = desc->collider_count;
     s->joint_count = desc->skeleton.joint_count;
-    for (uint32_t i = 0; i < desc->collider_count; i++) {
-        s->capsules[i] = desc->colliders[i];
-        s->capsules[i].radius /= desc->metres;
-    }
     fill(s, desc);
     *springs = s;
     return NOH_OK;
@@ -262,19 +324,47 @@ static noh_spring_carrier carrier_of(const noh_part_work *w, uint32_t joint)
     return c;
 }
 
+/* How much of its swing a chain shows, 0..1: none where it looks too short. */
+static float share_of(const noh_part_work *w, const swing *g)
+{
+    const float pixels = w->pixels_per_metre * g->length / NOH_SPRINGS_FADE_PIXELS;
+    return pixels >= 1.0f ? 1.0f : pixels <= 0.5f ? 0.0f : 2.0f * pixels - 1.0f;
+}
+
+/* Into the pose; `share` below 1 leaves the rest of the way to the rotations at rest. */
+static void show(const noh_part_work *w, const noh_springs *s, const swing *g, float share, const float *rotations)
+{
+    for (uint32_t i = 0; i < g->desc.joint_count; i++) {
+        float *local = w->local[s->joints[g->first_row + i]].rotation;
+        if (share < 1.0f) {
+            noh_quat_nlerp(g->desc.joints[i].rest, rotations + 4u * (size_t)i, share, local);
+        } else {
+            memcpy(local, rotations + 4u * (size_t)i, 4 * sizeof *local);
+        }
+    }
+}
+
+static void rest(const noh_part_work *w, const noh_springs *s, const swing *g)
+{
+    for (uint32_t i = 0; i < g->desc.joint_count; i++) {
+        memcpy(w->local[s->joints[g->first_row + i]].rotation, g->desc.joints[i].rest, 4 * sizeof(float));
+    }
+}
+
 /* One chain and the colliders that it has. */
 static void swing_chain(const noh_part_work *w, const noh_springs *s, uint32_t chain,
                         const noh_spring_collider *near_by, float *rotations)
 {
     const swing *g = &s->swings[chain];
-    const uint32_t *joints = s->joints + g->first_row;
+    const float share = share_of(w, g);
     uint32_t *begun = (uint32_t *)w->state + chain;
     noh_spring *spring = (noh_spring *)(void *)((uint8_t *)w->state + g->state);
-    if (joints[0] >= w->joint_count) {
+    if (!(share > 0.0f)) {
         *begun = 0;
+        rest(w, s, g);
         return;
     }
-    const noh_spring_carrier carrier = carrier_of(w, joints[0]);
+    const noh_spring_carrier carrier = carrier_of(w, s->joints[g->first_row]);
     if (w->cut || !*begun) {
         *begun = noh_spring_init(spring, noh_spring_size(&g->desc), &g->desc, &carrier, &spring, NULL) == NOH_OK;
         if (!*begun) return;
@@ -282,9 +372,7 @@ static void swing_chain(const noh_part_work *w, const noh_springs *s, uint32_t c
         (void)noh_spring_step(spring, &g->desc, &carrier, near_by, w->ticks);
     }
     noh_spring_rotations(spring, &g->desc, rotations);
-    for (uint32_t i = 0; i < g->desc.joint_count; i++) {
-        memcpy(w->local[joints[i]].rotation, rotations + 4u * (size_t)i, 4 * sizeof *rotations);
-    }
+    show(w, s, g, share, rotations);
 }
 
 static void modify(noh_part_work *w)

@@ -1,19 +1,24 @@
 /* springs.h: springs of a kind: chains of its joints that swing as its actors move.
  *
- *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors of kinds that have it
- *   noh_springs_part                     the part that swings them, for noh_kind_desc.parts
+ *   noh_springs_of_pack                  those that a pack brings (noh build --springs): its kinds swing them by
+ * themselves noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors of kinds
+ * that have it noh_springs_part                     the part that swings them, for noh_kind_desc.parts
+ *
+ * A kind whose pack brings springs needs none of these calls: its stage makes them, and runs them after all other
+ * parts, unless noh_kind_desc.without_springs. The calls are for springs that the game describes itself.
  *
  * All of it is a part (part.h): what swings is state of the stage, planned, saved, forked and hashed with all else, and
  * has the same bits for any number of jobs. Each chain is a spring of sim/spring.h, carried by the parent of its first
  * joint as clips, faces and the parts before have posed it. Clips that move a joint of a chain are overruled: its rest
  * is the bind pose.
  *
- * A chain whose first joint the level of detail leaves out stands at rest, and is at rest when it comes back; so are
- * all chains after a cut.
- * Threads: noh_springs_init as any init; afterwards it is read only. */
+ * A chain that looks shorter than NOH_SPRINGS_FADE_PIXELS fades into its rest, and stands at rest, at no cost, from
+ * half of that length down; it begins anew from rest, and fades in. All chains are at rest after a cut. Threads:
+ * noh_springs_init as any init; afterwards it is read only. */
 #ifndef NOH_STAGE_SPRINGS_H
 #define NOH_STAGE_SPRINGS_H
 
+#include "pack/pack.h"
 #include "pose/skeleton.h"
 #include "sim/spring.h"
 #include "stage/part.h"
@@ -22,27 +27,9 @@
 extern "C" {
 #endif
 
-/* A joint that swings. */
-typedef struct noh_spring_row {
-    uint32_t joint;
-    float stiffness, drag, radius, gravity; /* as in noh_spring_joint, in metres */
-} noh_spring_row;
+#define NOH_SPRINGS_FADE_PIXELS 16.0f
 
-/* Rows whose joints each are a child of the one before; the first has a parent. */
-typedef struct noh_spring_chain {
-    uint32_t first_row, row_count; /* 1..NOH_SPRING_JOINTS_MAX */
-    uint32_t collides;             /* bit i: with collider i */
-    float end[3];                  /* where the last joint's bone ends, in its space, in the skeleton's unit */
-} noh_spring_chain;
-
-/* A capsule that goes along with a joint; a sphere where `from` and `to` are equal. */
-typedef struct noh_spring_capsule {
-    uint32_t joint;
-    float from[3], to[3]; /* in the joint's space, in the skeleton's unit */
-    float radius;         /* metres, 0.. */
-} noh_spring_capsule;
-
-/* All is read at init. */
+/* Rows, chains and capsules are those of pack/format.h. All is read at init. */
 typedef struct noh_springs_desc {
     noh_skeleton skeleton; /* of the kinds that use it */
     float metres;          /* of one unit of the skeleton: noh_skeleton_header.unit_cm / 100 */
@@ -56,6 +43,10 @@ typedef struct noh_springs_desc {
 
 typedef struct noh_springs noh_springs;
 
+/* What a pack has for one of its skeletons; it points into the pack.
+ * returns  0: there are none, and *desc is untouched */
+int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc);
+
 /* The exact bytes; 0 for counts that are impossible. */
 size_t noh_springs_size(const noh_springs_desc *desc);
 
@@ -64,6 +55,9 @@ size_t noh_springs_size(const noh_springs_desc *desc);
  *         one actor would have more than NOH_STAGE_PART_BYTES_MAX; MEMORY it is too small */
 noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
                             noh_error *error);
+
+/* Bytes of each actor and of each job that their part will have; of a desc that noh_springs_init takes. */
+void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes);
 
 /* The part; the springs must outlive the stage. Of each actor: 4 bytes a chain rounded up to 16, and a noh_spring each.
  * The kind's skeleton is that of the desc: a kind with fewer joints is not swung. */

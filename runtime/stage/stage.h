@@ -111,6 +111,8 @@ typedef struct noh_kind_desc {
     /* What changes its poses before they are shown (stage/part.h), in this order; default (NULL) nothing, at no cost */
     const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
     uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
+    int without_springs;                /* 1: what springs of the mesh's pack (stage/springs.h) would swing is left to
+                                         * clips */
     uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * none */

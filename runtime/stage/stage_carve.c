@@ -145,6 +145,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
     noh_mesh skinned;
     noh_result result;
+    size_t springs_state;
     memset(needs, 0, sizeof *needs);
     measure_meshes(&d, needs, &skinned);
     take_clips(&plan->kinds[kind].clips, &d, owner == kind, needs);
@@ -158,6 +159,7 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
         return result;
     }
     needs->part_bytes = noh_stage_part_bytes(&d);
+    needs->springs_bytes = noh_stage_springs_bytes(&d, &springs_state, &needs->part_scratch_bytes);
     needs->face_link_max = d.face ? noh_stage_face_links(&d) : 0;
     for (uint32_t i = 0; i < d.part_count; i++) {
         const size_t bytes = d.parts[i].scratch_bytes;
@@ -374,6 +376,8 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
         k->doll_scratch = noh_arena_carve(arena, noh_stage_doll_scratch_bytes(&d), 16);
         add(list, "ragdolls", i, arena, &from);
     }
+    b->springs[i] = noh_arena_carve(arena, n->springs_bytes, 16);
+    if (n->springs_bytes) add(list, "springs", i, arena, &from);
     b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
     if (n->graph_count) add(list, "graphs", i, arena, &from);
     b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);

@@ -32,6 +32,7 @@ uint32_t noh_stage_controller_flags(const noh_kind_desc *kind)
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
 {
     noh_kind_desc d = desc->kinds[kind];
+    noh_springs_desc springs;
     if (!d.name) d.name = "";
     if (!d.seen_max) d.seen_max = d.actor_count;
     if (!d.layers) {
@@ -40,6 +41,7 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
     }
     if (!d.clips && !d.clip_packs) d.clips = d.mesh;
     if (d.mesh->skeleton_count == 0) d.skeleton = NOH_NONE;
+    d.without_springs = d.without_springs || !noh_springs_of_pack(d.mesh, d.skeleton, &springs);
     if (!d.change_count) d.change_count = 3u * noh_stage_track_count(&d);
     d.held_float_count = d.held_float_count == NOH_NONE ? 0 : d.held_float_count ? d.held_float_count : 8u;
     return d;
@@ -172,6 +174,17 @@ static const char *bad_parts(const noh_kind_desc *d)
     return NULL;
 }
 
+static const char *bad_springs(const noh_kind_desc *d)
+{
+    noh_springs_desc springs;
+    size_t state_bytes, scratch_bytes;
+    if (d->without_springs || !noh_springs_of_pack(d->mesh, d->skeleton, &springs)) return NULL;
+    noh_springs_measure(&springs, &state_bytes, &scratch_bytes);
+    return state_bytes > NOH_STAGE_PART_BYTES_MAX
+               ? "springs of a kind's mesh: more bytes than NOH_STAGE_PART_BYTES_MAX: take without_springs"
+               : NULL;
+}
+
 static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
 {
     const noh_kind_desc *d = &desc->kinds[number];
@@ -204,6 +217,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
         return "skeleton of a kind is none of its mesh pack's";
     if (filled.ragdoll && noh_stage_bad_ragdoll(&filled)) return noh_stage_bad_ragdoll(&filled);
     if (filled.face && noh_stage_bad_face(&filled)) return noh_stage_bad_face(&filled);
+    if (bad_springs(&filled)) return bad_springs(&filled);
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;
 }
 

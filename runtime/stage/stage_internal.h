@@ -43,6 +43,7 @@
 #include "stage/part.h"
 #include "sim/ragdoll_pose.h"
 #include "sim/ragdoll_rig.h"
+#include "stage/springs.h"
 #include "stage/stage_face.h"
 #include "stage/stage_ragdoll.h"
 #include "stage/stage.h"
@@ -266,7 +267,8 @@ typedef struct noh_stage_kind {
     noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
     float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
     uint32_t slot_bytes;
-    noh_stage_part *parts; /* [desc.part_count] */
+    noh_stage_part *parts;  /* [desc.part_count] */
+    noh_stage_part springs; /* of the pack, after these; modify NULL: none */
     size_t part_bytes;
     noh_stage_face_kind *face;       /* NULL: none */
     noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
@@ -445,6 +447,7 @@ typedef struct noh_stage_needs {
     size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
     uint32_t graph_count;
     size_t part_bytes, part_scratch_bytes; /* 0 without parts */
+    size_t springs_bytes;                  /* 0 without springs of the pack */
     uint32_t face_link_max;                /* 0 without faces */
     uint32_t corrective_count;
     uint32_t cached_segment_count, segment_count;
@@ -480,7 +483,7 @@ typedef struct noh_stage_blocks {
     float *matrices; /* of all jobs */
     size_t matrices_floats;
     void *pick_scratch, *inertia_scratch, *schedule;
-    void *graphs[NOH_STAGE_KINDS_MAX];
+    void *graphs[NOH_STAGE_KINDS_MAX], *springs[NOH_STAGE_KINDS_MAX];
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
 
@@ -569,11 +572,14 @@ noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_
 /* ---- parts ---- */
 
 size_t noh_stage_part_bytes(const noh_kind_desc *kind); /* of an actor's states */
+/* Bytes of the springs of a kind's pack, of what each actor and each job has of them; 0: it has none. */
+size_t noh_stage_springs_bytes(const noh_kind_desc *kind, size_t *state_bytes, size_t *scratch_bytes);
+noh_result noh_stage_open_springs(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error);
 noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error);
 /* Whether something changes poses before they are shown. */
 static inline int noh_stage_has_parts(const noh_kind_desc *kind)
 {
-    return kind->part_count || kind->face || kind->ragdoll;
+    return kind->part_count || kind->face || kind->ragdoll || !kind->without_springs;
 }
 
 const char *noh_stage_bad_ragdoll(const noh_kind_desc *d);

@@ -396,6 +396,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     if (result == NOH_OK) result = open_bounds(s, k, error);
     if (result == NOH_OK && k->ragdoll) result = noh_stage_open_ragdoll(k, error);
     if (result == NOH_OK) result = noh_stage_open_graphs(k, kind, blocks->graphs[kind], &needs, error);
+    if (result == NOH_OK) result = noh_stage_open_springs(k, blocks->springs[kind], needs.springs_bytes, error);
     if (k->desc->part_count) memcpy(k->parts, k->desc->parts, k->desc->part_count * sizeof *k->parts);
     k->desc->parts = NULL;
     k->desc->layers = NULL;

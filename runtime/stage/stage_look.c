@@ -5,8 +5,6 @@
 #include "base/math_internal.h"
 #include "stage/stage_internal.h"
 
-#define FULL_DETAIL 1e9f /* pixels per metre */
-
 static void to_world(const float world[12], float scale, const float own[4], float out[4])
 {
     for (int i = 0; i < 3; i++) {
@@ -130,7 +128,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     if (!a->parent) memcpy(shown->world, world, sizeof world);
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
-    asked = a->look.posed || noh_stage_is_full(s, a) ? FULL_DETAIL : scale * place.scale;
+    asked = a->look.posed || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale * place.scale;
     shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, noh_stage_index(k, a), &settings, asked)
                                           : noh_character_look(ch, &k->table, &settings, asked));
     if (noh_stage_is_full(s, a)) {

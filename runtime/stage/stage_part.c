@@ -7,23 +7,50 @@
 #include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
-/* ---- where states lie ---- */
-
 static size_t aligned(size_t bytes)
 {
     return (bytes + 15u) & ~(size_t)15u;
 }
 
+/* ---- springs of the pack ---- */
+
+size_t noh_stage_springs_bytes(const noh_kind_desc *kind, size_t *state_bytes, size_t *scratch_bytes)
+{
+    noh_springs_desc desc;
+    *state_bytes = *scratch_bytes = 0;
+    if (kind->without_springs || !noh_springs_of_pack(kind->mesh, kind->skeleton, &desc)) {
+        return 0;
+    }
+    noh_springs_measure(&desc, state_bytes, scratch_bytes);
+    return noh_springs_size(&desc);
+}
+
+noh_result noh_stage_open_springs(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error)
+{
+    noh_springs_desc desc;
+    noh_springs *springs;
+    if (!bytes || !noh_springs_of_pack(k->desc->mesh, k->desc->skeleton, &desc)) {
+        return NOH_OK;
+    }
+    const noh_result result = noh_springs_init(memory, bytes, &desc, &springs, error);
+    if (result == NOH_OK) k->springs = noh_springs_part(springs);
+    return result;
+}
+
+/* ---- where states lie ---- */
+
 size_t noh_stage_part_bytes(const noh_kind_desc *d)
 {
+    size_t springs, scratch;
     size_t bytes = noh_stage_has_parts(d) ? sizeof(noh_stage_part_head) : 0;
     if (d->face) bytes += sizeof(noh_stage_face);
     if (d->ragdoll) bytes += sizeof(noh_stage_body);
     for (uint32_t i = 0; i < d->part_count; i++) bytes += aligned(d->parts[i].state_bytes);
-    return bytes;
+    (void)noh_stage_springs_bytes(d, &springs, &scratch);
+    return bytes + springs;
 }
 
-/* The states of an actor: a head, its face, its ragdoll, then each part's. */
+/* The states of an actor: a head, its face, its ragdoll, then each part's, then that of its springs. */
 static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 {
     return k->part_states + (size_t)index * k->part_bytes;
@@ -70,6 +97,11 @@ noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, no
         const noh_stage_part *part = &k->parts[i];
         const char *what = part->check ? part->check(part->user, (const uint8_t *)states + state_offset(k, i)) : NULL;
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
+    }
+    if (k->springs.modify) {
+        const uint8_t *at = (const uint8_t *)states + state_offset(k, k->desc->part_count);
+        const char *what = k->springs.check(k->springs.user, at);
+        if (what) return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
     }
     return NOH_OK;
 }
@@ -153,7 +185,9 @@ void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, cons
     w.local = scratch->local;
     w.joint_count = scratch->joint_count;
     w.level = ch->lod.mesh;
-    w.pixels_per_metre = ch->lod.pixels_per_metre;
+    w.pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
+                             ? NOH_PART_FULL_DETAIL
+                             : ch->lod.pixels_per_metre;
     w.place = place_in_world(s, &k->actors[index]);
     w.kind = k;
     w.floats = scratch->floats;
@@ -173,4 +207,9 @@ void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, cons
         states += aligned(k->parts[i].state_bytes);
     }
     if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, index), &w);
+    if (k->springs.modify) {
+        w.state = states;
+        w.user = k->springs.user;
+        k->springs.modify(&w);
+    }
 }

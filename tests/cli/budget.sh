@@ -22,7 +22,7 @@ expect 0 'a stage of twenty'
 cp "$work/out" "$work/whole"
 check 'the parts add up' adds_up "$work/whole"
 check 'nothing is given up' sh -c '! grep -q "^gave up" "$1"' - "$work/whole"
-check 'the kind is told' grep -q "^kind 'puppet_levels': 20 actors, 2 meshes, 45 joints, " "$work/whole"
+check 'the kind is told' grep -q "^kind 'puppet_levels': 20 actors, 2 meshes, 47 joints, " "$work/whole"
 check 'with the levels of its meshes' grep -q '^  0 .* 0 0$' "$work/whole"
 check 'its slots are as many as its actors' awk '
     /^  level / { inside = 1; next } inside && !/^  [0-7] / { exit } inside { slots += $4 } END { exit slots != 20 }' "$work/whole"
@@ -151,7 +151,7 @@ if [ -n "$json" ]; then
     holds one "j.cpu_bytes === $(sum_of 2 "$work/small") && j.gpu_bytes === $(sum_of 3 "$work/small")"
     holds one "j.state_bytes !== 0 && j.pack_bytes === $(wc -c <"$puppet") && j.half_floats === true"
     holds one 'j.parts[0].name !== "" && j.parts[0].kind === null && j.parts[0].cpu_bytes !== 0 && j.parts[0].gpu_bytes === 0'
-    holds one 'j.kinds[0].name === "puppet_levels" && j.kinds[0].actors === 20 && j.kinds[0].joints === 45'
+    holds one 'j.kinds[0].name === "puppet_levels" && j.kinds[0].actors === 20 && j.kinds[0].joints === 47'
     holds one 'j.kinds[0].clip_segments === 44 && j.kinds[0].clip_segments_held !== 0'
     holds one 'j.kinds[0].levels[0].level === j.kinds[0].finest_level && j.kinds[0].levels[0].error_mm !== 0'
     holds one 'j.kinds[0].levels[0].triangles !== 0 && j.kinds[0].levels[0].slots !== 0 && j.kinds[0].levels[0].mesh_levels[1] === 3'

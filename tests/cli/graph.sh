@@ -8,8 +8,8 @@ text=tools/demo_assets/puppet/puppet.graph
 
 noh build "$puppet" -o "$work/a.noh" --graph $text --quiet
 expect 0 'build --graph'
-noh build "$puppet" -o "$work/demo.noh" --graph $text --wrinkles auto --quiet
-check 'with wrinkles it is the pack of the demo' cmp "$work/demo.noh" "$build/demo/puppet.noh"
+noh build "$puppet" -o "$work/demo.noh" --graph $text --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto --quiet
+check 'with wrinkles and springs it is the pack of the demo' cmp "$work/demo.noh" "$build/demo/puppet.noh"
 noh info "$work/a.noh"
 expect 0 'info'
 check 'shows the graph' grep -q "^graph 'puppet': 11 nodes, 7 clips, 4 parameters, 1 mask" "$work/out"

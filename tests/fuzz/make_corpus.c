@@ -13,6 +13,7 @@
 #include "support/clip_bank_fixture.h"
 #include "support/skin_asset.h"
 #include "support/clip_fixture.h"
+#include "support/springs_fixture.h"
 
 static void write_pack(const char *folder, const char *name, const test_model_desc *desc)
 {
@@ -42,6 +43,17 @@ static void write_clip_pack(const char *folder)
     snprintf(path, sizeof path, "%s/clip.noh", folder);
     test_write_file(path, out.bytes, out.count);
     buffer_free(&out);
+}
+
+/* Springs: three chains, one of which hangs on another, and a collider. */
+static void write_springs(const char *in)
+{
+    size_t count = 0;
+    uint8_t *bytes = springs_fixture_pack(&count);
+    char path[4096];
+    snprintf(path, sizeof path, "%s/springs.noh", in);
+    test_write_file(path, bytes, count);
+    free(bytes);
 }
 
 /* Weights, a joint, callback keys and sync markers. */
@@ -190,6 +202,7 @@ static void corpus(void **state)
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
     write_clip_pack(folder);
+    write_springs(folder);
     write_weights(folder);
     write_graph(folder);
     write_transfer(folder);

@@ -249,10 +249,10 @@ INIT(ragdolls_init)
 INIT(spring_init)
 {
     static const noh_spring_joint joints[2] = {
-        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, 0.5f },
-        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, 0.5f }
+        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } },
+        { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } }
     };
-    const noh_spring_desc desc = { joints, 2, 3, { 0.0f, -1.0f, 0.0f } };
+    const noh_spring_desc desc = { joints, 2, 3 };
     const noh_spring_carrier carrier = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
     noh_spring *spring;
     return noh_spring_init(memory, bytes, &desc, &carrier, &spring, error);
@@ -270,7 +270,7 @@ INIT(hair_init)
 
 INIT(springs_init)
 {
-    static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, 0.5f };
+    static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } };
     static const noh_spring_chain chain = { 0, 1, 1, { 0.0f, 1.0f, 0.0f } };
     static const noh_spring_capsule capsule = { 0, { 0.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, 0.1f };
     const noh_springs_desc desc = { s.skeleton, 1.0f, &row, 1, 1, &chain, &capsule, 1 };

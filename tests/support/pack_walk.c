@@ -98,6 +98,27 @@ static void walk_textures(walk *w)
     }
 }
 
+/* The stage may refuse what the checker lets through, such as bones too short for it; never more. */
+static void walk_springs(walk *w)
+{
+    for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
+        noh_springs_desc desc;
+        noh_springs *springs;
+        size_t state_bytes, scratch_bytes, bytes;
+        void *block;
+        if (!noh_springs_of_pack(w->pack, i, &desc)) continue;
+        bytes = noh_springs_size(&desc);
+        block = memory(bytes);
+        noh_springs_measure(&desc, &state_bytes, &scratch_bytes);
+        eat(w, &state_bytes, sizeof state_bytes);
+        if (!bytes) abort(); /* counts are checked */
+        if (noh_springs_init(block, bytes, &desc, &springs, NULL) == NOH_OK &&
+            noh_springs_part(springs).state_bytes != state_bytes)
+            abort();
+        free(block);
+    }
+}
+
 static void walk_nodes(walk *w)
 {
     for (uint32_t i = 0; i < w->pack->node_count; i++) {
@@ -490,6 +511,7 @@ uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
     walk_names(&w);
     walk_textures(&w);
     walk_nodes(&w);
+    walk_springs(&w);
     walk_meshes(&w);
     walk_clips(&w);
     return w.hash;

@@ -12,6 +12,7 @@
 #include "convert/model/surface_shape.h"
 #include "convert/pack/pack_graph.h"
 #include "clip/pack_clip.h"
+#include "convert/springs/springs_bind.h"
 #include "pack/pack.h"
 #include "sim/ragdoll_rig.h"
 #include "sources.h"
@@ -150,6 +151,84 @@ static int read_recipe(const convert_options *options, const source *s, recipe_t
         *out = NULL;
     }
     return 0;
+}
+
+/* ---- springs ---- */
+
+/* A line of the command line; it has no number. */
+static int read_spring_line(const char *given, springs_text *text, convert_failure *failure)
+{
+    const uint32_t chains = text->chain_count, colliders = text->collider_count;
+    uint32_t line;
+    if (springs_text_add(text, given, strlen(given), &line, &failure->error)) {
+        failure->file = given;
+        failure->error.where[0] = 0;
+        return 1;
+    }
+    for (uint32_t i = chains; i < text->chain_count; i++) text->chains[i].line = 0;
+    for (uint32_t i = colliders; i < text->collider_count; i++) text->colliders[i].line = 0;
+    return 0;
+}
+
+/* Those of the file's extras, and of its extension. */
+static int bind_own_springs(const source *s, set_springs *out, convert_failure *failure)
+{
+    springs_text *text = springs_text_new();
+    const char *lines = s->m->spring_lines;
+    uint32_t line = 0;
+    int failed = !text;
+    for (; !failed && lines && *lines; lines += strcspn(lines, "\n") + 1u) {
+        const size_t size = strcspn(lines, "\n");
+        if (springs_text_add(text, lines, size, &line, &failure->error)) {
+            failed = model_warn(s->m, "springs in extras: '%.*s' was left out: %s", (int)(size < 60u ? size : 60u),
+                                lines, failure->error.what);
+        }
+    }
+    memset(&failure->error, 0, sizeof failure->error);
+    if (failed || springs_bind_nodes(s->m, s->sets, s->set_count, out)) {
+        springs_text_free(text);
+        return out_of_memory(&failure->error);
+    }
+    failed = springs_bind_text(text, s->m, s->sets, s->set_count, 1, out, &line, &failure->error);
+    springs_text_free(text);
+    return failed;
+}
+
+static int read_given_springs(const convert_options *options, springs_text *text, convert_failure *failure)
+{
+    if (options->springs && springs_text_read(text, options->springs, &failure->line, &failure->error)) {
+        failure->file = options->springs;
+        return 1;
+    }
+    for (uint32_t i = 0; i < options->spring_line_count; i++) {
+        if (read_spring_line(options->spring_lines[i], text, failure)) return 1;
+    }
+    return 0;
+}
+
+static int bind_given_springs(const convert_options *options, const source *s, set_springs *out,
+                              convert_failure *failure)
+{
+    springs_text *text = springs_text_new();
+    int failed = text ? read_given_springs(options, text, failure) : out_of_memory(&failure->error);
+    if (!failed && springs_bind_text(text, s->m, s->sets, s->set_count, 0, out, &failure->line, &failure->error)) {
+        failure->file = failure->line ? options->springs : "--spring";
+        failed = 1;
+    }
+    springs_text_free(text);
+    return failed;
+}
+
+/* *out [set_count]: what swings, in all skeletons; joints are in their last order. */
+static int read_springs(const convert_options *options, const source *s, set_springs **out, convert_failure *failure)
+{
+    int failed;
+    *out = calloc(s->set_count + 1u, sizeof **out);
+    if (!*out) return out_of_memory(&failure->error);
+    if (options->only == CONVERT_CLIPS) return 0;
+    failed = options->springs || options->spring_line_count ? bind_given_springs(options, s, *out, failure)
+                                                            : bind_own_springs(s, *out, failure);
+    return failed || (springs_sort(*out, s->set_count) && out_of_memory(&failure->error));
 }
 
 /* ---- encoding ---- */
@@ -334,8 +413,8 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
 }
 
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
-                          const ragdoll_text *ragdoll, const convert_options *options, byte_buffer *out,
-                          model_error *error)
+                          const ragdoll_text *ragdoll, const set_springs *springs, const convert_options *options,
+                          byte_buffer *out, model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -361,6 +440,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
         made.graphs = graphs;
         made.recipe = recipe;
         made.ragdoll = ragdoll;
+        made.springs = springs;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -437,7 +517,8 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     graph_file *graphs = NULL;
     recipe_text *recipe = NULL;
     ragdoll_text *ragdoll = NULL;
-    int failed, base;
+    set_springs *springs = NULL;
+    int failed, base = 0;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
     if (!all) {
@@ -454,8 +535,10 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  read_ragdoll(options, &all[base], &ragdoll, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
-        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, options, out, &failure->error);
+        failed = failed || read_springs(options, &all[base], &springs, failure);
+        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, options, out, &failure->error);
     }
+    springs_free(springs, all[base].set_count);
     for (int i = 0; i < input_count; i++) {
         source_free(&all[i]);
     }

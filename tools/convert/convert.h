@@ -29,8 +29,11 @@ typedef struct convert_options {
     const char *targets;  /* a folder of .obj files: the targets of the first .obj model; NULL: none */
     int split_eyes;       /* 1: eyeballs of the model get joints */
     convert_only only;
-    const char *events;    /* a text file of callback keys; NULL: none */
-    const char *graph;     /* a text file of animation graphs; NULL: none */
+    const char *events;              /* a text file of callback keys; NULL: none */
+    const char *graph;               /* a text file of animation graphs; NULL: none */
+    const char *springs;             /* a text file of springs (springs/springs_read.h); NULL: those of the glTF file */
+    const char *const *spring_lines; /* [spring_line_count] lines of such a text, after those of the file */
+    uint32_t spring_line_count;
     const char *recipe;    /* a text file of what a face's targets are for; NULL: none */
     const char *ragdoll;   /* a text file of a ragdoll's bodies; NULL: none */
     int lips;              /* 1: a target that brings the lower lip to the teeth */

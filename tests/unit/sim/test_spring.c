@@ -16,11 +16,10 @@ static noh_spring_joint joints[JOINTS];
 /* Five bones of 100 mm that hang down, the last ones softer. */
 static noh_spring_desc hanging(float stiffness, float drag, float gravity)
 {
-    noh_spring_desc desc = { joints, JOINTS, 0, { 0.0f, 0.0f, 0.0f } };
+    noh_spring_desc desc = { joints, JOINTS, 0 };
     for (uint32_t i = 0; i < JOINTS; i++) {
-        joints[i] = (noh_spring_joint){
-            { 0.0f, -0.1f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, stiffness, drag, 0.02f, gravity
-        };
+        joints[i] = (noh_spring_joint){ { 0.0f, -0.1f, 0.0f },   { 0.0f, 0.0f, 0.0f, 1.0f }, stiffness, drag, 0.02f,
+                                        { 0.0f, -gravity, 0.0f } };
     }
     return desc;
 }
@@ -117,7 +116,7 @@ static void reference_step(reference *r, const noh_spring_desc *desc, const noh_
         rotate(world, bone, pull);
         for (int i = 0; i < 3; i++) {
             tail[i] = r->now[j][i] + (r->now[j][i] - r->before[j][i]) * (1.0 - (double)joint->drag) +
-                      dt * (double)joint->stiffness * pull[i] / length - (i == 1 ? dt * (double)joint->gravity : 0.0);
+                      dt * (double)joint->stiffness * pull[i] / length + dt * (double)joint->gravity[i];
             size += (tail[i] - head[i]) * (tail[i] - head[i]);
         }
         for (int i = 0; i < 3; i++) tail[i] = head[i] + (tail[i] - head[i]) * length / sqrt(size);

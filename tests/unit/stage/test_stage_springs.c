@@ -43,7 +43,7 @@ static void sleeves_describe(sleeves *s, const noh_pack *pack, uint32_t collider
     for (uint32_t i = 0; i < SLEEVES; i++) {
         const uint32_t joint = joint_of(pack, sleeve_names[i]);
         const float *m = model_space + 12u * joint;
-        s->rows[i] = (noh_spring_row){ joint, 0.5f, 0.2f, 0.01f, 1.0f };
+        s->rows[i] = (noh_spring_row){ joint, 0.5f, 0.2f, 0.01f, { 0.0f, -1.0f, 0.0f } };
         s->chains[i].first_row = i, s->chains[i].row_count = 1, s->chains[i].collides = colliders ? 1u << i : 0u;
         for (int a = 0; a < 3; a++) s->chains[i].end[a] = -BONE * m[4 + a];
         s->capsules[i].joint = k->parents[joint];
@@ -254,6 +254,216 @@ static void bad_descs_are_refused(void **state)
     noh_file_unmap(&c.files[0]);
 }
 
+/* ---- springs of the pack ---- */
+
+static void open_swingers(cast *c, uint32_t actors, int without)
+{
+    memset(c, 0, sizeof *c);
+    cast_map(c, PUPPETS, "demo/puppet.noh");
+    c->kinds[0].mesh = &c->packs[0];
+    c->kinds[0].actor_count = actors;
+    c->kinds[0].root_axes = NOH_ROOT_GROUND;
+    c->kinds[0].root_up = 1;
+    c->kinds[0].without_springs = without;
+    c->desc.kinds = c->kinds;
+    c->desc.kind_count = 1;
+    cast_make(c, NULL);
+}
+
+static noh_actor enter(const cast *c, const noh_place *place, const char *clip)
+{
+    const noh_look look = { .pixels = 0.02f }; /* posed in every frame, however far */
+    noh_actor actor;
+    assert_int_equal(noh_stage_spawn(c->stage, 0, place, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(c->stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c->stage, actor, 0, clip, NULL, NULL), NOH_OK);
+    return actor;
+}
+
+static void close_swingers(cast *c)
+{
+    cast_close_stage(c);
+    noh_file_unmap(&c->files[0]);
+}
+
+/* The directions of a joint's axes in those of the actor's root: [9]. */
+static void axes_of(const cast *c, noh_actor actor, uint32_t joint, double out[9])
+{
+    float m[12], root[12];
+    double length = 0.0;
+    assert_int_equal(noh_actor_joint(c->stage, actor, joint, m, NULL), NOH_OK);
+    assert_int_equal(noh_actor_joint(c->stage, actor, 0, root, NULL), NOH_OK);
+    for (int i = 0; i < 3; i++) length += (double)root[4 * i] * (double)root[4 * i];
+    for (int k = 0; k < 9; k++) {
+        out[k] = 0.0;
+        for (int i = 0; i < 3; i++) out[k] += (double)root[4 * i + k / 3] * (double)m[4 * i + k % 3] / length;
+    }
+}
+
+static double axes_apart(const double a[9], const double b[9])
+{
+    double worst = 0.0;
+    for (int k = 0; k < 9; k++) worst = fmax(worst, fabs(a[k] - b[k]));
+    return worst;
+}
+
+static void look_from(const cast *c, uint32_t ticks, float distance)
+{
+    noh_stage_view view = cast_view(0, distance);
+    assert_int_equal(noh_stage_frame(c->stage, ticks, &view, NULL, NULL, NULL), NOH_OK);
+}
+
+/* Nothing but the pack says what swings. Without it the joint is where the clip has it. */
+static void a_kind_swings_by_itself(void **state)
+{
+    static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
+    static const char *const names[] = { "sleeve.L", "sleeve.R", "skirt.L", "skirt.R" };
+    double most[4] = { 0.0, 0.0, 0.0, 0.0 };
+    noh_actor actors[2];
+    cast c[2];
+    (void)state;
+    for (int without = 0; without < 2; without++) {
+        open_swingers(&c[without], 1, without);
+        actors[without] = enter(&c[without], &origin, "dance");
+    }
+    assert_true(c[0].plan.state_bytes > c[1].plan.state_bytes);
+    assert_true(c[0].plan.hash != c[1].plan.hash);
+    for (uint32_t f = 0; f < 300; f++) {
+        for (int k = 0; k < 2; k++) look_from(&c[k], CAST_STEP, 5.0f);
+        for (uint32_t n = 0; n < 4; n++) {
+            const uint32_t joint = joint_of(&c[0].packs[0], names[n]);
+            double with[9], plain[9];
+            axes_of(&c[0], actors[0], joint, with);
+            axes_of(&c[1], actors[1], joint, plain);
+            most[n] = fmax(most[n], axes_apart(with, plain));
+        }
+    }
+    print_message("# off the clip by at most %.2f, %.2f (sleeves), %.2f, %.2f (skirt) of a unit axis\n", most[0],
+                  most[1], most[2], most[3]);
+    for (uint32_t n = 0; n < 4; n++) assert_true(most[n] > 0.05 && most[n] < 1.5);
+    for (int k = 0; k < 2; k++) close_swingers(&c[k]);
+}
+
+/* From 3 to 90 m and back: in no frame a sleeve turns by much more than beside an observer who stays near; far away
+ * nothing swings. */
+static void far_away_they_fade_without_a_pop(void **state)
+{
+    static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
+    double most[2] = { 0.0, 0.0 }, far_off = 0.0;
+    uint32_t joint;
+    (void)state;
+    for (int goes = 0; goes < 2; goes++) {
+        double before[9], now[9];
+        noh_actor actor;
+        cast c, plain;
+        noh_actor twin;
+        open_swingers(&c, 1, 0);
+        open_swingers(&plain, 1, 1);
+        actor = enter(&c, &origin, "walk");
+        twin = enter(&plain, &origin, "walk");
+        joint = joint_of(&c.packs[0], "skirt.L");
+        for (uint32_t f = 0; f < 480; f++) {
+            const float way = f < 240 ? (float)f / 240.0f : (float)(480 - f) / 240.0f;
+            look_from(&c, CAST_STEP, goes ? 3.0f + 177.0f * way * way : 3.0f);
+            axes_of(&c, actor, joint, now);
+            if (f > 30) most[goes] = fmax(most[goes], axes_apart(now, before));
+            memcpy(before, now, sizeof before);
+            look_from(&plain, CAST_STEP, 3.0f);
+            if (goes && f > 236 && f < 244) { /* at rest below the knee, as the clip has it */
+                double rest[9];
+                axes_of(&plain, twin, joint, rest);
+                far_off = fmax(far_off, axes_apart(now, rest));
+            }
+        }
+        close_swingers(&c);
+        close_swingers(&plain);
+    }
+    print_message("# in a frame a hem turns by at most %.3f near by, %.3f as it goes away and comes back\n", most[0],
+                  most[1]);
+    assert_true(most[1] < 1.25 * most[0] && most[0] > 0.01);
+    assert_true(far_off < 1e-3);
+}
+
+/* When time stands still nothing moves, to the bit; and the size of an actor changes nothing but its size. */
+static void time_stops_and_sizes_differ(void **state)
+{
+    static const noh_place small = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 1.0f },
+                           large = { { 4.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 3.0f };
+    noh_actor a, b;
+    double worst = 0.0;
+    uint32_t joint;
+    cast c;
+    (void)state;
+    open_swingers(&c, 2, 0);
+    a = enter(&c, &small, "bow");
+    b = enter(&c, &large, "bow");
+    joint = joint_of(&c.packs[0], "sleeve.L");
+    for (uint32_t f = 0; f < 200; f++) {
+        double own[9], other[9];
+        look_from(&c, CAST_STEP, 5.0f);
+        axes_of(&c, a, joint, own);
+        axes_of(&c, b, joint, other);
+        worst = fmax(worst, axes_apart(own, other));
+    }
+    print_message("# three times the size: off by %.2g of a unit axis\n", worst);
+    assert_true(worst < 2e-3);
+    for (uint32_t f = 0; f < 5; f++) {
+        double before[9], now[9];
+        axes_of(&c, a, joint, before);
+        look_from(&c, 0, 5.0f);
+        axes_of(&c, a, joint, now);
+        assert_memory_equal(before, now, sizeof now);
+    }
+    close_swingers(&c);
+}
+
+/* A leap that is told leaves the springs at rest, as their parents are turned; one that is not, finite. */
+static void leaps_are_told_or_survived(void **state)
+{
+    static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f },
+                           far_off = { { -3.0f, 0.0f, -3.0f }, { 0, 0, 0, 0 }, 1.0f };
+    (void)state;
+    for (int told = 0; told < 2; told++) {
+        double own[9], parent[9];
+        noh_skeleton skeleton;
+        noh_actor actor;
+        cast c;
+        open_swingers(&c, 1, 0);
+        actor = enter(&c, &origin, "walk");
+        const uint32_t joint = joint_of(&c.packs[0], "sleeve.L");
+        assert_int_equal(noh_pack_skeleton_at(&c.packs[0], 0, &skeleton, NULL, NULL), NOH_OK);
+        for (uint32_t f = 0; f < 60; f++) look_from(&c, CAST_STEP, 5.0f);
+        assert_int_equal(noh_actor_set_place(c.stage, actor, &far_off, NULL), NOH_OK);
+        if (told) assert_int_equal(noh_actor_cut(c.stage, actor, NULL), NOH_OK);
+        look_from(&c, CAST_STEP, 5.0f);
+        axes_of(&c, actor, joint, own);
+        axes_of(&c, actor, skeleton.parents[joint], parent);
+        for (int k = 0; k < 9; k++) assert_true(fabs(own[k]) <= 1.001);
+        assert_true(told == (axes_apart(own, parent) < 1e-4));
+        close_swingers(&c);
+    }
+}
+
+/* A state that another stage takes over goes on with the same bits. */
+static void a_fork_goes_on(void **state)
+{
+    static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
+    size_t bytes;
+    cast c[2];
+    (void)state;
+    for (int k = 0; k < 2; k++) open_swingers(&c[k], 2, 0);
+    (void)enter(&c[0], &origin, "dance");
+    (void)enter(&c[0], &origin, "walk");
+    for (uint32_t f = 0; f < 50; f++) look_from(&c[0], CAST_STEP, 5.0f);
+    const void *now = noh_stage_state(c[0].stage, &bytes);
+    assert_int_equal(noh_stage_set_state(c[1].stage, now, bytes, NULL), NOH_OK);
+    for (uint32_t f = 0; f < 50; f++) {
+        for (int k = 0; k < 2; k++) look_from(&c[k], CAST_STEP, 5.0f);
+        assert_true(noh_stage_hash(c[0].stage) == noh_stage_hash(c[1].stage));
+    }
+    for (int k = 0; k < 2; k++) close_swingers(&c[k]);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +471,11 @@ int main(int argc, char **argv)
         cmocka_unit_test(sleeves_stay_out_of_colliders),
         cmocka_unit_test(swinging_states_are_put_back),
         cmocka_unit_test(bad_descs_are_refused),
+        cmocka_unit_test(a_kind_swings_by_itself),
+        cmocka_unit_test(far_away_they_fade_without_a_pop),
+        cmocka_unit_test(time_stops_and_sizes_differ),
+        cmocka_unit_test(leaps_are_told_or_survived),
+        cmocka_unit_test(a_fork_goes_on),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -12,6 +12,8 @@
 #include "convert/clips/model_clips.h"
 #include "convert/clips/raw_set.h"
 
+#define JOINTS 47u
+
 static model *puppet;
 static model_clips *moves;
 
@@ -81,14 +83,14 @@ static const char *const clip_names[] = { "idle", "walk", "bow", "look_round", "
 static void joints_are_those_of_a_body(void **state)
 {
     static const char *const names[] = { "root", "hips", "spine", "chest", "neck", "head", "jaw" };
-    static const char *const pairs[] = { "shoulder",  "upper_arm", "forearm",   "hand",   "thumb",
-                                         "thumb_tip", "index",     "index_tip", "little", "little_tip",
-                                         "sleeve",    "thigh",     "shin",      "foot",   "toes" };
+    static const char *const pairs[] = { "shoulder", "upper_arm", "forearm", "hand",       "thumb",  "thumb_tip",
+                                         "index",    "index_tip", "little",  "little_tip", "sleeve", "thigh",
+                                         "shin",     "foot",      "toes",    "skirt" };
     (void)state;
     assert_int_equal(puppet->warning_count, 0);
     assert_int_equal(puppet->skin_count, 1);
     assert_int_equal(moves->set_count, 1);
-    assert_int_equal(puppet->skins[0].joint_count, 45);
+    assert_int_equal(puppet->skins[0].joint_count, JOINTS);
     for (size_t i = 0; i < TEST_COUNT(names); i++) {
         joint_named(names[i]);
     }
@@ -231,15 +233,15 @@ static void weights_sum_to_one(void **state)
 static void weights_are_smooth(void **state)
 {
     const model_mesh *body = mesh_named("body");
-    float *all = test_zeros((size_t)body->vertex_count * 45 * sizeof *all), largest = 0.0f;
+    float *all = test_zeros((size_t)body->vertex_count * JOINTS * sizeof *all), largest = 0.0f;
     (void)state;
     for (uint32_t i = 0; i < body->vertex_count * MODEL_INFLUENCES_MAX; i++) {
-        all[(size_t)(i / MODEL_INFLUENCES_MAX) * 45 + body->joints[i]] += body->joint_weights[i];
+        all[(size_t)(i / MODEL_INFLUENCES_MAX) * JOINTS + body->joints[i]] += body->joint_weights[i];
     }
     for (uint32_t i = 0; i < body->index_count; i++) {
         uint32_t a = body->indices[i], b = body->indices[i % 3 == 2 ? i - 2 : i + 1];
-        for (size_t j = 0; j < 45; j++) {
-            largest = fmaxf(largest, fabsf(all[(size_t)a * 45 + j] - all[(size_t)b * 45 + j]));
+        for (size_t j = 0; j < JOINTS; j++) {
+            largest = fmaxf(largest, fabsf(all[(size_t)a * JOINTS + j] - all[(size_t)b * JOINTS + j]));
         }
     }
     print_message("# largest step of a weight along an edge: %.3f\n", (double)largest);
@@ -401,7 +403,7 @@ static void feet_do_not_slide(void **state)
 static void keys_lie_at_footfalls(void **state)
 {
     static const char *const names[] = { "walk", "dance" };
-    double *pose = test_zeros(45 * 12 * sizeof *pose), rest;
+    double *pose = test_zeros(JOINTS * 12 * sizeof *pose), rest;
     uint32_t stamps = 0, falls = 0;
     (void)state;
     raw_pose_object(&moves->sets[0]->skeleton, NULL, 0, pose);
@@ -460,7 +462,7 @@ static double lowest(const model_mesh *body, const raw_clip *clip, uint32_t fram
 static void the_body_stays_above_the_floor(void **state)
 {
     const model_mesh *body = mesh_named("body");
-    double *pose = test_zeros(45 * 12 * sizeof *pose), *palette = test_zeros(45 * 4 * sizeof *palette);
+    double *pose = test_zeros(JOINTS * 12 * sizeof *pose), *palette = test_zeros(JOINTS * 4 * sizeof *palette);
     (void)state;
     for (size_t c = 0; c < TEST_COUNT(clip_names); c++) {
         const raw_clip *clip = clip_named(clip_names[c]);

@@ -20,6 +20,7 @@
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
  *   gltf_vrm.cpp       VRM: bones of a person, expressions, where it faces
+ *   gltf_springs.cpp   springs: VRMC_springBone, VRM 0, extras
  *   gltf_left_out.cpp  warnings about what the model has no place for */
 #ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
@@ -215,7 +216,8 @@ void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);
 /* Whether the file's figure faces -z, as VRM's did before 1.0. */
 bool faces_back(const file &f);
-void read_vrm(file &f); /* after read_nodes and read_meshes */
+void read_vrm(file &f);     /* after read_nodes and read_meshes */
+void read_springs(file &f); /* after read_nodes */
 /* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
  * nodes outside the scene. */
 void find_left_out(file &f);

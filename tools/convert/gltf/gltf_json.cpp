@@ -46,6 +46,7 @@ static const char *const supported[] = { "KHR_mesh_quantization",
                                          "KHR_materials_emissive_strength",
                                          "EXT_texture_webp",
                                          "VRMC_vrm",
+                                         "VRMC_springBone",
                                          "VRM" };
 
 bool is_supported(const std::string &name)

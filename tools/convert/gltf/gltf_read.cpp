@@ -95,6 +95,7 @@ static void read_model(file &f)
     read_vrm(f);
     read_skins(f);
     read_animations(f);
+    read_springs(f);
     find_left_out(f);
     warn_left_out(f);
     if (f.out->mesh_count == 0 && f.out->clip_count == 0)

@@ -137,6 +137,10 @@ void model_free(model *m)
         free(m->textures[i].name);
         free(m->textures[i].rgba);
     }
+    for (uint32_t i = 0; m->springs && i < m->spring_count; ++i) free(m->springs[i].joints);
+    free(m->springs);
+    free(m->colliders);
+    free(m->spring_lines);
     for (uint32_t i = 0; i < m->warning_count; ++i) free(m->warnings[i]);
     free(m->meshes);
     free(m->nodes);

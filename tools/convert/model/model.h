@@ -156,6 +156,25 @@ typedef struct model_clip {
     model_event *events; /* in the file's order, times within 0 and duration_s */
 } model_clip;
 
+/* A joint that swings, and how. */
+typedef struct model_spring_joint {
+    uint32_t node;
+    float stiffness, drag, radius, gravity[3]; /* as noh_spring_row has them */
+} model_spring_joint;
+
+/* A chain of them, each below the one before. */
+typedef struct model_spring {
+    uint32_t joint_count;
+    model_spring_joint *joints;
+    uint32_t collides; /* bit i: with collider i */
+    float end[3];      /* where the last one's bone ends, in its space */
+} model_spring;
+
+typedef struct model_collider {
+    uint32_t node;
+    float from[3], to[3], radius; /* in the node's space */
+} model_collider;
+
 typedef struct model {
     uint32_t mesh_count, node_count, skin_count, clip_count, material_count, texture_count;
     model_mesh *meshes;
@@ -164,6 +183,10 @@ typedef struct model {
     model_clip *clips;
     model_material *materials;
     model_texture *textures;
+    uint32_t spring_count, collider_count;
+    model_spring *springs;     /* of an extension; nodes that are no joints may be among theirs */
+    model_collider *colliders; /* [collider_count], at most NOH_SPRING_COLLIDERS_MAX */
+    char *spring_lines;        /* lines of springs (springs/springs_read.h) out of extras; NULL: none */
     uint32_t warning_count;
     char **warnings; /* sentences for the user, e.g. what was skipped and why */
 } model;

@@ -10,6 +10,7 @@
 #include "convert/codec/clip_errors.h"
 #include "convert/codec/named_errors.h"
 #include "convert/graph/graph_text.h"
+#include "convert/springs/springs_bind.h"
 
 typedef struct encoded_clip {
     uint32_t set; /* index into encoded_clips.sets */
@@ -27,6 +28,7 @@ typedef struct encoded_clips {
     const graph_file *graphs;  /* borrowed; NULL: none */
     const recipe_text *recipe; /* likewise */
     const ragdoll_text *ragdoll;
+    const set_springs *springs; /* [set_count] */
 } encoded_clips;
 
 typedef struct clips_settings {

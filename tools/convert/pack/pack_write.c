@@ -333,6 +333,32 @@ static void write_ragdoll(writer *w)
     end_chunk(w);
 }
 
+static void write_springs(writer *w)
+{
+    for (uint32_t i = 0; w->clips->springs && i < w->clips->set_count; i++) {
+        const set_springs *s = &w->clips->springs[i];
+        noh_springs_header h;
+        if (!s->row_count) continue;
+        memset(&h, 0, sizeof h);
+        h.skeleton = i;
+        h.joint_count = w->clips->sets[i]->skeleton.joint_count;
+        h.row_count = s->row_count;
+        h.rows_offset = sizeof h;
+        h.chain_count = s->chain_count;
+        h.chains_offset = (h.rows_offset + h.row_count * (uint32_t)sizeof *s->rows + 15u) & ~15u;
+        h.collider_count = s->collider_count;
+        h.colliders_offset = (h.chains_offset + h.chain_count * (uint32_t)sizeof *s->chains + 15u) & ~15u;
+        begin_chunk(w, NOH_CHUNK_SPRINGS, w->clips->sets[i]->skeleton.name);
+        buffer_append(&w->out, &h, sizeof h);
+        buffer_append(&w->out, s->rows, s->row_count * sizeof *s->rows);
+        buffer_align(&w->out, 16);
+        buffer_append(&w->out, s->chains, s->chain_count * sizeof *s->chains);
+        buffer_align(&w->out, 16);
+        buffer_append(&w->out, s->colliders, s->collider_count * sizeof *s->colliders);
+        end_chunk(w);
+    }
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -371,7 +397,7 @@ static int assemble(writer *w, byte_buffer *out)
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
     return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 5 +
-           (made ? (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
+           (made ? 2 * (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,
@@ -408,6 +434,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
             write_graphs(&w);
             write_recipe(&w);
             write_ragdoll(&w);
+            write_springs(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

@@ -40,6 +40,7 @@ static const Joint left[SIDE_JOINTS] = {
     { { "shin.L", "shin.R" }, THIGH, { 0.100, 0.455, 0.012 } },
     { { "foot.L", "foot.R" }, SHIN, { 0.106, 0.078, -0.012 } },
     { { "toes.L", "toes.R" }, FOOT, { 0.110, 0.018, 0.118 } },
+    { { "skirt.L", "skirt.R" }, SHIN, { 0.112, 0.420, 0.006 } },
 };
 /* clang-format on */
 

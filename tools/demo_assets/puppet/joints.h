@@ -27,6 +27,7 @@ enum {
     SHIN,
     FOOT,
     TOES,
+    SKIRT, /* the hem of a leg of the hakama, which hangs from the knee */
     SIDE_JOINTS
 };
 enum { JOINT_COUNT = MIDDLE_JOINTS + 2 * SIDE_JOINTS };

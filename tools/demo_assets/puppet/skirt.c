@@ -34,7 +34,9 @@ static V3 skirt_place(const Girth *g, int i)
 static Hold skirt_hold(int side, int row, V3 at)
 {
     Hold thigh = hold_one(side_joint(side, THIGH)), shin = hold_one(side_joint(side, SHIN));
-    Hold hold = hold_mix(thigh, shin, smooth(0.60, 0.32, at.y));
+    /* Of what follows the shin most swings. */
+    Hold swings = hold_mix(shin, hold_one(side_joint(side, SKIRT)), 0.9 * smooth(0.44, 0.14, at.y));
+    Hold hold = hold_mix(thigh, swings, smooth(0.60, 0.32, at.y));
     if (row >= FIRST_INSIDE) {
         return hold_mix(shin, hold_one(side_joint(side, FOOT)), row == FIRST_INSIDE ? 0.1 : 0.25);
     }

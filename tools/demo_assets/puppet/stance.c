@@ -118,6 +118,7 @@ static void pose_leg(World *world, const FootStance *foot, int side)
     reach(world, &leg, target, ahead);
     hang(world, leg.end, turn);
     hang(world, side_joint(side, TOES), foot->pitch < 0 ? heading : turn);
+    hang_turned(world, side_joint(side, SKIRT), quat_none());
 }
 
 static void pose_fingers(World *world, const HandStance *hand, int side)

@@ -18,10 +18,10 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
-        *ragdoll, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
+        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size;
-    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from;
+    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -221,6 +221,9 @@ static int run(void *args)
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
     o.ragdoll = a->ragdoll;
+    o.springs = a->springs;
+    o.spring_lines = a->spring_lines.items;
+    o.spring_line_count = (uint32_t)a->spring_lines.count;
     o.lips = a->lips;
     o.no_correctives = a->no_correctives;
     o.report = report;
@@ -492,6 +495,21 @@ static const option options[] = {
       .value = "FILE",
       .what = "which joints begin a body of the ragdoll, and how far they turn, a text file (noh help FORMATS)",
       .example = "hero.ragdoll",
+      .excludes = "--only=anim" },
+    { .name = "--springs",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, springs),
+      .value = "FILE",
+      .what =
+          "joints that swing: chains and colliders, a text file (noh help FORMATS), in place of those of the glTF file (VRMC_springBone, VRM, extras)",
+      .example = "hero.springs",
+      .excludes = "--only=anim" },
+    { .name = "--spring",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, spring_lines),
+      .value = "LINE",
+      .what = "a line of such a file; may repeat",
+      .example = "\"chain ponytail* stiffness 0.5\"",
       .excludes = "--only=anim" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,

@@ -31,6 +31,12 @@
         .what = "whether faces blink, look about, breathe and are never still, beside what clips say"    \
     }
 
+#define OPTION_SPRINGS(T, m)                                                                                \
+    {                                                                                                       \
+        .name = "--springs", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = "on", \
+        .what = "whether the springs of the pack swing (noh build --springs), beside what clips say"        \
+    }
+
 #define OPTION_FEEL(T, m)                                                                                              \
     {                                                                                                                  \
         .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT",                        \

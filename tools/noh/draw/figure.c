@@ -58,6 +58,7 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->root_axes = d->root_axes;
     k->root_up = 1;
     k->unpickable = !d->pickable;
+    k->without_springs = d->without_springs;
     f->stage_desc.kind_count++;
     return 0;
 }

@@ -39,6 +39,7 @@ typedef struct figure_desc {
     uint32_t more_clip_count;
     int face_layer;       /* 1: clips that move no joint play over those that do, as a face does */
     int alive;            /* 1: faces whose eyes are found blink, look, breathe and feel */
+    int without_springs;  /* 1: what springs of the pack would swing is left to clips */
     uint32_t level;       /* the finest LOD level that is there, as `noh info` counts them */
     int by_error;         /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
     noh_lod_settings lod; /* by which they are chosen; zeros: as lod.h has them */
@@ -122,7 +123,8 @@ int figure_set_look(figure *f, const noh_look *look);
  * is an error that suggests the nearest. */
 int figure_play(figure *f, const char *clip, const noh_play *play);
 int figure_clip_seconds(const figure *f, const char *clip, double *seconds);
-/* Each --clip at this time, beside each other. */
+/* Each --clip at this time, beside each other. Where springs swing, what comes before it, up to two seconds, is played
+ * first. */
 int figure_play_options(figure *f, const option_list *clips, double time_s);
 /* What plays stands still from now on, while the stage's clock goes on: for fades of levels in one pose. */
 void figure_pause(figure *f);

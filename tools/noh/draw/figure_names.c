@@ -1,4 +1,5 @@
 /* figure_names.c: clips and floats of a figure by name; what is said where there is none. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,6 +7,8 @@
 #include "clip/pack_clip.h"
 #include "convert/base/nearest.h"
 #include "figure.h"
+
+#define SWING_S 2.0 /* springs have settled by then */
 
 /* "no clip 'simle' (did you mean 'smile'?)", or how many there are when nothing is near. */
 int figure_fail_unknown(const char *subject, const char *kind, const char *name, const char *const *names, size_t count)
@@ -127,14 +130,24 @@ int figure_play(figure *f, const char *clip, const noh_play *play)
     return found ? 0 : fail_clip(f, clip);
 }
 
+static int figure_swings(const figure *f)
+{
+    noh_springs_desc springs;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        if (!f->desc.without_springs && noh_springs_of_pack(f->kinds[k].mesh, f->kinds[k].skeleton, &springs)) return 1;
+    }
+    return 0;
+}
+
 int figure_play_options(figure *f, const option_list *clips, double time_s)
 {
     const double limit_s = 1e8; /* a track's position cannot be larger */
     const double at_s = time_s > limit_s ? limit_s : time_s < -limit_s ? -limit_s : time_s;
-    const noh_play play = { .start_ticks = noh_ticks_from_seconds(at_s), .flags = NOH_PLAY_BESIDE };
+    const double lead_s = clips->count && figure_swings(f) && at_s > 0.0 ? fmin(at_s, SWING_S) : 0.0;
+    const noh_play play = { .start_ticks = noh_ticks_from_seconds(at_s - lead_s), .flags = NOH_PLAY_BESIDE };
     int status = 0;
     for (int i = 0; i < clips->count && !status; i++) status = figure_play(f, clips->items[i], &play);
-    return status;
+    return status || !(lead_s > 0.0) ? status : figure_live(f, lead_s);
 }
 
 void figure_pause(figure *f)

@@ -84,6 +84,23 @@ const char *const help_formats_text[] = {
     "   aa jaw 0.8",
     "   aa \"lips wide\" 0.2",
     "   joy-mouth grin 0.9",
+    "# springs (noh build --springs FILE, --spring LINE)",
+    "Joints that swing, as VRMC_springBone has them, and capsules that they stay out of. One a line, words separated by blanks, names "
+    "with blanks in double quotes; # begins a comment:",
+    "   chain JOINT [to JOINT] [SETTING] ...        from a joint down to another; without `to` all below it",
+    "     stiffness N                               metres per second towards the rest pose (1)",
+    "     drag N                                    share of its speed that a joint loses in 1/60 s, 0 to 1 (0.4)",
+    "     gravity N                                 metres per second downwards (0)",
+    "     radius N                                  of the ends of joints against colliders, metres (0)",
+    "     end X Y Z                                 where the last bone ends, in its joint's space; without it the middle of",
+    "                                               what the joint moves",
+    "     hits JOINT ...                            only the colliders on these joints; the last setting of its line",
+    "   collider JOINT RADIUS [X Y Z [X Y Z]]       a sphere at a place in the joint's space, or a capsule between two",
+    "JOINT is a name, or the beginning of one and '*'. Without such lines a glTF file's own count: VRMC_springBone, secondaryAnimation "
+    "of VRM 0, and \"springs\" in the extras of a node or of the file: an array of lines, or one text with ';' between them.",
+    "   collider thigh* 0.09  0 0 0  0 -0.35 0",
+    "   chain skirt* stiffness 0.8 drag 0.3 gravity 0.4 radius 0.02",
+    "   chain ponytail1 to ponytail4 stiffness 0.3 hits head",
     "# ragdolls (noh build --ragdoll FILE)",
     "The bodies of a character that falls: each begins at a joint, and has all joints below it that have no row. One row a line, at most "
     "16, words separated by blanks, names with blanks in double quotes; # begins a comment:",

@@ -150,6 +150,7 @@ static int print_info(const pack_file *file)
         printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
         info_print_levels(p, i);
         printf("\n");
+        info_print_springs(p, i);
     }
     for (uint32_t i = 0; i < p->clip_count && !status; i++) {
         status = print_clip(file, i);
@@ -261,6 +262,7 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
     json_integer(j, "hash", h->hash);
     json_number(j, "unit_cm", (double)h->unit_cm);
     info_json_levels(j, pack, index);
+    info_json_springs(j, pack, index);
     json_close(j, '}');
 }
 

@@ -2,6 +2,9 @@
 
 #include <stdio.h>
 
+#include "cli/message.h"
+#include "stage/springs.h"
+
 void info_print_levels(const noh_pack *pack, uint32_t skeleton)
 {
     uint32_t count;
@@ -20,6 +23,78 @@ void info_json_levels(json *j, const noh_pack *pack, uint32_t skeleton)
         json_integer(j, NULL, levels[i]);
     }
     json_close(j, ']');
+}
+
+static const char *joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t joint)
+{
+    const char *name = noh_pack_joint_name(pack, skeleton, joint);
+    return name ? name : "";
+}
+
+void info_print_springs(const noh_pack *pack, uint32_t skeleton)
+{
+    noh_springs_desc d;
+    size_t state, scratch;
+    if (!noh_springs_of_pack(pack, skeleton, &d)) return;
+    noh_springs_measure(&d, &state, &scratch);
+    printf("  springs: %u joint%s in %u chain%s, %u collider%s, %zu bytes an actor\n", d.row_count, plural(d.row_count),
+           d.chain_count, plural(d.chain_count), d.collider_count, plural(d.collider_count), state);
+    for (uint32_t i = 0; i < d.chain_count; i++) {
+        const noh_spring_chain *c = &d.chains[i];
+        const noh_spring_row *row = &d.rows[c->first_row];
+        printf("    %-24s %3u joint%s, stiffness %.3g, drag %.3g, gravity %.3g %.3g %.3g, radius %.3g m\n",
+               joint_name(pack, skeleton, row->joint), c->row_count, plural(c->row_count), (double)row->stiffness,
+               (double)row->drag, (double)row->gravity[0], (double)row->gravity[1], (double)row->gravity[2],
+               (double)row->radius);
+    }
+    for (uint32_t i = 0; i < d.collider_count; i++) {
+        printf("    %-24s collider, radius %.3g m\n", joint_name(pack, skeleton, d.colliders[i].joint),
+               (double)d.colliders[i].radius);
+    }
+}
+
+static void json_chain(json *j, const noh_pack *pack, uint32_t skeleton, const noh_springs_desc *d, uint32_t chain)
+{
+    const noh_spring_chain *c = &d->chains[chain];
+    json_open(j, NULL, '{');
+    json_open(j, "joints", '[');
+    for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
+        json_text(j, NULL, joint_name(pack, skeleton, d->rows[i].joint));
+    }
+    json_close(j, ']');
+    json_number(j, "stiffness", (double)d->rows[c->first_row].stiffness);
+    json_number(j, "drag", (double)d->rows[c->first_row].drag);
+    json_open(j, "collides", '[');
+    for (uint32_t i = 0; i < d->collider_count; i++) {
+        if (c->collides >> i & 1u) json_integer(j, NULL, i);
+    }
+    json_close(j, ']');
+    json_close(j, '}');
+}
+
+void info_json_springs(json *j, const noh_pack *pack, uint32_t skeleton)
+{
+    noh_springs_desc d;
+    size_t state, scratch;
+    if (!noh_springs_of_pack(pack, skeleton, &d)) {
+        json_null(j, "springs");
+        return;
+    }
+    noh_springs_measure(&d, &state, &scratch);
+    json_open(j, "springs", '{');
+    json_integer(j, "bytes_per_actor", state);
+    json_open(j, "chains", '[');
+    for (uint32_t i = 0; i < d.chain_count; i++) json_chain(j, pack, skeleton, &d, i);
+    json_close(j, ']');
+    json_open(j, "colliders", '[');
+    for (uint32_t i = 0; i < d.collider_count; i++) {
+        json_open(j, NULL, '{');
+        json_text(j, "joint", joint_name(pack, skeleton, d.colliders[i].joint));
+        json_number(j, "radius_m", (double)d.colliders[i].radius);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+    json_close(j, '}');
 }
 
 /* Centimetres per unit of a clip's errors, which are metres where it has no skeleton. */

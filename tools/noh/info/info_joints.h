@@ -1,4 +1,4 @@
-/* info_joints.h: the part of `noh info` about joint levels, and the errors of fewer joints and lower update rates. */
+/* info_joints.h: the part of `noh info` about joint levels, springs, and the errors of fewer joints and lower rates. */
 #ifndef NOH_NOH_INFO_INFO_JOINTS_H
 #define NOH_NOH_INFO_INFO_JOINTS_H
 
@@ -8,6 +8,9 @@
 /* Print the end of a skeleton's line, and the lines below a clip's; or add members to the open object. */
 void info_print_levels(const noh_pack *pack, uint32_t skeleton);
 void info_json_levels(json *j, const noh_pack *pack, uint32_t skeleton);
+/* What of a skeleton swings: lines, or a member of the open object. */
+void info_print_springs(const noh_pack *pack, uint32_t skeleton);
+void info_json_springs(json *j, const noh_pack *pack, uint32_t skeleton);
 void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip);
 void info_json_errors(json *j, const noh_pack *pack, const noh_pack_clip *clip);
 

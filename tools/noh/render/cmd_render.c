@@ -12,7 +12,7 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *path, *accumulate, *driver, *debug, *face;
+    const char *pack, *output, *path, *accumulate, *driver, *debug, *face, *springs;
     uint32_t size[2];
     double time_s, lod;
     int show_bones;
@@ -41,11 +41,14 @@ static int parse_debug(const char *text, noh_debug_view *view)
 
 static int check_args(render_args *a)
 {
+    int springs = 1;
     int status = parse_path(a->path, &a->figure.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
     if (!status) status = parse_debug(a->debug, &a->figure.view);
     if (!status) status = parse_level(a->lod, &a->figure.level);
     if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
+    if (!status) status = tool_switch("--springs", a->springs, &springs);
+    a->figure.without_springs = !springs;
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
     }
@@ -166,6 +169,7 @@ static const option options[] = {
     OPTION_ANIMS(render_args, anims, .needs = "--clip"),
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions),
+    OPTION_SPRINGS(render_args, springs),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),

@@ -28,7 +28,7 @@ typedef struct sheet {
 } sheet;
 
 typedef struct sheet_args {
-    const char *path, *accumulate, *transition, *face;
+    const char *path, *accumulate, *transition, *face, *springs;
     double tile, tiles, columns, faces, seed;
     sheet s;
 } sheet_args;
@@ -184,6 +184,7 @@ static int check_clips(const sheet_tiles *t, const char *transition)
 
 static int check_args(sheet_args *a)
 {
+    int springs = 1;
     sheet *s = &a->s;
     int status = parse_path(a->path, &s->figure.path);
     if (!status) status = parse_accumulate(a->accumulate, &s->figure.accumulate);
@@ -198,6 +199,8 @@ static int check_args(sheet_args *a)
     if (!status) status = check_clips(&s->tiles, a->transition);
     if (!status && s->tiles.push) status = figure_read_push(s->tiles.push, s->tiles.impulse);
     if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
+    if (!status) status = tool_switch("--springs", a->springs, &springs);
+    s->figure.without_springs = !springs;
     s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
@@ -263,6 +266,7 @@ static const option options[] = {
       .excludes = "--lods" },
     OPTION_ANIMS(sheet_args, s.tiles.anims, .needs = "--clip"),
     OPTION_FACE(sheet_args, face, "off"),
+    OPTION_SPRINGS(sheet_args, springs),
     OPTION_FEEL(sheet_args, s.tiles.emotions),
     { .name = "--tiles",
       .kind = OPTION_NUMBER,

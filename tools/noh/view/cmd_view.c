@@ -9,7 +9,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *lod, *camera, *face;
+    const char *path, *accumulate, *driver, *lod, *camera, *face, *springs;
     double frames;
     uint32_t size[2];
     light_options light;
@@ -43,7 +43,7 @@ static int check_args(view_args *a)
 static int run(void *args)
 {
     view_args *a = args;
-    int status = check_args(a);
+    int springs = 1, status = check_args(a);
     if (!status && lighting_wanted(&a->light, !a->run.desc.show_bones)) {
         status = lighting_open(&a->lit, &a->light);
         a->run.desc.light = &a->lit;
@@ -53,9 +53,11 @@ static int run(void *args)
     }
     a->run.frames = (uint32_t)a->frames;
     a->run.desc.alive = !a->run.frames;
-    if (a->face && tool_switch("--face", a->face, &a->run.desc.alive)) {
+    if ((a->face && tool_switch("--face", a->face, &a->run.desc.alive)) ||
+        tool_switch("--springs", a->springs, &springs)) {
         return EXIT_USAGE;
     }
+    a->run.desc.without_springs = !springs;
     a->run.fixed_camera = strcmp(a->camera, "fixed") == 0;
     a->run.native = a->driver[0] == 'n';
     a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
@@ -75,6 +77,7 @@ static const option options[] = {
       .at = offsetof(view_args, face),
       .value = "on|off",
       .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
+    OPTION_SPRINGS(view_args, springs),
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),

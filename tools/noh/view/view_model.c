@@ -219,6 +219,7 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.held_float_count = FIGURE_HELD_ALL;
     d.inertia = d.pickable = d.tangents = 1;
     d.alive = desc->alive && !s->show_bones;
+    d.without_springs = desc->without_springs;
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
     d.path = desc->morph_path;
     d.accumulate = desc->accumulate;

@@ -21,6 +21,7 @@ int zoom_subject_open(const zoom_subject *s, gpu *g, int by_error, uint32_t fade
 {
     figure_desc desc = s->desc;
     int status;
+    desc.without_springs = 1; /* they fade, and levels alone are compared */
     desc.by_error = by_error;
     desc.lod.fade_ticks = fade_ticks;
     status = figure_open(f, &desc, g);

@@ -1,0 +1,57 @@
+#!/bin/sh
+# noh build --springs and --spring, what info and budget show of them, render and sheet with --springs on and off; what
+# is refused.
+. "$(dirname "$0")/lib.sh"
+
+puppet=$build/demo/puppet.glb
+text=tools/demo_assets/puppet/puppet.springs
+
+noh build "$puppet" -o "$work/a.noh" --springs $text --quiet
+expect 0 'build --springs'
+noh build "$puppet" -o "$work/plain.noh" --quiet
+noh info "$work/a.noh"
+expect 0 'info'
+check 'tells how many swing' grep -q '^  springs: 4 joints in 4 chains, 4 colliders, ' "$work/out"
+check 'and each chain' grep -q '^    sleeve.L  *1 joint, stiffness 0.3, drag 0.22, gravity 0 -0.75 0, ' "$work/out"
+noh info "$work/a.noh" --json
+check 'and as JSON' grep -q '"chains": *\[' "$work/out"
+noh info "$work/plain.noh" --json
+check 'null without' grep -q '"springs": *null' "$work/out"
+noh budget "$work/a.noh"
+expect 0 'budget'
+check 'has their bytes' grep -q 'springs' "$work/out"
+noh verify "$work/a.noh"
+expect 0 'verify: plans are what is used'
+noh strip "$work/a.noh" -o "$work/b.noh" --from-level 0 --quiet
+check 'strip keeps them' cmp "$work/a.noh" "$work/b.noh"
+
+for on in on off; do
+    noh render "$work/a.noh" -o "$work/$on.png" --size 96x112 --clip dance --time 5.9 --springs $on
+    expect 0 "render --springs $on"
+done
+noh render "$work/plain.noh" -o "$work/plain.png" --size 96x112 --clip dance --time 5.9
+check 'off is a pack without springs' cmp "$work/off.png" "$work/plain.png"
+check 'on is not' sh -c "! cmp -s '$work/on.png' '$work/off.png'"
+noh render "$work/a.noh" -o "$work/again.png" --size 96x112 --clip dance --time 5.9
+check 'on is the default, and the same each time' cmp "$work/on.png" "$work/again.png"
+noh sheet "$work/a.noh" -o "$work/sheet.png" --clip walk --tiles 2 --tile 48 --springs off
+expect 0 'sheet --springs off'
+noh render "$work/a.noh" -o "$work/x.png" --springs maybe
+expect 2 'neither on nor off'
+
+noh build "$puppet" -o "$work/x.noh" --spring 'chain sleeve* stiffness 0.5' --spring 'collider chest 0.1' --quiet
+expect 0 'lines of the command line'
+noh build "$puppet" -o "$work/x.noh" --spring 'chain sleve*'
+expect 1 'a joint that is not there'
+says "'sleve*': no skeleton has this joint"
+printf 'chain sleeve*\nchain sleeve.L\n' >"$work/twice.springs"
+noh build "$puppet" -o "$work/x.noh" --springs "$work/twice.springs"
+expect 1 'a joint that swings twice'
+says 'twice.springs:2: '
+noh build "$puppet" -o "$work/x.noh" --springs "$work/none.springs"
+check 'a file that is not there' test "$code" != 0
+noh build "$puppet" -o "$work/x.noh" --springs $text --only anim
+expect 2 'clips alone have none'
+noh build "$puppet" -o "$work/x.noh" --springs $text --only mesh --quiet
+expect 0 'meshes alone have them'
+finish
