@@ -121,6 +121,7 @@
 /* ---- many of them, on the ground ---- */
 
 #include "crowd/crowd.h" /* agents that walk to their goals and stay out of each other's way */
+#include "crowd/flock.h" /* rules of a flock, one by one */
 
 /* ---- parts, for tools and engines of your own ---- */
 

@@ -80,7 +80,7 @@ static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
     c->plan[1] = take(&bytes, sizeof(vec2), n);
     c->neighbor = take(&bytes, CROWD_NEIGHBORS * sizeof(uint16_t), n);
     c->id = take(&bytes, sizeof(uint32_t), n);
-    c->waited = take(&bytes, sizeof(uint32_t), n);
+    c->state = take(&bytes, sizeof(uint32_t), n);
     c->start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
     if (c->obstacle_count) {
         c->obstacle = take(&bytes, sizeof(noh_crowd_obstacle), c->obstacle_count);
@@ -123,11 +123,24 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
 
 /* ---- agents ---- */
 
+/* As they are kept. */
+static uint32_t flags_of(uint32_t flags)
+{
+    if (flags & NOH_CROWD_ORCA) return CROWD_ORCA;
+    return flags == NOH_CROWD_FLOCK ? CROWD_FORCES | CROWD_FLOCK : flags == NOH_CROWD_FORCES ? CROWD_FORCES : 0;
+}
+
+static uint32_t given_flags(uint32_t state)
+{
+    if (state & CROWD_ORCA) return NOH_CROWD_ORCA;
+    return state & CROWD_FLOCK ? NOH_CROWD_FLOCK : state & CROWD_FORCES ? NOH_CROWD_FORCES : 0;
+}
+
 noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error)
 {
     NOH_ASSERT(crowd && agent && index < crowd->agent_max);
     if (!is_place(agent->position) || !is_place(agent->goal) || !is_place(agent->velocity) ||
-        !(agent->radius > 0.0f && agent->radius <= 0.5f * crowd->reach) ||
+        !(agent->radius > 0.0f && agent->radius <= 0.5f * crowd->reach) || agent->flags > NOH_CROWD_FLOCK ||
         !(agent->speed >= 0.0f && agent->speed <= SPEED_MAX * agent->radius)) {
         return noh_fail(error, NOH_ERR_ARG,
                         "an agent is too far away, too fast, or its radius is not within 0 and half "
@@ -141,7 +154,7 @@ noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent
     CROWD_ARRAY(vec2, crowd, position)[index] = v2(agent->position[0], agent->position[1]);
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(agent->velocity[0], agent->velocity[1]);
     CROWD_ARRAY(uint32_t, crowd, id)[index] = agent->id;
-    CROWD_ARRAY(uint32_t, crowd, waited)[index] = 0;
+    CROWD_ARRAY(uint32_t, crowd, state)[index] = flags_of(agent->flags);
     return NOH_OK;
 }
 
@@ -179,6 +192,7 @@ int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_ag
     memcpy(agent->goal, &w->goal, sizeof agent->goal);
     agent->radius = w->radius;
     agent->speed = w->speed;
+    agent->flags = given_flags(CROWD_CONST(uint32_t, crowd, state)[index]);
     agent->id = CROWD_CONST(uint32_t, crowd, id)[index];
     return 1;
 }
@@ -223,7 +237,8 @@ uint32_t noh_crowd_jobs(noh_crowd *crowd)
         crowd->phase = SORT;
         if (!--crowd->to_do) return 0;
     }
-    if (crowd->phase++ == SORT) noh_crowd_sort(crowd);
+    if (crowd->phase == SORT) noh_crowd_sort(crowd);
+    crowd->phase = crowd->phase == SEE && !crowd->corrected ? (uint32_t)FINISH : crowd->phase + 1u;
     return crowd->job_count;
 }
 
@@ -232,12 +247,14 @@ void noh_crowd_job(noh_crowd *crowd, uint32_t job)
     NOH_ASSERT(crowd && job < crowd->job_count && crowd->phase >= SEE && crowd->phase <= FINISH);
     const uint32_t begin = (uint32_t)((uint64_t)crowd->present * job / crowd->job_count);
     const uint32_t end = (uint32_t)((uint64_t)crowd->present * (job + 1u) / crowd->job_count);
+    if (crowd->phase > SEE && crowd->phase < FINISH) {
+        noh_crowd_iterate(crowd, begin, end, crowd->phase - (uint32_t)ITERATE);
+        return;
+    }
     for (uint32_t rank = begin; rank < end; rank++) {
         if (crowd->phase == SEE) {
             noh_crowd_see(crowd, rank);
             noh_crowd_plan(crowd, rank);
-        } else if (crowd->phase < FINISH) {
-            noh_crowd_iterate(crowd, rank, crowd->phase - (uint32_t)ITERATE);
         } else {
             noh_crowd_finish(crowd, rank);
         }

@@ -18,7 +18,8 @@
  *
  * A crowd is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
  * source   Weiss, Litteneker, Jiang, Terzopoulos: Position-Based Multi-Agent Dynamics for Real-Time Crowd Simulation,
- *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations)
+ *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations); van den Berg, Guy, Lin, Manocha:
+ *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA)
  * Threads: a crowd belongs to one thread at a time; noh_crowd_job alone may be called from several at once. */
 #ifndef NOH_CROWD_CROWD_H
 #define NOH_CROWD_CROWD_H
@@ -58,8 +59,19 @@ typedef struct noh_crowd_agent {
     float goal[2];     /* it slows down before its goal, and stays there */
     float radius;      /* above 0, at most half of the reach */
     float speed;       /* that it likes to walk at, 0..15 radii per second; 0: it holds its place */
+    uint32_t flags;    /* NOH_CROWD_ORCA, _FORCES, _FLOCK or 0 */
     uint32_t id; /* tells agents apart whatever their indices are: equal in each run, no two of a crowd the same */
 } noh_crowd_agent;
+
+/* This agent takes the velocity of optimal reciprocal collision avoidance (ORCA) in place of plans that are corrected:
+ * smooth among few, slower through many, and it overlaps where it is dense. Others make way for it by half, as it does
+ * for them. */
+#define NOH_CROWD_ORCA 1u
+
+/* This agent steers by the rules of crowd/flock.h alone: it is repelled by neighbours and obstacles on its way. FLOCK:
+ * it goes along with its neighbours, too. */
+#define NOH_CROWD_FORCES 2u
+#define NOH_CROWD_FLOCK 6u
 
 typedef struct noh_crowd noh_crowd;
 

@@ -121,6 +121,7 @@ void noh_crowd_sort(noh_crowd *c)
     const vec2 *positions = CROWD_CONST(vec2, c, position), *velocities = CROWD_CONST(vec2, c, velocity);
     uint32_t *start = CROWD_ARRAY(uint32_t, c, start), *cell_of = CROWD_ARRAY(uint32_t, c, plan[0]);
     vec2 *now = CROWD_ARRAY(vec2, c, plan[1]); /* velocities by rank, which the plans are made of */
+    const uint32_t *states = CROWD_CONST(uint32_t, c, state);
     crowd_body *bodies = CROWD_ARRAY(crowd_body, c, body);
     const uint32_t cell_count = c->cells.width * c->cells.depth;
     memset(start, 0, (cell_count + 1u) * sizeof *start);
@@ -131,12 +132,14 @@ void noh_crowd_sort(noh_crowd *c)
         start[cell_of[i] + 1u]++;
     }
     c->present = begin_cells(start, cell_count);
+    c->corrected = 0;
     for (uint32_t i = 0; i < c->agent_max; i++) {
         if (!(wishes[i].radius > 0.0f)) continue;
         const uint32_t rank = start[cell_of[i] + 1u]++;
         bodies[rank].at = positions[i];
         bodies[rank].radius = wishes[i].radius;
-        bodies[rank].item = wishes[i].speed > 0.0f ? i : i | CROWD_HOLDS;
+        bodies[rank].item = i | (states[i] & CROWD_FLAGS) | (wishes[i].speed > 0.0f ? 0u : CROWD_HOLDS);
+        c->corrected += !(bodies[rank].item & (CROWD_ORCA | CROWD_HOLDS));
         now[rank] = velocities[i];
     }
 }

@@ -11,10 +11,16 @@
 #define CROWD_STEPS_PER_S 30.0f
 #define CROWD_NEIGHBORS 8u
 #define CROWD_ITERATIONS 5u
-#define CROWD_NO_NEIGHBOR 0xffffu
-#define CROWD_RUN_MAX 0x3fffu   /* agents of three cells in a row that are looked at: a neighbour's name has 14 bits */
-#define CROWD_HOLDS 0x80000000u /* of crowd_body.item: it stands, and is not pushed */
-#define CROWD_FAST 1.5f         /* times the speed that an agent likes: the most that it is pushed to */
+#define CROWD_NO_NEIGHBOR 0xdfffu /* a run that there is not, without CROWD_CLOSE */
+#define CROWD_RUN_MAX 0x1fffu     /* agents of three cells in a row that are looked at: 13 bits of a neighbour's name */
+#define CROWD_CLOSE 0x2000u       /* of a neighbour's name: it may be touched in this step */
+#define CROWD_FORCES 0x10000000u  /* of crowd_body.item: it steers by the rules of a flock */
+#define CROWD_FLOCK 0x20000000u   /* with those that make it one */
+#define CROWD_ORCA 0x40000000u    /* its plan is not corrected */
+#define CROWD_HOLDS 0x80000000u   /* it stands, and is not pushed */
+#define CROWD_FLAGS 0x70000000u   /* of the state, too: NOH_CROWD_* */
+#define CROWD_ITEMS 0x0fffffffu   /* the rest */
+#define CROWD_FAST 1.5f           /* times the speed that an agent likes: the most that it is pushed to */
 
 typedef struct vec2 {
     float x, z;
@@ -47,11 +53,13 @@ struct noh_crowd {
     float reach;
     noh_steps time;
     crowd_cells cells;
-    uint32_t position, velocity, wish, id, waited; /* by agent */
-    uint32_t body, plan[2], neighbor;              /* by rank; neighbor: names [CROWD_NEIGHBORS] of each */
-    uint32_t start;                                /* by cell: its first rank; one more at the end */
-    uint32_t obstacle, near_start, near;           /* obstacles; by cell: its first in near; indices of obstacles */
-    uint32_t bytes, reserved[3];
+    uint32_t position, velocity, wish, id, state; /* by agent; state: steps that it waited, and the flags below */
+    uint32_t body, plan[2], neighbor;             /* by rank; neighbor: names [CROWD_NEIGHBORS] of each */
+    uint32_t start;                               /* by cell: its first rank; one more at the end */
+    uint32_t obstacle, near_start, near;          /* obstacles; by cell: its first in near; indices of obstacles */
+    uint32_t bytes;
+    uint32_t corrected; /* agents of the step whose plans are corrected */
+    uint32_t reserved[2];
 };
 NOH_STATIC_ASSERT(sizeof(noh_crowd) == 128, crowd);
 NOH_STATIC_ASSERT(sizeof(crowd_body) == 16 && sizeof(crowd_wish) == 16, crowd_records);
@@ -110,11 +118,13 @@ void noh_crowd_sort(noh_crowd *c);
 /* The up to three runs of ranks in the cells around a place. returns how many */
 uint32_t noh_crowd_runs(const noh_crowd *c, vec2 at, uint32_t first[3], uint32_t end[3]);
 
-/* Neighbours are named by run and place in the run, in 2 and 14 bits. */
+/* Neighbours are named by run and place in the run, in 2 and 13 bits. */
 static inline uint32_t noh_crowd_rank_of(const uint32_t first[3], uint32_t name)
 {
     return first[name >> 14] + (name & CROWD_RUN_MAX);
 }
+
+#define CROWD_ITEM(body) ((body)->item & CROWD_ITEMS)
 
 /* ---- crowd_see.c ---- */
 
@@ -122,15 +132,28 @@ void noh_crowd_see(noh_crowd *c, uint32_t rank);
 
 /* ---- crowd_obstacle.c ---- */
 
+/* The obstacles of the cell of a place. returns how many */
+uint32_t noh_crowd_near_of(const noh_crowd *c, vec2 at, const uint16_t **near);
+/* From the nearest point of its middle line. */
+vec2 noh_crowd_away_from(const noh_crowd_obstacle *o, vec2 at);
 /* The unit direction in which to walk towards what lies `distance` away in a unit direction. */
 vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance);
 /* Where a step from `from` to `to` ends: outside of everything. */
 vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
 
+/* ---- flock.c ---- */
+
+/* Two in one place are parted by who they are: a unit direction that both find, with opposite signs. */
+void noh_crowd_direction_of(uint32_t id, uint32_t other, float direction[2]);
+
 /* ---- crowd_plan.c, crowd_avoid.c: the phases of a body's step ---- */
 
+/* The velocity that is nearest to `wish`, no faster than `fast`, and meets no neighbour (crowd_orca.c). */
+vec2 noh_crowd_orca(const noh_crowd *c, uint32_t rank, vec2 wish, float fast);
+/* The velocity after a step by the rules of a flock (crowd_flock.c). */
+vec2 noh_crowd_flock(const noh_crowd *c, uint32_t rank, vec2 wish, float speed);
 void noh_crowd_plan(noh_crowd *c, uint32_t rank);
-void noh_crowd_iterate(noh_crowd *c, uint32_t rank, uint32_t iteration);
+void noh_crowd_iterate(noh_crowd *c, uint32_t begin, uint32_t end, uint32_t iteration); /* of ranks */
 void noh_crowd_finish(noh_crowd *c, uint32_t rank);
 
 #endif

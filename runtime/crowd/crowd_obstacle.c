@@ -102,7 +102,7 @@ static vec2 way_past(const wall *walls, uint32_t count, vec2 at, vec2 direction,
     return way;
 }
 
-static uint32_t near_of(const noh_crowd *c, vec2 at, const uint16_t **near)
+uint32_t noh_crowd_near_of(const noh_crowd *c, vec2 at, const uint16_t **near)
 {
     const uint32_t *start = CROWD_CONST(uint32_t, c, near_start);
     uint32_t column, row;
@@ -112,12 +112,18 @@ static uint32_t near_of(const noh_crowd *c, vec2 at, const uint16_t **near)
     return start[cell + 1u] - start[cell];
 }
 
+vec2 noh_crowd_away_from(const noh_crowd_obstacle *o, vec2 at)
+{
+    const wall w = wall_of(o, 0.0f);
+    return away_from(&w, at);
+}
+
 vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance)
 {
     const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);
     const uint16_t *near = NULL;
     wall walls[WALLS];
-    uint32_t count = near_of(c, at, &near);
+    uint32_t count = noh_crowd_near_of(c, at, &near);
     if (!count) return direction;
     if (count > WALLS) count = WALLS;
     for (uint32_t k = 0; k < count; k++) walls[k] = wall_of(&obstacles[near[k]], radius);
@@ -130,7 +136,7 @@ vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius)
 {
     const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);
     const uint16_t *near = NULL;
-    const uint32_t count = near_of(c, from, &near);
+    const uint32_t count = noh_crowd_near_of(c, from, &near);
     for (uint32_t k = 0; k < count; k++) {
         const wall w = wall_of(&obstacles[near[k]], radius);
         const vec2 before = away_from(&w, from);

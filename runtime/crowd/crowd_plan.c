@@ -11,7 +11,7 @@
 #define IN_FRONT 0.7f  /* of the radii: who is further aside than this is not in front */
 #define ONCOMING 0.2f  /* of the speed: who comes nearer faster than this is not waited for, but passed */
 #define ASIDE 0.8f     /* of the speed: an agent that can have so much does not look for another way */
-#define LEFT 0.3f      /* what a way to the left counts beside one to the right: most meet by passing on one side */
+#define LEFT 0.2f      /* what a way to the left counts beside one to the right: most meet by passing on one side */
 #define WAIT_STEPS 15.0f /* at less than a fifth of its speed, after which it begins to push */
 #define PUSH_STEPS 60.0f /* per which its push grows by its speed */
 #define PUSH_MAX 0.4f    /* of the speed */
@@ -86,18 +86,23 @@ static float speed_at(const crowd_wish *w, float distance)
     return slow < w->speed ? slow : w->speed;
 }
 
-static vec2 wish_of(const noh_crowd *c, uint32_t rank)
+/* Towards the goal, past walls; *speed: how fast. returns 0 where it is there */
+static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish *w, vec2 *direction, float *speed)
 {
-    const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
-    const uint32_t item = b->item & ~CROWD_HOLDS;
-    const crowd_wish *w = CROWD_CONST(crowd_wish, c, wish) + item;
     const vec2 to = v2_sub(w->goal, b->at);
-    const float distance = v2_length(to), speed = speed_at(w, distance);
+    const float distance = v2_length(to);
+    *speed = speed_at(w, distance);
+    if (!(distance > 1e-6f) || !(*speed > 0.0f)) return 0;
+    *direction = noh_crowd_detour(c, b->at, b->radius, v2_scale(to, 1.0f / distance), distance);
+    return 1;
+}
+
+/* Among others. */
+static vec2 way_among(const noh_crowd *c, uint32_t rank, float waited, vec2 direction, float speed)
+{
+    const float push = push_of(waited) * speed;
     view v;
-    if (!(distance > 1e-6f) || !(speed > 0.0f)) return v2(0.0f, 0.0f);
-    const vec2 direction = noh_crowd_detour(c, b->at, b->radius, v2_scale(to, 1.0f / distance), distance);
     look(c, rank, &v);
-    const float push = push_of((float)CROWD_CONST(uint32_t, c, waited)[item]) * speed;
     float most = speed_along(&v, direction, speed);
     if (most < push) most = push;
     return most < ASIDE * speed ? way_through(&v, direction, speed, most) : v2_scale(direction, most);
@@ -105,6 +110,21 @@ static vec2 wish_of(const noh_crowd *c, uint32_t rank)
 
 void noh_crowd_plan(noh_crowd *c, uint32_t rank)
 {
-    const vec2 now = CROWD_CONST(vec2, c, plan[1])[rank], wish = wish_of(c, rank);
-    CROWD_ARRAY(vec2, c, plan[0])[rank] = v2_madd(now, BLEND, v2_sub(wish, now));
+    const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
+    const crowd_wish *w = CROWD_CONST(crowd_wish, c, wish) + CROWD_ITEM(b);
+    const uint32_t waited = CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(b)] & ~CROWD_FLAGS;
+    const vec2 now = CROWD_CONST(vec2, c, plan[1])[rank];
+    vec2 direction, wish = v2(0.0f, 0.0f);
+    float speed;
+    const int goes = heading_of(c, b, w, &direction, &speed);
+    if (b->item & CROWD_ORCA) {
+        if (goes) wish = v2_scale(direction, speed);
+        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_orca(c, rank, wish, CROWD_FAST * w->speed);
+    } else if (b->item & CROWD_FORCES) {
+        if (goes) wish = v2_scale(direction, speed);
+        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_flock(c, rank, wish, w->speed);
+    } else {
+        if (goes) wish = way_among(c, rank, (float)waited, direction, speed);
+        CROWD_ARRAY(vec2, c, plan[0])[rank] = v2_madd(now, BLEND, v2_sub(wish, now));
+    }
 }

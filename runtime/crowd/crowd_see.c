@@ -3,37 +3,42 @@
 
 typedef struct seen {
     float square[CROWD_NEIGHBORS];
-    uint32_t id[CROWD_NEIGHBORS];
+    uint32_t rank[CROWD_NEIGHBORS];
     uint16_t name[CROWD_NEIGHBORS];
     uint32_t count;
 } seen;
 
-/* By distance, and by id where distances are equal: so the list does not depend on the order of agents. */
-static inline int is_before(float square, uint32_t id, const seen *s, uint32_t at)
+static uint32_t id_of(const noh_crowd *c, uint32_t rank)
 {
-    return square < s->square[at] || (square == s->square[at] && id < s->id[at]);
+    return CROWD_CONST(uint32_t, c, id)[CROWD_ITEM(CROWD_CONST(crowd_body, c, body) + rank)];
 }
 
-static inline void insert(seen *s, float square, uint32_t id, uint32_t name)
+/* By distance, and by id where distances are equal: so the list does not depend on the order of agents. */
+static inline int is_before(const noh_crowd *c, float square, uint32_t rank, const seen *s, uint32_t at)
+{
+    return square < s->square[at] || (square == s->square[at] && id_of(c, rank) < id_of(c, s->rank[at]));
+}
+
+static inline void insert(const noh_crowd *c, seen *s, float square, uint32_t rank, uint32_t name)
 {
     uint32_t at = s->count < CROWD_NEIGHBORS ? s->count++ : CROWD_NEIGHBORS - 1u;
-    for (; at && is_before(square, id, s, at - 1u); at--) {
+    for (; at && is_before(c, square, rank, s, at - 1u); at--) {
         s->square[at] = s->square[at - 1u];
-        s->id[at] = s->id[at - 1u];
+        s->rank[at] = s->rank[at - 1u];
         s->name[at] = s->name[at - 1u];
     }
     s->square[at] = square;
-    s->id[at] = id;
+    s->rank[at] = rank;
     s->name[at] = (uint16_t)name;
 }
 
 void noh_crowd_see(noh_crowd *c, uint32_t rank)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body);
-    const uint32_t *ids = CROWD_CONST(uint32_t, c, id);
     uint16_t *names = CROWD_ARRAY(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
     const vec2 at = bodies[rank].at;
-    const float reach = c->reach * c->reach;
+    const uint32_t last = CROWD_NEIGHBORS - 1u;
+    float limit = c->reach * c->reach; /* nothing further away is of use */
     uint32_t first[3], end[3];
     const uint32_t runs = noh_crowd_runs(c, at, first, end);
     seen s;
@@ -43,11 +48,10 @@ void noh_crowd_see(noh_crowd *c, uint32_t rank)
         for (uint32_t j = first[run]; j < stop; j++) {
             const vec2 away = v2_sub(bodies[j].at, at);
             const float square = v2_dot(away, away);
-            const uint32_t last = CROWD_NEIGHBORS - 1u;
-            if (square >= reach || j == rank || (s.count > last && square > s.square[last])) continue;
-            const uint32_t id = ids[bodies[j].item & ~CROWD_HOLDS];
-            if (s.count <= last || is_before(square, id, &s, last))
-                insert(&s, square, id, run << 14 | (j - first[run]));
+            if (square > limit || j == rank) continue;
+            if (s.count > last && !is_before(c, square, j, &s, last)) continue;
+            insert(c, &s, square, j, run << 14 | (j - first[run]));
+            if (s.count > last) limit = s.square[last];
         }
     }
     for (uint32_t k = 0; k < CROWD_NEIGHBORS; k++) names[k] = k < s.count ? s.name[k] : CROWD_NO_NEIGHBOR;

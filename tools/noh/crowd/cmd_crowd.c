@@ -19,7 +19,7 @@ typedef struct crowd_args {
     const char *pack, *output, *debug, *driver, *test, *dump;
     double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
-    int plain, as_json;
+    int plain, as_json, orca;
     crowd_options options;
 } crowd_args;
 
@@ -125,7 +125,8 @@ static int is_whole(double value, double high)
 
 static int test(const crowd_args *a)
 {
-    const crowd_scene_options options = { a->test, (uint32_t)a->agents, a->seconds, (uint32_t)a->seed, 1 };
+    const crowd_scene_options options = { a->test, (uint32_t)a->agents,          a->seconds, (uint32_t)a->seed,
+                                          1,       a->orca ? NOH_CROWD_ORCA : 0u };
     if (!is_whole(a->agents, NOH_CROWD_AGENTS_MAX)) {
         return tool_usage("--agents wants a whole number from 1 to %u; 0: as many as the scene's name says",
                           NOH_CROWD_AGENTS_MAX);
@@ -221,6 +222,11 @@ static const option options[] = {
       .initial = "1",
       .what = "of where they start and want to go",
       .example = "7",
+      .needs = "--test" },
+    { .name = "--orca",
+      .kind = OPTION_FLAG,
+      .at = offsetof(crowd_args, orca),
+      .what = "all agents avoid each other by optimal reciprocal collision avoidance, to compare with",
       .needs = "--test" },
     { .name = "--dump",
       .kind = OPTION_OUTPUT,

@@ -160,18 +160,20 @@ static noh_crowd_desc desc_of(const crowd_scene *s, uint32_t job_count, noh_crow
     return desc;
 }
 
-static int open_crowd(crowd_scene *s, uint32_t job_count)
+static int open_crowd(crowd_scene *s, const crowd_scene_options *o)
 {
     noh_crowd_obstacle walls[2];
     noh_error error = { NOH_OK, "", 0, 0 };
-    const noh_crowd_desc desc = desc_of(s, job_count, walls);
+    const noh_crowd_desc desc = desc_of(s, o->job_count, walls);
     s->bytes = noh_crowd_size(&desc);
     s->memory = malloc(s->bytes ? s->bytes : 1);
     if (!s->memory || noh_crowd_init(s->memory, s->bytes, &desc, &s->crowd, &error)) {
         return tool_fail(s->kind->name, "%s", s->memory ? error.what : "out of memory");
     }
     for (uint32_t i = 0; i < s->agents; i++) {
-        noh_crowd_agent a = { { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f }, s->kind->radius, s->kind->speed, i };
+        noh_crowd_agent a = {
+            { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f }, s->kind->radius, s->kind->speed, o->flags, i
+        };
         s->kind->place(s, i, &a);
         if (noh_crowd_put(s->crowd, i, &a, &error)) return tool_fail(s->kind->name, "%s", error.what);
         s->now[i] = a;
@@ -195,7 +197,7 @@ int crowd_scene_open(const crowd_scene_options *o, crowd_scene **scene)
     s->now = malloc(s->agents * sizeof *s->now);
     s->before = malloc(s->agents * sizeof *s->before);
     for (uint32_t i = 0; i < 4u; i++) (void)chance(s);
-    status = s->now && s->before && crowd_meter_open(&s->meter, s->agents) ? open_crowd(s, o->job_count)
+    status = s->now && s->before && crowd_meter_open(&s->meter, s->agents) ? open_crowd(s, o)
                                                                            : tool_fail(k->name, "out of memory");
     if (status) {
         crowd_scene_close(s);

@@ -10,6 +10,7 @@ typedef struct crowd_scene_options {
     uint32_t agents;  /* 0: as the name says */
     double seconds;   /* 0: the scene's own: 300 for circle250, 120 for door200, 30 */
     uint32_t seed, job_count;
+    uint32_t flags; /* of all agents: NOH_CROWD_ORCA */
 } crowd_scene_options;
 
 /* Of all agents in all steps so far. */
