@@ -79,7 +79,7 @@ static uint32_t walk(const crowd_cells *cells, const noh_crowd_desc *desc, uint3
             for (uint32_t column = low[0]; column <= high[0]; column++) {
                 if (!is_near(cells, o, column, row, desc->reach)) continue;
                 const uint32_t cell = row * cells->width + column;
-                if (list) list[start[cell + 1u]] = (uint16_t)i;
+                if (start && list) list[start[cell + 1u]] = (uint16_t)i;
                 if (start) start[cell + 1u]++;
                 count++;
             }

@@ -70,7 +70,8 @@ static int arrived_circle(const crowd_scene *s, uint32_t index)
 /* On a lattice of a metre, each a fifth of it off, nearest to the door first. */
 static void place_door(crowd_scene *s, uint32_t index, noh_crowd_agent *a)
 {
-    const float column = (float)(index % s->side), row = (float)(index / s->side);
+    const uint32_t line = index / s->side;
+    const float column = (float)(index % s->side), row = (float)line;
     a->position[0] = column + 0.5f + 0.4f * (chance(s) - 0.5f) - 0.5f * (float)s->side;
     a->position[1] = -1.5f - row - 0.4f * (chance(s) - 0.5f);
     a->goal[0] = 0.0f;
@@ -99,9 +100,10 @@ static int arrived_door(const crowd_scene *s, uint32_t index)
 
 static void place_square(crowd_scene *s, uint32_t index, noh_crowd_agent *a)
 {
+    const uint32_t line = index / s->side;
     const float cell = s->extent / (float)s->side, room = 0.9f * (cell - 2.0f * a->radius);
     a->position[0] = ((float)(index % s->side) + 0.5f) * cell + (chance(s) - 0.5f) * room;
-    a->position[1] = ((float)(index / s->side) + 0.5f) * cell + (chance(s) - 0.5f) * room;
+    a->position[1] = ((float)line + 0.5f) * cell + (chance(s) - 0.5f) * room;
     a->goal[0] = s->extent * chance(s);
     a->goal[1] = s->extent * chance(s);
 }
