@@ -66,19 +66,42 @@ static long unary(reader *r)
     return is_not ? !value : value;
 }
 
-static long equality(reader *r)
+static long comparison(reader *r)
 {
     const long left = unary(r);
-    return takes(r, "==") ? left == unary(r) : takes(r, "!=") ? left != unary(r) : left;
+    if (takes(r, "==")) return left == unary(r);
+    if (takes(r, "!=")) return left != unary(r);
+    return takes(r, ">") ? left > unary(r) : left;
 }
 
-/* && binds more than || */
+/* Comparisons with && and ||; && binds more. */
+static long without_brackets(reader *r)
+{
+    long any = 0, all;
+    do {
+        all = comparison(r);
+        while (takes(r, "&&")) all = comparison(r) && all;
+        any = any || all;
+    } while (takes(r, "||"));
+    return any;
+}
+
+static long group(reader *r)
+{
+    long value;
+    if (!takes(r, "(")) return comparison(r);
+    value = without_brackets(r);
+    assert_true(takes(r, ")"));
+    return value;
+}
+
+/* The same of groups in brackets, which have none in them. */
 static long condition(reader *r)
 {
     long any = 0, all;
     do {
-        all = equality(r);
-        while (takes(r, "&&")) all = equality(r) && all;
+        all = group(r);
+        while (takes(r, "&&")) all = group(r) && all;
         any = any || all;
     } while (takes(r, "||"));
     blanks(r);
@@ -276,7 +299,7 @@ static int fetches_of(uint32_t features, int lit, int crowd)
 static void the_counter_counts(void **state)
 {
     static const char text[] = "#define A 2\n"
-                               "#if A == 2 && !defined(B)\n"
+                               "#if A > 1 && (defined(B) || !defined(C))\n"
                                "float one(vec2 p)\n{\n    return texture(t, p).x;\n}\n"
                                "#elif A == 2\n"
                                "float one(vec2 p)\n{\n    return 9.0 + texture(t, p).x + texture(t, p).y;\n}\n"

@@ -52,7 +52,7 @@ static void normal_maps_turn_the_normal(void **state)
 
 /* C12.4: normals morph and tangents stay, and nothing makes them orthogonal again. Here the quad's normals differ from
  * corner to corner and its tangents do not. */
-static void errata_a_skewed_frame_leans_the_normal(void **state)
+static void errata_C12_4_a_skewed_frame_leans_the_normal(void **state)
 {
     static const uint8_t texel[4] = { 230, 150, 200, 255 };
     const lit_quad q = mapped(texel, 1.0f);
@@ -65,7 +65,7 @@ static void errata_a_skewed_frame_leans_the_normal(void **state)
 
 /* C12.2: the frame in the object and the light in the world. A mirrored node tells them apart: it turns the frame
  * inside out, so the cross product of two world vectors points the wrong way. */
-static void errata_a_mirror_turns_the_frame_inside_out(void **state)
+static void errata_C12_2_a_mirror_turns_the_frame_inside_out(void **state)
 {
     static const uint8_t texel[4] = { 128, 220, 210, 255 };
     lit_quad q = mapped(texel, 1.0f);
@@ -78,7 +78,7 @@ static void errata_a_mirror_turns_the_frame_inside_out(void **state)
 }
 
 /* C12.1: bytes as 2 t - 1 have no zero, so a flat map leans. The byte 128 stands for it. */
-static void errata_a_flat_map_changes_nothing(void **state)
+static void errata_C12_1_a_flat_map_changes_nothing(void **state)
 {
     static const uint8_t flat[4] = { 128, 128, 255, 255 };
     const lit_quad q = mapped(flat, 1.0f), plain = lit_quad_of();
@@ -168,9 +168,9 @@ static void features_follow_material_and_mesh(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normal_maps_turn_the_normal),
-    cmocka_unit_test(errata_a_skewed_frame_leans_the_normal),
-    cmocka_unit_test(errata_a_mirror_turns_the_frame_inside_out),
-    cmocka_unit_test(errata_a_flat_map_changes_nothing),
+    cmocka_unit_test(errata_C12_4_a_skewed_frame_leans_the_normal),
+    cmocka_unit_test(errata_C12_2_a_mirror_turns_the_frame_inside_out),
+    cmocka_unit_test(errata_C12_1_a_flat_map_changes_nothing),
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
     cmocka_unit_test(programs_have_what_materials_have),
     cmocka_unit_test(features_follow_material_and_mesh),

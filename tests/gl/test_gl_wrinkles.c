@@ -205,6 +205,119 @@ static void channels_add_up_to_one(void **state)
     fixture_frame_close(&frame);
 }
 
+/* ---- errors of the source of regions ---- */
+
+static const char region_fragment[] = "void main() {\n    show(noh_wrinkle_by_model().y);\n}\n";
+
+/* float3 takes four floats in a constant buffer, so twelve weights in a row shift: red's third is green's first. Here
+ * they are three vectors of four, one for each map, and each region finds its own. */
+static void errata_B2_each_region_has_its_own_weight(void **state)
+{
+    program p;
+    fixture_frame frame;
+    noh_gl_ledger ledger;
+    noh_gl_texture maps[3];
+    noh_gl_renderer renderer;
+    uint32_t literal_wrong = 0;
+    (void)state;
+    memset(&ledger, 0, sizeof ledger);
+    memset(&renderer, 0, sizeof renderer);
+    fixture_frame_open(&frame, 1);
+    program_open(&p, cover_vertex, region_fragment);
+    for (uint32_t k = 0; k < 3; k++) {
+        const uint8_t texel[4] = { (uint8_t)(10 + 20 * k), (uint8_t)(70 + 20 * k), (uint8_t)(130 + 20 * k),
+                                   (uint8_t)(190 + 20 * k) };
+        one_texel(&p, &maps[k], &ledger, texel, NOH_UNIT_WRINKLE_WEIGHTS + k);
+    }
+    p.gl->Uniform2i(p.variant.u_wrinkle_models, NOH_WRINKLE_BY_REGION, 255);
+    for (uint32_t r = 0; r < 2u * NOH_WRINKLE_REGIONS; r++) {
+        const uint32_t region = r % NOH_WRINKLE_REGIONS;
+        const int literal = r >= NOH_WRINKLE_REGIONS;
+        const double right = (10 + 60 * (region / 3) + 20 * (region % 3)) / 255.0;
+        float regions[NOH_WRINKLE_REGIONS] = { 0.0f };
+        regions[region] = 1.0f;
+        noh_gl_draw_wrinkles(&renderer, regions);
+        p.gl->Uniform4fv(p.variant.u_wrinkle_regions, 3, literal ? regions : renderer.wrinkles);
+        uint8_t *rgba = cover(&p, &frame, 0);
+        const int is_right = fabs((double)float_at(rgba, 0) - right) < 5e-4;
+        free(rgba);
+        literal_wrong += literal && !is_right;
+        if (!literal) assert_true(is_right);
+    }
+    print_message("weights in a row: %u of 12 regions get another's\n", literal_wrong);
+    assert_true(literal_wrong >= 9);
+    for (uint32_t k = 0; k < 3; k++) noh_gl_texture_delete(p.gl, &ledger, &maps[k]);
+    program_close(&p);
+    fixture_frame_close(&frame);
+}
+
+/* Weights of 0 in the left half. */
+static const char half_vertex[] = "out float v_x;\n"
+                                  "void main() {\n"
+                                  "    noh_v_rest = noh_v_moved = vec3(0.0);\n"
+                                  "    v_x = float(gl_VertexID & 1) * 4.0 - 1.0;\n"
+                                  "    noh_v_wrinkles = vec2(v_x, 0.0);\n"
+                                  "    gl_Position = vec4(v_x, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);\n"
+                                  "}\n";
+
+static uint32_t covered_by(const char *fragment)
+{
+    program p;
+    fixture_frame frame;
+    uint32_t drawn = 0;
+    fixture_frame_open(&frame, SIDE);
+    program_open(&p, half_vertex, fragment);
+    p.gl->Uniform2i(p.variant.u_wrinkle_models, NOH_WRINKLE_BY_REGION, 255);
+    p.gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    p.gl->Clear(GL_COLOR_BUFFER_BIT);
+    uint8_t *rgba = cover(&p, &frame, 0);
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) drawn += float_at(rgba, i) > 0.0f;
+    free(rgba);
+    program_close(&p);
+    fixture_frame_close(&frame);
+    return drawn;
+}
+
+/* clip(r + g + b + a - 0.01), clip(weight - 0.001): in a pass that also draws the base, holes where nothing wrinkles.
+ */
+static void errata_B6_what_has_no_wrinkles_is_drawn(void **state)
+{
+    static const char ours[] = "void main() {\n"
+                               "    vec3 by = max(noh_wrinkle_by_model(), vec3(0.0));\n"
+                               "    show(noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by).z);\n"
+                               "}\n",
+                      literal[] = "void main() {\n"
+                                  "    if (noh_wrinkle_by_model().y - 0.001 < 0.0) discard;\n"
+                                  "    show(1.0);\n"
+                                  "}\n";
+    (void)state;
+    assert_int_equal(covered_by(ours), SIDE * SIDE);
+    assert_int_equal(covered_by(literal), SIDE * SIDE / 2);
+}
+
+/* lerp(base, wrinkle, weight) of texels as they are read: a flat map leans by 35 degrees. */
+static void errata_B7_texels_are_no_normals(void **state)
+{
+    static const char fragment[] =
+        "void main() {\n"
+        "    vec3 flat_texel = vec3(128.0, 128.0, 255.0) / 255.0, base = vec3(0.0, 0.0, 1.0);\n"
+        "    vec3 literal = normalize(mix(base, flat_texel, 1.0));\n"
+        "    show(test_pick == 0 ? noh_wrinkled(base, flat_texel, vec3(1.0)).z : literal.z);\n"
+        "}\n";
+    program p;
+    fixture_frame frame;
+    (void)state;
+    fixture_frame_open(&frame, 1);
+    program_open(&p, cover_vertex, fragment);
+    uint8_t *ours = cover(&p, &frame, 0), *literal = cover(&p, &frame, 1);
+    assert_true(float_at(ours, 0) > 0.99999f);
+    assert_true(float_at(literal, 0) < 0.83f);
+    free(ours);
+    free(literal);
+    program_close(&p);
+    fixture_frame_close(&frame);
+}
+
 /* ---- area ---- */
 
 #define AREA_SIDE 384u
@@ -537,6 +650,9 @@ static void looks_smooth_wrinkles_out(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normals_are_those_of_the_cpu),
     cmocka_unit_test(channels_add_up_to_one),
+    cmocka_unit_test(errata_B2_each_region_has_its_own_weight),
+    cmocka_unit_test(errata_B6_what_has_no_wrinkles_is_drawn),
+    cmocka_unit_test(errata_B7_texels_are_no_normals),
     cmocka_unit_test(areas_by_derivatives_are_exact),
     cmocka_unit_test(areas_of_a_human_head),
     cmocka_unit_test(each_actor_of_a_crowd_has_its_own_wrinkles),

@@ -1453,6 +1453,35 @@ static void materials_and_textures(void **state)
     model_free(m);
 }
 
+/* Diffuse becomes base colour, specular what reflects straight on, glossiness roughness; the map's colour is a mean. */
+static void specular_and_glossiness(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest,
+           ",\"materials\":[{\"name\":\"brass\",\"pbrMetallicRoughness\":{\"metallicFactor\":0.3},\"extensions\":{"
+           "\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,0.75],\"specularFactor\":"
+           "[1,0.5,0.25],\"glossinessFactor\":0.5,\"diffuseTexture\":{\"index\":0},"
+           "\"specularGlossinessTexture\":{\"index\":0}}}},{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":"
+           "{\"glossinessFactor\":0.25}}}],\"extensionsRequired\":[\"KHR_materials_pbrSpecularGlossiness\"],"
+           "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
+           png_2x1);
+    model *m = load(s);
+    const model_material *a = &m->materials[0], *b = &m->materials[1];
+    const float diffuse[4] = { 0.5f, 0.25f, 0.125f, 0.75f }, white[4] = { 1, 1, 1, 1 };
+    const uint8_t rough[8] = { 255, 128, 255, 255, 255, 223, 255, 255 }; /* of glossiness 1 and 64 / 255, halved */
+    assert_floats(a->base_color, diffuse, 4);
+    assert_true(a->metallic == 0.0f && a->roughness == 1.0f && a->base_color_texture != MODEL_NONE);
+    assert_true(a->f0[0] == 0.5f && fabsf(a->f0[1] - 0.25f * 0.2159f) < 2e-4f && a->f0[2] == 0.125f);
+    assert_true(a->surface_texture != MODEL_NONE && a->surface_texture != a->base_color_texture);
+    assert_memory_equal(m->textures[a->surface_texture].rgba, rough, sizeof rough);
+    assert_floats(b->base_color, white, 4);
+    assert_floats(b->f0, white, 3);
+    assert_true(b->metallic == 0.0f && b->roughness == 0.75f && b->surface_texture == MODEL_NONE);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+}
+
 static void check_left_out_texture(const char *image, const char *reason)
 {
     scene *s = triangle("", ",\"material\":0");
@@ -2034,6 +2063,7 @@ int main(void)
         cmocka_unit_test(bad_animations_are_refused),
         cmocka_unit_test(weights_of_a_mesh_without_targets_are_refused),
         cmocka_unit_test(materials_and_textures),
+        cmocka_unit_test(specular_and_glossiness),
         cmocka_unit_test(bad_images_are_warnings),
         cmocka_unit_test(webp_textures),
         cmocka_unit_test(texture_transform_is_baked),

@@ -210,7 +210,7 @@ static void normals_by_the_inverse_transpose(void **state)
 /* ---- morphing ---- */
 
 /* float3 times float4x4 with w = 1 carries the translation into the normal, and w into its length. */
-static void a_shift_turns_no_normal(void **state)
+static void errata_C8_6_a_shift_turns_no_normal(void **state)
 {
     const float matrix[12] = { 1, 0, 0, 30, 0, 1, 0, -4, 0, 0, 1, 9 }, n[3] = { 0, 0, 1 };
     const skin_cylinder c = { 8, 3, 1, 1, 0, 0, 1.0f, 0.5f };
@@ -611,7 +611,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_palette_fits_a_uniform_block),
     cmocka_unit_test(quantised_weights_are_those_of_the_source),
     cmocka_unit_test(normals_by_the_inverse_transpose),
-    cmocka_unit_test(a_shift_turns_no_normal),
+    cmocka_unit_test(errata_C8_6_a_shift_turns_no_normal),
     cmocka_unit_test(morph_then_skin),
     cmocka_unit_test(picking_sees_the_morphed_and_posed_surface),
     cmocka_unit_test(the_mix_begins_with_the_source),

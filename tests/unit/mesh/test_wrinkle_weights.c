@@ -37,7 +37,7 @@ static double area_of(double p[3][3])
 
 /* The source takes areas of clip-space positions, without the division by w and then as they are: they follow the
  * camera. In bind space they do not know it. */
-static void areas_do_not_follow_the_camera(void **state)
+static void errata_A12_areas_do_not_follow_the_camera(void **state)
 {
     (void)state;
     double rest[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } },
@@ -73,7 +73,7 @@ static float length_of(const float v[3])
 }
 
 /* N = lerp(base, wrinkle, weight) is shorter than one, and at weight 1 has nothing of the base's detail left. */
-static void wrinkled_normals_are_unit_and_keep_the_base(void **state)
+static void errata_B7_wrinkled_normals_are_unit(void **state)
 {
     (void)state;
     const float base[3] = { 0.6f, 0.0f, 0.8f }, wrinkle[3] = { 0.0f, 0.6f, 0.8f }, flat[3] = { 0.0f, 0.0f, 1.0f };
@@ -96,8 +96,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(regions_come_from_expressions),
-        cmocka_unit_test(areas_do_not_follow_the_camera),
-        cmocka_unit_test(wrinkled_normals_are_unit_and_keep_the_base),
+        cmocka_unit_test(errata_A12_areas_do_not_follow_the_camera),
+        cmocka_unit_test(errata_B7_wrinkled_normals_are_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "gltf_internal.h"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -315,13 +316,39 @@ struct texture_use {
     const char *name;
 };
 
+static const tinygltf::Value *extension_of(const tinygltf::Material &m, const char *name)
+{
+    auto found = m.extensions.find(name);
+    return found == m.extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
+}
+
+static const char gloss_name[] = "KHR_materials_pbrSpecularGlossiness";
+
+/* A texture that an extension names. */
+static tinygltf::TextureInfo texture_in(const tinygltf::Value &extension, const char *key)
+{
+    tinygltf::TextureInfo info;
+    const tinygltf::Value &texture = extension.Get(key);
+    if (!texture.IsObject()) return info;
+    if (texture.Get("index").IsInt()) info.index = texture.Get("index").Get<int>();
+    if (texture.Get("texCoord").IsInt()) info.texCoord = texture.Get("texCoord").Get<int>();
+    const tinygltf::Value &more = texture.Get("extensions");
+    for (const std::string &name : more.IsObject() ? more.Keys() : std::vector<std::string>())
+        info.extensions[name] = more.Get(name);
+    return info;
+}
+
 static std::array<texture_use, 5> textures_of(const tinygltf::Material &m)
 {
-    const tinygltf::TextureInfo &base = m.pbrMetallicRoughness.baseColorTexture;
-    const tinygltf::TextureInfo &roughness = m.pbrMetallicRoughness.metallicRoughnessTexture;
+    const tinygltf::Value *gloss = extension_of(m, gloss_name);
+    const tinygltf::TextureInfo base = gloss ? texture_in(*gloss, "diffuseTexture")
+                                             : m.pbrMetallicRoughness.baseColorTexture;
+    const tinygltf::TextureInfo roughness = gloss ? texture_in(*gloss, "specularGlossinessTexture")
+                                                  : m.pbrMetallicRoughness.metallicRoughnessTexture;
     return { { { base.index, uv_use_of(base.texCoord, base.extensions), "base colour" },
                { m.normalTexture.index, uv_use_of(m.normalTexture.texCoord, m.normalTexture.extensions), "normal" },
-               { roughness.index, uv_use_of(roughness.texCoord, roughness.extensions), "metallic-roughness" },
+               { roughness.index, uv_use_of(roughness.texCoord, roughness.extensions),
+                 gloss ? "specular-glossiness" : "metallic-roughness" },
                { m.occlusionTexture.index, uv_use_of(m.occlusionTexture.texCoord, m.occlusionTexture.extensions),
                  "occlusion" },
                { m.emissiveTexture.index, uv_use_of(m.emissiveTexture.texCoord, m.emissiveTexture.extensions),
@@ -355,12 +382,6 @@ static int index_of(file &f, const tinygltf::Material &m, size_t which, const st
 
 /* --- extensions of materials --- */
 
-static const tinygltf::Value *extension_of(const tinygltf::Material &m, const char *name)
-{
-    auto found = m.extensions.find(name);
-    return found == m.extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
-}
-
 static double number_in(const tinygltf::Value *object, const char *key, double otherwise)
 {
     return object && object->Get(key).IsNumber() ? object->Get(key).GetNumberAsDouble() : otherwise;
@@ -386,6 +407,69 @@ static void read_f0(file &f, const tinygltf::Material &m, model_material &out, c
     for (const char *texture : { "specularTexture", "specularColorTexture" })
         if (specular && specular->Has(texture))
             leave_out(f, where, text(": the %s of KHR_materials_specular was left out", texture));
+}
+
+/* KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, and a glossiness that is 1 where roughness is 0.
+ * The specular colour is what reflects straight on. */
+
+static double factor_in(const tinygltf::Value &extension, const char *key, size_t i)
+{
+    const tinygltf::Value &list = extension.Get(key);
+    const int at = static_cast<int>(i);
+    return list.IsArray() && list.ArrayLen() > i && list.Get(at).IsNumber() ? list.Get(at).GetNumberAsDouble() : 1.0;
+}
+
+/* The mean of a colour's channel in linear light, a multiple of 1/4096: the same wherever it is computed. */
+static double mean_light(const model_texture &t, size_t channel)
+{
+    double sum = 0.0;
+    const size_t count = size_t{ t.width } * t.height;
+    std::array<size_t, 256> texels = {};
+    for (size_t i = 0; i < count; ++i) ++texels[t.rgba[i * 4 + channel]];
+    for (size_t b = 0; b < 256; ++b) {
+        const double s = static_cast<double>(b) / 255.0;
+        sum += static_cast<double>(texels[b]) * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    }
+    return std::floor(4096.0 * sum / static_cast<double>(count) + 0.5) / 4096.0;
+}
+
+/* Its glossiness becomes a map of roughness, its colour a mean. */
+static void read_gloss_map(file &f, int index, int occlusion, double gloss, model_material &out,
+                           const std::string &where)
+{
+    for (int i : { index, occlusion })
+        if (i >= 0 && static_cast<size_t>(i) >= f.json.textures.size())
+            fail(where, text("texture %d does not exist: the file has %zu", i, f.json.textures.size()));
+    const uint32_t slot = try_texture(f, static_cast<size_t>(index), where);
+    if (slot == MODEL_NONE) return;
+    model_texture &t = f.out->textures[slot];
+    t.use = MODEL_TEXTURE_DATA;
+    for (size_t c = 0; c < 3; ++c) out.f0[c] *= static_cast<float>(mean_light(t, c));
+    for (size_t i = 0; i < size_t{ t.width } * t.height; ++i) {
+        uint8_t *texel = t.rgba + i * 4;
+        texel[1] = static_cast<uint8_t>(255.0 - gloss * texel[3] + 0.5);
+        texel[0] = texel[2] = texel[3] = 255;
+    }
+    const uint32_t other = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
+    if (other != MODEL_NONE) {
+        put_red(f.out->textures[other], f.out->textures[slot]);
+        drop_last_texture(f);
+    }
+    out.roughness = 1.0f;
+    out.surface_texture = slot;
+}
+
+static void read_gloss(const tinygltf::Value &e, model_material &out, const std::string &where)
+{
+    const double gloss = number_in(&e, "glossinessFactor", 1.0);
+    for (size_t i = 0; i < 4; ++i)
+        out.base_color[i] = to_float(factor_in(e, "diffuseFactor", i), where + " diffuseFactor");
+    for (size_t i = 0; i < 3; ++i) {
+        const double f0 = factor_in(e, "specularFactor", i);
+        out.f0[i] = to_float(f0 < 0.0 ? 0.0 : f0 > 1.0 ? 1.0 : f0, where + " specularFactor");
+    }
+    out.metallic = 0.0f;
+    out.roughness = to_float(gloss < 0.0 ? 1.0 : gloss > 1.0 ? 0.0 : 1.0 - gloss, where + " glossinessFactor");
 }
 
 static void read_emissive(const tinygltf::Material &m, model_material &out, const std::string &where)
@@ -429,7 +513,10 @@ static void read_maps(file &f, const tinygltf::Material &m, model_material &out,
     if (out.unlit) return;
     out.normal_texture = texture_for(f, index_of(f, m, 1, where), MODEL_TEXTURE_NORMAL, where);
     const int roughness = index_of(f, m, 2, where), occlusion = index_of(f, m, 3, where);
-    out.surface_texture = surface_texture(f, occlusion, roughness, where);
+    if (roughness >= 0 && extension_of(m, gloss_name))
+        read_gloss_map(f, roughness, occlusion, 1.0 - static_cast<double>(out.roughness), out, where);
+    else
+        out.surface_texture = surface_texture(f, occlusion, roughness, where);
     if (out.emissive[0] > 0.0f || out.emissive[1] > 0.0f || out.emissive[2] > 0.0f)
         out.emissive_texture = texture_for(f, index_of(f, m, 4, where), MODEL_TEXTURE_COLOR, where);
 }
@@ -452,6 +539,7 @@ static void read_material(file &f, size_t index, model_material &out)
     out.unlit = m.extensions.count("KHR_materials_unlit") != 0;
     read_emissive(m, out, where);
     read_f0(f, m, out, where);
+    if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
     read_surface(f, m, out, where);
     read_maps(f, m, out, where);
 }

@@ -74,6 +74,7 @@ static void print_budget(const pack_budget *b, const char *device)
         printf("%s\n", b->morph.reason);
     }
     print_levels(b);
+    if (b->planned.kinds[0].mesh) info_print_costs(b->planned.kinds[0].mesh);
     if (b->planned.kinds[0].mesh) info_print_textures(b->planned.kinds[0].mesh);
 }
 
@@ -104,6 +105,7 @@ static int json_budget(const pack_budget *b, const char *device)
     }
     json_close(&j, ']');
     json_levels(&j, b);
+    if (b->planned.kinds[0].mesh) info_json_costs(&j, b->planned.kinds[0].mesh);
     if (b->planned.kinds[0].mesh) info_json_textures(&j, b->planned.kinds[0].mesh);
     return json_end(&j);
 }

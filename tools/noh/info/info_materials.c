@@ -52,6 +52,59 @@ void info_print_materials(const noh_pack *pack)
     }
 }
 
+/* A pixel reads the base colour, a white texel where there is none, and a map for each feature; weights of wrinkles are
+ * read at vertices. Lit, it reads the environment and up to four texels of the shadow map, too. */
+typedef struct material_cost {
+    uint32_t textures, fetches, lit;
+    uint64_t bytes;
+} material_cost;
+
+static material_cost cost_of(const noh_pack *pack, const noh_material *m)
+{
+    material_cost cost = { 0, 1, 0, 0 };
+    material_map maps[MAPS];
+    list_maps(m, maps);
+    for (uint32_t k = 0; k < MAPS; k++) {
+        noh_texture t;
+        if (maps[k].texture == NOH_NONE) continue;
+        (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
+        cost.bytes += noh_gl_picture_bytes(&t);
+        cost.textures++;
+        cost.fetches += k >= 1 && k <= 4 && !(m->flags & NOH_MATERIAL_UNLIT);
+    }
+    cost.lit = cost.fetches + 5u < NOH_GL_FETCHES_MAX ? cost.fetches + 5u : NOH_GL_FETCHES_MAX;
+    if (m->flags & NOH_MATERIAL_UNLIT) cost.lit = cost.fetches;
+    return cost;
+}
+
+void info_print_costs(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->material_count; i++) {
+        const noh_material *m = &pack->materials[i];
+        const material_cost c = cost_of(pack, m);
+        printf(
+            "material '%s': %s, %u texture%s of %llu bytes, a pixel makes %u fetch%s, %u under a light with a shadow\n",
+            noh_pack_string(pack, m->name), surface_of(m), c.textures, c.textures == 1 ? "" : "s",
+            (unsigned long long)c.bytes, c.fetches, c.fetches == 1 ? "" : "es", c.lit);
+    }
+}
+
+void info_json_costs(json *j, const noh_pack *pack)
+{
+    json_open(j, "material_costs", '[');
+    for (uint32_t i = 0; i < pack->material_count; i++) {
+        const material_cost c = cost_of(pack, &pack->materials[i]);
+        json_open(j, NULL, '{');
+        json_text(j, "name", noh_pack_string(pack, pack->materials[i].name));
+        json_integer(j, "textures", c.textures);
+        json_integer(j, "gpu_bytes", c.bytes);
+        json_integer(j, "fetches", c.fetches);
+        json_integer(j, "fetches_lit", c.lit);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 void info_print_textures(const noh_pack *pack)
 {
     for (uint32_t i = 0; i < pack->texture_count; i++) {

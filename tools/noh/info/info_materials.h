@@ -9,6 +9,11 @@ void info_print_materials(const noh_pack *pack);
 /* "material_list": an array of objects. */
 void info_json_materials(json *j, const noh_pack *pack);
 
+/* A line for each material: what its textures take on the GPU, and how many of them a pixel reads. */
+void info_print_costs(const noh_pack *pack);
+/* "material_costs": an array of objects. */
+void info_json_costs(json *j, const noh_pack *pack);
+
 /* A line for each texture: size, mip levels, bytes. */
 void info_print_textures(const noh_pack *pack);
 /* "texture_list": an array of objects. */
