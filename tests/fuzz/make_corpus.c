@@ -25,8 +25,8 @@ static void write_pack(const char *folder, const char *name, const test_model_de
     free(bytes);
 }
 
-/* A skeleton and a clip, from a .bvh. */
-static void write_clip_pack(const char *folder)
+/* A skeleton and a clip, from a .bvh; with a ragdoll of two bodies, or without. */
+static void write_clip_pack(const char *folder, const char *name, const char *ragdoll)
 {
     static const char bvh[] =
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
@@ -39,8 +39,12 @@ static void write_clip_pack(const char *folder)
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&options, 0, sizeof options);
     test_write_file(input, bvh, sizeof bvh - 1);
+    if (ragdoll) {
+        options.ragdoll = test_path("two.ragdoll");
+        test_write_file(options.ragdoll, ragdoll, strlen(ragdoll));
+    }
     assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
-    snprintf(path, sizeof path, "%s/clip.noh", folder);
+    snprintf(path, sizeof path, "%s/%s.noh", folder, name);
     test_write_file(path, out.bytes, out.count);
     buffer_free(&out);
 }
@@ -201,7 +205,8 @@ static void corpus(void **state)
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
-    write_clip_pack(folder);
+    write_clip_pack(folder, "clip", NULL);
+    write_clip_pack(folder, "ragdoll", "a\nb forward bend -20 95 side 40 twist 30 friction 5\n");
     write_springs(folder);
     write_weights(folder);
     write_graph(folder);

@@ -459,6 +459,21 @@ static void walk_lod(walk *w, const noh_clip_bank *set, const noh_clip_bank_desc
     free(block);
 }
 
+/* The ragdoll of one skeleton, by its table or by names. */
+static void walk_ragdoll(walk *w, uint32_t skeleton)
+{
+    noh_ragdoll_source source = { .pack = w->pack, .skeleton = skeleton, .metres = 1.0f };
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_rig *rig = memory(sizeof *rig);
+    uint32_t count;
+    if (noh_pack_skeleton_at(w->pack, skeleton, &source.joints, NULL, NULL) == NOH_OK &&
+        noh_ragdoll_find_rows(&source, rows, &count, NULL) == NOH_OK &&
+        noh_ragdoll_rig_make(&source, rows, count, rig, NULL) == NOH_OK) {
+        eat(w, rig->bodies, sizeof rig->bodies);
+    }
+    free(rig);
+}
+
 /* All clips of one skeleton, where the decoder accepts them. */
 static void walk_set(walk *w, uint32_t skeleton)
 {
@@ -501,6 +516,7 @@ static void walk_clips(walk *w)
             eat(w, &skeleton.parents[j], sizeof skeleton.parents[j]);
         }
         walk_set(w, i);
+        walk_ragdoll(w, i);
     }
     walk_set(w, NOH_NONE);
 }
