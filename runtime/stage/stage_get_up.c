@@ -51,7 +51,7 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
                               const noh_get_up *how, uint32_t *chosen, noh_ragdoll_pose *bodies, noh_error *error)
 {
     noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
-    float best = -2.0f;
+    float best = 0.0f;
     *chosen = NOH_NONE;
     if (!how->clips || !how->clip_count) return bodies_of(s, k, a, NOH_NONE, bodies, error);
     for (uint32_t i = 0; i < how->clip_count; i++) {
@@ -62,7 +62,7 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
         result = bodies_of(s, k, a, clip, tried, error);
         if (result != NOH_OK) return result;
         const float like = noh_ragdoll_likeness(tried, b->bodies[0]);
-        if (like <= best) continue;
+        if (i && !(like > best)) continue;
         best = like;
         *chosen = i;
         memcpy(bodies, tried, sizeof tried);
