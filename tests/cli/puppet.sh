@@ -11,7 +11,7 @@ noh build "$work/puppet.glb" -o "$work/puppet.noh"
 expect 0 'the converter takes the puppet'
 check 'without a warning' sh -c '! grep -q warning "$1"' sh "$work/err"
 noh info "$work/puppet.noh"
-check 'two meshes, five clips' grep -q '2 meshes, 47 nodes, 1 skeleton, 5 clips' "$work/out"
+check 'two meshes, five clips' grep -q '2 meshes, 49 nodes, 1 skeleton, 5 clips' "$work/out"
 
 for arguments in '' '--puppet' '--arm' '--other x.glb' 'a.glb b.glb'; do
     # shellcheck disable=SC2086
