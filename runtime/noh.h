@@ -45,6 +45,7 @@
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
+#include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
@@ -107,6 +108,7 @@
 /* ---- bodies ---- */
 
 #include "sim/feet.h"         /* feet that stand on the ground */
+#include "sim/gaze.h"         /* bodies that look at a point */
 #include "sim/hair.h"         /* control hairs of a head */
 #include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
 #include "sim/ik_chain.h"     /* chains of any length, with limits */
@@ -114,6 +116,7 @@
 #include "sim/ragdoll.h"      /* bodies that fall */
 #include "sim/ragdoll_pose.h" /* between its bodies and a pose */
 #include "sim/ragdoll_rig.h"  /* a ragdoll out of a character */
+#include "sim/reach.h"        /* hands that reach for points that move */
 #include "sim/shape.h"        /* boxes, rays */
 #include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
 #include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */

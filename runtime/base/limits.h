@@ -67,6 +67,8 @@
 
 #define NOH_OBSTACLES_MAX 16u      /* of a kind in a world */
 #define NOH_FEET_LEGS_MAX 2u       /* that are put on the ground */
+#define NOH_GAZE_JOINTS_MAX 8u     /* of spine, neck and head that turn together */
+#define NOH_REACH_ARMS_MAX 2u      /* whose hands reach for something */
 #define NOH_RAGDOLL_BODIES_MAX 16u /* of one doll */
 #define NOH_RAGDOLL_PAIRS_MAX 24u  /* of bodies of a doll that collide */
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u

@@ -1,6 +1,7 @@
 /* feet_rig.c: legs by the names of joints, soles by the skin of feet. */
 #include "base/assert.h"
 #include "sim/feet.h"
+#include "sim/rig_internal.h"
 #include "sim/vector_internal.h"
 
 /* ---- legs ---- */
@@ -46,12 +47,6 @@ typedef struct sole {
     } thirds[3]; /* heel, ball, toes */
 } sole;
 
-static int is_below(const noh_skeleton *k, uint32_t joint, uint32_t above)
-{
-    while (joint != above && joint != NOH_JOINT_ROOT) joint = k->parents[joint];
-    return joint == above;
-}
-
 static void take_extent(sole *s, const float p[3])
 {
     s->low = !s->count || p[1] < s->low ? p[1] : s->low;
@@ -94,18 +89,6 @@ static void take_third(sole *s, const float p[3], uint32_t joint)
     t->count++;
 }
 
-/* Where its heaviest joint carries a vertex in the bind pose. */
-static void place_vertex(const sole *s, const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, uint32_t slot,
-                         float point[3])
-{
-    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
-    float local[3], position[3], rotation[4];
-    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
-    noh_ragdoll_bind(&s->source->joints, skin->joints[slot], position, rotation);
-    noh_quat_rotate(rotation, local, local);
-    noh_madd3(position, 1.0f, local, point);
-}
-
 static void probe_mesh(sole *s, const noh_mesh *mesh, const noh_skin *skin, int pass)
 {
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
@@ -113,8 +96,8 @@ static void probe_mesh(sole *s, const noh_mesh *mesh, const noh_skin *skin, int 
         float weights[NOH_INFLUENCES_MAX], point[3];
         (void)noh_mesh_influences(mesh, v, joints, weights);
         const uint32_t joint = skin->joints[joints[0]];
-        if (!is_below(&s->source->joints, joint, s->foot)) continue;
-        place_vertex(s, mesh, skin, v, joints[0], point);
+        if (!noh_rig_is_below(&s->source->joints, joint, s->foot)) continue;
+        noh_rig_vertex(&s->source->joints, mesh, skin, v, joints[0], point);
         if (pass == 0) take_extent(s, point);
         if (pass == 1) take_length(s, point);
         if (pass == 2) take_third(s, point, joint);

@@ -3,10 +3,10 @@
  *   noh_stage_feet_part   a part of a kind (stage/part.h) that puts its actors' feet on the ground
  *
  *   noh_feet_rig_make(&source, &feet.rig, &error); feet.ground.world = &world;
- *   const noh_stage_part parts[] = { look, noh_stage_feet_part(&feet), springs };
- *   kind.parts = parts, kind.part_count = 3;
+ *   const noh_stage_part parts[] = { gaze, noh_stage_feet_part(&feet), hands, springs };
+ *   kind.parts = parts, kind.part_count = 4;
  *
- * The order of parts is that of the frame: what looks and reaches comes before feet, ragdolls and springs after them.
+ * The order of parts is that of the frame: what looks comes before feet; hands and springs come after them.
  * The state is a noh_feet: planned, saved, restored, forked and hashed with the stage. The game moves places along the
  * ground as roughly as it likes, from step to step; bodies follow smoothly.
  * At a detail without the feet's joints, and without ground, poses stay as they are. An actor that hangs on another has
