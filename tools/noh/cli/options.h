@@ -136,6 +136,19 @@
         .example = "plain", __VA_ARGS__                                                                                \
     }
 
+#define OPTIONS_BODY(T, m)                                                                                           \
+    { .name = "--look-at",                                                                                           \
+      .kind = OPTION_TEXT,                                                                                           \
+      .at = offsetof(T, m.look_at),                                                                                  \
+      .value = "X,Y,Z",                                                                                              \
+      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body looks along +z",        \
+      .example = "0.5,1.6,2" },                                                                                      \
+    {                                                                                                                \
+        .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope",               \
+        .what = "feet on steps of 0.17 m up, or on 20 degrees down, along +z, as far as the clips walk; drawn, too", \
+        .needs = "--clip", .excludes = "--bones"                                                                     \
+    }
+
 #define OPTION_CAMERA(T, m, text)                                                                                    \
     {                                                                                                                \
         .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]",            \

@@ -135,6 +135,7 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
             "--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
             o->camera);
     }
+    if (o->around) at.radius *= 8.0;
     orbit_camera(&at, camera);
     return 0;
 }

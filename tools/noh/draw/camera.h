@@ -13,6 +13,7 @@ bounds bounds_union(bounds a, bounds b);
 typedef struct view_options {
     const char *camera; /* "face", "body" or "AZ,EL,DIST" in degrees and model units; NULL: body */
     uint32_t width, height;
+    int around; /* 1: what is round the box is seen too, not only what is in it */
 } view_options;
 
 #define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */

@@ -178,6 +178,9 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     if (!status) {
         set_held(f);
         if (desc->alive) add_faces(f);
+        if (desc->body) status = figure_body_add(desc->body, desc->file->path, f->kinds, d->kind_count);
+    }
+    if (!status) {
         figure_want_fall(f);
         status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
     }
@@ -257,7 +260,9 @@ static int open_actors(figure *f)
             return tool_fail_error(f->desc.file->path, &error);
         }
     }
-    return figure_set_look(f, &f->look);
+    const figure_body *body = f->desc.body;
+    const int status = body ? figure_body_place(body, f->stage, f->kinds, f->actors, f->stage_desc.kind_count) : 0;
+    return status ? status : figure_set_look(f, &f->look);
 }
 
 int figure_set_look(figure *f, const noh_look *look)
@@ -282,6 +287,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     status = open_stage(f);
     if (!status) status = open_shader(f);
     if (!status) status = open_backdrop(f);
+    if (!status && desc->body) status = figure_body_open_gl(desc->body, g);
     if (!status) status = open_actors(f);
     if (status) figure_close(f);
     return status;
@@ -291,6 +297,7 @@ void figure_close(figure *f)
 {
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
+    if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->stage) noh_stage_delete(f->stage);
     free(f->shader_memory);
     free(f->memory);
@@ -402,6 +409,7 @@ int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     draw_backdrop(f);
+    if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
     return noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error) ? tool_fail_error(f->desc.file->path, &error)
                                                                           : 0;
 }

@@ -22,6 +22,7 @@
 
 #include "camera.h"
 #include "cli/args.h"
+#include "figure_body.h"
 #include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
@@ -57,7 +58,8 @@ typedef struct figure_desc {
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_debug_view view;
-    lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
+    figure_body *body; /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */
+    lighting *light;   /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
 typedef struct figure {
@@ -142,7 +144,7 @@ int figure_pose(figure *f);
 uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces);
 /* --feel EMOTION=AMOUNT, of all its faces. */
 int figure_feel(figure *f, const option_list *emotions);
-/* Time moves on, clips and faces, 60 steps a second. */
+/* Time moves on, clips, faces and what a body obeys, 60 steps a second. */
 int figure_live(figure *f, double seconds);
 
 /* --push X,Y,Z, newton seconds. */

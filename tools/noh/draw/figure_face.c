@@ -53,7 +53,10 @@ int figure_live(figure *f, double seconds)
     status = figure_set_look(f, &posed);
     while (!status && ticks > 0) {
         const uint32_t now = ticks < (int64_t)step ? (uint32_t)ticks : step;
-        if (noh_stage_frame(f->stage, now, NULL, NULL, NULL, &error)) status = tool_fail_error("face", &error);
+        const figure_body *body = f->desc.body;
+        status = body ? figure_body_place(body, f->stage, f->kinds, f->actors, f->stage_desc.kind_count) : 0;
+        if (!status && noh_stage_frame(f->stage, now, NULL, NULL, NULL, &error))
+            status = tool_fail_error("face", &error);
         ticks -= now;
     }
     return status ? status : figure_set_look(f, &own);

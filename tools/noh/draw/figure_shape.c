@@ -79,6 +79,10 @@ void figure_anchor(const figure *f, double anchor[3])
     anchor[0] = has ? (double)joint[3] : 0.0;
     anchor[1] = 0.0;
     anchor[2] = has ? (double)joint[11] : 0.0;
+    if (has && f->desc.body) {
+        const float at[3] = { joint[3], 0.0f, joint[11] };
+        anchor[1] = (double)figure_body_height(f->desc.body, at);
+    }
 }
 
 /* ---- vertices ---- */

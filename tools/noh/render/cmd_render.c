@@ -19,7 +19,9 @@ typedef struct render_args {
     option_list weights, clips, anims, emotions;
     view_options view;
     light_options light;
+    body_options body_wants;
     figure_desc figure;
+    figure_body body;
 } render_args;
 
 static int parse_debug(const char *text, noh_debug_view *view)
@@ -39,6 +41,15 @@ static int parse_debug(const char *text, noh_debug_view *view)
                 : 0;
 }
 
+static int check_body(render_args *a)
+{
+    int wanted;
+    const int status = figure_body_parse(&a->body_wants, &a->body, &wanted);
+    a->figure.body = wanted ? &a->body : NULL;
+    a->view.around = a->body.has_ground;
+    return status;
+}
+
 static int check_args(render_args *a)
 {
     int springs = 1;
@@ -49,6 +60,7 @@ static int check_args(render_args *a)
     if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
     if (!status) status = tool_switch("--springs", a->springs, &springs);
     a->figure.without_springs = !springs;
+    if (!status) status = check_body(a);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
     }
@@ -73,9 +85,10 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
 {
     noh_gl_camera camera;
     const int alive = a->figure.alive;
-    int status = figure_play_options(&p->figure, &a->clips, alive ? 0.0 : a->time_s);
+    const int lives = alive || a->body.has_ground;
+    int status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
-    if (!status && alive) status = figure_live(&p->figure, a->time_s);
+    if (!status && lives) status = figure_live(&p->figure, a->time_s);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
@@ -170,6 +183,7 @@ static const option options[] = {
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions),
     OPTION_SPRINGS(render_args, springs),
+    OPTIONS_BODY(render_args, body_wants),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),

@@ -23,6 +23,8 @@ typedef struct sheet {
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
     figure_desc figure;
+    body_options body_wants;
+    figure_body body;
     light_options light;
     lighting lit;
 } sheet;
@@ -81,7 +83,7 @@ static int measure_tiles(sheet *s, picture *p, int face)
 
 static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
 {
-    const view_options o = { s->camera, s->tile, s->tile };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground };
     double anchor[3];
     bounds box;
     find_anchor(s, p, anchor);
@@ -106,7 +108,7 @@ static int draw_tiles(sheet *s, picture *p)
 
 static int draw_sheet(sheet *s, const pack_file *file)
 {
-    const view_options o = { s->camera, s->tile, s->tile };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground };
     gpu g;
     picture p;
     int status = gpu_open_drawing(&g, s->driver);
@@ -182,6 +184,14 @@ static int check_clips(const sheet_tiles *t, const char *transition)
     return t->over_s > 0.0 && t->over_s <= 60.0 ? 0 : tool_usage("--over wants up to 60 seconds");
 }
 
+static int check_body(sheet *s)
+{
+    int wanted;
+    const int status = figure_body_parse(&s->body_wants, &s->body, &wanted);
+    s->figure.body = wanted ? &s->body : NULL;
+    return status;
+}
+
 static int check_args(sheet_args *a)
 {
     int springs = 1;
@@ -201,6 +211,8 @@ static int check_args(sheet_args *a)
     if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
     if (!status) status = tool_switch("--springs", a->springs, &springs);
     s->figure.without_springs = !springs;
+    if (!status) status = check_body(s);
+    s->tiles.lives = s->figure.alive || s->body.has_ground;
     s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
@@ -366,6 +378,7 @@ static const option options[] = {
       .what = "tiles per row, 1 to 64; default: nearly square",
       .example = "8",
       .excludes = "--lods --blend" },
+    OPTIONS_BODY(sheet_args, s.body_wants),
     OPTION_CAMERA(sheet_args, s.camera, "face"),
     OPTIONS_LIGHT(sheet_args, s.light, "auto", .excludes = "--bones"),
     OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),

@@ -196,7 +196,7 @@ static int make_picture(grid *g)
 static int place_camera(grid *g)
 {
     const sheet_lods *o = g->o;
-    const view_options view = { o->camera, o->tile, o->tile };
+    const view_options view = { o->camera, o->tile, o->tile, 0 };
     figure f;
     int status = figure_open(&f, &o->figure, NULL);
     if (status) {

@@ -237,9 +237,9 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
         status = figure_play_options(f, &t->clips, 0.0);
         if (!status) status = figure_fall(f, t->impulse, tile_time(t, tile));
     } else if (t->clip) {
-        status = figure_play_options(f, &t->clips, t->alive ? 0.0 : tile_time(t, tile));
+        status = figure_play_options(f, &t->clips, t->lives ? 0.0 : tile_time(t, tile));
         if (!status && t->alive) status = figure_feel(f, &t->emotions);
-        if (!status && t->alive) status = figure_live(f, tile_time(t, tile));
+        if (!status && t->lives) status = figure_live(f, tile_time(t, tile));
     } else if (tile) {
         status = figure_hold(f, t->targets[tile - 1].name, t->targets[tile - 1].weight);
     }

@@ -21,6 +21,7 @@ typedef struct sheet_tiles {
     option_list clips; /* the first sets the time, the others play along */
     option_list anims, emotions;
     int alive;                     /* faces live through the clip, from its beginning */
+    int lives;                     /* the same of faces or bodies: clips are played from the beginning of each tile */
     const char *clip, *blend, *to; /* clip names; NULL: none */
     int inertia;                   /* the transition to `to`: 1 inertialization, 0 a cross-fade */
     double over_s;                 /* its duration */

@@ -1,0 +1,43 @@
+#!/bin/sh
+# --look-at and --ground of `noh render` and `noh sheet`: pictures differ with the point and the ground, and what cannot
+# look or stand says why not. That soles meet the ground and looks their points is test_stage_feet and test_stage_gaze.
+. "$(dirname "$0")/lib.sh"
+
+puppet=$build/demo/puppet_levels.noh
+
+# picture NAME ARGUMENTS...: the puppet walks for 0.9 s.
+picture() {
+    name=$1
+    shift
+    noh render "$puppet" -o "$work/$name.png" --size 96x96 --clip walk --time 0.9 --camera 70,8,5 "$@"
+    expect 0 "$name is drawn"
+}
+picture plain
+picture left --look-at 1,1.6,4
+picture right --look-at -1,1.6,4
+picture again --look-at 1,1.6,4
+picture stairs --ground stairs
+picture slope --ground slope
+picture both --ground slope --look-at 1,1.6,4
+picture alive --look-at 1,1.6,4 --face on
+check 'the same each time' cmp "$work/left.png" "$work/again.png"
+for pair in plain:left left:right plain:stairs stairs:slope slope:both left:alive; do
+    check "pictures differ: $pair" sh -c '! cmp -s "$1" "$2"' - "$work/${pair%:*}.png" "$work/${pair#*:}.png"
+done
+noh sheet "$puppet" -o "$work/sheet.png" --clip walk --tiles 3 --tile 48 --ground stairs --look-at 0,1,3
+expect 0 'a sheet is drawn'
+
+for wrong in 1,2 1,2,3,4 1,2,x 1,2,nan 1,2,3e9 ''; do
+    noh render "$puppet" -o "$work/no.png" --clip walk --look-at "$wrong"
+    expect 2 "no point: '$wrong'"
+done
+noh render "$puppet" -o "$work/no.png" --clip walk --ground lava
+expect 2 'no such ground'
+noh render "$puppet" -o "$work/no.png" --ground stairs
+expect 2 'a ground without a clip'
+noh render "$build/mask.noh" -o "$work/no.png" --look-at 1,2,3
+expect 1 'a mask has nothing to turn'
+check 'and says so' grep -q 'look-at' "$work/err"
+noh render "$build/mask.noh" -o "$work/face.png" --size 64x64 --look-at 1,2,3 --face on
+expect 0 'but its face looks'
+finish

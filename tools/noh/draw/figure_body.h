@@ -1,0 +1,53 @@
+/* figure_body.h: figures that obey a world: they look at a point, and stand on stairs or a slope, which are drawn. */
+#ifndef NOH_NOH_DRAW_FIGURE_BODY_H
+#define NOH_NOH_DRAW_FIGURE_BODY_H
+
+#include "gpu/gpu.h"
+#include "noh_gl.h"
+
+#define FIGURE_STEPS 14u
+
+/* --look-at and --ground. */
+typedef struct body_options {
+    const char *look_at, *ground; /* NULL: not given */
+} body_options;
+
+typedef struct figure_body {
+    int looks;
+    float point[3];   /* world */
+    int has_ground;   /* 1: stairs or a slope */
+    const char *name; /* of the ground */
+    noh_world world;
+    noh_plane planes[1];
+    noh_obb boxes[FIGURE_STEPS];
+    float metre; /* in the pack's unit */
+    /* of each kind */
+    noh_kind_gaze gazes[NOH_STAGE_KINDS_MAX];
+    noh_kind_feet feet[NOH_STAGE_KINDS_MAX];
+    noh_stage_part parts[NOH_STAGE_KINDS_MAX][2];
+    /* what is drawn; zeros: nothing */
+    gpu *g;
+    GLuint program, vertex_array, buffer;
+    uint32_t corners;
+} figure_body;
+
+/* What the options ask for. *wanted: whether they ask for something. Prints an error and returns an exit code; 0 on
+ * success. */
+int figure_body_parse(const body_options *o, figure_body *b, int *wanted);
+
+/* Give kinds their parts, each for its own skeleton. Prints an error and returns an exit code where none of them can do
+ * what is asked for. */
+int figure_body_add(figure_body *b, const char *file, noh_kind_desc *kinds, uint32_t kind_count);
+
+/* The height of the ground under a point; 0 without one. */
+float figure_body_height(const figure_body *b, const float at[3]);
+
+/* Each actor looks, and stands on the ground. */
+int figure_body_place(const figure_body *b, noh_stage *stage, const noh_kind_desc *kinds, const noh_actor *actors,
+                      uint32_t kind_count);
+
+int figure_body_open_gl(figure_body *b, gpu *g);
+void figure_body_close_gl(figure_body *b);
+void figure_body_draw(const figure_body *b, const noh_stage_view *seen);
+
+#endif
