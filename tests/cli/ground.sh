@@ -35,6 +35,8 @@ noh render "$puppet" -o "$work/no.png" --clip walk --ground lava
 expect 2 'no such ground'
 noh render "$puppet" -o "$work/no.png" --ground stairs
 expect 2 'a ground without a clip'
+noh sheet "$puppet" -o "$work/no.png" --clip walk --ground stairs --to bow
+expect 2 'a ground in a transition'
 noh render "$build/mask.noh" -o "$work/no.png" --look-at 1,2,3
 expect 1 'a mask has nothing to turn'
 check 'and says so' grep -q 'look-at' "$work/err"

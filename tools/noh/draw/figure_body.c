@@ -202,7 +202,7 @@ static float *put_steps(const figure_body *b, float *out)
         const float tread[4][3] = { { -w, y, z }, { -w, y, end }, { w, y, end }, { w, y, z } };
         const float flank[4][3] = { { w, 0.0f, z }, { w, y, z }, { w, y, end }, { w, 0.0f, end } };
         out = put_quad(out, face, front, 0.22f);
-        out = put_quad(out, tread, up, 0.42f);
+        out = put_quad(out, tread, up, i % 2u ? 0.46f : 0.38f);
         const float other[4][3] = { { -w, 0.0f, z }, { -w, y, z }, { -w, y, end }, { -w, 0.0f, end } };
         out = put_quad(out, flank, left, 0.30f);
         out = put_quad(out, other, right, 0.30f);

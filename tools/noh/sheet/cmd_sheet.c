@@ -189,6 +189,9 @@ static int check_body(sheet *s)
     int wanted;
     const int status = figure_body_parse(&s->body_wants, &s->body, &wanted);
     s->figure.body = wanted ? &s->body : NULL;
+    if (!status && s->body.has_ground && (s->tiles.push || s->tiles.to || s->tiles.blend)) {
+        return tool_usage("--ground has no effect with --push, --to or --blend");
+    }
     return status;
 }
 
