@@ -112,11 +112,41 @@ static void nlerp_is_unit(void **state)
     assert_true(shortest < 0.51f); /* else every mixture was about unit anyway */
 }
 
+/* The source's example: an axis of (0.2, 0.6, -0.3) and an angle of 0.342. Its text writes w first, its code's numbers
+ * lie in memory as x, y, z, w: by the text's order the rotation is another one. */
+static void errata_C6_3_w_is_last(void **state)
+{
+    const double length = sqrt(0.2 * 0.2 + 0.6 * 0.6 + 0.3 * 0.3), angle = 0.342;
+    const double axis[3] = { 0.2 / length, 0.6 / length, -0.3 / length };
+    const float v[3] = { 1.0f, -2.0f, 0.5f };
+    float turn[3], q[4], ours[3], theirs[3], off = 0.0f;
+    double along = 0.0, cross[3];
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        turn[i] = (float)(axis[i] * angle);
+        along += axis[i] * (double)v[i];
+        cross[i] = axis[(i + 1) % 3] * (double)v[(i + 2) % 3] - axis[(i + 2) % 3] * (double)v[(i + 1) % 3];
+    }
+    noh_quat_from_rotation(turn, q);
+    assert_true(fabs((double)q[3] - cos(0.171)) < 1e-6);
+    const float text[4] = { q[3], q[0], q[1], q[2] };
+    noh_quat_rotate(q, v, ours);
+    noh_quat_rotate(text, v, theirs);
+    for (int i = 0; i < 3; i++) {
+        const double right = cos(angle) * (double)v[i] + sin(angle) * cross[i] +
+                             (1.0 - cos(angle)) * along * axis[i]; /* Rodrigues */
+        assert_true(fabs((double)ours[i] - right) < 1e-5);
+        off = fmaxf(off, fabsf(theirs[i] - (float)right));
+    }
+    assert_true(off > 1.0f);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(plain_square_roots_equal_those_of_the_processor),
     cmocka_unit_test(roots_of_squares_are_exact),
     cmocka_unit_test(plain_counts_of_zeros_equal_those_of_the_processor),
     cmocka_unit_test(nlerp_is_unit),
+    cmocka_unit_test(errata_C6_3_w_is_last),
 };
 
 TEST_MAIN(tests, NULL, NULL)
