@@ -1,7 +1,8 @@
 #!/bin/sh
-# tsan.sh [COMPILER...]: the library, tests/unit/bank/test_threads.c and tests/unit/stage/test_stage_threads.c built with
-# ThreadSanitizer by gcc and by clang, and run: four threads pose the controllers of one clip bank, and the jobs of one
-# stage. Passes when every test does and nothing is reported.
+# tsan.sh [COMPILER...]: the library, tests/unit/bank/test_threads.c, tests/unit/stage/test_stage_threads.c and
+# tests/unit/crowd/test_crowd_threads.c built with ThreadSanitizer by gcc and by clang, and run: four threads pose the
+# controllers of one clip bank, and run the jobs of one stage and of one crowd. Passes when every test does and nothing
+# is reported.
 # A compiler that is missing, or whose ThreadSanitizer does not run here, is skipped. Closes as tests/run.sh does.
 #
 # Asserts of both tiers are on. It needs neither C++ nor GL: it is built as the cross tests are.
@@ -9,7 +10,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0 skipped=0
 
-programs='test_threads test_stage_threads'
+programs='test_threads test_stage_threads test_crowd_threads'
 packs=${NOH_BUILD:-build} # test_stage_threads reads mask_levels.noh and demo/puppet_levels.noh there
 
 compiler() {
