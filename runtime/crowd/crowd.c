@@ -219,7 +219,11 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd)
 
 /* ---- steps ---- */
 
-enum { SORT, SEE, ITERATE, FINISH = ITERATE + CROWD_ITERATIONS }; /* phases: SORT is over before jobs begin */
+/* Phases. SORT is over before jobs begin. */
+#define SORT 0u
+#define SEE 1u
+#define ITERATE 2u
+#define FINISH (ITERATE + CROWD_ITERATIONS)
 
 uint32_t noh_crowd_begin(noh_crowd *crowd, uint32_t ticks)
 {
@@ -238,7 +242,7 @@ uint32_t noh_crowd_jobs(noh_crowd *crowd)
         if (!--crowd->to_do) return 0;
     }
     if (crowd->phase == SORT) noh_crowd_sort(crowd);
-    crowd->phase = crowd->phase == SEE && !crowd->corrected ? (uint32_t)FINISH : crowd->phase + 1u;
+    crowd->phase = crowd->phase == SEE && !crowd->corrected ? FINISH : crowd->phase + 1u;
     return crowd->job_count;
 }
 
@@ -248,7 +252,7 @@ void noh_crowd_job(noh_crowd *crowd, uint32_t job)
     const uint32_t begin = (uint32_t)((uint64_t)crowd->present * job / crowd->job_count);
     const uint32_t end = (uint32_t)((uint64_t)crowd->present * (job + 1u) / crowd->job_count);
     if (crowd->phase > SEE && crowd->phase < FINISH) {
-        noh_crowd_iterate(crowd, begin, end, crowd->phase - (uint32_t)ITERATE);
+        noh_crowd_iterate(crowd, begin, end, crowd->phase - ITERATE);
         return;
     }
     for (uint32_t rank = begin; rank < end; rank++) {
