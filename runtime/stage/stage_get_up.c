@@ -53,6 +53,8 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
     noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
     float best = 0.0f;
     *chosen = NOH_NONE;
+    memset(tried, 0, sizeof tried);
+    memset(bodies, 0, sizeof tried);
     if (!how->clips || !how->clip_count) return bodies_of(s, k, a, NOH_NONE, bodies, error);
     for (uint32_t i = 0; i < how->clip_count; i++) {
         const uint32_t clip = noh_stage_find(s, (uint32_t)(k - s->kinds), NOH_NAME_CLIP, how->clips[i]);
