@@ -1,5 +1,5 @@
 /* common_transfer.glsl: light from all around by a vertex's precomputed transfer, in the arithmetic of
- * runtime/light/transfer.h. It goes in front of common_vertex.glsl: noh_gl_shader_prefix puts them together. Defines,
+ * runtime/light/transfer.h. It goes behind common_layers.glsl and in front of common_vertex.glsl: noh_gl_shader_prefix puts them together. Defines,
  * which noh_gl_variant_defines writes:
  *
  *   NOH_TRANSFER             the order of the mesh's transfer, 4 or 6; 0: there is none, or the renderer is not lit
@@ -21,6 +21,20 @@ struct noh_lobe {
     vec3 axis; /* unit, model space */
     float shape[NOH_TRANSFER];
 };
+
+/* What targets change of a vertex's occlusion: beside the positions that noh_morph_fetch_tile adds. */
+float noh_fetch_occlusion(ivec4 tile, int vertex)
+{
+    if (vertex >= tile.w) {
+        return 0.0;
+    }
+    ivec3 texel = ivec3(tile.xy + ivec2(vertex & ((1 << tile.z) - 1), vertex >> tile.z), 0);
+#ifdef NOH_LAYERS_UINT
+    return uintBitsToFloat(texelFetch(noh_layers, texel, 0).w);
+#else
+    return texelFetch(noh_layers, texel, 0).w;
+#endif
+}
 
 /* Turned by the smallest rotation that takes `from` to `to`, both unit: Rodrigues' formula, with the sine in the length
  * of the cross product. Opposite directions turn nothing. */

@@ -156,6 +156,7 @@ noh_vertex noh_fetch()
     noh_skin_vertex(v.model, v.normal, v.tangent);
 #if NOH_TRANSFER > 0
     noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_normal), normalize(v.normal));
+    lobe.occlusion = clamp(lobe.occlusion + noh_fetch_occlusion(tile, noh_morph_vertex()), 0.0, 1.0);
     noh_v_transfer = noh_lobe_shade(lobe, normalize(noh_world_normal(x, y, z, lobe.axis)));
 #endif
     p = vec4(v.model, 1.0);

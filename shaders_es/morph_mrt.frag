@@ -14,8 +14,13 @@ layout(location = 2) out vec4 o_tangent;
 
 void main()
 {
-    uvec3 words = delta_words(f_place.xy);
+    uvec4 texel = delta_words(f_place.xy);
+    uvec3 words = texel.xyz;
+#ifdef OCCLUSION
+    o_position = vec4(delta_field(words, delta_shifts(f_place.z, 0), f_weights.x), uintBitsToFloat(texel.w) * f_weights.x);
+#else
     o_position = vec4(delta_field(words, delta_shifts(f_place.z, 0), f_weights.x), 0.0);
+#endif
     o_normal = vec4(delta_field(words, delta_shifts(f_place.z, 1), f_weights.y), 0.0);
 #ifndef TWO_LAYERS
     o_tangent = vec4(delta_field(words, delta_shifts(f_place.z, 2), f_weights.z), 0.0);

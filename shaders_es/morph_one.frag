@@ -10,5 +10,10 @@ layout(location = 0) out vec4 o_delta;
 void main()
 {
     uvec2 shifts = uvec2(f_place.z & 255u, f_place.z >> 8);
-    o_delta = vec4(delta_field(delta_words(f_place.xy), shifts, uintBitsToFloat(f_place.w)), 0.0);
+    uvec4 texel = delta_words(f_place.xy);
+    float weight = uintBitsToFloat(f_place.w), fourth = 0.0;
+#ifdef OCCLUSION
+    fourth = uintBitsToFloat(texel.w) * weight; /* in other layers than that of positions it is not read */
+#endif
+    o_delta = vec4(delta_field(texel.xyz, shifts, weight), fourth);
 }

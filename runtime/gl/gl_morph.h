@@ -13,11 +13,12 @@
  *   noh_morph_path_name, noh_accumulate_name
  *
  * Deltas of position, normal and tangent are accumulated in the three layers of one texture array; in two of them where
- * tangents are not wanted, and then those of the bind pose are turned with the normal. Each instance has a
- * tile of it with one accumulation texel per vertex that any target moves. The base mesh stays in the vertex buffers,
- * and the vertex shader adds the accumulated deltas to it (shaders_es/common_layers.glsl), so a half-float accumulator
- * rounds only deltas. Microsoft's SparseMorphTargets sample (DirectX SDK) accumulates in the same way, but whole
- * vertices, and of one mesh.
+ * tangents are not wanted, and then those of the bind pose are turned with the normal. Of meshes that have a transfer
+ * (light/transfer.h) the change of occlusion is accumulated beside the position, in its fourth component. Each instance
+ * has a tile of it with one accumulation texel per vertex that any target moves. The base mesh stays in the vertex
+ * buffers, and the vertex shader adds the accumulated deltas to it (shaders_es/common_layers.glsl), so a half-float
+ * accumulator rounds only deltas. Microsoft's SparseMorphTargets sample (DirectX SDK) accumulates in the same way, but
+ * whole vertices, and of one mesh.
  *
  *   path       needs                      how
  *   layered    geometry shader, blending  one additive pass into three layers
@@ -86,6 +87,8 @@ typedef struct noh_gl_morph_plan {
     const char *reason;                 /* why this path, in words; a string constant */
     GLenum layer_format;                /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
     uint32_t layer_count;               /* 3; 2 without tangents */
+    uint32_t occlusion;                 /* 1: a mesh has a transfer (light/transfer.h), and what targets change of its
+                                         * occlusion is summed, too: the fourth component beside positions */
     uint32_t atlas_width, atlas_height; /* of the texture array that holds the tiles, in texels */
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* in the tables, which LOD levels of one mesh share */

@@ -16,14 +16,26 @@
 #include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_program.h"
+#include "light/transfer_internal.h"
 #include "shaders.gen.h"
 
 /* ---- making ---- */
 
+/* Of what is drawn in a pass, of two layers, of occlusion. */
+#define DEFINES_OF(pass)                                                                \
+    {                                                                                   \
+        { pass, pass "#define OCCLUSION\n" },                                           \
+        {                                                                               \
+            pass "#define TWO_LAYERS\n", pass "#define TWO_LAYERS\n#define OCCLUSION\n" \
+        }                                                                               \
+    }
+
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "u_deltas", "u_rects", "u_records" };
-    const int two = m->plan.layer_count == 2u;
+    static const char *const defines[3][2][2] = { DEFINES_OF(""), DEFINES_OF("#define MORPH_MRT\n"),
+                                                  DEFINES_OF("#define MORPH_LAYERED\n") };
+    const int pass = m->plan.path == NOH_MORPH_MRT ? 1 : m->plan.path == NOH_MORPH_LAYERED ? 2 : 0;
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.name = noh_morph_path_name(m->plan.path);
@@ -32,14 +44,13 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
     desc.samplers = samplers;
     desc.sampler_count = 3;
     desc.ledger = m->ledger;
+    desc.defines = defines[pass][m->plan.layer_count == 2u][m->plan.occlusion];
     if (m->plan.path == NOH_MORPH_MRT) {
         desc.fragment = &noh_shader_morph_mrt_frag;
-        desc.defines = two ? "#define MORPH_MRT\n#define TWO_LAYERS\n" : "#define MORPH_MRT\n";
     } else if (m->plan.path == NOH_MORPH_LAYERED) {
         desc.geometry = &noh_shader_morph_layered_geom;
         desc.version = noh_gl_geometry_version(m->gl);
         desc.geometry_defines = noh_gl_geometry_defines(m->gl);
-        desc.defines = two ? "#define MORPH_LAYERED\n#define TWO_LAYERS\n" : "#define MORPH_LAYERED\n";
     }
     return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
 }
@@ -83,6 +94,26 @@ static void upload_rects(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh
     noh_gl_table_upload(m->gl, &m->rects, to->first_rect + first, count, m->staging);
 }
 
+/* Delta texels of a target with what they change of occlusion, through the staging memory. */
+static void upload_wide(noh_gl_morph *m, const noh_mesh *mesh, uint32_t target, uint32_t texel, uint32_t to,
+                        uint32_t count)
+{
+    uint32_t(*chunk)[4] = (uint32_t(*)[4])m->staging;
+    const float ratio = noh_transfer_ratio(mesh, target);
+    while (count) {
+        const uint32_t now = count < NOH_RECT_CHUNK ? count : NOH_RECT_CHUNK;
+        for (uint32_t i = 0; i < now; i++) {
+            const float change = (float)noh_transfer_delta(mesh, texel + i) * ratio;
+            memcpy(chunk[i], mesh->texels + 3u * (size_t)(texel + i), 12);
+            memcpy(&chunk[i][3], &change, 4);
+        }
+        noh_gl_table_upload(m->gl, &m->deltas, to, now, chunk);
+        texel += now;
+        to += now;
+        count -= now;
+    }
+}
+
 /* Delta texels first..first+count-1 of all targets, without gaps. (A coarser LOD level uses only the first texels of
  * each target.) */
 static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t first,
@@ -93,7 +124,9 @@ static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *to, const no
         const noh_target *target = &mesh->targets[t];
         const uint32_t skip = first - begin, left = skip < target->texel_count ? target->texel_count - skip : 0;
         const uint32_t now = left < count ? left : count;
-        if (now) {
+        if (now && m->plan.occlusion) {
+            upload_wide(m, mesh, t, target->first_texel + skip, to->first_texel + first, now);
+        } else if (now) {
             noh_gl_table_upload(m->gl, &m->deltas, to->first_texel + first, now,
                                 mesh->texels + 3u * ((size_t)target->first_texel + skip));
         }
@@ -107,11 +140,12 @@ static void upload_texels(noh_gl_morph *m, const noh_gl_morph_mesh *to, const no
 static int fill(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at, uint32_t *bytes)
 {
     const uint32_t texels = mesh->header->texel_count, all = texels + mesh->header->rect_count;
+    const uint32_t texel_bytes = m->plan.occlusion ? 16u : 12u;
     if (*at < texels) {
-        const uint32_t fit = *bytes / 12u, count = fit < texels - *at ? fit : texels - *at;
+        const uint32_t fit = *bytes / texel_bytes, count = fit < texels - *at ? fit : texels - *at;
         upload_texels(m, to, mesh, *at, count);
         *at += count;
-        *bytes -= 12u * count;
+        *bytes -= texel_bytes * count;
     }
     while (*at >= texels && *at < all && *bytes >= 16u) {
         uint32_t count = *bytes / 16u < all - *at ? *bytes / 16u : all - *at;
@@ -130,7 +164,8 @@ int noh_gl_morph_fill_blend(noh_gl_morph *m, const noh_mesh *from, uint32_t *at,
 
 static noh_result create_tables(noh_gl_morph *m, noh_error *error)
 {
-    noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGB32UI, m->plan.texel_count, &m->deltas, error);
+    const GLenum format = m->plan.occlusion ? GL_RGBA32UI : GL_RGB32UI;
+    noh_result result = noh_gl_table_create(m->gl, m->ledger, format, m->plan.texel_count, &m->deltas, error);
     if (!result) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.rect_count, &m->rects, error);
     }

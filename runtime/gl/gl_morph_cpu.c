@@ -1,8 +1,9 @@
 /* gl_morph_cpu.c: the path cpu. deform/morph.h accumulates each changed instance, and the sums are uploaded to its
- * tile. The texture is only fetched from, never rendered to, so three components are enough. */
+ * tile. The texture is only fetched from, never rendered to, so three components are enough without occlusion. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
+#include "light/transfer.h"
 
 /* Floats to halves in place. Half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
  */
@@ -18,6 +19,17 @@ static void narrow_to_half(void *floats, size_t count)
     }
 }
 
+/* [layers][texels][3] to [layers][texels][4] in place, from the end, so that no unread float is overwritten. The fourth
+ * of the first layer is the occlusion, behind them all; of the others it is 0. */
+static void widen(float *staging, uint32_t layers, size_t texels)
+{
+    const float *occlusion = staging + 4u * layers * texels;
+    for (size_t i = layers * texels; i-- > 0;) {
+        for (size_t c = 3; c-- > 0;) staging[4u * i + c] = staging[3u * i + c];
+        staging[4u * i + 3u] = i < texels ? occlusion[i] : 0.0f;
+    }
+}
+
 static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);
@@ -28,17 +40,22 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_sta
     noh_morph_layers layers;
     uint32_t x, y;
     const size_t floats = noh_morph_layers_size(&mesh) / 12u; /* of a layer */
-    memset(m->staging, 0, 4u * floats * m->plan.layer_count);
+    const size_t texels = floats / 3u, wide = m->plan.occlusion ? 4u : 3u;
+    memset(m->staging, 0, 4u * (wide * texels * m->plan.layer_count + (m->plan.occlusion ? texels : 0u)));
     layers.position = (float *)m->staging;
     layers.normal = layers.position + floats;
     layers.tangent = m->plan.layer_count == 3u ? layers.normal + floats : NULL;
     noh_morph_accumulate(&mesh, weights, &layers);
+    if (m->plan.occlusion) {
+        if (mesh.transfer) noh_transfer_accumulate(&mesh, weights, layers.position + 4u * m->plan.layer_count * texels);
+        widen(layers.position, m->plan.layer_count, texels);
+    }
     if (half) {
-        narrow_to_half(m->staging, floats * m->plan.layer_count);
+        narrow_to_half(m->staging, wide * texels * m->plan.layer_count);
     }
     noh_gl_morph_tile(m, instance, &x, &y);
     m->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, (GLint)x, (GLint)y, 0, (GLsizei)(1u << h->morph_width_log2),
-                         (GLsizei)h->morph_height, (GLsizei)m->plan.layer_count, GL_RGB,
+                         (GLsizei)h->morph_height, (GLsizei)m->plan.layer_count, m->plan.occlusion ? GL_RGBA : GL_RGB,
                          half ? GL_HALF_FLOAT : GL_FLOAT, m->staging);
     stats->targets += cost.targets;
     stats->rects += cost.rects;

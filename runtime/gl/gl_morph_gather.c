@@ -9,6 +9,7 @@
 
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_program.h"
+#include "light/transfer_internal.h"
 #include "shaders.gen.h"
 
 /* ---- making ---- */
@@ -16,8 +17,11 @@
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "u_entries", "u_starts", "u_records" };
-    static const char *const defines[2][2] = {
-        { NULL, "#define LAYERS_UINT\n" }, { "#define TWO_LAYERS\n", "#define LAYERS_UINT\n#define TWO_LAYERS\n" }
+    static const char *const defines[2][2][2] = {
+        { { NULL, "#define OCCLUSION\n" }, { "#define LAYERS_UINT\n", "#define LAYERS_UINT\n#define OCCLUSION\n" } },
+        { { "#define TWO_LAYERS\n", "#define TWO_LAYERS\n#define OCCLUSION\n" },
+          { "#define LAYERS_UINT\n#define TWO_LAYERS\n",
+            "#define LAYERS_UINT\n#define TWO_LAYERS\n#define OCCLUSION\n" } }
     };
     noh_gl_program_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -26,7 +30,7 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
     desc.fragment = &noh_shader_morph_gather_frag;
     desc.samplers = samplers;
     desc.sampler_count = 3;
-    desc.defines = defines[m->plan.layer_count == 2u][m->plan.layer_format == GL_RGBA32UI];
+    desc.defines = defines[m->plan.layer_count == 2u][m->plan.layer_format == GL_RGBA32UI][m->plan.occlusion];
     desc.ledger = m->ledger;
     return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
 }
@@ -63,6 +67,7 @@ typedef struct chunk_filler {
     uint32_t *cursors;      /* [touched] the next entry of each vertex */
     uint32_t first;         /* the entry that the chunk begins with */
     uint32_t (*entries)[4]; /* [NOH_GATHER_CHUNK] */
+    const noh_mesh *mesh;
 } chunk_filler;
 
 static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
@@ -72,6 +77,10 @@ static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uin
     if (at < NOH_GATHER_CHUNK) {
         memcpy(f->entries[at], words, 12);
         f->entries[at][3] = target;
+        if (f->mesh->transfer) {
+            const uint32_t texel = (uint32_t)((size_t)(words - f->mesh->texels) / 3u);
+            f->entries[at][3] |= (uint32_t)noh_transfer_delta(f->mesh, texel) << 24;
+        }
     }
 }
 
@@ -89,28 +98,52 @@ static uint32_t *find_starts(noh_gl_morph *m, const noh_gl_morph_mesh *to, const
     return starts;
 }
 
+/* Numbers from..from+count-1 in front of the starts: of the last target first. */
+static void upload_ratios(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t from,
+                          uint32_t count)
+{
+    float ratios[64];
+    const uint32_t ratio_count = mesh->header->target_count;
+    for (uint32_t done = 0; done < count;) {
+        const uint32_t at = from + done, left = count - done, now = left < 64u ? left : 64u;
+        for (uint32_t i = 0; i < now; i++) ratios[i] = noh_transfer_ratio(mesh, ratio_count - 1u - (at + i));
+        noh_gl_table_upload(m->gl, &m->rects, to->first_start - ratio_count + at, now, ratios);
+        done += now;
+    }
+}
+
 /* Turn rectangles by target into lists by vertex: a counting sort in fixed memory. The first walk over the mesh counts
  * each vertex's entries, and their running sum gives the starts. A copy of the starts, as cursors, then gives each
  * delta texel its place. Only NOH_GATHER_CHUNK entries fit into the staging memory, so this walk is repeated for each
  * chunk and keeps the entries that fall into it. Targets are visited in index order, so each list is in target order.
- * Starts are counted first, then entries. to: whose part of the tables they belong to. Returns 1 once all are there. */
+ * Ratios are counted first, with occlusion, then starts, then entries. to: whose part of the tables they belong to.
+ * Returns 1 once all are there. */
 static int fill(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at, uint32_t *bytes)
 {
-    const uint32_t touched = mesh->header->touched_count, first = touched + 1u, all = first + mesh->header->pair_count;
+    const uint32_t ratios = noh_gl_morph_ratio_count(mesh->header, m->plan.occlusion);
+    const uint32_t own = mesh->header->touched_count + 1u, first = ratios + own;
+    const uint32_t all = first + mesh->header->pair_count;
     uint32_t *starts = find_starts(m, to, mesh);
     chunk_filler f;
-    f.cursors = starts + first;
-    f.entries = (uint32_t(*)[4])(void *)(f.cursors + first);
-    if (*at < first) {
+    f.cursors = starts + own;
+    f.entries = (uint32_t(*)[4])(void *)(f.cursors + own);
+    f.mesh = mesh;
+    if (*at < ratios) {
+        const uint32_t fit = *bytes / 4u, count = fit < ratios - *at ? fit : ratios - *at;
+        upload_ratios(m, to, mesh, *at, count);
+        *at += count;
+        *bytes -= 4u * count;
+    }
+    if (*at >= ratios && *at < first) {
         const uint32_t fit = *bytes / 4u, count = fit < first - *at ? fit : first - *at;
-        noh_gl_table_upload(m->gl, &m->rects, to->first_start + *at, count, starts + *at);
+        noh_gl_table_upload(m->gl, &m->rects, to->first_start + *at - ratios, count, starts + *at - ratios);
         *at += count;
         *bytes -= 4u * count;
     }
     while (*at >= first && *at < all && *bytes >= 16u) {
         uint32_t count = *bytes / 16u < all - *at ? *bytes / 16u : all - *at;
         count = count < NOH_GATHER_CHUNK ? count : NOH_GATHER_CHUNK;
-        memcpy(f.cursors, starts, sizeof *starts * first);
+        memcpy(f.cursors, starts, sizeof *starts * own);
         f.first = to->first_pair + *at - first;
         visit_pairs(mesh, fill_pair, &f);
         noh_gl_table_upload(m->gl, &m->deltas, f.first, count, f.entries);
@@ -130,7 +163,8 @@ static noh_result create_tables(noh_gl_morph *m, noh_error *error)
     uint32_t starts = 0;
     noh_result result;
     for (uint32_t i = 0; i < m->table_count; i++) {
-        starts += m->meshes[i].owner == i ? m->meshes[i].mesh.header->touched_count + 1u : 0u;
+        const noh_mesh_header *h = m->meshes[i].mesh.header;
+        if (m->meshes[i].owner == i) starts += noh_gl_morph_ratio_count(h, m->plan.occlusion) + h->touched_count + 1u;
     }
     result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.pair_count, &m->deltas, error);
     if (!result) {

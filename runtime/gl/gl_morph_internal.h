@@ -60,6 +60,10 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
 void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
                         noh_gl_morph *m);
 
+/* With occlusion, gather's table of starts has a number for each target in front of an owner's starts, the first
+ * target's last: noh_transfer_ratio. */
+uint32_t noh_gl_morph_ratio_count(const noh_mesh_header *h, uint32_t occlusion);
+
 /* 1 when rect records need 32 bits. */
 int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
 

@@ -132,6 +132,7 @@ static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *cap
 {
     int half = plan->accumulate == NOH_ACCUMULATE_F16;
     if (plan->path == NOH_MORPH_CPU) {
+        if (plan->occlusion) return half ? GL_RGBA16F : GL_RGBA32F;
         return half ? GL_RGB16F : GL_RGB32F; /* never rendered to, so three components are enough */
     }
     if (half) {
@@ -244,45 +245,59 @@ typedef struct table_sums {
     uint64_t rects, texels, pairs, starts;
 } table_sums;
 
+static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
+{
+    uint32_t has = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) has |= desc->meshes[i].transfer != NULL;
+    return has;
+}
+
+uint32_t noh_gl_morph_ratio_count(const noh_mesh_header *h, uint32_t occlusion)
+{
+    return occlusion ? h->target_count : 0u;
+}
+
 /* The tables of a level in a pack of its own come last. They are not a part of those of a finer level: targets that the
  * level leaves out have no entries in them. */
 static void add_coarse(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes, table_sums *sums)
 {
     const noh_mesh_header *h = desc->coarse->header;
+    const uint32_t ratios = noh_gl_morph_ratio_count(h, has_occlusion(desc));
     if (meshes) {
         noh_gl_morph_mesh *to = &meshes[desc->mesh_count];
         to->mesh = *desc->coarse;
         to->owner = desc->mesh_count;
         to->first_rect = (uint32_t)sums->rects;
         to->first_texel = (uint32_t)sums->texels;
-        to->first_start = (uint32_t)sums->starts;
+        to->first_start = (uint32_t)sums->starts + ratios;
         to->first_pair = (uint32_t)sums->pairs;
     }
     sums->rects += h->rect_count;
     sums->texels += h->texel_count;
     sums->pairs += h->pair_count;
-    sums->starts += (uint64_t)h->touched_count + 1u;
+    sums->starts += (uint64_t)ratios + h->touched_count + 1u;
 }
 
 /* Where each mesh's part of the tables begins. `meshes` may be NULL. */
 static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
     table_sums sums = { 0, 0, 0, 0 };
+    const uint32_t occlusion = has_occlusion(desc);
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         const noh_mesh_header *h = desc->meshes[i].header;
-        const uint32_t owner = owner_of(desc, i);
+        const uint32_t owner = owner_of(desc, i), ratios = noh_gl_morph_ratio_count(h, occlusion);
         if (meshes) {
             meshes[i].owner = owner;
             meshes[i].first_rect = (uint32_t)sums.rects;
             meshes[i].first_texel = (uint32_t)sums.texels;
-            meshes[i].first_start = (uint32_t)sums.starts;
+            meshes[i].first_start = (uint32_t)sums.starts + ratios;
             meshes[i].first_pair = (uint32_t)sums.pairs;
         }
         if (owner == i) {
             sums.rects += h->rect_count;
             sums.texels += h->texel_count;
             sums.pairs += h->pair_count;
-            sums.starts += (uint64_t)h->touched_count + 1u;
+            sums.starts += (uint64_t)ratios + h->touched_count + 1u;
         }
     }
     if (desc->coarse) add_coarse(desc, meshes, &sums);
@@ -351,6 +366,7 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
     if (plan->path == NOH_MORPH_CPU) {
         for (uint32_t i = 0; i < desc->mesh_count; i++) {
             size_t layers = noh_morph_layers_size(&desc->meshes[i]) / 3u * plan->layer_count;
+            if (plan->occlusion) layers = noh_morph_layers_size(&desc->meshes[i]) / 9u * (4u * plan->layer_count + 1u);
             bytes = layers > bytes ? layers : bytes;
         }
     } else if (plan->path == NOH_MORPH_GATHER) {
@@ -397,7 +413,7 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
         plan->table_bytes = noh_gl_table_bytes(GL_R32UI, (uint32_t)place_tables(desc, NULL).starts);
         plan->stream_bytes = 16u * (uint64_t)plan->instance_count + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
     } else if (plan->path != NOH_MORPH_CPU) {
-        plan->delta_bytes = noh_gl_table_bytes(GL_RGB32UI, plan->texel_count);
+        plan->delta_bytes = noh_gl_table_bytes(plan->occlusion ? GL_RGBA32UI : GL_RGB32UI, plan->texel_count);
         plan->table_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->rect_count);
         plan->stream_bytes = rect_record_bytes(desc, plan) + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
     }
@@ -418,6 +434,7 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     if (result) {
         return result;
     }
+    p.occlusion = has_occlusion(desc);
     p.layer_format = layer_format(&p, caps);
     p.layer_count = desc->without_tangents ? 2u : 3u;
     set_gpu_bytes(desc, &p);

@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "base/math_internal.h"
 #include "base/octahedral_internal.h"
+#include "light/transfer_internal.h"
 
 noh_result noh_transfer_of(const noh_mesh *mesh, noh_transfer *transfer, noh_error *error)
 {
@@ -24,28 +25,28 @@ noh_result noh_transfer_of(const noh_mesh *mesh, noh_transfer *transfer, noh_err
     return NOH_OK;
 }
 
-static void accumulate_target(const noh_mesh *mesh, const noh_transfer *transfer, uint32_t index, float scale,
-                              float *occlusion)
+static void accumulate_target(const noh_mesh *mesh, uint32_t index, float weight, float *occlusion)
 {
     const noh_target *t = &mesh->targets[index];
-    const int8_t *delta = transfer->deltas + t->first_texel;
+    const float ratio = noh_transfer_ratio(mesh, index), scaled = t->position_scale * weight;
+    uint32_t texel = t->first_texel;
     for (uint32_t i = t->first_rect; i < t->first_rect + t->rect_count; i++) {
         const noh_rect *rect = &mesh->rects[i];
         for (uint32_t y = 0; y < rect->h; y++) {
             float *row = occlusion + ((size_t)(rect->y + y) << mesh->header->morph_width_log2) + rect->x;
             for (uint32_t x = 0; x < rect->w; x++) {
-                row[x] += (float)*delta++ * scale;
+                row[x] += (float)noh_transfer_delta(mesh, texel++) * ratio * scaled;
             }
         }
     }
 }
 
-void noh_transfer_accumulate(const noh_mesh *mesh, const noh_transfer *transfer, const float *weights, float *occlusion)
+void noh_transfer_accumulate(const noh_mesh *mesh, const float *weights, float *occlusion)
 {
-    NOH_ASSERT(mesh && transfer && weights && occlusion);
+    NOH_ASSERT(mesh && mesh->transfer && weights && occlusion);
     for (uint32_t i = 0; i < mesh->header->target_count; i++) {
         if (weights[i] != 0.0f) {
-            accumulate_target(mesh, transfer, i, weights[i] * transfer->scales[i], occlusion);
+            accumulate_target(mesh, i, weights[i], occlusion);
         }
     }
 }

@@ -13,7 +13,7 @@
  * mean of a Legendre polynomial. A lobe turns with the surface, since only its axis does; and light turns freely, since
  * it is a factor. Axes are bent towards what is open: about the normal (NOH_TRANSFER_ON_NORMAL) the same bytes are
  * worth little more than their occlusion. Targets that open a mouth or draw down a brow change occlusion in place: one
- * stored difference for each moved vertex and target, summed by weight like positions.
+ * stored difference for each vertex and target that moves it, summed by weight like positions.
  *
  * Holds for surfaces that turn and for what targets occlude; an arm that comes before the face casts no shadow here.
  *
@@ -50,12 +50,11 @@ typedef struct noh_lobe {
 /* errors  NOT_FOUND  the pack has no transfer for this mesh: it was built without --transfer; *transfer is untouched */
 noh_result noh_transfer_of(const noh_mesh *mesh, noh_transfer *transfer, noh_error *error);
 
-/* Add weight * difference of occlusion for all targets whose weight is not zero, in the order and arithmetic of
- * noh_morph_accumulate. Clear the layer first.
+/* Add weight * difference of occlusion for all targets whose weight is not zero, in the order of noh_morph_accumulate:
+ * the reference of the fourth component that accumulators have beside positions (gl/gl_morph.h). Clear the layer first.
  * shapes  weights[target_count], occlusion[morph_height << morph_width_log2] of the mesh's level
- * ranges  weights are finite */
-void noh_transfer_accumulate(const noh_mesh *mesh, const noh_transfer *transfer, const float *weights,
-                             float *occlusion);
+ * ranges  weights are finite; the mesh has a transfer */
+void noh_transfer_accumulate(const noh_mesh *mesh, const float *weights, float *occlusion);
 
 /* The lobe of a vertex in the bind pose.
  * ranges  vertex below vertex_count of the mesh */

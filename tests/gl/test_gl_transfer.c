@@ -8,6 +8,9 @@
 
 #include "convert/light/pack_transfer.h"
 #include "deform/skin.h"
+#include "light/transfer.h"
+#include "stage_gl/stage_gl.h"
+#include "support/lod_fixture.h"
 #include "support/skin_asset.h"
 
 /* The same pack with transfers, to be freed; frees `bytes`. */
@@ -49,12 +52,12 @@ static void turned_room(double degrees, noh_lighting *lighting)
 static const float placed[12] = { 0.36f, 0.48f, -0.8f, 0.1f, -0.8f, 0.6f, 0.0f, -0.2f, 0.48f, 0.64f, 0.6f, 0.3f };
 
 /* What the vertex shader hands on, of every vertex: [vertex_count][4], to be freed. */
-static float *captured(const tube *t, draw_kind kind, const noh_lighting *lighting)
+static float *captured(const tube *t, const fixture_morph *sums, draw_kind kind, const noh_lighting *lighting)
 {
     static const char *const varyings[] = { "noh_v_transfer" };
     gpu *g = fixture_gpu();
     const noh_gl_api *gl = &g->gl;
-    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(t->morph.morph, 1);
+    const noh_gl_morph_binding morph = noh_gl_morph_binding_of(sums->morph, 1);
     const noh_gl_skin_binding skin = noh_gl_skin_binding_of(t->skin, 1);
     const size_t bytes = 16u * (size_t)t->mesh.header->vertex_count;
     noh_gl_variant_key key = noh_gl_variant_key_of(&t->mesh, kind == RIGID ? NULL : &skin, 0, morph.is_uint,
@@ -124,10 +127,13 @@ static float *expected(const tube *t, const float *matrices, const noh_lighting 
     const noh_mesh *mesh = &t->mesh;
     float *out = test_zeros(16u * (size_t)count);
     noh_morph_layers layers = test_layers(mesh);
+    float *occlusion = test_zeros(4u * ((size_t)mesh->header->morph_height << mesh->header->morph_width_log2));
     noh_transfer transfer;
     assert_int_equal(noh_transfer_of(mesh, &transfer, NULL), NOH_OK);
     noh_morph_accumulate_scalar(mesh, t->morph.weights[1], &layers);
+    noh_transfer_accumulate(mesh, t->morph.weights[1], occlusion);
     for (uint32_t v = 0; v < count; v++) {
+        const uint32_t texel = noh_mesh_accumulation_texel(mesh, v);
         float rest[3], tangent[3], axis[3], length;
         noh_vertex vertex;
         noh_lobe lobe;
@@ -141,6 +147,9 @@ static float *expected(const tube *t, const float *matrices, const noh_lighting 
         length = sqrtf(rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);
         for (int k = 0; k < 3; k++) rest[k] /= length;
         noh_lobe_turn(&lobe, rest, vertex.normal);
+        if (texel < mesh->header->touched_count) {
+            lobe.occlusion = fminf(fmaxf(lobe.occlusion + occlusion[texel], 0.0f), 1.0f);
+        }
         memcpy(axis, lobe.axis, sizeof axis);
         for (int k = 0; k < 3; k++) {
             lobe.axis[k] = placed[4 * k] * axis[0] + placed[4 * k + 1] * axis[1] + placed[4 * k + 2] * axis[2];
@@ -148,6 +157,7 @@ static float *expected(const tube *t, const float *matrices, const noh_lighting 
         noh_lobe_shade(&lobe, transfer.header->order, &lighting->rest, out + 4u * (size_t)v);
         out[4u * (size_t)v + 3u] = lobe.occlusion;
     }
+    free(occlusion);
     free(layers.position);
     return out;
 }
@@ -179,7 +189,7 @@ static void vertices_are_lit_as_by_the_cpu(void **state)
                 noh_lighting lighting;
                 float *got, *right;
                 turned_room(degrees, &lighting);
-                got = captured(&t, (draw_kind)kind, &lighting);
+                got = captured(&t, &t.morph, (draw_kind)kind, &lighting);
                 right = expected(&t, kind == RIGID ? NULL : matrices, &lighting);
                 for (uint32_t k = 0; k < 4u * mesh.header->vertex_count; k++) {
                     worst = fmax(worst, fabs((double)got[k] - (double)right[k]));
@@ -195,6 +205,156 @@ static void vertices_are_lit_as_by_the_cpu(void **state)
         tube_close(&t);
         free(bytes);
     }
+    fixture_expect_no_errors();
+}
+
+/* ---- occlusion that morphs ---- */
+
+/* Sums of a way for the tube's weights; 0 where this driver has no such way. */
+static int open_sums(fixture_morph *sums, const tube *t, noh_gl_morph_desc *desc, fixture_way way,
+                     const noh_gl_caps *caps)
+{
+    noh_gl_morph_plan plan;
+    *desc = t->morph_desc;
+    desc->path = way.path;
+    desc->accumulate = way.accumulate;
+    if (noh_gl_morph_plan_make(desc, caps, &plan, NULL) != NOH_OK) {
+        return 0;
+    }
+    assert_int_equal(plan.occlusion, 1);
+    fixture_morph_open(sums, desc, caps);
+    assert_true(noh_gl_ledger_bytes(&sums->ledger) == sums->plan.gpu_bytes);
+    for (uint32_t i = 0; i < COPIES; i++) fixture_set(sums, i, t->morph.weights[i]);
+    noh_gl_morph_update(sums->morph, NULL);
+    return 1;
+}
+
+/* The occlusion of one way is that of the CPU: to the bit in 32 bits, where this driver blends so. */
+static void check_way(const tube *t, fixture_way way, const noh_gl_caps *caps, const float *right, const float *cpu)
+{
+    const int blended = way.path != NOH_MORPH_CPU && way.path != NOH_MORPH_GATHER;
+    const int exact = way.accumulate == NOH_ACCUMULATE_F32 && (!blended || caps->blend_f32_exact);
+    noh_lighting lighting;
+    noh_gl_morph_desc desc;
+    fixture_morph sums;
+    double worst = 0.0;
+    float *got;
+    if (!open_sums(&sums, t, &desc, way, caps)) {
+        return;
+    }
+    turned_room(0, &lighting);
+    got = captured(t, &sums, RIGID, &lighting);
+    for (uint32_t v = 0; v < t->mesh.header->vertex_count; v++) {
+        worst = fmax(worst, fabs((double)got[4u * v + 3u] - (double)right[4u * v + 3u]));
+        if (exact && cpu) assert_memory_equal(&got[4u * v + 3u], &cpu[4u * v + 3u], 4);
+    }
+    print_message("# %s: occlusion is off by %.7f\n", fixture_way_name(way), worst);
+    assert_true(worst < (way.accumulate == NOH_ACCUMULATE_F32 ? 1e-6 : 2e-3));
+    free(got);
+    fixture_morph_close(&sums);
+}
+
+/* Targets that make a tube narrow shade it by the same bits in every way of accumulating. */
+static void every_way_sums_the_same_occlusion(void **state)
+{
+    const skin_cylinder c = { 24, 33, 9, 4, 3, 1, 2.0f, 0.35f };
+    const fixture_way first = { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 }, words = { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 };
+    noh_gl_caps lesser = fixture_gpu()->caps;
+    const noh_gl_caps caps = lesser;
+    model *m = skin_cylinder_model(&c);
+    noh_gl_morph_desc desc;
+    fixture_morph sums;
+    noh_lighting lighting;
+    float *right, *cpu, *layer, most = 0.0f;
+    size_t count;
+    noh_pack pack;
+    noh_mesh mesh;
+    uint8_t *bytes;
+    tube t;
+    (void)state;
+    for (uint32_t k = 1; k < 3; k++) { /* a waist, and a bulge beside it */
+        model_target *target = &m->meshes[0].targets[k];
+        for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++) {
+            const float *at = m->meshes[0].position + 3u * v, y = at[1] - 0.5f * (float)k;
+            const float by = expf(-20.0f * y * y) * (k == 1 ? -0.8f : 1.5f);
+            target->position[3u * v] = by * at[0];
+            target->position[3u * v + 2u] = by * at[2];
+        }
+    }
+    bytes = with_transfer(skin_pack_of(m, NULL, 1.0f, &count, NULL), &count, 4, 0);
+    model_free(m);
+    pack = test_open(bytes, count);
+    mesh = test_mesh(&pack, 0);
+    tube_open_with(&t, &mesh, NOH_PALETTE_TEXTURE, NOH_MORPH_CPU, 1, NULL);
+    turned_room(0, &lighting);
+    right = expected(&t, NULL, &lighting);
+    layer = test_zeros(4u * ((size_t)mesh.header->morph_height << mesh.header->morph_width_log2));
+    noh_transfer_accumulate(&mesh, t.morph.weights[1], layer);
+    for (uint32_t i = 0; i < mesh.header->touched_count; i++) most = fmaxf(most, fabsf(layer[i]));
+    assert_true(most > 0.1f);
+    assert_true(open_sums(&sums, &t, &desc, first, &caps));
+    cpu = captured(&t, &sums, RIGID, &lighting);
+    fixture_morph_close(&sums);
+    for (uint32_t w = 0; w < FIXTURE_WAYS; w++) check_way(&t, fixture_ways[w], &caps, right, cpu);
+    lesser.render_f32 = lesser.blend_f32 = 0;
+    if (caps.render_u32) check_way(&t, words, &lesser, right, cpu);
+    free(cpu);
+    free(right);
+    free(layer);
+    tube_close(&t);
+    free(bytes);
+    fixture_expect_no_errors();
+}
+
+/* A lit stage of meshes with a transfer takes on the GPU what its plan says, on every path; one byte short it is not
+ * made. Without the transfer it takes less. */
+static void stages_take_what_they_plan(void **state)
+{
+    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
+                                            NOH_MORPH_LAYERED };
+    static __attribute__((aligned(16))) uint32_t texels[2 * 6 * 32 * 32];
+    static __attribute__((aligned(16))) uint8_t scratch[3 * 4 * 2 * 6 * 32 * 32];
+    const noh_reflection_desc baked = { 32, noh_reflection_of_environment, noh_environment_at(0) };
+    const lod_face face = { 16, 12, 4, 0, 0 };
+    gpu *g = fixture_gpu();
+    noh_reflection reflection;
+    const noh_gl_light_desc light = { &reflection, 0 };
+    model *m = lod_face_model(&face);
+    size_t count;
+    uint8_t *bytes = with_transfer(test_pack_of(m, &count, NULL), &count, 4, 0);
+    const noh_pack pack = test_open(bytes, count);
+    const noh_kind_desc kind = { .mesh = &pack, .skeleton = NOH_NONE, .actor_count = 2 };
+    (void)state;
+    model_free(m);
+    assert_int_equal(noh_reflection_init(texels, sizeof texels, scratch, sizeof scratch, &baked, &reflection, NULL),
+                     NOH_OK);
+    for (uint32_t i = 0; i < 2 * TEST_COUNT(paths); i++) {
+        noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .light = &light, .gpu = &noh_stage_on_gl };
+        noh_gl_ledger ledger;
+        char log[1024] = "";
+        const noh_gl_device device = { &g->gl, &g->caps, &ledger, log, sizeof log };
+        noh_stage *stage = NULL;
+        noh_stage_plan plan, without;
+        noh_error error;
+        uint8_t *memory;
+        memset(&ledger, 0, sizeof ledger);
+        desc.morph_path = (uint32_t)paths[i / 2];
+        desc.halves = i % 2 ? 1 : -1;
+        if (noh_stage_plan_make(&desc, &g->caps, &plan, NULL) != NOH_OK) continue;
+        memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
+        assert_int_equal(noh_stage_init(memory, (size_t)plan.cpu_bytes - 1u, &device, &desc, &plan, &stage, &error),
+                         NOH_ERR_MEMORY);
+        assert_true(noh_gl_ledger_bytes(&ledger) == 0);
+        assert_int_equal(noh_stage_init(memory, (size_t)plan.cpu_bytes, &device, &desc, &plan, &stage, &error), NOH_OK);
+        assert_true(noh_gl_ledger_bytes(&ledger) == plan.gpu_bytes);
+        noh_stage_delete(stage);
+        assert_true(noh_gl_ledger_bytes(&ledger) == 0);
+        desc.without_transfer = 1;
+        assert_int_equal(noh_stage_plan_make(&desc, &g->caps, &without, NULL), NOH_OK);
+        assert_true(without.gpu_bytes < plan.gpu_bytes);
+        free(memory);
+    }
+    free(bytes);
     fixture_expect_no_errors();
 }
 
@@ -342,8 +502,8 @@ static void a_furnace_is_white_with_a_transfer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vertices_are_lit_as_by_the_cpu),
-        cmocka_unit_test(pixels_are_lit_as_by_the_cpu),
+        cmocka_unit_test(vertices_are_lit_as_by_the_cpu),     cmocka_unit_test(every_way_sums_the_same_occlusion),
+        cmocka_unit_test(stages_take_what_they_plan),         cmocka_unit_test(pixels_are_lit_as_by_the_cpu),
         cmocka_unit_test(a_furnace_is_white_with_a_transfer),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -302,7 +302,7 @@ static void walk_transfer(walk *w, const noh_mesh *mesh)
         weights[t] = weight(w);
     }
     memset(layer, 0, bytes);
-    noh_transfer_accumulate(mesh, &transfer, weights, layer);
+    noh_transfer_accumulate(mesh, weights, layer);
     noh_light_from_environment(noh_environment_at(1), NOH_SH_ORDER_MAX, &light);
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         noh_vertex vertex;

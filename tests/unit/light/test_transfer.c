@@ -258,10 +258,10 @@ static void occlusion_follows_the_targets(void **state)
     }
     assert_true(vertex != NOH_NONE && noh_mesh_accumulation_texel(&p.mesh, vertex) < p.mesh.header->touched_count);
     layer = test_zeros(4u * ((size_t)p.mesh.header->morph_height << p.mesh.header->morph_width_log2));
-    noh_transfer_accumulate(&p.mesh, &p.transfer, weight, layer);
+    noh_transfer_accumulate(&p.mesh, weight, layer);
     lowered = rest + layer[noh_mesh_accumulation_texel(&p.mesh, vertex)];
     weight[0] = -0.5f;
-    noh_transfer_accumulate(&p.mesh, &p.transfer, weight, layer); /* 1 - 1/2 */
+    noh_transfer_accumulate(&p.mesh, weight, layer); /* 1 - 1/2 */
     half = rest + layer[noh_mesh_accumulation_texel(&p.mesh, vertex)];
     weight[0] = 1.0f;
     assert_int_equal(light_surface_open(&p.pack, 0, &surface, &error), 0);
@@ -484,7 +484,7 @@ static float *shaded(const noh_mesh *mesh, uint32_t *count)
     noh_light_from_environment(noh_environment_at(3), 6, &light);
     for (uint32_t t = 0; t < h->target_count; t++) weights[t] = 0.5f;
     assert_int_equal(noh_transfer_of(mesh, &transfer, NULL), NOH_OK);
-    noh_transfer_accumulate(mesh, &transfer, weights, layer);
+    noh_transfer_accumulate(mesh, weights, layer);
     noh_morph_accumulate(mesh, weights, &layers);
     for (uint32_t v = 0; v < h->vertex_count; v++) {
         noh_vertex vertex;

@@ -206,6 +206,13 @@ static void make_records(const maker *k, transfer_data *out)
     }
 }
 
+/* Whether the target moves the vertex at its delta texel: the library sums differences of those alone. */
+static int moves(const maker *k, uint32_t texel)
+{
+    const uint32_t *words = k->surface.mesh.texels + 3u * (size_t)texel;
+    return (words[0] | words[1] | words[2]) != 0;
+}
+
 /* The differences of occlusion to what the records say, in whole steps of a scale of the target's own. */
 static void make_deltas(const maker *k, uint32_t target, float *differences, transfer_data *out)
 {
@@ -217,7 +224,7 @@ static void make_deltas(const maker *k, uint32_t target, float *differences, tra
     memset(differences, 0, t->texel_count * sizeof *differences);
     while (next_texel(&w, &texel, &v)) {
         float *difference = &differences[texel - t->first_texel];
-        if (v != NOH_NONE) {
+        if (v != NOH_NONE && moves(k, texel)) {
             *difference = integral(k->targets + NOH_SH_COUNT_MAX * (size_t)texel) -
                           (float)out->records[(size_t)v * stride] / 255.0f;
         }

@@ -239,7 +239,7 @@ static int measure_poses(mesh_work *w, const float *weights, model_error *error)
         return 1;
     }
     measure_direct(w);
-    noh_transfer_accumulate(&w->surface.mesh, &w->stored, weights, w->occlusion);
+    noh_transfer_accumulate(&w->surface.mesh, weights, w->occlusion);
     for (uint32_t v = 0; v < count; v++) {
         if (w->kept[v]) {
             (void)brute_force_again(w, v, truth);
