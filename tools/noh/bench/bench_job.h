@@ -20,6 +20,7 @@
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_sim.c         rows sim/ragdoll: dolls that fall, by lanes
+ *   bench_springs.c     row sim/spring: characters whose joints swing
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
  *   bench_report.c      rows, storage, and how they are printed
  *
@@ -222,6 +223,7 @@ int bench_look(bench_job *job);
 int bench_skin_gpu(bench_job *job);
 int bench_skin_cpu(bench_job *job);
 int bench_sim(bench_job *job);
+int bench_springs(bench_job *job);
 int bench_agents(bench_job *job);
 
 void bench_print(bench_job *job);

@@ -92,8 +92,8 @@ int bench_sim(bench_job *job)
 {
     drop_scene scene;
     noh_ragdoll_doll *start;
-    int status;
-    if (!drop_scene_can(&job->files[0])) return 0;
+    int status = bench_springs(job);
+    if (status || !drop_scene_can(&job->files[0])) return status;
     status = drop_scene_open(&scene, &job->files[0], DOLLS, 1.0, 10, 1);
     if (status) return status;
     start = malloc(DOLLS * sizeof *start);
