@@ -48,6 +48,7 @@ expect 0 'info'
 check 'says what was left out' sh -c 'test "$(grep -c "finer levels than 2 were left out" "$1")" = 2' - "$work/out"
 noh sheet "$work/mask_2.noh" -o "$work/lods.png" --lods --tile 64
 expect 0 'sheet --lods'
+check 'says nothing' test ! -s "$work/err"
 noh crowd "$work/puppet_2.noh" -o "$work/crowd.png" --size 160x90
 expect 0 'crowd'
 

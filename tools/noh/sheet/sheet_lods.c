@@ -164,6 +164,7 @@ static int draw_rows(grid *g, uint32_t column, uint32_t first, uint32_t end, uin
         return status;
     }
     g->picture = &p;
+    status = figure_pose(&p.figure); /* what casts a shadow has a size only when it is posed */
     for (uint32_t row = first; row < end && !status; row++) {
         status = draw_cell(g, column, row, size);
     }
