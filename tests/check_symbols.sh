@@ -68,6 +68,6 @@ check 'base includes from no other folder' sh -c '! grep " base$" "$1"' - "$work
 check 'only gl/ and stage_gl/ include from gl/' sh -c '! grep "^gl " "$1" | grep -v " stage_gl$"' - "$work/folders"
 # the compiler's own headers, memcpy's, and SIMD intrinsics
 grep -Hn '^ *# *include *<' runtime/*.h runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
-    grep -v '<\(stddef\|stdint\|string\|emmintrin\|immintrin\|arm_neon\)\.h>' >"$work/system"
+    grep -v '<\(stddef\|stdint\|float\|string\|emmintrin\|immintrin\|arm_neon\)\.h>' >"$work/system"
 check 'only gl/ includes GL headers, nothing else is included' sh -c '! grep -v "^runtime/gl/.*<GLES[23]*/" "$1"' - "$work/system"
 finish

@@ -47,10 +47,11 @@ typedef struct noh_frame_clock {
     double left_ticks; /* -0.5 to 0.5 */
 } noh_frame_clock;
 
-/* The ticks of a frame, for noh_stage_step and its like: summed over frames they are the ticks nearest to the sum of
- * the seconds. ranges  seconds 0 to NOH_FRAME_SECONDS_MAX; negative ones and NaN count as 0, more is held there: time
- * that stood still in a debugger is not made up for */
 #define NOH_FRAME_SECONDS_MAX 3600.0
+
+/* The ticks of a frame, for noh_stage_step and its like: summed over frames they are the ticks nearest to the sum of
+ * the seconds. Time that stood still in a debugger is not made up for.
+ * ranges  seconds 0 to NOH_FRAME_SECONDS_MAX; negative ones and NaN count as 0, more is held there */
 uint32_t noh_frame_clock_advance(noh_frame_clock *clock, double seconds);
 
 /* The position of a number of whole ticks.

@@ -98,9 +98,6 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
  * cut  1: of alpha-cut materials */
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 
-/* Texture fetches of a pixel, at most, whatever its material has (tests/gl/test_gl_fetches.c). */
-#define NOH_GL_FETCHES_MAX 8u
-
 #define NOH_GL_DEFINES_BYTES 736u
 
 /* Write the key as lines of #define, zero-terminated. */
