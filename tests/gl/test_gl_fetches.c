@@ -244,7 +244,7 @@ static int calls_of(const char *body, const char *word, int whole)
 /* A shader's functions call none below them, so a pass from the first to the last knows all that they need. */
 static int fetches_of_main(const functions *f)
 {
-    int fetches[128];
+    int fetches[128] = { 0 };
     for (int i = 0; i < f->count; i++) {
         fetches[i] = calls_of(f->all[i].body, "texture", 0) + calls_of(f->all[i].body, "texelFetch", 0);
         fetches[i] -= calls_of(f->all[i].body, "textureSize", 1);
