@@ -280,6 +280,9 @@ $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --wrinkles auto --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
+MASK_HAIR := tools/demo_assets/mask/mask.hair
+$(BUILD)/wig.noh: $(BUILD)/mask.glb $(MASK_HAIR) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --hair $(MASK_HAIR) --quiet
 PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
 PUPPET_SPRINGS := tools/demo_assets/puppet/puppet.springs
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRINGS) $(BUILD)/noh
@@ -327,7 +330,7 @@ view: deps-view
 
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/wig.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 # Under ThreadSanitizer, with gcc and with clang.

@@ -42,6 +42,7 @@
 
 #include "stage/part.h"             /* what changes a pose before it is shown */
 #include "stage/springs.h"          /* chains of joints that swing on a stage */
+#include "stage/wig.h"              /* hair of actors */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
@@ -110,6 +111,7 @@
 #include "sim/feet.h"         /* feet that stand on the ground */
 #include "sim/gaze.h"         /* bodies that look at a point */
 #include "sim/hair.h"         /* control hairs of a head */
+#include "sim/haircut.h"      /* hair of a pack, and its strips */
 #include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
 #include "sim/ik_chain.h"     /* chains of any length, with limits */
 #include "sim/motion.h"       /* fixed steps, integrators, a distance that is kept */

@@ -81,6 +81,9 @@
 #define NOH_HAIRS_MAX 256u           /* control hairs of one head */
 #define NOH_HAIR_POINTS_MAX 32u      /* of a control hair */
 #define NOH_HAIR_SPHERES_MAX 8u      /* that stand for the head */
+#define NOH_HAIR_PATCHES_MAX 256u    /* of four control hairs, of one haircut */
+#define NOH_HAIR_STRIPS_MAX 16384u   /* of one haircut */
+#define NOH_HAIR_SEGMENTS_MAX 64u    /* of a strip */
 #define NOH_HAIR_STEPS_MAX 15u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- crowds ---- */

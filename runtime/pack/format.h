@@ -32,6 +32,7 @@ extern "C" {
 #define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
 #define NOH_CHUNK_RECIPE NOH_FOURCC('R', 'C', 'P', 'E')
 #define NOH_CHUNK_RAGDOLL NOH_FOURCC('R', 'G', 'D', 'L')
+#define NOH_CHUNK_HAIR NOH_FOURCC('H', 'A', 'I', 'R')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 #define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
 #define NOH_CHUNK_SPRINGS NOH_FOURCC('S', 'P', 'R', 'G')
@@ -475,6 +476,33 @@ typedef struct noh_springs_header {
     uint32_t reserved[4];
 } noh_springs_header;
 
+/* ---- CHUNK_HAIR, none or one: header, points, patches, spheres. A haircut as sim/haircut.h draws and moves it. Head
+ * space is that of the model in its bind pose, in metres, carried by the joint. Programs from before
+ * there was such a chunk refuse a pack that has one, as of an unknown type. ---- */
+
+typedef struct noh_pack_hair_header {
+    uint32_t joint, joint_hash;       /* that carries it; "": the actor itself */
+    uint32_t hair_count, point_count; /* control hairs, points of each: limits of sim/hair.h */
+    uint32_t patch_count;             /* 1..NOH_HAIR_PATCHES_MAX */
+    uint32_t sphere_count;            /* 0..NOH_HAIR_SPHERES_MAX */
+    uint32_t strip_count;             /* in full detail, 1..NOH_HAIR_STRIPS_MAX */
+    uint32_t segment_count;           /* of a strip, 1..NOH_HAIR_SEGMENTS_MAX */
+    uint32_t points_offset;           /* float[hair_count][point_count][3] at rest, from roots to tips */
+    uint32_t patches_offset;          /* uint32_t[patch_count][4]: control hairs at the corners 00, 10, 01, 11 */
+    uint32_t spheres_offset;          /* float[sphere_count][4]: centre, radius */
+    uint32_t seed;                    /* of gusts */
+    float metres;                     /* of one unit of the model, above 0 */
+    float pull, pull_at_tip;          /* as in noh_hair_desc, as are the next two */
+    float damping, gravity;
+    float width_root, width_tip;       /* of a strip, above 0 */
+    float curl_radius;                 /* at the tip, 0.. */
+    float curl_turns;                  /* from root to tip */
+    float scatter;                     /* how far a strip strays from where its patch has it, at the tip, 0.. */
+    float middle[3];                   /* of the skull: hair faces away from it */
+    float color_root[3], color_tip[3]; /* linear, 0..1 */
+    float gloss;                       /* 0..4: 1 is hair that is combed and dry */
+} noh_pack_hair_header;
+
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
  * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened
  * (graph/graph_pack.h). Kinds, conditions, curves, loops and flags are the numbers of graph/graph.h, anim/changes.h and
@@ -588,6 +616,8 @@ NOH_STATIC_ASSERT(sizeof(noh_springs_header) == 48, springs_header);
 NOH_STATIC_ASSERT(sizeof(noh_spring_row) == 28, spring_row);
 NOH_STATIC_ASSERT(sizeof(noh_spring_chain) == 24, spring_chain);
 NOH_STATIC_ASSERT(sizeof(noh_spring_capsule) == 32, spring_capsule);
+
+NOH_STATIC_ASSERT(sizeof(noh_pack_hair_header) == 128, hair_header);
 NOH_STATIC_ASSERT(sizeof(noh_skeleton_header) == 32, skeleton_header);
 NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);

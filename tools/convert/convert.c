@@ -125,6 +125,27 @@ static int read_ragdoll(const convert_options *options, const source *s, ragdoll
     return 0;
 }
 
+/* The haircut of a text, grown; *out NULL: there is none. */
+static int read_hair(const convert_options *options, const source *s, hair_text **out, hair_grown *grown,
+                     convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    *out = NULL;
+    memset(grown, 0, sizeof *grown);
+    if (!options->hair || options->only == CONVERT_CLIPS) return 0;
+    failure->file = options->hair;
+    if (hair_read(options->hair, out, &failure->line, &failure->error)) return 1;
+    if ((*out)->joint && !has_joint(s, (*out)->joint)) {
+        (void)snprintf(failure->error.what, sizeof failure->error.what, "no skeleton has the joint '%s'",
+                       (*out)->joint);
+        failure->error.where[0] = 0;
+        return 1;
+    }
+    failure->line = 0;
+    failure->file = model_file;
+    return hair_grow(*out, grown) ? out_of_memory(&failure->error) : 0;
+}
+
 /* The recipe: of a text, of extras, of names; *out NULL: there is none. */
 static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
 {
@@ -413,8 +434,8 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
 }
 
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
-                          const ragdoll_text *ragdoll, const set_springs *springs, const convert_options *options,
-                          byte_buffer *out, model_error *error)
+                          const ragdoll_text *ragdoll, const set_springs *springs, const hair_text *hair,
+                          const hair_grown *grown, const convert_options *options, byte_buffer *out, model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -441,6 +462,8 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
         made.recipe = recipe;
         made.ragdoll = ragdoll;
         made.springs = springs;
+        made.hair = hair;
+        made.grown = grown;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -518,6 +541,8 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     recipe_text *recipe = NULL;
     ragdoll_text *ragdoll = NULL;
     set_springs *springs = NULL;
+    hair_text *hair = NULL;
+    hair_grown grown = { .hair_count = 0 };
     int failed, base = 0;
     memset(failure, 0, sizeof *failure);
     failure->file = inputs[0];
@@ -532,11 +557,13 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  apply_events(options, &all[base], &failure->error) ||
                  read_graphs(options, &all[base], &graphs, failure) ||
                  read_recipe(options, &all[base], &recipe, failure) ||
-                 read_ragdoll(options, &all[base], &ragdoll, failure);
+                 read_ragdoll(options, &all[base], &ragdoll, failure) ||
+                 read_hair(options, &all[base], &hair, &grown, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
         failed = failed || read_springs(options, &all[base], &springs, failure);
-        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, options, out, &failure->error);
+        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, hair, &grown, options, out,
+                                          &failure->error);
     }
     springs_free(springs, all[base].set_count);
     for (int i = 0; i < input_count; i++) {
@@ -545,6 +572,8 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     graph_text_free(graphs);
     recipe_free(recipe);
     ragdoll_free(ragdoll);
+    hair_grown_free(&grown);
+    hair_free(hair);
     free(all);
     return failed;
 }

@@ -36,6 +36,7 @@ typedef struct convert_options {
     uint32_t spring_line_count;
     const char *recipe;    /* a text file of what a face's targets are for; NULL: none */
     const char *ragdoll;   /* a text file of a ragdoll's bodies; NULL: none */
+    const char *hair;      /* a text file of a haircut; NULL: none */
     int lips;              /* 1: a target that brings the lower lip to the teeth */
     int no_correctives;    /* 1: names of targets do not make correctives */
     strip_levels lod_from; /* count 0: all levels stay */

@@ -4,10 +4,12 @@
 
 #include <stdio.h>
 
+#include "convert/base/hair_read.h"
 #include "convert/base/ragdoll_read.h"
 #include "convert/base/recipe_read.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/codec/clip_errors.h"
+#include "convert/model/hair_grow.h"
 #include "convert/codec/named_errors.h"
 #include "convert/graph/graph_text.h"
 #include "convert/springs/springs_bind.h"
@@ -29,6 +31,8 @@ typedef struct encoded_clips {
     const recipe_text *recipe; /* likewise */
     const ragdoll_text *ragdoll;
     const set_springs *springs; /* [set_count] */
+    const hair_text *hair;
+    const hair_grown *grown; /* of `hair` */
 } encoded_clips;
 
 typedef struct clips_settings {

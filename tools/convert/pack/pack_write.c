@@ -1,5 +1,6 @@
 #include "pack_write.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -359,6 +360,63 @@ static void write_springs(writer *w)
     }
 }
 
+/* sRGB to linear. */
+static float linear(float c)
+{
+    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
+}
+
+/* All but the name and the offsets. */
+static void hair_header(const hair_text *t, const hair_grown *g, noh_pack_hair_header *h)
+{
+    memset(h, 0, sizeof *h);
+    h->hair_count = g->hair_count;
+    h->point_count = g->point_count;
+    h->patch_count = g->patch_count;
+    h->sphere_count = g->sphere_count;
+    h->strip_count = (uint32_t)t->strips;
+    h->segment_count = (uint32_t)t->segments;
+    h->seed = (uint32_t)t->seed;
+    h->pull = t->pull[0];
+    h->pull_at_tip = t->pull[1];
+    h->damping = t->damping;
+    h->gravity = t->gravity;
+    h->width_root = t->width[0];
+    h->width_tip = t->width[1];
+    h->curl_radius = t->curl[0] < 1.0f ? t->curl[0] : 1.0f;
+    h->curl_turns = t->curl[1];
+    h->scatter = t->scatter;
+    h->gloss = t->gloss;
+    memcpy(h->middle, t->skull, sizeof h->middle);
+    for (int i = 0; i < 3; i++) {
+        h->color_root[i] = linear(t->root[i]);
+        h->color_tip[i] = linear(t->tip[i]);
+    }
+}
+
+static void write_hair(writer *w)
+{
+    const hair_text *t = w->clips->hair;
+    const hair_grown *g = w->clips->grown;
+    noh_pack_hair_header h;
+    if (!t) return;
+    hair_header(t, g, &h);
+    h.metres = w->clips->set_count ? (float)(w->clips->sets[0]->skeleton.unit_cm / 100.0) : 1.0f;
+    name_of(&w->strings, t->joint ? t->joint : "", &h.joint, &h.joint_hash);
+    begin_chunk(w, NOH_CHUNK_HAIR, "");
+    const size_t start = w->out.count;
+    buffer_append(&w->out, &h, sizeof h);
+    h.points_offset = (uint32_t)(w->out.count - start);
+    buffer_append(&w->out, g->points, (size_t)g->hair_count * g->point_count * 12u);
+    buffer_align(&w->out, 16);
+    h.patches_offset = (uint32_t)(w->out.count - start);
+    buffer_append(&w->out, g->patches, (size_t)g->patch_count * sizeof *g->patches);
+    h.spheres_offset = (uint32_t)(w->out.count - start);
+    buffer_append(&w->out, g->spheres, (size_t)g->sphere_count * sizeof *g->spheres);
+    if (!w->out.failed) memcpy(w->out.bytes + start, &h, sizeof h);
+    end_chunk(w);
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -396,7 +454,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 5 +
+    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 6 +
            (made ? 2 * (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
@@ -435,6 +493,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
             write_recipe(&w);
             write_ragdoll(&w);
             write_springs(&w);
+            write_hair(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

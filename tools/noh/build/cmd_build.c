@@ -17,7 +17,7 @@
 #define INPUTS_MAX 64
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe,
+    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size;
@@ -224,6 +224,7 @@ static int run(void *args)
     o.springs = a->springs;
     o.spring_lines = a->spring_lines.items;
     o.spring_line_count = (uint32_t)a->spring_lines.count;
+    o.hair = a->hair;
     o.lips = a->lips;
     o.no_correctives = a->no_correctives;
     o.report = report;
@@ -510,6 +511,14 @@ static const option options[] = {
       .value = "LINE",
       .what = "a line of such a file; may repeat",
       .example = "\"chain ponytail* stiffness 0.5\"",
+      .excludes = "--only=anim" },
+    { .name = "--hair",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, hair),
+      .value = "FILE",
+      .what =
+          "a haircut: where hair grows on a skull, how it is combed and how it looks, a text file (noh help FORMATS)",
+      .example = "hero.hair",
       .excludes = "--only=anim" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,

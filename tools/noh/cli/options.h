@@ -37,6 +37,12 @@
         .what = "whether the springs of the pack swing (noh build --springs), beside what clips say"        \
     }
 
+#define OPTION_HAIR(T, m, text)                                                                          \
+    {                                                                                                    \
+        .name = "--hair", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \
+        .what = "whether the hair of the pack is drawn and moves, where it has some"                     \
+    }
+
 #define OPTION_FEEL(T, m)                                                                                              \
     {                                                                                                                  \
         .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT",                        \

@@ -182,6 +182,9 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     }
     if (!status) {
         figure_want_fall(f);
+        status = figure_add_hair(f);
+    }
+    if (!status) {
         status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
     }
     if (!status && desc->clips && desc->clips->pack.clip_count) status = check_clips(f);
@@ -288,6 +291,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     if (!status) status = open_shader(f);
     if (!status) status = open_backdrop(f);
     if (!status && desc->body) status = figure_body_open_gl(desc->body, g);
+    if (!status) status = figure_open_hair(f);
     if (!status) status = open_actors(f);
     if (status) figure_close(f);
     return status;
@@ -298,7 +302,9 @@ void figure_close(figure *f)
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
+    if (f->hair.gl) noh_stage_hair_delete(&f->hair);
     if (f->stage) noh_stage_delete(f->stage);
+    free(f->hair_memory);
     free(f->shader_memory);
     free(f->memory);
     figure_plan_free(f);
@@ -311,6 +317,7 @@ int figure_restore(figure *f)
     noh_result result = noh_stage_restore(f->stage, &error);
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
     if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
+    if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
         return tool_fail_error(f->desc.file->path, &error);
@@ -338,7 +345,7 @@ int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count)
         for (uint32_t i = 0; i < jobs; i++) noh_stage_job(f->stage, i);
     }
     if (!result) result = noh_stage_frame_end(f->stage, &error);
-    return result ? tool_fail_error(f->desc.file->path, &error) : 0;
+    return result ? tool_fail_error(f->desc.file->path, &error) : figure_update_hair(f);
 }
 
 int figure_pose(figure *f)
@@ -385,7 +392,9 @@ int figure_shade(figure *f)
     if (!f->desc.light || !f->g || !f->desc.light->desc.shadow_px) {
         return 0;
     }
-    return noh_stage_draw_shadow(f->stage, 1, &error) ? tool_fail_error(f->desc.file->path, &error) : 0;
+    if (noh_stage_draw_shadow(f->stage, 1, &error)) return tool_fail_error(f->desc.file->path, &error);
+    if (f->hair.gl) noh_stage_hair_draw_shadow(&f->hair, f->stage, 1);
+    return 0;
 }
 
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
@@ -408,8 +417,16 @@ static void draw_backdrop(const figure *f)
 int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
+    noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
-    return noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error) ? tool_fail_error(f->desc.file->path, &error)
-                                                                          : 0;
+    if (!f->hair.gl || f->shader) {
+        result = noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
+    } else { /* what blends shows the hair behind it, and hair what is opaque */
+        result = noh_stage_draw(f->stage, NOH_PASS_OPAQUE, 0, NULL, &error);
+        if (!result) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
+        if (!result) result = noh_stage_draw(f->stage, NOH_PASS_BLENDED, 0, NULL, &error);
+        if (!result) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);
+    }
+    return result ? tool_fail_error(f->desc.file->path, &error) : 0;
 }

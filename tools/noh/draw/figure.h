@@ -27,6 +27,7 @@
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "stage_gl/backdrop.h"
+#include "stage_gl/stage_hair.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */
@@ -59,6 +60,8 @@ typedef struct figure_desc {
     noh_accumulate accumulate;
     noh_debug_view view;
     figure_body *body; /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */
+    int hair;          /* 1: the hair of the pack, where it has some */
+    float wind[3];     /* that blows in it, as in noh_hair_carrier */
     lighting *light;   /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
@@ -70,7 +73,12 @@ typedef struct figure {
     const noh_pack *packs[FIGURE_ANIM_MAX + 1u]; /* of clips, where there are several */
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
-    uint32_t *nodes;      /* of all kinds, one after another */
+    noh_haircut cut;      /* of the pack */
+    noh_wig wig;
+    noh_stage_part hair_parts[NOH_STAGE_PARTS_MAX]; /* of its kind: the others, then the hair */
+    uint32_t hair_part;                             /* its index */
+    uint32_t hair_kind;                             /* of figure.kinds; NOH_NONE: no hair */
+    uint32_t *nodes;                                /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
     gpu *g; /* NULL: nothing is drawn */
@@ -78,7 +86,9 @@ typedef struct figure {
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's own, lit */
     noh_backdrop backdrop;    /* zeros: no light */
-    noh_stage_view seen;      /* of figure_views */
+    noh_stage_hair hair;      /* zeros: none */
+    void *hair_memory;
+    noh_stage_view seen; /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_look look; /* of all actors */
 } figure;
@@ -144,8 +154,14 @@ int figure_pose(figure *f);
 uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces);
 /* --feel EMOTION=AMOUNT, of all its faces. */
 int figure_feel(figure *f, const option_list *emotions);
-/* Time moves on, clips, faces and what a body obeys, 60 steps a second. */
-int figure_live(figure *f, double seconds);
+/* Time moves on, clips, faces, hair and what a body obeys, 60 steps a second; meanwhile the figure turns, in degrees a
+ * second about y, to where it stands without. */
+int figure_live(figure *f, double seconds, double turn);
+
+/* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
+int figure_add_hair(figure *f);
+int figure_open_hair(figure *f);
+int figure_update_hair(figure *f);
 
 /* --push X,Y,Z, newton seconds. */
 int figure_read_push(const char *text, float impulse[3]);

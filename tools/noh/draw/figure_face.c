@@ -1,4 +1,5 @@
 /* figure_face.c: faces of a figure that live: where the eyes are, what they feel, time. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,7 +42,19 @@ int figure_feel(figure *f, const option_list *emotions)
     return 0;
 }
 
-int figure_live(figure *f, double seconds)
+/* Each actor turned by an angle about y from where it began. */
+static int turn_to(figure *f, double degrees)
+{
+    const double half = degrees * (3.14159265358979 / 360.0);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        const noh_place place = { .rotation = { 0.0f, (float)sin(half), 0.0f, (float)cos(half) }, .scale = 1.0f };
+        if (noh_actor_set_place(f->stage, f->actors[k], &place, &error)) return tool_fail_error("--turn", &error);
+    }
+    return 0;
+}
+
+int figure_live(figure *f, double seconds, double turn)
 {
     const uint32_t step = NOH_TICKS_PER_SECOND / 60u;
     const noh_look own = f->look;
@@ -55,9 +68,11 @@ int figure_live(figure *f, double seconds)
         const uint32_t now = ticks < (int64_t)step ? (uint32_t)ticks : step;
         const figure_body *body = f->desc.body;
         status = body ? figure_body_place(body, f->stage, f->kinds, f->actors, f->stage_desc.kind_count) : 0;
-        if (!status && noh_stage_frame(f->stage, now, NULL, NULL, NULL, &error))
-            status = tool_fail_error("face", &error);
         ticks -= now;
+        if (!status && turn != 0.0) status = turn_to(f, -turn * (double)ticks / NOH_TICKS_PER_SECOND);
+        if (!status && noh_stage_frame(f->stage, now, NULL, NULL, NULL, &error)) {
+            status = tool_fail_error("frame", &error);
+        }
     }
     return status ? status : figure_set_look(f, &own);
 }

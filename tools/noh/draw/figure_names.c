@@ -133,6 +133,7 @@ int figure_play(figure *f, const char *clip, const noh_play *play)
 static int figure_swings(const figure *f)
 {
     noh_springs_desc springs;
+    if (f->hair_kind != NOH_NONE) return 1;
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         if (!f->desc.without_springs && noh_springs_of_pack(f->kinds[k].mesh, f->kinds[k].skeleton, &springs)) return 1;
     }
@@ -147,7 +148,7 @@ int figure_play_options(figure *f, const option_list *clips, double time_s)
     const noh_play play = { .start_ticks = noh_ticks_from_seconds(at_s - lead_s), .flags = NOH_PLAY_BESIDE };
     int status = 0;
     for (int i = 0; i < clips->count && !status; i++) status = figure_play(f, clips->items[i], &play);
-    return status || !(lead_s > 0.0) ? status : figure_live(f, lead_s);
+    return status || !(lead_s > 0.0) ? status : figure_live(f, lead_s, 0.0);
 }
 
 void figure_pause(figure *f)

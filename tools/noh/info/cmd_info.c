@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "info_graph.h"
+#include "info_hair.h"
 #include "info_joints.h"
 #include "info_materials.h"
 #include "info_transfer.h"
@@ -155,6 +156,7 @@ static int print_info(const pack_file *file)
     for (uint32_t i = 0; i < p->clip_count && !status; i++) {
         status = print_clip(file, i);
     }
+    info_print_hair(p);
     for (uint32_t i = 0; i < p->graph_count && !status; i++) {
         status = info_print_graph(file, i);
     }
@@ -325,6 +327,7 @@ static int json_info(const pack_file *file)
         status = json_clip(&j, file, i);
     }
     json_close(&j, ']');
+    info_json_hair(&j, p);
     json_open(&j, "graphs", '[');
     for (uint32_t i = 0; i < p->graph_count && !status; i++) {
         status = info_json_graph(&j, file, i);

@@ -1,4 +1,5 @@
 /* cmd_render.c: one picture. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,9 +13,9 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *path, *accumulate, *driver, *debug, *face, *springs;
+    const char *pack, *output, *path, *accumulate, *driver, *debug, *face, *springs, *hair, *wind;
     uint32_t size[2];
-    double time_s, lod;
+    double time_s, lod, turn, swing;
     int show_bones;
     option_list weights, clips, anims, emotions;
     view_options view;
@@ -50,6 +51,17 @@ static int check_body(render_args *a)
     return status;
 }
 
+/* X,Y,Z: each as noh_hair_carrier has it. */
+static int parse_wind(const char *text, float wind[3])
+{
+    char end;
+    if (sscanf(text, "%f,%f,%f%c", &wind[0], &wind[1], &wind[2], &end) == 3 && fabsf(wind[0]) <= 100.0f &&
+        fabsf(wind[1]) <= 100.0f && fabsf(wind[2]) <= 100.0f) {
+        return 0;
+    }
+    return tool_usage("--wind wants X,Y,Z, each -100 to 100, not '%s'", text);
+}
+
 static int check_args(render_args *a)
 {
     int springs = 1;
@@ -61,9 +73,12 @@ static int check_args(render_args *a)
     if (!status) status = tool_switch("--springs", a->springs, &springs);
     a->figure.without_springs = !springs;
     if (!status) status = check_body(a);
+    if (!status) status = tool_switch("--hair", a->hair, &a->figure.hair);
+    if (!status && a->wind) status = parse_wind(a->wind, a->figure.wind);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
     }
+    if (!status && !(a->swing >= 0.0 && a->swing <= 60.0)) status = tool_usage("--swing wants 0 to 60 seconds");
     a->view.width = a->size[0];
     a->view.height = a->size[1];
     return status;
@@ -86,9 +101,10 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->body.has_ground;
+    const int hangs = !lives && !a->clips.count && p->figure.hair_kind != NOH_NONE;
     int status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
-    if (!status && lives) status = figure_live(&p->figure, a->time_s);
+    if (!status && (lives || hangs)) status = figure_live(&p->figure, lives ? a->time_s : a->swing, a->turn);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
@@ -184,6 +200,28 @@ static const option options[] = {
     OPTION_FEEL(render_args, emotions),
     OPTION_SPRINGS(render_args, springs),
     OPTIONS_BODY(render_args, body_wants),
+    OPTION_HAIR(render_args, hair, "on"),
+    { .name = "--wind",
+      .kind = OPTION_TEXT,
+      .at = offsetof(render_args, wind),
+      .value = "X,Y,Z",
+      .what = "wind in its hair, at its mean: metres per second squared that it gives it",
+      .example = "4,0,-2" },
+    { .name = "--turn",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(render_args, turn),
+      .value = "DEG",
+      .initial = "0",
+      .what =
+          "it has turned by so many degrees a second before the picture, where no clip plays, and is now where it is without",
+      .example = "180" },
+    { .name = "--swing",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(render_args, swing),
+      .value = "S",
+      .initial = "2",
+      .what = "how long hair has moved before the picture, seconds, where no clip plays",
+      .example = "0.5" },
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),

@@ -30,7 +30,7 @@ typedef struct sheet {
 } sheet;
 
 typedef struct sheet_args {
-    const char *path, *accumulate, *transition, *face, *springs;
+    const char *path, *accumulate, *transition, *face, *springs, *hair;
     double tile, tiles, columns, faces, seed;
     sheet s;
 } sheet_args;
@@ -216,6 +216,7 @@ static int check_args(sheet_args *a)
     s->figure.without_springs = !springs;
     if (!status) status = check_body(s);
     s->tiles.lives = s->figure.alive || s->body.has_ground;
+    if (!status) status = tool_switch("--hair", a->hair, &s->figure.hair);
     s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
@@ -282,6 +283,7 @@ static const option options[] = {
     OPTION_ANIMS(sheet_args, s.tiles.anims, .needs = "--clip"),
     OPTION_FACE(sheet_args, face, "off"),
     OPTION_SPRINGS(sheet_args, springs),
+    OPTION_HAIR(sheet_args, hair, "on"),
     OPTION_FEEL(sheet_args, s.tiles.emotions),
     { .name = "--tiles",
       .kind = OPTION_NUMBER,

@@ -239,7 +239,7 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
     } else if (t->clip) {
         status = figure_play_options(f, &t->clips, t->lives ? 0.0 : tile_time(t, tile));
         if (!status && t->alive) status = figure_feel(f, &t->emotions);
-        if (!status && t->lives) status = figure_live(f, tile_time(t, tile));
+        if (!status && t->lives) status = figure_live(f, tile_time(t, tile), 0.0);
     } else if (tile) {
         status = figure_hold(f, t->targets[tile - 1].name, t->targets[tile - 1].weight);
     }

@@ -220,6 +220,7 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.inertia = d.pickable = d.tangents = 1;
     d.alive = desc->alive && !s->show_bones;
     d.without_springs = desc->without_springs;
+    d.hair = !s->show_bones;
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
     d.path = desc->morph_path;
     d.accumulate = desc->accumulate;
@@ -568,7 +569,8 @@ static void draw_bones(view_model *m, const noh_gl_camera *camera)
 
 int view_model_draw(view_model *m, const noh_gl_camera *camera)
 {
-    const int status = m->show_bones ? 0 : figure_shade(m->figure);
+    int status = m->show_bones ? 0 : figure_update_hair(m->figure);
+    if (!status && !m->show_bones) status = figure_shade(m->figure);
     if (status) {
         return status;
     }

@@ -1,0 +1,67 @@
+#version 300 es
+/* hair.frag: light on a strip of hair, and what of its pixels a pass draws. Behind #version go the defines,
+ * common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
+uniform vec4 u_alpha; /* from, up to */
+uniform vec4 u_widths;
+uniform vec4 u_root, u_tip;
+uniform vec4 u_eye, u_light;
+
+in vec3 v_position;
+in vec3 v_tangent;
+in vec3 v_normal;
+in vec2 v_at;
+flat in float v_strip;
+
+out vec4 o_color;
+
+/* Strands side by side on a strip: how bright one is, and where it ends. */
+vec2 strand(float cell)
+{
+    return fract(sin(vec2(cell * 12.9898 + v_strip * 78.233, cell * 39.346 + v_strip * 11.135)) * 43758.5453);
+}
+
+/* What a strand mirrors: a highlight about the cone of its tangent. */
+float lobe(vec3 tangent, vec3 h, float sharpness)
+{
+    float c = dot(tangent, h);
+    return smoothstep(-1.0, 0.0, c) * pow(max(1.0 - c * c, 0.0), 0.5 * sharpness);
+}
+
+void main()
+{
+    float x = (v_at.x * 0.5 + 0.5) * 6.0, fine = clamp(1.6 - 1.6 * fwidth(x), 0.0, 1.0);
+    vec2 own = strand(floor(x));
+    float between = fract(x) * 2.0 - 1.0;
+    float edge = 1.0 - smoothstep(0.55, 1.0, abs(v_at.x));
+    float end = mix(0.92, 0.72 + 0.28 * own.y, fine);
+    float alpha = min(1.0, 1.6 * edge) * (1.0 - smoothstep(end - 0.12, end, v_at.y));
+    if (alpha < u_alpha.x || alpha >= u_alpha.y) {
+        discard;
+    }
+#ifndef NOH_DEPTH_ONLY
+    vec3 t = normalize(v_tangent), n = normalize(v_normal), view = normalize(u_eye.xyz - v_position);
+    vec3 albedo = mix(u_root.rgb, u_tip.rgb, v_at.y) * mix(1.0, 0.6 + 0.8 * own.x, fine) * (0.8 + 0.4 * v_strip);
+    float deep = mix(1.0, 0.7 + 0.3 * (1.0 - between * between), fine) * mix(0.6, 1.0, smoothstep(0.0, 0.15, v_at.y));
+#ifdef NOH_LIT
+    vec3 key = noh_key, key_color = noh_key_color * noh_key_shadow(v_position, n);
+    vec3 even = noh_ambient(n);
+#else
+    vec3 key = u_light.xyz, key_color = vec3(1.02, 0.98, 0.92);
+    vec3 even = 0.62 * mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), n.y * 0.5 + 0.5);
+#endif
+    float tl = dot(t, key), nl = dot(n, key);
+    vec3 h = normalize(key + view);
+    float shift = 0.12 * mix(0.0, own.x - 0.5, fine) + 0.1 * (v_strip - 0.5);
+    float first = lobe(normalize(t + (shift - 0.08) * n), h, 90.0), second = lobe(normalize(t + (shift + 0.12) * n), h, 22.0);
+    float facing = clamp(mix(0.25, 1.0, nl), 0.0, 1.0);
+    vec3 color = albedo * (even * deep + key_color * (facing * sqrt(max(1.0 - tl * tl, 0.0))));
+    color += u_widths.w * smoothstep(-0.2, 0.4, nl) * key_color * (0.10 * first + (2.5 * albedo + 0.02) * second) * deep;
+    color += u_widths.w * 0.05 * even * deep * (0.3 + 0.7 * pow(1.0 - abs(dot(t, view)), 2.0));
+#ifdef NOH_LIT
+    color = noh_expose(color);
+#endif
+    o_color = vec4(noh_encode(color), clamp(alpha, 0.0, 1.0));
+#else
+    o_color = vec4(1.0);
+#endif
+}

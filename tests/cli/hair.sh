@@ -1,0 +1,62 @@
+#!/bin/sh
+# noh build --hair: a haircut in a pack, what it says, what it draws, what it refuses.
+. "$(dirname "$0")/lib.sh"
+
+# a head of hair on the arm: any mesh will do
+cat >"$work/arm.hair" <<'END'
+# a tuft
+skull 0 0 0  0.1 0.12 0.1
+around 6
+rows 3   # from the crown to the hairline
+points 5
+strips 200
+segments 6
+length 0.2 0.2
+sphere 0 -0.2 0 0.1
+END
+noh build "$build/demo/arm.glb" -o "$work/hair.noh" --quiet --hair "$work/arm.hair"
+expect 0 'build with a haircut'
+noh build "$build/demo/arm.glb" -o "$work/again.noh" --quiet --hair "$work/arm.hair"
+check 'the same bytes again' cmp "$work/hair.noh" "$work/again.noh"
+noh info "$work/hair.noh"
+expect 0 'info'
+check 'says what it is' grep -q '^hair: 18 control hairs of 5 points, 12 patches, 4 spheres, 200 strips of 6 segments' "$work/out"
+check 'and what it takes' grep -q 'on a stage 3728 bytes an actor; drawn with 1080 bytes on the CPU, 1380 on the GPU' "$work/out"
+noh info "$work/hair.noh" --json
+check 'as JSON, too' grep -q '"gpu_bytes": 1380' "$work/out"
+noh render "$work/hair.noh" -o "$work/on.png" --size 96x96 --light none
+expect 0 'draw it'
+noh render "$work/hair.noh" -o "$work/off.png" --size 96x96 --light none --hair off
+expect 0 'draw it without'
+check 'that is another picture' sh -c '! cmp -s "$1" "$2"' - "$work/on.png" "$work/off.png"
+noh render "$work/hair.noh" -o "$work/wind.png" --size 96x96 --light none --wind 30,0,0
+expect 0 'in wind'
+check 'that moves it' sh -c '! cmp -s "$1" "$2"' - "$work/on.png" "$work/wind.png"
+noh render "$work/hair.noh" -o "$work/wind.png" --wind 30,0
+expect 2 'half a wind'
+noh render "$work/hair.noh" -o "$work/wind.png" --hair perhaps
+expect 2 'neither on nor off'
+
+bad() { # ROW MESSAGE
+    printf 'skull 0 0 0 0.1 0.1 0.1\n%s\n' "$1" >"$work/bad.hair"
+    noh build "$build/demo/arm.glb" -o "$work/bad.noh" --hair "$work/bad.hair"
+    expect 1 "refused: $1"
+    check "line and cause of: $1" grep -q "bad.hair:2: .*$2" "$work/err"
+}
+bad 'beard 1' 'no setting of a haircut'
+bad 'rows 1' 'not within'
+bad 'around' 'wants 1 number'
+bad 'around nan' ''
+bad 'around 200' 'above 256 control hairs'
+bad 'comb 0 0 0' 'no direction'
+bad 'strips 200 300' 'one word too many'
+bad 'sphere 0 0 0 -1' 'above 0'
+printf 'rows 3\n' >"$work/bad.hair"
+noh build "$build/demo/arm.glb" -o "$work/bad.noh" --hair "$work/bad.hair"
+expect 1 'no skull'
+says 'the skull is missing'
+printf 'joint nowhere\nskull 0 0 0 1 1 1\n' >"$work/bad.hair"
+noh build "$build/demo/arm.glb" -o "$work/bad.noh" --hair "$work/bad.hair"
+expect 1 'no such joint'
+says "no skeleton has the joint 'nowhere'"
+finish
