@@ -54,7 +54,7 @@ static void close_scene(scene *s)
 
 static uint8_t *picture(scene *s, const char *camera)
 {
-    const view_options o = { camera, SIDE, SIDE };
+    const view_options o = { .camera = camera, .width = SIDE, .height = SIDE };
     uint8_t *rgba = test_zeros(SIDE * SIDE * 4u);
     noh_gl_camera at;
     bounds box;
