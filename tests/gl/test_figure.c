@@ -27,7 +27,7 @@ static pack_file open_file(const char *name)
 
 static uint32_t *picture(figure *f, gpu *g, const char *camera)
 {
-    const view_options o = { camera, SIDE, SIDE };
+    const view_options o = { .camera = camera, .width = SIDE, .height = SIDE };
     uint32_t *rgba = test_zeros(SIDE * SIDE * 4);
     noh_gl_camera at;
     bounds box;
