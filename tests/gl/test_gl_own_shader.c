@@ -300,7 +300,8 @@ static void other_names_have_no_text(void **state)
     static const char *const names[] = { "common_layers.glsl",  "common_attributes.glsl", "common_skin.glsl",
                                          "common_vertex.glsl",  "common_fade.glsl",       "common_fragment.glsl",
                                          "common_wrinkle.glsl", "common_material.glsl",   "common_face.glsl",
-                                         "common_scatter.glsl", "common_eye.glsl",        "common_light.glsl" };
+                                         "common_scatter.glsl", "common_eye.glsl",        "common_transfer.glsl",
+                                         "common_light.glsl" };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(names); i++) {
         const char *text = noh_gl_shader_text(names[i]);
@@ -317,7 +318,7 @@ static void other_names_have_no_text(void **state)
 static void a_short_prefix_is_not_written(void **state)
 {
     static const GLenum stages[] = { GL_VERTEX_SHADER, GL_FRAGMENT_SHADER };
-    const noh_gl_variant_key key = { 8, 4, 1, 1, 1, 1, 1, NOH_VIEW_LOD, 1, 1, 0, 1, 0, 63, 1 };
+    const noh_gl_variant_key key = { 8, 4, 1, 1, 1, 1, 1, NOH_VIEW_LOD, 1, 1, 0, 1, 0, 63, 1, 4 };
     (void)state;
     for (int i = 0; i < 2; i++) {
         const size_t bytes = noh_gl_shader_prefix(key, stages[i], NULL, 0);

@@ -152,7 +152,7 @@ static inline void parts_draw(parts *p, const noh_gl_camera *camera, const noh_g
 /* A camera that frames everything at rest. */
 static inline void parts_camera(const parts *p, const char *camera, uint32_t side, noh_gl_camera *out)
 {
-    const view_options view = { camera, side, side };
+    const view_options view = { .camera = camera, .width = side, .height = side };
     const figure_desc desc = { .file = p->file };
     figure f;
     bounds box;
