@@ -40,14 +40,14 @@
 
 /* ---- what a game calls first ---- */
 
-#include "stage/part.h"             /* what changes a pose before it is shown */
-#include "stage/springs.h"          /* chains of joints that swing on a stage */
-#include "stage/wig.h"              /* hair of actors */
 #include "stage/stage.h"            /* a whole cast of characters out of one block */
+#include "stage/part.h"             /* what changes a pose before it is shown */
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
 #include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
+#include "stage/springs.h"          /* chains of joints that swing */
+#include "stage/wig.h"              /* hair of actors */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */

@@ -15,10 +15,10 @@
  * mesh and change no shape are left alone. Where a name says age, weight, muscle or gender, the targets that move the
  * same vertices in the same way go along. No face is torn: the targets that stretch one place share a bound.
  *
- * Space    that of the mesh: x to either side of a face that is symmetric about the middle of its bounds, as glTF has
- * it Threads  after init read-only: any number of threads source   Granberg, Character Animation with Direct3D, 2009,
- * chapter 9, whose faces are copies of every target for each person, out of numbers that are all equally likely and
- * know nothing of each other */
+ * Space    that of the mesh: x to either side of a face that is symmetric about the middle of its bounds
+ * Threads  after init read-only: any number of threads
+ * source   Granberg, Character Animation with Direct3D, 2009, chapter 9, whose faces are copies of every target for
+ *          each person, out of numbers that are all equally likely and know nothing of each other */
 #ifndef NOH_FACE_IDENTITY_H
 #define NOH_FACE_IDENTITY_H
 

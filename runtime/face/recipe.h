@@ -114,9 +114,9 @@ uint32_t noh_face_channel_find(const char *name);
 /* The recipe that a pack brings, read where it lies in the pack. Without any row where the pack brings none. */
 noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
 
-/* The recipe that a pack brings (`noh build --recipe`) as a table. Rows of channels that this version does not know are
- * left out. shapes  rows[row_max]; they refer to the pack's strings errors  NOT_FOUND the pack has none; MEMORY more
- * rows than row_max (need: how many). *recipe is then untouched */
+/* The recipe that a pack brings (`noh build --recipe`) as a table. Rows of unknown channels are left out.
+ * shapes  rows[row_max]; they refer to the pack's strings
+ * errors  NOT_FOUND the pack has none; MEMORY more rows than row_max (need: how many). *recipe is then untouched */
 noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
                                    noh_error *error);
 

@@ -163,10 +163,11 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
-/* With desc.coarse: upload the next piece of what the finest of `meshes` is accumulated from. What is in use meanwhile
- * is not touched. ranges   from: the mesh, whole, at the finest level of `meshes` or a finer one; *at: 0 at first, then
- * as the call before left it; *bytes: at most so many, at least 64 for any progress; what was sent is subtracted state
- * texture 0 of unit 0, the active one returns  1 once all is there */
+/* With desc.coarse: upload the next piece of what the finest of `meshes` is accumulated from, which is not in use yet.
+ * ranges   from: the mesh, whole, at the finest level of `meshes` or a finer one; *at: 0 at first, then as the call
+ *          before left it; *bytes: at most so many, at least 64 for any progress; what was sent is subtracted
+ * state    texture 0 of unit 0, the active one
+ * returns  1 once all is there */
 int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
 
 /* With desc.coarse: from now on no finer level than `mesh` is accumulated, and what targets change is taken from its

@@ -114,8 +114,9 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
  * and where they are to be.
  * goals   [body_count] where bodies are to be at the end of the next step of 1/60 s; NULL: nothing holds it
  * held    bit i: body i goes there, whatever is in the way
- * hertz   [body_count] how fast the joint of body i to its parent turns to the goals' angle: 0 limp, 20 tracks; NULL:
- * 0. Critically damped errors  ARG a goal is not finite or hertz below 0: nothing changes */
+ * hertz   [body_count] how fast the joint of body i to its parent turns to the goals' angle, critically damped: 0 limp,
+ *         20 tracks; NULL: 0
+ * errors  ARG a goal is not finite or hertz below 0: nothing changes */
 noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *goals, uint32_t held,
                               const float *hertz, noh_error *error);
 

@@ -2,6 +2,7 @@
 #include "stage/wig.h"
 
 #include "base/assert.h"
+#include "base/name_internal.h"
 #include "clip/pack_clip.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
@@ -24,7 +25,7 @@ noh_result noh_wig_make(const noh_haircut *cut, const noh_pack *pack, uint32_t s
     const noh_result result = noh_pack_skeleton_at(pack, skeleton, &s, &header, error);
     if (result) return result;
     for (uint32_t i = 0; i < s.joint_count && out->joint == NOH_NONE; i++) {
-        if (strcmp(noh_pack_joint_name(pack, skeleton, i), cut->joint) == 0) out->joint = i;
+        if (noh_names_equal(noh_pack_joint_name(pack, skeleton, i), cut->joint)) out->joint = i;
     }
     return out->joint == NOH_NONE
                ? noh_fail(error, NOH_ERR_NOT_FOUND, "the skeleton has no joint of the name that the haircut wants",

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "convert/clips/model_clips.h"
 #include "support/gltf_oracle.h"
@@ -24,6 +25,7 @@ typedef struct asset {
     noh_clip_bank **sets; /* [set_count] one for each skeleton of the pack, at least one; NULL where nothing fits */
     uint32_t set_count;
     uint64_t compared; /* vertices */
+    char stem[64];     /* of the file: the name of its first animation without one */
 } asset;
 
 static void open_sets(asset *a)
@@ -43,7 +45,10 @@ static void open_asset(asset *a, const char *name, const char *path)
 {
     model_error error;
     size_t count;
+    const char *file = strrchr(path, '/');
     memset(a, 0, sizeof *a);
+    (void)snprintf(a->stem, sizeof a->stem, "%s", file ? file + 1 : path);
+    if (strrchr(a->stem, '.')) *strrchr(a->stem, '.') = 0;
     a->o = oracle_read(path);
     if (model_read_gltf(path, &a->m, &error)) {
         fail_msg("%s: %s (%s)", name, error.what, error.where);
@@ -81,7 +86,7 @@ static uint32_t model_node_of(const asset *a, uint32_t node)
         name = made;
     }
     for (uint32_t i = 0; i < a->m->node_count; i++) {
-        if (strcmp(a->m->nodes[i].name, name) == 0) {
+        if (strcasecmp(a->m->nodes[i].name, name) == 0) { /* of VRM's bones: "Hips" is "hips" */
             return i;
         }
     }
@@ -400,16 +405,16 @@ static void check_time(asset *a, uint32_t animation, uint32_t channel, const cha
 
 static uint32_t check_animations(asset *a)
 {
-    uint32_t channels = 0;
+    uint32_t channels = 0, unnamed = 0;
     for (uint32_t i = 0; i < oracle_animation_count(a->o); i++) {
+        const char *name = oracle_animation_name(a->o, i);
+        char made[80];
+        (void)snprintf(made, sizeof made, unnamed ? "%s_%u" : "%s", a->stem, unnamed);
+        unnamed += !name;
         for (uint32_t c = 0; c < oracle_channel_count(a->o, i); c++) {
-            const char *name;
-            char made[32];
             if (oracle_channel_node(a->o, i, c) < 0) {
                 continue;
             }
-            snprintf(made, sizeof made, "animation_%u", (unsigned)i);
-            name = oracle_animation_name(a->o, i);
             for (int step = -1; step <= TIMES; step++) {
                 check_time(a, i, c, name ? name : made, oracle_channel_end(a->o, i, c) * 1.03 * (double)step / TIMES);
             }

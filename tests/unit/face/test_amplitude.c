@@ -204,6 +204,25 @@ static void errata_one_window_has_no_second_one(void **state)
     assert_int_equal(frames[1].viseme, NOH_VISEME_SIL);
 }
 
+/* `if (time > next) index++` once a frame of the game: after one frame that lasts a second the source is still at its
+ * second window, and takes nine frames more to be where the sound is. A position follows from the time alone. */
+static void errata_one_window_a_frame_falls_behind(void **state)
+{
+    float visemes[NOH_VISEME_COUNT];
+    uint32_t have, index = 1;
+    const double after_s = 1.05;
+    (void)state;
+    make_tone(0, WINDOW * 9, 0); /* loud from the tenth window on */
+    make_tone(WINDOW * 9, WINDOW * 3, 12000);
+    have = hear_at(RATE, 1, WINDOW * 12);
+    if (after_s > 0.1 * (double)index) index++; /* the long frame */
+    assert_int_equal(frames[index].viseme, NOH_VISEME_SIL);
+    index = (uint32_t)(after_s / 0.1);
+    assert_true(index + 1u < have);
+    noh_amplitude_between(&frames[index], &frames[index + 1u], (float)(after_s / 0.1 - index), visemes);
+    assert_true(visemes[NOH_VISEME_SIL] < 0.5f);
+}
+
 static void between_windows_weights_are_shared(void **state)
 {
     const noh_amplitude_frame from = { 0, 0, NOH_VISEME_AA, 0.8f }, to = { 1, 0, NOH_VISEME_IH, 0.4f };
@@ -261,6 +280,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(errata_one_click_mutes_what_is_said),
         cmocka_unit_test(shapes_change_at_the_sources_thresholds),
         cmocka_unit_test(errata_one_window_has_no_second_one),
+        cmocka_unit_test(errata_one_window_a_frame_falls_behind),
         cmocka_unit_test(between_windows_weights_are_shared),
         cmocka_unit_test(chunks_of_any_size_give_the_same_windows),
         cmocka_unit_test(wrong_rates_and_channels_are_refused),

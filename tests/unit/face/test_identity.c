@@ -384,6 +384,75 @@ static void errata_even_independent_weights_tear_a_face(void **state)
     drop_people(&p);
 }
 
+/* dest = source + sum of (morph - base) w, for normals too: what comes out is no normal, where the vertex as drawn has
+ * a unit one. */
+static void errata_blended_normals_are_not_unit(void **state)
+{
+    float weights[NOH_TARGETS_MAX] = { 0.0f };
+    double worst = 0.0;
+    noh_morph_layers layers;
+    people p;
+    size_t bytes;
+    void *memory;
+    (void)state;
+    small_face(&p);
+    for (uint32_t t = 0; t < COUNT; t++) weights[t] = t == SHIFT ? 0.0f : 1.0f;
+    bytes = noh_morph_layers_size(&p.mesh);
+    memory = test_zeros(bytes);
+    assert_int_equal(noh_morph_layers_init(memory, bytes, &p.mesh, &layers, NULL), NOH_OK);
+    for (uint32_t v = 0; v < p.mesh.header->vertex_count; v++) {
+        noh_vertex rest, drawn;
+        double literal = 0.0, ours = 0.0;
+        float sum[3];
+        noh_morph_vertex(&p.mesh, &layers, v, &rest);
+        memcpy(sum, rest.normal, sizeof sum);
+        for (uint32_t t = 0; t < COUNT; t++) { /* as the source adds them, one after another */
+            float one[NOH_TARGETS_MAX] = { 0.0f };
+            noh_vertex moved;
+            if (weights[t] == 0.0f) continue;
+            one[t] = 1.0f;
+            memset(memory, 0, bytes);
+            noh_morph_accumulate(&p.mesh, one, &layers);
+            noh_morph_vertex(&p.mesh, &layers, v, &moved);
+            for (int k = 0; k < 3; k++) sum[k] += (moved.normal[k] - rest.normal[k]) * weights[t];
+        }
+        memset(memory, 0, bytes);
+        noh_morph_accumulate(&p.mesh, weights, &layers);
+        noh_morph_vertex(&p.mesh, &layers, v, &drawn);
+        memset(memory, 0, bytes);
+        for (int k = 0; k < 3; k++) {
+            literal += (double)sum[k] * (double)sum[k];
+            ours += (double)drawn.normal[k] * (double)drawn.normal[k];
+        }
+        worst = fmax(worst, fabs(sqrt(literal) - 1.0));
+        assert_true(fabs(sqrt(ours) - 1.0) < 1e-5);
+    }
+    print_message("the source's normals are up to %.2f too long or short\n", worst);
+    assert_true(worst > 0.02);
+    free(memory);
+    drop_people(&p);
+}
+
+/* w = rand() % 1000 / 1000 is 0.999 at most, and never below 0: no target is ever shown whole, and none leaves the
+ * range that the artist modelled, though people do. */
+static void errata_a_share_of_a_thousand_is_never_one(void **state)
+{
+    float source = 0.0f, most = 0.0f;
+    people p;
+    (void)state;
+    for (int i = 0; i < 100000; i++) source = fmaxf(source, (float)(i % 1000) / 1000.0f);
+    assert_true(source < 1.0f);
+    small_face(&p);
+    for (uint32_t seed = 1; seed <= 3000; seed++) {
+        float weights[NOH_TARGETS_MAX] = { 0.0f };
+        noh_identity_random(&p.identity, seed, 1.0f, weights);
+        for (uint32_t t = 0; t < COUNT; t++) most = fmaxf(most, weights[t]);
+    }
+    print_message("the largest weight of 3,000 people: %.2f\n", (double)most);
+    assert_true(most >= 1.0f);
+    drop_people(&p);
+}
+
 static void people_are_the_same_everywhere(void **state)
 {
     float weights[NOH_TARGETS_MAX] = { 0.0f };
@@ -409,6 +478,8 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(lids_shut_on_all_people),
         cmocka_unit_test(people_share_the_deltas_of_expressions),
         cmocka_unit_test(errata_even_independent_weights_tear_a_face),
+        cmocka_unit_test(errata_blended_normals_are_not_unit),
+        cmocka_unit_test(errata_a_share_of_a_thousand_is_never_one),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
