@@ -213,18 +213,27 @@ static int tell(model *m, int as_warning, const char *what, const char *joint, u
     return 1;
 }
 
-static int bind_line(binding *all, uint32_t count, const springs_chain *chain, const springs_collider *collider,
-                     model *m, int as_warning, uint32_t *line, model_error *error)
+static int bind_chain_line(const binding *all, uint32_t count, const springs_chain *chain, model *m, int as_warning,
+                           uint32_t *line, model_error *error)
 {
     outcome o = { 0, 0, MODEL_NONE };
-    const char *joint = chain ? chain->joint : collider->joint, *what;
+    const char *what;
     int failed = 0;
-    for (uint32_t i = 0; i < count && !failed; i++) {
-        failed = chain ? bind_chain(&all[i], chain, &o.found, &o.twice, &o.left_out)
-                       : bind_collider(&all[i], collider, &o.found);
-    }
-    what = failed ? "out of memory" : trouble(&o, chain != NULL);
-    return what ? tell(m, as_warning && !failed, what, joint, chain ? chain->line : collider->line, line, error) : 0;
+    for (uint32_t i = 0; i < count && !failed; i++)
+        failed = bind_chain(&all[i], chain, &o.found, &o.twice, &o.left_out);
+    what = failed ? "out of memory" : trouble(&o, 1);
+    return what ? tell(m, as_warning && !failed, what, chain->joint, chain->line, line, error) : 0;
+}
+
+static int bind_collider_line(binding *all, uint32_t count, const springs_collider *collider, model *m, int as_warning,
+                              uint32_t *line, model_error *error)
+{
+    outcome o = { 0, 0, MODEL_NONE };
+    const char *what;
+    int failed = 0;
+    for (uint32_t i = 0; i < count && !failed; i++) failed = bind_collider(&all[i], collider, &o.found);
+    what = failed ? "out of memory" : trouble(&o, 0);
+    return what ? tell(m, as_warning && !failed, what, collider->joint, collider->line, line, error) : 0;
 }
 
 int springs_bind_text(const springs_text *text, model *m, raw_set *const *sets, uint32_t set_count, int model_lines,
@@ -239,10 +248,10 @@ int springs_bind_text(const springs_text *text, model *m, raw_set *const *sets, 
         for (uint32_t k = 0; k < out[i].collider_count; k++) all[i].collider_joints[k] = out[i].colliders[k].joint;
     }
     for (uint32_t i = 0; i < text->collider_count && !failed; i++) {
-        failed = bind_line(all, set_count, NULL, &text->colliders[i], m, model_lines, line, error);
+        failed = bind_collider_line(all, set_count, &text->colliders[i], m, model_lines, line, error);
     }
     for (uint32_t i = 0; i < text->chain_count && !failed; i++) {
-        failed = bind_line(all, set_count, &text->chains[i], NULL, m, model_lines, line, error);
+        failed = bind_chain_line(all, set_count, &text->chains[i], m, model_lines, line, error);
     }
     free(all);
     free(joints);
