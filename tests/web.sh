@@ -89,12 +89,12 @@ $(grep '^# budget ' "$out/log.txt")
 END
     for shown in 'rest --light none --weight smile=0' 'smile --light none --weight smile=1' "clip --light none --clip $clip --time $time"; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        "$build/noh" render "$pack" --springs off --light none -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in auto mrt gather; do compare "${path}_${shown%% *}"; done
     done
     for shown in 'room --light room' 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$pack" -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        "$build/noh" render "$pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in auto gather; do compare "${path}_${shown%% *}"; done
     done
     [ -f "$out/level.png" ] || return

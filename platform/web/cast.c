@@ -27,13 +27,14 @@ static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *no
     return count;
 }
 
-static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, uint32_t actors)
+static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_wants *wants)
 {
     noh_kind_desc k;
     memset(&k, 0, sizeof k);
     k.mesh = pack;
     k.skeleton = skeleton;
-    k.actor_count = actors;
+    k.actor_count = wants->actors;
+    k.without_springs = !wants->alive; /* what swings depends on what was before */
     k.layers = layers;
     k.layer_count = WEB_LAYERS;
     k.root_axes = NOH_ROOT_GROUND;
@@ -43,7 +44,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, uint32_t a
 }
 
 /* The first kind has what no joint moves, too. */
-static noh_result list_kinds(web_cast *cast, const noh_pack *pack, uint32_t actors, noh_error *error)
+static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < pack->skeleton_count; i++) {
@@ -53,12 +54,12 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, uint32_t acto
         if (count == NOH_STAGE_KINDS_MAX) {
             return noh_fail(error, NOH_ERR_LIMIT, "more skeletons than a stage has kinds", i, count);
         }
-        cast->kinds[count] = kind_of(pack, i, actors);
+        cast->kinds[count] = kind_of(pack, i, &cast->wants);
         cast->kinds[count].nodes = count ? nodes : NULL;
         cast->kinds[count].node_count = count ? node_count : 0;
         count++;
     }
-    if (!count) cast->kinds[count++] = kind_of(pack, NOH_NONE, actors);
+    if (!count) cast->kinds[count++] = kind_of(pack, NOH_NONE, &cast->wants);
     cast->desc.kinds = cast->kinds;
     cast->desc.kind_count = count;
     return NOH_OK;
@@ -130,7 +131,7 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     noh_result result;
     memset(cast, 0, sizeof *cast);
     cast->wants = *wants;
-    result = list_kinds(cast, pack, wants->actors, error);
+    result = list_kinds(cast, pack, error);
     describe(cast);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);

@@ -14,7 +14,7 @@ typedef struct web_wants {
     uint32_t actors; /* of each kind */
     noh_morph_path path;
     int lit;   /* 1: by an environment, with a shadow map */
-    int alive; /* 1: faces, where eyes are found */
+    int alive; /* 1: faces, where eyes are found, and springs */
 } web_wants;
 
 typedef struct web_cast {
