@@ -85,7 +85,8 @@ size_t web_cast_scratch(const noh_pack *pack)
 {
     static web_cast cast;
     size_t most = 0;
-    if (list_kinds(&cast, pack, 1, NULL)) return 0;
+    cast.wants.actors = 1;
+    if (list_kinds(&cast, pack, NULL)) return 0;
     for (uint32_t k = 0; k < cast.desc.kind_count; k++) most = larger(most, noh_kind_find_eyes_size(&cast.kinds[k]));
     return most;
 }
