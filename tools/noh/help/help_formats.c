@@ -205,6 +205,20 @@ const char *const help_formats_text[] = {
     "as without --json. result: usage, failed, arg, memory, data, version, limit, not_found, unsupported, gl. what: a sentence. where: a byte "
     "offset or an index; need: a size or a count; both are null where they have no meaning. A check that ran and failed (verify, zoom) "
     "prints its figures with \"ok\": false.",
+    "# sessions (noh replay, noh bisect)",
+    "What a game did to characters of one pack, a line for each input, in the order of frames; then, if it was played, the hashes of each "
+    "frame. # begins a comment, names with blanks stand in double quotes:",
+    "   noh-session 1, pack CRC, actors N, frames N  four lines, in this order; N actors at most, 1 to 64",
+    "   FRAME spawn ACTOR X Z T                     it comes in, turned by an angle whose half has the tangent T",
+    "   FRAME despawn|rise|kill|revive ACTOR        gone; gets up, by clips whose names begin with get_up",
+    "   FRAME play ACTOR CLIP LAYER FADE SPEED      times are ticks of 1/48000 s",
+    "   FRAME graph ACTOR GRAPH LAYER FADE; FRAME stop ACTOR LAYER FADE",
+    "   FRAME parameter ACTOR NAME VALUE            of the graph that plays",
+    "   FRAME float ACTOR NAME VALUE AMOUNT         a morph weight or named float is held; amount 0 lets go",
+    "   FRAME look ACTOR X Y Z; FRAME feel ACTOR EMOTION AMOUNT ONSET HOLD FADE",
+    "   FRAME hit ACTOR X Y Z IX IY IZ              a push of newton seconds at a point",
+    "   FRAME view 0 YAW PITCH DISTANCE             radians, metres; FRAME ticks 0 TICKS: of each frame from now on (800)",
+    "   hashes PART...                              then FRAME and a CRC-32C of each part, for every frame",
     "# outputs (-o)",
     "A file is replaced as a whole or left as it was. Of a symbolic link the target is replaced; devices, FIFOs and /dev/stdout are "
     "written to directly. An input is never overwritten.",

@@ -1,0 +1,16 @@
+/* session_text.h: a session as a text file (noh help FORMATS). */
+#ifndef NOH_NOH_REPLAY_SESSION_TEXT_H
+#define NOH_NOH_REPLAY_SESSION_TEXT_H
+
+#include "convert/base/byte_buffer.h"
+#include "convert/base/error.h"
+#include "session.h"
+
+/* Append the session to a buffer; with its hashes, where it has them. 0, or 1 and *error. Returns in *input_bytes how
+ * many bytes of it the inputs are. */
+int session_write(const session *s, byte_buffer *out, size_t *input_bytes, model_error *error);
+
+/* Read a session from a file. 0, or 1 and *error; *s is then empty. */
+int session_read(session *s, const char *path, model_error *error);
+
+#endif
