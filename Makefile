@@ -111,6 +111,7 @@ help:
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
+	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
 	@echo 'make look-compare  pictures beside three.js in the light of a room'
@@ -337,6 +338,15 @@ check: deps-check
 threads: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/tsan.sh
+
+# The same bits from every compiler, optimisation and processor that is here, and as in tests/golden/golden.txt.
+golden: deps-cross
+	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
+	@NOH_BUILD="$(BUILD)" sh tests/golden.sh
+
+golden-update:
+	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
+	@NOH_BUILD="$(BUILD)" sh tests/golden.sh update
 
 cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh

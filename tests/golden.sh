@@ -1,0 +1,112 @@
+#!/bin/sh
+# golden.sh: the same ten seconds on every compiler, optimisation and processor that is here: tests/golden/golden.c prints
+# hashes of states, callback keys, places, weights, joints, palettes, vertices and a crowd, and all must print what
+# tests/golden/golden.txt has.
+#
+#   golden.sh            all of them (`make golden`)
+#   golden.sh short      what `make check` runs: gcc without and with optimisation
+#   golden.sh cross      the other processors alone, compared with gcc here (tests/cross.sh)
+#   golden.sh update     write golden.txt anew, after a change that is meant to change results
+#
+# The table holds for packs with the checksums that it names; where the demo's packs come out otherwise, builds are
+# compared with the first of them alone, and a line says so. Prints TAP.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+build=${NOH_BUILD:-build}
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+work=$build/golden
+packs="$build/mask_levels.noh $build/demo/puppet_levels.noh"
+table=tests/golden/golden.txt
+sources="$build/amalgam/noh.c tests/golden/golden.c tools/noh/replay/session.c tools/noh/replay/session_input.c
+    tools/noh/replay/session_stage.c tools/noh/replay/session_draw.c platform/file.c"
+flags='-std=c99 -ffp-contract=off -fno-math-errno -DNOH_WITHOUT_GL -Iruntime -Iplatform -Itools -Itools/noh -w'
+tests=0 failures=0
+mkdir -p "$work"
+
+report() { # ok|not ok, NAME
+    tests=$((tests + 1))
+    [ "$1" = ok ] || failures=$((failures + 1))
+    echo "$1 $tests - $2"
+}
+
+has() { command -v "$1" >/dev/null 2>&1; }
+
+# COMPILER-AND-FLAGS PROGRAM: objects first, because emcc wants more tools to optimise while it links.
+compile() {
+    rm -rf "$work/objects"
+    mkdir -p "$work/objects"
+    # shellcheck disable=SC2086
+    for source in $sources; do
+        $1 $flags -c "$source" -o "$work/objects/$(basename "$source").o" || return
+    done
+    $1 -O0 "$work"/objects/*.o -o "$2" -lm
+}
+
+# NAME COMPILER-AND-FLAGS [RUNNER]: build, run, compare with the first.
+variant() {
+    if ! has "${2%% *}" || { [ -n "${3:-}" ] && ! has "${3%% *}"; }; then
+        report ok "$1 # SKIP no ${2%% *}${3:+ or ${3%% *}} here"
+        return
+    fi
+    # shellcheck disable=SC2086
+    if ! printf '#include <errno.h>\n#include <stdlib.h>\n' | $2 -xc -fsyntax-only - 2>/dev/null; then
+        report ok "$1 # SKIP no headers for $2 here"
+        return
+    fi
+    # shellcheck disable=SC2086
+    if ! compile "$2" "$work/$1" >"$work/$1.log" 2>&1 || ! ${3:-} "$work/$1" $packs >"$work/$1.txt" 2>"$work/$1.err"; then
+        report 'not ok' "$1"
+        tail -n 5 "$work/$1.log" "$work/$1.err" 2>/dev/null | sed 's/^/# /'
+        return
+    fi
+    [ -n "$first" ] || first=$1
+    if cmp -s "$work/$first.txt" "$work/$1.txt"; then
+        report ok "$1: as $first"
+    else
+        report 'not ok' "$1: as $first"
+        diff "$work/$first.txt" "$work/$1.txt" | head -n 8 | sed 's/^/# /'
+    fi
+}
+
+# The lines of the table whose pack is the one that is here must be there.
+against_table() {
+    awk 'NR == FNR { known[$1 " " $2 " " $3] = $4; next }
+        { key = $1 " " $2 " " $3
+          if (!(key in known)) print "pack " $1 " " $2
+          else if (known[key] != $4) print "differs " key }' "$table" "$work/$first.txt" | sort -u >"$work/table.txt"
+    if grep -q '^differs' "$work/table.txt"; then
+        report 'not ok' "as $table"
+        sed 's/^/# /' "$work/table.txt"
+        echo "# if that is meant: tests/golden.sh update"
+    elif grep -q '^pack' "$work/table.txt"; then
+        report ok "as $table # SKIP $(sed -n 's/^pack \(.*\) .*/\1/p' "$work/table.txt" | tr '\n' ' ')came out with other bytes here"
+    else
+        report ok "as $table"
+    fi
+}
+
+first=
+variant gcc-O2 'gcc -O2'
+if [ "${1:-}" = update ]; then
+    [ $failures = 0 ] && cp "$work/gcc-O2.txt" "$table" && echo "# $table is written"
+    exit $failures
+fi
+against_table
+if [ "${1:-}" != cross ]; then
+    variant gcc-O0 'gcc -O0'
+fi
+if [ -z "${1:-}" ]; then
+    variant gcc-O3-native 'gcc -O3 -march=native'
+    variant gcc-Os 'gcc -Os'
+    variant gcc-i386-sse2 'gcc -m32 -msse2 -mfpmath=sse -O2'
+    variant clang-O0 'clang -O0'
+    variant clang-O2 'clang -O2'
+    variant clang-O3-native 'clang -O3 -march=native'
+fi
+if [ "${1:-}" != short ]; then
+    variant aarch64 'aarch64-linux-gnu-gcc -O2 -static' qemu-aarch64-static
+    variant armv7 'arm-linux-gnueabihf-gcc -O2 -mfpu=neon -static' qemu-arm-static
+    variant wasm.js 'emcc -O2 -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' 'node --no-experimental-fetch'
+fi
+echo "1..$tests"
+exit $failures
