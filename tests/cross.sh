@@ -7,8 +7,8 @@ cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 passed=0 failed=0 skipped=0
 # Encoding the large clips takes minutes under an emulator: the tests run on the clips that they make themselves.
-NOH_ASSETS=none
-export NOH_ASSETS
+NOH_ASSETS=none NOH_EMULATED=1
+export NOH_ASSETS NOH_EMULATED
 
 has() { # prints the first of these commands that is missing
     for tool in "$@"; do
@@ -70,6 +70,14 @@ target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar -static qemu-aarch64-s
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static qemu-arm-static
 # node's fetch does not read files, and emscripten's older loader asks it to
 target wasm emcc emar '-s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
+
+# Ten seconds of the demo's packs, where `make check` has made them.
+if [ -f "$build/demo/puppet_levels.noh" ] && [ -f "$build/mask_levels.noh" ]; then
+    echo '== golden'
+    make --no-print-directory BUILD="$build" DEPS=0 amalgam >"$build/golden.log" 2>&1
+    sh tests/golden.sh cross >"$build/golden.tap" 2>&1
+    count golden "$build/golden.tap" $?
+fi
 
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ] && [ $passed != 0 ]

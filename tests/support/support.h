@@ -2,6 +2,7 @@
  *
  *   test_main            run a table of tests; argument 1 is a filter
  *   test_skip            say why, then skip
+ *   test_skip_emulated   skip on an emulated processor
  *   test_zeros, test_aligned, test_folder, test_asset
  *   test_random_*        a seeded generator, the same on every machine
  *   test_model           a model made in code: grids that bulge, with all that a pack can hold
@@ -14,6 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+
+#include <stdlib.h>
 
 #include "convert/pack/pack_write.h"
 #include "noh.h"
@@ -34,6 +37,13 @@
         print_message(__VA_ARGS__); \
         print_message("\n");        \
         skip();                     \
+    } while (0)
+
+/* What takes minutes on an emulated processor (tests/cross.sh sets NOH_EMULATED), and tells no more there than on this
+ * one, whose bits are the same. */
+#define test_skip_emulated(what)                                                              \
+    do {                                                                                      \
+        if (getenv("NOH_EMULATED")) test_skip("%s: too slow on an emulated processor", what); \
     } while (0)
 
 #define TEST_COUNT(array) (sizeof(array) / sizeof(array)[0])

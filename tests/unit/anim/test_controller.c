@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "support/clip_set_fixture.h"
+#include "support/support.h"
 #include "anim/event_queue.h"
 #include "pose/inertial_internal.h"
 #include "anim/sync_internal.h"
@@ -323,6 +324,7 @@ static void time_does_not_drift(void **state)
     stage g;
     float seconds = 0.0f;
     (void)state;
+    test_skip_emulated("a day of frames");
     stage_open(&g, 1, 0);
     start(&g, 0, track_of(RUN, 1.0f));
     for (uint32_t i = 0; i < 24u * 3600u * 60u; i++) {
@@ -1130,6 +1132,7 @@ static void damaged_blocks_do_no_harm(void **state)
     noh_error error;
     uint32_t seed = 11, refused = 0, taken = 0, head_bytes;
     (void)state;
+    test_skip_emulated("thousands of damaged blocks");
     busy_open(&g);
     kept = g;
     head_bytes = g.c->inertia_offset;

@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "support/clip_fixture.h"
+#include "support/support.h"
 #include "convert/clips/rcl.h"
 
 #define JOINTS_MAX 1100u
@@ -203,6 +204,7 @@ static void still_clips_cost_next_to_nothing(void **state)
 static void bounds_hold_for_any_number_of_frames(void **state)
 {
     (void)state;
+    test_skip_emulated("the encoder");
     for (uint32_t frames = 1; frames < 70u; frames += frames < 8u ? 1u : 6u) {
         char name[32];
         snprintf(name, sizeof name, "%u frames", (unsigned)frames);
@@ -214,6 +216,7 @@ static void bounds_hold_for_other_errors(void **state)
 {
     const double errors[4] = { 0.0005, 0.05, 0.1, 2.0 }, shells[4] = { 1.0, 3.0, 10.0, 30.0 };
     (void)state;
+    test_skip_emulated("the encoder");
     for (int i = 0; i < 4; i++) {
         clip_options o;
         memset(&o, 0, sizeof o);
@@ -226,6 +229,7 @@ static void bounds_hold_for_other_errors(void **state)
 static void bounds_hold_for_segment_lengths(void **state)
 {
     (void)state;
+    test_skip_emulated("the encoder");
     for (uint32_t frames = 8; frames <= 40u; frames += 4u) {
         clip_options o;
         memset(&o, 0, sizeof o);
@@ -239,6 +243,7 @@ static void bounds_hold_for_spins(void **state)
 {
     const double speeds[6] = { 0.1, 0.4, 1.5, 3.0, 3.5, 6.1 };
     (void)state;
+    test_skip_emulated("the encoder");
     for (int i = 0; i < 6; i++) {
         raw_set *set = fixture_swing(6, 75, 1, 15.0f, 0.4, 0.5);
         for (uint32_t f = 0; f < 75u; f++) {
@@ -263,6 +268,7 @@ static void bounds_hold_for_sizes(void **state)
 {
     const float bones[6] = { 0.0f, 1e-3f, 1.0f, 30.0f, 300.0f, 3000.0f };
     (void)state;
+    test_skip_emulated("the encoder");
     for (int i = 0; i < 6; i++) holds(fixture_swing(8, 50, 1, bones[i], 0.5, (double)bones[i]), NULL, "bone length");
 }
 
@@ -305,6 +311,7 @@ static void bounds_hold_for_noise(void **state)
     raw_set *set = fixture_swing(8, 60, 1, 15.0f, 0.5, 0.5);
     fixture_rng r = { 3 };
     (void)state;
+    test_skip_emulated("the encoder");
     for (uint32_t f = 0; f < 60u; f++) {
         for (uint32_t j = 0; j < 8u; j++) {
             fixture_axis_angle(fixture_rotation(&set->clips[0], f, j), fixture_random(&r) - 0.5,

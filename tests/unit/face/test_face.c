@@ -54,6 +54,7 @@ static void blinks_come_at_their_rates(void **state)
     static const double rates[] = { 17.0, 26.0, 4.5 };
     static double starts[4096];
     (void)state;
+    test_skip_emulated("hours of blinks");
     for (int a = 0; a < 3; a++) {
         double sum = 0.0;
         for (uint32_t seed = 1; seed <= 4; seed++) {
@@ -91,6 +92,7 @@ static void each_person_blinks_at_the_rate(void **state)
     static double starts[4096];
     double off = 0.0, distance = 0.0;
     (void)state;
+    test_skip_emulated("hours of blinks");
     for (uint32_t seed = 1; seed <= 64; seed++) {
         for (int a = 0; a < 3; a++) {
             const uint32_t n = remembered_hour(seed, (noh_activity)a, starts, 4096);
@@ -140,6 +142,7 @@ static void intervals_are_log_normal(void **state)
 {
     static double starts[4096];
     (void)state;
+    test_skip_emulated("hours of blinks");
     for (int a = 0; a < 3; a++) {
         uint32_t n = blink_hour(77, (noh_activity)a, NOH_FACE_NO_WANDER, starts, 4096), count = 0;
         double distance;
@@ -170,6 +173,7 @@ static void errata_an_even_timer_is_not_log_normal(void **state)
 static void four_channels_keep_the_timers(void **state)
 {
     (void)state;
+    test_skip_emulated("hours of blinks");
     for (uint32_t seed = 0; seed < 20; seed++) {
         noh_face face = face_of(seed, NOH_FACE_FOUR);
         float blink = 0.0f, felt = 0.0f;
@@ -289,6 +293,7 @@ static void a_blink_with_a_look_takes_the_place_of_the_next(void **state)
     uint32_t count = 0;
     float before = 0.0f;
     (void)state;
+    test_skip_emulated("hours of blinks");
     for (uint32_t i = 0; i < HOUR_STEPS; i++) {
         const float side = i / 600u % 2u ? 1.0f : -1.0f; /* from side to side every three seconds */
         const float point[3] = { side, 0.1f, 1.0f };

@@ -31,6 +31,7 @@ static noh_reflection make(uint32_t side, noh_radiance radiance, const void *use
 static void windows_have_their_integral(void **state)
 {
     (void)state;
+    test_skip_emulated("integrals by brute force");
     for (uint32_t e = 0; e < NOH_ENVIRONMENT_COUNT; e++) {
         const noh_environment *environment = noh_environment_at(e);
         double sums[NOH_SH_COUNT_MAX] = { 0.0 };
@@ -132,6 +133,7 @@ static void texels_are_near(void **state)
 {
     test_random random = test_random_from(3);
     (void)state;
+    test_skip_emulated("integrals by brute force");
     for (int i = 0; i < 60; i++) {
         const float size = ldexpf(1.0f, i % 30 - 14);
         float rgb[3], found[3];
@@ -197,6 +199,7 @@ static void brute_force(const noh_environment *environment, uint32_t level, cons
 static void blurred_levels_are_near_brute_force(void **state)
 {
     (void)state;
+    test_skip_emulated("integrals by brute force");
     for (uint32_t e = 0; e < NOH_ENVIRONMENT_COUNT; e++) {
         const noh_environment *environment = noh_environment_at(e);
         const noh_reflection r = make(64, noh_reflection_of_environment, environment);
