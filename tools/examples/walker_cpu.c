@@ -1,6 +1,5 @@
 /* walker_cpu.c: a figure walks and speaks, without a GPU and without a stage. Prints its footsteps, draws its last
  * frame.
- * frame.
  *
  *   walker_cpu PACK [SECONDS] [-o OUT.ppm]        default: 2 seconds, walker_cpu.ppm
  *
