@@ -68,6 +68,10 @@ noh_result noh_check_floats(const noh_check *check, const float *values, uint32_
         if (!noh_float_finite(values[i])) {
             return noh_check_fail(check, what, (uint64_t)((const uint8_t *)(values + i) - check->bytes));
         }
+        if (!(values[i] >= -NOH_NUMBER_MAX && values[i] <= NOH_NUMBER_MAX)) {
+            return noh_check_fail(check, "number is larger than 10^12",
+                                  (uint64_t)((const uint8_t *)(values + i) - check->bytes));
+        }
     }
     return NOH_OK;
 }

@@ -4,6 +4,39 @@
 
 #include <stddef.h>
 
+/* How large the bind pose gets along the chain that leads to a joint: a bound of the scales' product, and of how far
+ * from the root a point of it lies. */
+static int is_chain_bounded(const float *bind, const uint16_t *parents, uint32_t joint)
+{
+    float scale = 1.0f, reach = 0.0f;
+    for (uint32_t j = joint;; j = parents[j]) {
+        const float *t = bind + 10u * (size_t)j + 4;
+        float largest = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            const float s = t[3 + k] < 0.0f ? -t[3 + k] : t[3 + k];
+            if (s > largest) largest = s;
+        }
+        scale *= largest > 1.0f ? largest : 1.0f;
+        reach *= largest;
+        for (int k = 0; k < 3; k++) reach += t[k] < 0.0f ? -t[k] : t[k];
+        if (!(scale <= NOH_NUMBER_MAX && reach <= NOH_NUMBER_MAX)) return 0;
+        if (parents[j] == NOH_PACK_JOINT_ROOT) return 1;
+    }
+}
+
+static noh_result check_bind(const noh_check *check, const noh_skeleton_header *h)
+{
+    const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
+    const float *bind = (const float *)(const void *)(check->bytes + h->bind_offset);
+    noh_result result = noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
+    for (uint32_t j = 0; !result && j < h->joint_count; j++) {
+        if (is_chain_bounded(bind, parents, j)) continue;
+        result = noh_check_fail(check, "bind pose of a joint and those above it is larger than 10^12",
+                                h->bind_offset + 40ull * j);
+    }
+    return result;
+}
+
 static noh_result check_joints(const noh_check *check, const noh_skeleton_header *h)
 {
     const uint16_t *parents = (const uint16_t *)(const void *)(check->bytes + h->parents_offset);
@@ -22,7 +55,7 @@ static noh_result check_joints(const noh_check *check, const noh_skeleton_header
             return noh_check_fail(check, "joint's name lies outside the strings", h->names_offset + 4ull * j);
         }
     }
-    return noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
+    return check_bind(check, h);
 }
 
 /* The joint counts of the LOD levels: falling, and no level lacks a joint without a parent. After check_joints. */

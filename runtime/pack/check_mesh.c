@@ -99,12 +99,13 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
 static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t count, int may_be_empty)
 {
     const float *boxes = (const float *)(const void *)(check->bytes + offset);
-    noh_result result = noh_check_floats(check, boxes, count * 6u, "box is not finite");
+    noh_result result = NOH_OK;
     for (uint32_t i = 0; !result && i < count; i++) {
         const float *b = boxes + 6u * (size_t)i;
         int proper = b[0] <= b[3] && b[1] <= b[4] && b[2] <= b[5];
         int empty = may_be_empty && b[0] > b[3] && b[1] > b[4] && b[2] > b[5];
-        if (!proper && !empty) {
+        if (!empty) result = noh_check_floats(check, b, 6u, "box is not finite");
+        if (!result && !proper && !empty) {
             result = noh_check_fail(check, "box is inside out", offset + 24ull * i);
         }
     }

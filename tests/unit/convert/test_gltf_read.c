@@ -1794,6 +1794,20 @@ static void numbers_that_are_not_finite_are_refused(void **state)
     refused(s, "the value is infinite", "mesh 'm' primitive 0 TEXCOORD_0 (accessor 1), element 2");
 }
 
+static void numbers_beyond_the_limit_are_refused(void **state)
+{
+    (void)state;
+    float values[9] = { 0, 0, 0, 0, 3e38f, 0, 0, 0, 0 };
+    scene *s = scene_new();
+    add_array(s, values, sizeof values, F32, 3, "VEC3");
+    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+    refused(s, "the value 3e+38 is too large: the limit is 1e12",
+            "mesh 'm' primitive 0 POSITION (accessor 0), element 1");
+    s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"scale\":[1e7,1,1],\"children\":[1]},{\"name\":\"b\",\"scale\":[1e7,1,1]}]");
+    refused(s, "scales of its ancestors", "node 'b'");
+}
+
 static void differing_target_counts_are_refused(void **state)
 {
     (void)state;
@@ -2081,6 +2095,7 @@ int main(void)
         cmocka_unit_test(giant_counts_are_refused),
         cmocka_unit_test(missing_buffers_are_refused),
         cmocka_unit_test(numbers_that_are_not_finite_are_refused),
+        cmocka_unit_test(numbers_beyond_the_limit_are_refused),
         cmocka_unit_test(differing_target_counts_are_refused),
         cmocka_unit_test(weights_of_the_wrong_length_are_refused),
         cmocka_unit_test(zero_vertices_are_refused),

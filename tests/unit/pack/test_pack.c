@@ -450,6 +450,8 @@ static float nan_value(void)
     X(world_scale_infinite, DATA, "not finite", f->mesh->world_scale = INFINITE)                                     \
     X(position_nan, DATA, "position is not finite", f->positions[3] = nan_value())                                   \
     X(position_infinite, DATA, "position is not finite", f->positions[47] = INFINITE)                                \
+    X(position_beyond, DATA, "larger than 10^12", f->positions[47] = -1.001f * NOH_NUMBER_MAX)                       \
+    X(bounds_beyond, DATA, "larger than 10^12", f->mesh->bounds_max[2] = 3e38f)                                      \
     X(index_past_vertices, DATA, "past the last vertex", f->indices[5] = (uint16_t)f->mesh->vertex_count)            \
     X(padding_behind_indices, DATA, "padding", f->indices[f->mesh->index_count] = 1)                                 \
     X(submesh_past_indices, DATA, "outside the mesh", f->submeshes[1].first_index += 3)                              \
@@ -492,6 +494,7 @@ static float nan_value(void)
     X(node_mesh_missing, DATA, "mesh that is not there", f->nodes[1].mesh = 1)                                       \
     X(node_transform_nan, DATA, "not finite", f->nodes[1].rotation[0] = nan_value())                                 \
     X(node_world_infinite, DATA, "not finite", f->nodes[0].world[11] = INFINITE)                                     \
+    X(node_world_beyond, DATA, "larger than 10^12", f->nodes[0].world[11] = 3e38f)                                   \
     X(node_weights_outside, DATA, "outside the weights", f->nodes[1].first_weight = 1)                               \
     X(node_weights_far_outside, DATA, "outside the weights", f->nodes[1].first_weight = 0xfffffffeu)                 \
     X(node_weights_without_mesh, DATA, "outside the weights", f->nodes[0].first_weight = 0)                          \

@@ -34,6 +34,7 @@ typedef struct forged {
     noh_palette *palettes;
     uint16_t *palette_joints, *joints;
     float *inverse_bind, *joint_boxes, *target_boxes;
+    float *bind_pose; /* of the skeleton, which is a chain */
     uint32_t words, stride;
 } forged;
 
@@ -53,8 +54,11 @@ static void first_chunk(uint8_t *bytes, uint32_t type, uint8_t **chunk)
 static forged reach(uint8_t *bytes)
 {
     forged f;
+    uint8_t *skeleton = NULL;
     first_chunk(bytes, NOH_CHUNK_MESH, &f.mesh_bytes);
     first_chunk(bytes, NOH_CHUNK_SKIN, &f.skin_bytes);
+    first_chunk(bytes, NOH_CHUNK_SKELETON, &skeleton);
+    f.bind_pose = (float *)(void *)(skeleton + ((const noh_skeleton_header *)(const void *)skeleton)->bind_offset);
     f.mesh = (noh_mesh_header *)(void *)f.mesh_bytes;
     f.skin = (noh_skin_header *)(void *)f.skin_bytes;
     f.words = NOH_INFLUENCE_WORDS(f.mesh->influence_count);
@@ -78,6 +82,11 @@ static forged reach(uint8_t *bytes)
     X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                         \
     X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                         \
     X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")                \
+    X(skin_bind_beyond, f->inverse_bind[0] = -3e38f, "larger than 10^12")                                    \
+    X(bind_pose_beyond, f->bind_pose[24] = 2.0f * NOH_NUMBER_MAX, "larger than 10^12")                       \
+    X(scales_beyond, f->bind_pose[7] = f->bind_pose[17] = f->bind_pose[27] = 1e5f, "joint and those above")  \
+    X(reach_beyond, (f->bind_pose[7] = 1e5f, f->bind_pose[15] = 1e8f), "joint and those above")              \
+    X(joint_box_beyond, f->joint_boxes[3] = 3e38f, "larger than 10^12")                                      \
     X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                          \
     X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                          \
     X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                               \

@@ -1,10 +1,10 @@
 #include "bvh_internal.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/limits.h"
 #include "convert/base/angle.h"
 #include "convert/model/model_build.h"
 #include "convert/base/quat.h"
@@ -87,7 +87,7 @@ static int read_values(bvh_file *f, uint32_t frame, double *values)
             return text_fail(&f->text, word.line, "frame %u has %u numbers; the channels need %u", frame, c,
                              f->channel_count);
         if (text_number(&f->text, word, &values[c])) return 1;
-        if (fabs(values[c]) > (double)FLT_MAX)
+        if (fabs(values[c]) > (double)NOH_NUMBER_MAX)
             return text_fail(&f->text, word.line, "the number %g is too large", values[c]);
     }
     text_word word = text_next_on_line(&f->text);

@@ -1,11 +1,11 @@
 #include "bvh_read.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/limits.h"
 #include "bvh_internal.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
@@ -79,7 +79,8 @@ static int read_vector(bvh_file *f, double *out)
     for (int i = 0; i < 3; ++i) {
         text_word word = text_next(&f->text);
         if (text_number(&f->text, word, &out[i])) return 1;
-        if (fabs(out[i]) > (double)FLT_MAX) return text_fail(&f->text, word.line, "the number %g is too large", out[i]);
+        if (fabs(out[i]) > (double)NOH_NUMBER_MAX)
+            return text_fail(&f->text, word.line, "the number %g is too large", out[i]);
     }
     return 0;
 }

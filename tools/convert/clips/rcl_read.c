@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/limits.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "raw_set.h"
@@ -57,6 +58,7 @@ static int take_floats(rcl_reader *r, size_t count, float *out)
         if (take_u32(r, &bits)) return 1;
         memcpy(out + i, &bits, sizeof bits);
         if (!isfinite(out[i])) return refuse(r, r->at - 4, "the number is not finite");
+        if (fabsf(out[i]) > NOH_NUMBER_MAX) return refuse(r, r->at - 4, "the number is larger than 1e12");
     }
     return 0;
 }

@@ -1,6 +1,8 @@
 /* gltf_accessor.cpp: accessors, dense and sparse, to floats and indices. */
 #include "gltf_internal.h"
 
+#include "base/limits.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -179,6 +181,8 @@ static void load_element(const layout &l, const uint8_t *at, uint64_t element, f
         if (!std::isfinite(out[i]))
             fail(element_of(l.where, element),
                  text("the value is %s: every number must be finite", std::isnan(out[i]) ? "NaN" : "infinite"));
+        if (std::fabs(out[i]) > NOH_NUMBER_MAX)
+            fail(element_of(l.where, element), text("the value %g is too large: the limit is 1e12", double(out[i])));
     }
 }
 

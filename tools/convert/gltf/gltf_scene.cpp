@@ -1,6 +1,8 @@
 /* gltf_scene.cpp: the node hierarchy. */
 #include "gltf_internal.h"
 
+#include "base/limits.h"
+
 #include <cmath>
 #include <cstring>
 
@@ -252,8 +254,9 @@ static void store_transform(file &f, const transform &t, model_node &out, const 
     else
         multiply(f.out->nodes[out.parent].world, t.matrix, out.world);
     for (double number : out.world)
-        if (!std::isfinite(number))
-            fail(where, "the world matrix is not finite: the scales of its ancestors are too large");
+        if (!(std::fabs(number) <= NOH_NUMBER_MAX))
+            fail(where,
+                 "the world matrix is not finite, or larger than 1e12: the scales of its ancestors are too large");
 }
 
 /* --- a node's mesh, skin and weights --- */

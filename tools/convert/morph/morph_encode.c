@@ -2,6 +2,8 @@
  * each target, and fills their texels. */
 #include "morph_internal.h"
 
+#include "base/limits.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +11,7 @@
 
 #define WIDTH_LOG2_MAX 10u
 #define RECT_LIMIT 65535u /* morph_rect is 16-bit */
-#define DELTA_LIMIT 1e30f /* larger ones mean a broken file, and their squares would overflow */
+#define DELTA_LIMIT NOH_NUMBER_MAX
 
 typedef struct encoder {
     const model_mesh *mesh;
@@ -43,7 +45,7 @@ static int check_deltas(encoder *c, const float *delta, uint32_t t, const char *
         if (fabsf(delta[i]) <= DELTA_LIMIT) continue; /* false for a NaN */
         snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part,
                  (unsigned)(i / MORPH_AXES));
-        return fail(c, "morph delta is not finite or larger than 1e30", where);
+        return fail(c, "morph delta is not finite or larger than 10^12", where);
     }
     return 0;
 }
