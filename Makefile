@@ -93,7 +93,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o
 
-.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check check-validator bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -112,6 +112,7 @@ help:
 	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
+	@echo 'make budgets    what the demo characters take, to the byte, against a table; budgets-update: a new table'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
 	@echo 'make look-compare  pictures beside three.js in the light of a room'
@@ -347,6 +348,17 @@ golden: deps-cross
 golden-update:
 	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh update
+
+# What characters take, to the byte, as in tests/golden/budgets.txt.
+BUDGET_PACKS := $(BUILD)/mask.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh
+budgets: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUDGET_PACKS)
+	@NOH_BUILD="$(BUILD)" sh tests/budgets.sh
+	@column -t -s '	' tests/golden/budgets.txt 2>/dev/null || cat tests/golden/budgets.txt
+
+budgets-update:
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUDGET_PACKS)
+	@NOH_BUILD="$(BUILD)" sh tests/budgets.sh update
 
 cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
