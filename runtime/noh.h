@@ -168,6 +168,7 @@
  *   stage, kind, actor   a cast out of one block; a sort of character on it; one character
  *   layer                one thing that an actor can do at a time: walk, wave, talk
  *   agent                one of a crowd: a disc on the ground, with a goal
+ *   flow field           directions of the shortest ways to one goal, by cells of the ground
  *   tick                 1/48,000 second, of time and nothing else
  *   sample rate          frames per second that a clip was made with
  *   playback speed       how fast a track runs: 1 is as made

@@ -94,7 +94,9 @@
 #define NOH_CROWD_AGENTS_MAX (1u << 18)
 #define NOH_CROWD_OBSTACLES_MAX 1024u
 #define NOH_CROWD_JOBS_MAX 64u
-#define NOH_CROWD_STEPS_MAX 4u /* of 1/30 s in one call; what is left of a longer time is dropped */
+#define NOH_CROWD_FIELDS_MAX 255u            /* flow fields of one crowd */
+#define NOH_CROWD_FIELD_CELLS_MAX (1u << 20) /* of one flow field */
+#define NOH_CROWD_STEPS_MAX 4u               /* of 1/30 s in one call; what is left of a longer time is dropped */
 
 /* ---- controllers and graphs ---- */
 

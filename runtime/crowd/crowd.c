@@ -4,7 +4,9 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#define REACH 3.0f      /* by default */
+#define REACH 3.0f /* by default */
+#define FIELD_CELL 0.5f
+#define FIELD_VISITS 8192u
 #define FAR 1e6f        /* of places: squares and differences keep their digits */
 #define SPEED_MAX 15.0f /* in radii per second: a step is shorter than a radius, even of one who is pushed */
 
@@ -15,6 +17,8 @@ static noh_crowd_desc with_defaults(const noh_crowd_desc *desc)
     noh_crowd_desc d = *desc;
     if (!d.job_count) d.job_count = 1;
     if (!(d.reach > 0.0f)) d.reach = REACH;
+    if (!(d.field_cell > 0.0f)) d.field_cell = FIELD_CELL;
+    if (!d.field_visits) d.field_visits = FIELD_VISITS;
     return d;
 }
 
@@ -26,6 +30,25 @@ static int is_place(const float at[2])
 static int is_length(float length)
 {
     return length > 0.0f && length <= FAR;
+}
+
+static noh_result check_fields(const noh_crowd_desc *desc, noh_error *error)
+{
+    crowd_cells cells;
+    const noh_crowd_desc d = with_defaults(desc);
+    if (d.field_count > NOH_CROWD_FIELDS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more flow fields than the limit", 0, d.field_count);
+    }
+    if (!(desc->field_cell >= 0.0f && desc->field_cell <= FAR) ||
+        !(d.field_radius >= 0.0f && d.field_radius <= 0.5f * d.reach) || !(0.5f * d.field_cell <= d.reach)) {
+        return noh_fail(error, NOH_ERR_ARG, "the cells of flow fields, or the radius that they are for, are too large",
+                        0, 0);
+    }
+    if (d.field_count && !noh_crowd_flow_cells(&d, &cells)) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a flow field has more cells than the limit: give it larger ones", 0,
+                        NOH_CROWD_FIELD_CELLS_MAX);
+    }
+    return NOH_OK;
 }
 
 static noh_result check(const noh_crowd_desc *desc, noh_error *error)
@@ -50,7 +73,7 @@ static noh_result check(const noh_crowd_desc *desc, noh_error *error)
                             0);
         }
     }
-    return NOH_OK;
+    return check_fields(desc, error);
 }
 
 static uint32_t take(uint32_t *bytes, uint32_t each, uint32_t count)
@@ -87,6 +110,12 @@ static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
         c->near_start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
         c->near = take(&bytes, sizeof(uint16_t), noh_crowd_near(&c->cells, desc, NULL, NULL));
     }
+    if (desc->field_count) {
+        crowd_cells cells;
+        (void)noh_crowd_flow_cells(desc, &cells);
+        c->flow = bytes = (bytes + 7u) & ~7u;
+        bytes += noh_crowd_flow_bytes(&cells, desc->field_count);
+    }
     c->bytes = (bytes + 15u) & ~15u;
 }
 
@@ -118,6 +147,7 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
         memcpy(CROWD_ARRAY(noh_crowd_obstacle, *crowd, obstacle), d.obstacles, d.obstacle_count * sizeof *d.obstacles);
         noh_crowd_near(&c.cells, &d, CROWD_ARRAY(uint32_t, *crowd, near_start), CROWD_ARRAY(uint16_t, *crowd, near));
     }
+    if (c.flow) noh_crowd_flow_init(*crowd, &d);
     return NOH_OK;
 }
 
@@ -182,6 +212,43 @@ void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed)
     w->speed = within(speed, 0.0f, SPEED_MAX * w->radius);
 }
 
+void noh_crowd_field_aim(noh_crowd *crowd, uint32_t field, const float goal[2])
+{
+    NOH_ASSERT(crowd && goal && crowd->flow && field < CROWD_CONST(crowd_flow, crowd, flow)->field_count);
+    crowd_flow *flow = CROWD_ARRAY(crowd_flow, crowd, flow);
+    const crowd_cells *cells = &flow->cells;
+    crowd_field *f = CROWD_ARRAY(crowd_field, flow, field) + field;
+    f->asked = v2(within(goal[0], cells->origin.x, cells->origin.x + (float)cells->width * cells->edge),
+                  within(goal[1], cells->origin.z, cells->origin.z + (float)cells->depth * cells->edge));
+    f->is_asked = 1;
+}
+
+uint32_t noh_crowd_field_build(noh_crowd *crowd, uint32_t visits)
+{
+    NOH_ASSERT(crowd && !crowd->to_do);
+    return crowd->flow ? noh_crowd_flow_build(crowd, visits) : 0;
+}
+
+void noh_crowd_follow(noh_crowd *crowd, uint32_t index, uint32_t field)
+{
+    NOH_ASSERT(crowd && index < crowd->agent_max);
+    NOH_ASSERT(field == NOH_NONE || (crowd->flow && field < CROWD_CONST(crowd_flow, crowd, flow)->field_count));
+    uint32_t *state = CROWD_ARRAY(uint32_t, crowd, state) + index;
+    const uint32_t follows = field == NOH_NONE ? 0 : field + 1u;
+    *state = (*state & (CROWD_FLAGS | CROWD_WAITED)) | follows << CROWD_FOLLOWS_SHIFT;
+}
+
+int noh_crowd_field_at(const noh_crowd *crowd, uint32_t field, const float at[2], float direction[2])
+{
+    vec2 way;
+    NOH_ASSERT(crowd && at && direction && crowd->flow);
+    const crowd_field *f = noh_crowd_followed(crowd, (field + 1u) << CROWD_FOLLOWS_SHIFT);
+    if (!f->is_built || !noh_crowd_flow_way(crowd, f, v2(at[0], at[1]), &way)) return 0;
+    direction[0] = way.x;
+    direction[1] = way.z;
+    return 1;
+}
+
 int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent)
 {
     NOH_ASSERT(crowd && agent && index < crowd->agent_max);
@@ -189,7 +256,8 @@ int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_ag
     if (!(w->radius > 0.0f)) return 0;
     memcpy(agent->position, CROWD_CONST(vec2, crowd, position) + index, sizeof agent->position);
     memcpy(agent->velocity, CROWD_CONST(vec2, crowd, velocity) + index, sizeof agent->velocity);
-    memcpy(agent->goal, &w->goal, sizeof agent->goal);
+    const crowd_field *field = noh_crowd_followed(crowd, CROWD_CONST(uint32_t, crowd, state)[index]);
+    memcpy(agent->goal, field ? &field->asked : &w->goal, sizeof agent->goal);
     agent->radius = w->radius;
     agent->speed = w->speed;
     agent->flags = given_flags(CROWD_CONST(uint32_t, crowd, state)[index]);
@@ -241,7 +309,10 @@ uint32_t noh_crowd_jobs(noh_crowd *crowd)
         crowd->phase = SORT;
         if (!--crowd->to_do) return 0;
     }
-    if (crowd->phase == SORT) noh_crowd_sort(crowd);
+    if (crowd->phase == SORT) {
+        if (crowd->flow) (void)noh_crowd_flow_build(crowd, CROWD_CONST(crowd_flow, crowd, flow)->visits);
+        noh_crowd_sort(crowd);
+    }
     crowd->phase = crowd->phase == SEE && !crowd->corrected ? FINISH : crowd->phase + 1u;
     return crowd->job_count;
 }

@@ -3,6 +3,7 @@
  *   noh_crowd_size, noh_crowd_init   a crowd in one block
  *   noh_crowd_put, noh_crowd_remove  an agent enters, leaves
  *   noh_crowd_aim, noh_crowd_pace    where it wants to go, how fast
+ *   noh_crowd_field_aim, noh_crowd_follow   a goal that many share, behind any walls; who goes there
  *   noh_crowd_step                   time moves on
  *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
  *   noh_crowd_agent_at               where an agent is, as shown; noh_crowd_agent_stepped: as of the last step
@@ -14,12 +15,16 @@
  * agent whose speed is 0 holds its place, and others make way. What an agent reads was written in the step or iteration
  * before, so that neither the order of agents nor the number of threads changes a bit. Obstacles are walls and posts
  * that do not move; a wish that leads into one is turned past its nearer end, and no agent is ever pushed through.
- * Behind a maze of walls a goal is not found this way.
+ * Behind a maze of walls a goal is not found this way, but by a flow field: for each cell of a grid the direction of
+ * the shortest way to a goal, in one byte. Steps build it in slices of bounded work; any number of agents may follow
+ * it.
  *
  * A crowd is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
  * source   Weiss, Litteneker, Jiang, Terzopoulos: Position-Based Multi-Agent Dynamics for Real-Time Crowd Simulation,
  *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations); van den Berg, Guy, Lin, Manocha:
- *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA)
+ *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA); Zhao: A fast sweeping method for Eikonal
+ *          equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi: Some improvements for the fast sweeping
+ *          method, SIAM Journal on Scientific Computing 2010 (only cells whose neighbours have changed)
  * Threads: a crowd belongs to one thread at a time; noh_crowd_job alone may be called from several at once. */
 #ifndef NOH_CROWD_CROWD_H
 #define NOH_CROWD_CROWD_H
@@ -50,13 +55,18 @@ typedef struct noh_crowd_desc {
     float reach;             /* how far an agent looks for neighbours and obstacles; default (0) 3 */
     uint32_t obstacle_count; /* 0..NOH_CROWD_OBSTACLES_MAX */
     const noh_crowd_obstacle *obstacles; /* [obstacle_count]; copied by init */
+    uint32_t field_count;                /* flow fields over the grid's area, 0..NOH_CROWD_FIELDS_MAX */
+    float field_cell;      /* edge of their cells, which are at most NOH_CROWD_FIELD_CELLS_MAX; default (0) 0.5 */
+    float field_radius;    /* of the widest agent that follows one, 0..half of the reach, at least half a cell: a way is
+                              found where it is wider than twice this and a cell */
+    uint32_t field_visits; /* cells that a step looks at for a field that is being built; default (0) 8192 */
 } noh_crowd_desc;
 
 /* An agent as it enters, and as it is asked for. */
 typedef struct noh_crowd_agent {
     float position[2]; /* x, z */
     float velocity[2]; /* metres per second */
-    float goal[2];     /* it slows down before its goal, and stays there */
+    float goal[2];     /* it slows down before its goal, and stays there; as asked: that of a field it follows */
     float radius;      /* above 0, at most half of the reach */
     float speed;       /* that it likes to walk at, 0..15 radii per second; 0: it holds its place */
     uint32_t flags;    /* NOH_CROWD_ORCA, _FORCES, _FLOCK or 0 */
@@ -77,12 +87,13 @@ typedef struct noh_crowd noh_crowd;
 
 /* The exact bytes of a crowd: 132, 88 an agent, 4 a cell of the grid; with obstacles 4 a cell more, 20 an obstacle and
  * 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
- * many as agents, and one. 0 for an impossible desc. */
+ * many as agents, and one. With flow fields 2,136, 24 a field, and for each of their cells 5 and one a field. 0 for an
+ * impossible desc. */
 size_t noh_crowd_size(const noh_crowd_desc *desc);
 
 /* A crowd without agents.
  * errors  ARG memory is NULL or misaligned, a number is out of its range (where: the obstacle); LIMIT no agents, or too
- *         many agents, jobs or obstacles; MEMORY it is too small */
+ *         many agents, jobs, obstacles, flow fields or cells of these; MEMORY it is too small */
 noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc, noh_crowd **crowd, noh_error *error);
 
 /* An agent enters at an index of the caller's choice, in place of the one that is there.
@@ -94,6 +105,22 @@ void noh_crowd_remove(noh_crowd *crowd, uint32_t index);
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
 /* speed 0..15 radii per second: what is outside is clamped */
 void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed);
+
+/* ---- goals that many share ---- */
+
+/* A flow field is to lead to a goal, or to the place nearest to it where an agent can stand. Fields are built one after
+ * the other by the steps that follow; until then agents follow the one before, and where there is none go straight.
+ * shapes  goal[2] finite: within the grid's area, or clamped to it */
+void noh_crowd_field_aim(noh_crowd *crowd, uint32_t field, const float goal[2]);
+/* Look at up to this many cells at once, as when a game loads, in place of field_visits a step.
+ * returns  flow fields that are asked for and not built yet */
+uint32_t noh_crowd_field_build(noh_crowd *crowd, uint32_t visits);
+/* An agent goes where a flow field leads, and straight from where it can see its goal or no way leads to it. NOH_NONE:
+ * to a goal of its own again, the last that it was given. */
+void noh_crowd_follow(noh_crowd *crowd, uint32_t index, uint32_t field);
+/* shapes   direction[2] unit
+ * returns  0 where no way leads to the goal from, or the field is not built: nothing is written */
+int noh_crowd_field_at(const noh_crowd *crowd, uint32_t field, const float at[2], float direction[2]);
 
 /* Time passes, in any pieces; in one call by NOH_CROWD_STEPS_MAX steps, what is left of a longer time is dropped.
  * returns  steps that were made */

@@ -9,7 +9,7 @@
 #define NEAR 1.5f          /* of the radii: who is within this after the step, as planned, may be touched */
 #define AWAITED 0.2f       /* of its speed: an agent below this waits */
 #define RECOVERY 4u        /* steps of waiting that a step of walking makes up for */
-#define WAITED_MAX 255u
+#define WAITED_MAX CROWD_WAITED
 
 /* What neighbours ask of an agent. */
 typedef struct asked {
@@ -125,7 +125,7 @@ void noh_crowd_finish(noh_crowd *c, uint32_t rank)
     const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
     const uint32_t item = CROWD_ITEM(b);
     const float speed = CROWD_CONST(crowd_wish, c, wish)[item].speed, fast = CROWD_FAST * speed;
-    uint32_t *state = CROWD_ARRAY(uint32_t, c, state) + item, waited = *state & ~CROWD_FLAGS;
+    uint32_t *state = CROWD_ARRAY(uint32_t, c, state) + item, waited = *state & CROWD_WAITED;
     vec2 plan = c->corrected && (CROWD_ITERATIONS & 1u) ? CROWD_CONST(vec2, c, plan[1])[rank]
                                                         : CROWD_CONST(vec2, c, plan[0])[rank];
     const float square = v2_dot(plan, plan);
@@ -137,7 +137,7 @@ void noh_crowd_finish(noh_crowd *c, uint32_t rank)
     } else {
         waited -= waited < RECOVERY ? waited : RECOVERY;
     }
-    *state = waited | (*state & CROWD_FLAGS);
+    *state = waited | (*state & ~CROWD_WAITED);
     CROWD_ARRAY(vec2, c, velocity)[item] = velocity;
     CROWD_ARRAY(vec2, c, position)[item] = to;
 }

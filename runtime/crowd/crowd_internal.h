@@ -19,6 +19,8 @@
 #define CROWD_ORCA 0x40000000u    /* its plan is not corrected */
 #define CROWD_HOLDS 0x80000000u   /* it stands, and is not pushed */
 #define CROWD_FLAGS 0x70000000u   /* of the state, too: NOH_CROWD_* */
+#define CROWD_WAITED 0xffu        /* of the state: steps */
+#define CROWD_FOLLOWS_SHIFT 8u    /* of the state: 1 and the flow field, of 8 bits */
 #define CROWD_ITEMS 0x0fffffffu   /* the rest */
 #define CROWD_FAST 1.5f           /* times the speed that an agent likes: the most that it is pushed to */
 
@@ -53,15 +55,40 @@ struct noh_crowd {
     float reach;
     noh_steps time;
     crowd_cells cells;
-    uint32_t position, velocity, wish, id, state; /* by agent; state: steps that it waited, and the flags below */
-    uint32_t body, plan[2], neighbor;             /* by rank; neighbor: names [CROWD_NEIGHBORS] of each */
-    uint32_t start;                               /* by cell: its first rank; one more at the end */
-    uint32_t obstacle, near_start, near;          /* obstacles; by cell: its first in near; indices of obstacles */
+    uint32_t position, velocity, wish, id,
+        state; /* by agent; state: steps that it waited, the field that it follows, and the flags above */
+    uint32_t body, plan[2], neighbor;    /* by rank; neighbor: names [CROWD_NEIGHBORS] of each */
+    uint32_t start;                      /* by cell: its first rank; one more at the end */
+    uint32_t obstacle, near_start, near; /* obstacles; by cell: its first in near; indices of obstacles */
     uint32_t bytes;
     uint32_t corrected; /* agents of the step whose plans are corrected */
-    uint32_t reserved[2];
+    uint32_t flow;      /* a crowd_flow; 0: there are no flow fields */
+    uint32_t reserved;
 };
 NOH_STATIC_ASSERT(sizeof(noh_crowd) == 128, crowd);
+
+#define CROWD_CODES 256u /* of directions: 0 none, then 255 in equal steps */
+
+/* A flow field: where it leads, where it is to lead, and its codes, one a cell. */
+typedef struct crowd_field {
+    vec2 goal, asked;
+    uint32_t codes; /* where they lie behind the crowd_flow */
+    uint16_t is_built, is_asked;
+} crowd_field;
+
+/* All flow fields, and the one that is being built. Distances are the lengths of the shortest ways to the goal. */
+typedef struct crowd_flow {
+    crowd_cells cells;
+    uint32_t field_count, visits;  /* visits: of a step */
+    uint32_t building, phase;      /* NOH_NONE: no field is being built */
+    uint32_t next;                 /* to be built, if it is asked for */
+    uint32_t cursor, sweep, awake; /* of the phase; cells whose neighbours have changed */
+    uint32_t source;               /* the cell nearest to the goal that an agent can stand in */
+    float source_square;
+    vec2 goal;                                  /* of the field that is being built */
+    uint32_t field, distance, codes, direction; /* [field_count]; by cell, below 0: blocked; by cell; [CROWD_CODES] */
+} crowd_flow;
+NOH_STATIC_ASSERT(sizeof(crowd_field) == 24 && sizeof(crowd_flow) == 88, crowd_flow);
 NOH_STATIC_ASSERT(sizeof(crowd_body) == 16 && sizeof(crowd_wish) == 16, crowd_records);
 
 #define CROWD_ARRAY(type, crowd, name) ((type *)(void *)((char *)(crowd) + (crowd)->name))
@@ -136,10 +163,26 @@ void noh_crowd_see(noh_crowd *c, uint32_t rank);
 uint32_t noh_crowd_near_of(const noh_crowd *c, vec2 at, const uint16_t **near);
 /* From the nearest point of its middle line. */
 vec2 noh_crowd_away_from(const noh_crowd_obstacle *o, vec2 at);
+/* Whether a point can go from one place to another within reach, past all that is near. */
+int noh_crowd_sees(const noh_crowd *c, vec2 from, vec2 to);
 /* The unit direction in which to walk towards what lies `distance` away in a unit direction. */
 vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance);
 /* Where a step from `from` to `to` ends: outside of everything. */
 vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
+
+/* ---- crowd_flow.c, crowd_follow.c ---- */
+
+/* Rows and columns of flow fields. returns 0 where they are too many */
+int noh_crowd_flow_cells(const noh_crowd_desc *desc, crowd_cells *cells);
+uint32_t noh_crowd_flow_bytes(const crowd_cells *cells, uint32_t field_count);
+/* Which cells are blocked, and no field. */
+void noh_crowd_flow_init(noh_crowd *c, const noh_crowd_desc *desc);
+/* returns  fields that are still to be built */
+uint32_t noh_crowd_flow_build(noh_crowd *c, uint32_t visits);
+/* The field that an agent follows; NULL: none */
+const crowd_field *noh_crowd_followed(const noh_crowd *c, uint32_t state);
+/* returns  0 where no way is known */
+int noh_crowd_flow_way(const noh_crowd *c, const crowd_field *field, vec2 at, vec2 *direction);
 
 /* ---- flock.c ---- */
 

@@ -118,6 +118,21 @@ vec2 noh_crowd_away_from(const noh_crowd_obstacle *o, vec2 at)
     return away_from(&w, at);
 }
 
+int noh_crowd_sees(const noh_crowd *c, vec2 from, vec2 to)
+{
+    const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);
+    const uint16_t *near = NULL;
+    const uint32_t count = noh_crowd_near_of(c, from, &near);
+    const vec2 way = v2_sub(to, from);
+    const float distance = v2_length(way);
+    if (!(distance > 0.0f)) return 1;
+    for (uint32_t k = 0; k < count; k++) {
+        const wall w = wall_of(&obstacles[near[k]], 0.0f);
+        if (blocks(&w, from, v2_scale(way, 1.0f / distance), distance)) return 0;
+    }
+    return 1;
+}
+
 vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance)
 {
     const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);

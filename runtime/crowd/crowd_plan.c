@@ -86,13 +86,26 @@ static float speed_at(const crowd_wish *w, float distance)
     return slow < w->speed ? slow : w->speed;
 }
 
+/* By a flow field, at full speed, as long as the goal is neither near nor seen. returns 0 where that is not so */
+static int is_led(const noh_crowd *c, const crowd_field *field, const crowd_body *b, float distance, float speed,
+                  vec2 *direction)
+{
+    const float near = speed * (1.0f / ARRIVE) + b->radius;
+    if (distance < c->reach && distance < near && noh_crowd_sees(c, b->at, field->goal)) return 0;
+    return noh_crowd_flow_way(c, field, b->at, direction);
+}
+
 /* Towards the goal, past walls; *speed: how fast. returns 0 where it is there */
 static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish *w, vec2 *direction, float *speed)
 {
-    const vec2 to = v2_sub(w->goal, b->at);
+    const crowd_field *field = noh_crowd_followed(c, CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(b)]);
+    const vec2 to = v2_sub(!field ? w->goal : field->is_built ? field->goal : field->asked, b->at);
     const float distance = v2_length(to);
+    *speed = w->speed;
+    if (!(w->speed > 0.0f)) return 0;
+    if (field && field->is_built && is_led(c, field, b, distance, w->speed, direction)) return 1;
     *speed = speed_at(w, distance);
-    if (!(distance > 1e-6f) || !(*speed > 0.0f)) return 0;
+    if (!(distance > 1e-6f)) return 0;
     *direction = noh_crowd_detour(c, b->at, b->radius, v2_scale(to, 1.0f / distance), distance);
     return 1;
 }
@@ -112,7 +125,7 @@ void noh_crowd_plan(noh_crowd *c, uint32_t rank)
 {
     const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
     const crowd_wish *w = CROWD_CONST(crowd_wish, c, wish) + CROWD_ITEM(b);
-    const uint32_t waited = CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(b)] & ~CROWD_FLAGS;
+    const uint32_t waited = CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(b)] & CROWD_WAITED;
     const vec2 now = CROWD_CONST(vec2, c, plan[1])[rank];
     vec2 direction, wish = v2(0.0f, 0.0f);
     float speed;
