@@ -45,6 +45,7 @@
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
 #include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
+#include "stage/walkers.h"          /* actors that go where agents of a crowd go */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
 #include "stage/springs.h"          /* chains of joints that swing */
 #include "stage/wig.h"              /* hair of actors */
@@ -125,8 +126,9 @@
 
 /* ---- many of them, on the ground ---- */
 
-#include "crowd/crowd.h" /* agents that walk to their goals and stay out of each other's way */
-#include "crowd/flock.h" /* rules of a flock, one by one */
+#include "crowd/crowd.h"        /* agents that walk to their goals and stay out of each other's way */
+#include "crowd/flock.h"        /* rules of a flock, one by one */
+#include "crowd/smart_object.h" /* things that agents use, one at a time */
 
 /* ---- parts, for tools and engines of your own ---- */
 

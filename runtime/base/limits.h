@@ -97,6 +97,9 @@
 #define NOH_CROWD_FIELDS_MAX 255u            /* flow fields of one crowd */
 #define NOH_CROWD_FIELD_CELLS_MAX (1u << 20) /* of one flow field */
 #define NOH_CROWD_STEPS_MAX 4u               /* of 1/30 s in one call; what is left of a longer time is dropped */
+#define NOH_SMART_NEEDS_MAX 8u
+#define NOH_SMART_OBJECTS_MAX 1024u
+#define NOH_SMART_SLOTS_MAX 8192u
 
 /* ---- controllers and graphs ---- */
 

@@ -286,6 +286,45 @@ INIT(crowd_init)
     return noh_crowd_init(memory, bytes, &desc, &crowd, error);
 }
 
+INIT(smart_init)
+{
+    static const noh_smart_object bench = { 0, 0.5f, 48000, 0, 1 };
+    static const noh_smart_slot seat = { { 0.0f, 0.0f }, { 1.0f, 0.0f }, 0, 0, 0, 0, 0, 48000 };
+    const noh_smart_desc desc = { 5, 1, 1, 1, &bench, &seat, { 0.1f } };
+    noh_smart *smart;
+    return noh_smart_init(memory, bytes, &desc, &smart, error);
+}
+
+/* A stage that draws nothing, made once. */
+static noh_stage *walkers_stage(noh_error *error)
+{
+    static noh_stage_plan plan;
+    static noh_kind_desc kind;
+    static noh_stage_desc desc;
+    static noh_stage *stage;
+    if (stage) return stage;
+    kind.mesh = &s.pack;
+    kind.actor_count = 2;
+    desc.kinds = &kind;
+    desc.kind_count = 1;
+    if (noh_stage_plan_make(&desc, NULL, &plan, error) != NOH_OK) fail_msg("plan: %s", error->what);
+    void *memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
+    if (noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &desc, &plan, &stage, error)) fail_msg("%s", error->what);
+    return stage;
+}
+
+INIT(walkers_init)
+{
+    noh_walkers_desc desc;
+    noh_walkers *walkers;
+    noh_stage *stage = walkers_stage(error);
+    memset(&desc, 0, sizeof desc);
+    desc.walker_max = 3;
+    desc.walk = noh_stage_name(stage, 0, NOH_NAME_CLIP, 0);
+    desc.walk_speed = 1.0f;
+    return noh_walkers_init(memory, bytes, &desc, stage, &walkers, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -411,6 +450,8 @@ static const struct {
     ROW(springs_init),
     ROW(hair_init),
     ROW(crowd_init),
+    ROW(smart_init),
+    ROW(walkers_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
     ROW(time_lod_measure),

@@ -1,0 +1,252 @@
+/* walkers_step.c: places and clips that follow agents. */
+#include <string.h>
+
+#include "base/math_internal.h"
+#include "base/quat.h"
+#include "base/trig.h"
+#include "stage/walkers_internal.h"
+
+#define TURN_HALF_LIFE_S 0.2f  /* of the velocity that headings follow */
+#define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */
+#define GOES 0.12f             /* of the walk's speed: slower ones have no direction */
+#define LONG_STEPS 0.25f       /* of the walk's speed: from here on its steps are not shortened */
+#define BLEND_PER_S 4.0f       /* how fast the walk comes and goes */
+#define ABOUT_M 0.12f          /* of a foot from the axis that it turns about: turning is stepping */
+#define RATE_MAX 2.5f          /* of the walk: faster than that is a stumble that does not end */
+#define CLIMB_RATE 14.0f       /* of the spring that follows the ground, 1/s */
+#define LEAP_M 1.0f            /* in a step: not a way that is walked */
+
+typedef struct step {
+    noh_walkers *w;
+    noh_stage *stage;
+    noh_stage_kind *k;
+    const noh_ground *ground;
+    uint32_t ticks;
+    float seconds;
+} step;
+
+static float towards(float x, float goal, float most)
+{
+    const float off = goal - x;
+    return off > most ? x + most : off < -most ? x - most : goal;
+}
+
+static float within(float x, float low, float high)
+{
+    return x >= low ? x <= high ? x : high : low;
+}
+
+static float dot2(const float a[2], const float b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/* ---- heading ---- */
+
+/* Turn to a unit vector, by an angle at most. returns the angle */
+static float turn(float heading[2], const float to[2], float most)
+{
+    const float cross = heading[0] * to[1] - heading[1] * to[0];
+    const float angle = noh_atan2(cross, dot2(heading, to)), by = within(angle, -most, most);
+    float sine, cosine;
+    noh_sin_cos(by, &sine, &cosine);
+    const float x = heading[0] * cosine - heading[1] * sine, z = heading[0] * sine + heading[1] * cosine;
+    const float per = 1.0f / noh_sqrt(x * x + z * z);
+    heading[0] = x * per;
+    heading[1] = z * per;
+    return by < 0.0f ? -by : by;
+}
+
+/* Where it goes, or, standing, where it is asked to look. returns the angle that it turned by where it stands */
+static float find_heading(const step *s, walker *r, float walk)
+{
+    const float square = dot2(r->velocity, r->velocity), least = GOES * walk;
+    const float most = s->w->turn_speed * s->seconds;
+    if (square > least * least) {
+        const float per = 1.0f / noh_sqrt(square), to[2] = { r->velocity[0] * per, r->velocity[1] * per };
+        (void)turn(r->heading, to, most);
+        return 0.0f;
+    }
+    return r->face[0] != 0.0f || r->face[1] != 0.0f ? turn(r->heading, r->face, most) : 0.0f;
+}
+
+/* ---- clips ---- */
+
+/* Speeds in model units a second. */
+typedef struct gait {
+    float walk, run; /* of the clips */
+    float now, even; /* ahead in this step, and smoothed */
+} gait;
+
+static float speed_of(const walker_clip *c)
+{
+    return c->clip == NOH_NONE ? 0.0f : c->stride * (float)NOH_TICKS_PER_SECOND / (float)c->ticks;
+}
+
+/* How far it runs. Clips that are not in step are not blended but for the change. */
+static float runs_of(const noh_walkers *w, const walker *r, const gait *g)
+{
+    if (!(g->run > g->walk)) return 0.0f;
+    const float part = within((g->even - g->walk) / (g->run - g->walk), 0.0f, 1.0f);
+    if (w->in_step) return part;
+    return part > (r->runs > 0.5f ? 0.3f : 0.6f) ? 1.0f : 0.0f;
+}
+
+static void blend(const step *s, walker *r, const gait *g)
+{
+    const float most = BLEND_PER_S * s->seconds;
+    const float goes = within(g->even / (LONG_STEPS * g->walk), 0.0f, 1.0f);
+    r->goes = s->w->clips[WALKER_IDLE].clip == NOH_NONE ? 1.0f : towards(r->goes, goes, most);
+    r->runs = towards(r->runs, runs_of(s->w, r, g), most);
+}
+
+/* Passes in a second at which the blend of the clips leads as far as the agent goes. */
+static float pace(const noh_walkers *w, const walker *r, const gait *g)
+{
+    const walker_clip *walk = &w->clips[WALKER_WALK], *run = &w->clips[WALKER_RUN];
+    const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
+    const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* of the run, too */
+    const float rate = stride > 1e-3f * walk->stride ? g->now / stride : 0.0f;
+    return rate > most ? most : rate;
+}
+
+/* Where the root is about its straight way at the end of the step, in model units. */
+static void add_sway(const walker_clip *c, const noh_track *track, int64_t speed, uint32_t ticks, float weight,
+                     float sway[2])
+{
+    const int64_t pass = noh_position_of(c->ticks);
+    int64_t at = (track->position + speed * (int64_t)ticks) % pass;
+    at = (at < 0 ? at + pass : at) * (int64_t)WALKER_SWAY;
+    const uint32_t i = (uint32_t)(at / pass);
+    const float part = (float)(at % pass) / (float)pass;
+    for (int k = 0; k < 2; k++) sway[k] += weight * (c->sway[i][k] + part * (c->sway[i + 1u][k] - c->sway[i][k]));
+}
+
+/* Weights and speeds of the tracks for this step. */
+static void play(const step *s, const walker *r, noh_controller *c, float passes, float sway[2])
+{
+    const float weights[WALKER_CLIPS] = { r->goes * (1.0f - r->runs), 1.0f - r->goes, r->goes * r->runs };
+    uint32_t track = s->k->layers[s->w->layer].first_track;
+    sway[0] = sway[1] = 0.0f;
+    for (uint32_t i = 0; i < WALKER_CLIPS; i++) {
+        const walker_clip *clip = &s->w->clips[i];
+        int32_t speed = 65536;
+        if (clip->clip == NOH_NONE) continue;
+        if (i != WALKER_IDLE) {
+            const float rate = passes * (float)clip->ticks * (65536.0f / (float)NOH_TICKS_PER_SECOND);
+            speed = (int32_t)(within(rate, 0.0f, (float)NOH_SPEED_MAX) + 0.5f);
+        }
+        (void)noh_controller_set_weight(c, track, weights[i]);
+        (void)noh_controller_set_speed(c, track, speed);
+        if (clip->ticks) add_sway(clip, noh_controller_track(c, track), speed, s->ticks, weights[i], sway);
+        track++;
+    }
+}
+
+/* ---- place ---- */
+
+static float ground_at(const step *s, const walker *r)
+{
+    const float up = 2.0f, from[3] = { r->at[0], r->height + up, r->at[1] };
+    float normal[3];
+    if (!s->ground || !(s->ground->world || s->ground->below)) return 0.0f;
+    const float distance = noh_ground_below(s->ground, from, 1e3f, normal);
+    return distance < 0.0f ? r->height : from[1] - distance;
+}
+
+/* Critically damped, exact for steps of any length. */
+static void climb(const step *s, walker *r)
+{
+    const float goal = ground_at(s, r), off = r->height - goal;
+    const float part = (r->climb + CLIMB_RATE * off) * s->seconds;
+    const float shrink = noh_exp2(-1.44269504f * CLIMB_RATE * s->seconds);
+    r->height = r->begun ? goal + (off + part) * shrink : goal;
+    r->climb = r->begun ? (r->climb - CLIMB_RATE * part) * shrink : 0.0f;
+}
+
+/* The rotation about y that takes the walk's way to the heading. */
+static void rotation_of(const noh_walkers *w, const float heading[2], float rotation[4])
+{
+    const float cosine = dot2(w->forward, heading);
+    const float sine = w->forward[1] * heading[0] - w->forward[0] * heading[1];
+    const float half = noh_sqrt(within(0.5f - 0.5f * cosine, 0.0f, 1.0f));
+    memset(rotation, 0, 4 * sizeof *rotation);
+    rotation[1] = sine < 0.0f ? -half : half;
+    rotation[3] = noh_sqrt(within(0.5f + 0.5f * cosine, 0.0f, 1.0f));
+}
+
+static void put(const step *s, const walker *r, noh_stage_actor *a, const float sway[2])
+{
+    noh_place place;
+    const float local[3] = { sway[0], 0.0f, sway[1] };
+    float turned[3];
+    (void)noh_actor_place(s->stage, (noh_actor){ r->actor }, &place, NULL);
+    rotation_of(s->w, r->heading, place.rotation);
+    noh_quat_rotate(place.rotation, local, turned);
+    place.position[0] = r->at[0] + a->place.scale * turned[0];
+    place.position[1] = r->height;
+    place.position[2] = r->at[1] + a->place.scale * turned[2];
+    (void)noh_actor_set_place(s->stage, (noh_actor){ r->actor }, &place, NULL);
+    if (!r->begun) (void)noh_actor_cut(s->stage, (noh_actor){ r->actor }, NULL);
+}
+
+/* ---- a step ---- */
+
+static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[2])
+{
+    const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] };
+    const float per = 1.0f / (s->seconds * a->place.scale); /* model units a second */
+    const float keep = noh_exp2(-s->seconds / TURN_HALF_LIFE_S);
+    gait g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f };
+    float sway[2];
+    if (dot2(way, way) > LEAP_M * LEAP_M) r->begun = 0;
+    memcpy(r->at, to, sizeof r->at);
+    for (int i = 0; i < 2 && r->begun; i++) {
+        r->velocity[i] = per * way[i] + keep * (r->velocity[i] - per * way[i]);
+    }
+    const float steps = ABOUT_M * find_heading(s, r, g.walk) * per;
+    const float ahead = per * dot2(way, r->heading), any = 0.6f * per * noh_sqrt(dot2(way, way));
+    g.now = !r->begun ? 0.0f : ahead > any ? ahead : any;
+    g.now = g.now > steps ? g.now : steps;
+    r->even = g.now + noh_exp2(-s->seconds / EVEN_HALF_LIFE_S) * (r->even - g.now);
+    g.even = r->even;
+    blend(s, r, &g);
+    play(s, r, noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a))), pace(s->w, r, &g), sway);
+    climb(s, r);
+    put(s, r, a, sway);
+    r->begun = 1;
+}
+
+static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
+{
+    noh_crowd_agent agent;
+    noh_stage_kind *k;
+    noh_stage_actor *a = noh_stage_actor_of(s->stage, (noh_actor){ r->actor }, &k);
+    if (!a) {
+        r->actor = 0;
+        return;
+    }
+    if (k->ragdoll && noh_stage_is_carried(noh_stage_body_of(k, noh_stage_index(k, a)))) {
+        r->begun = 0;
+        return;
+    }
+    memcpy(agent.position, r->at, sizeof agent.position); /* without its agent it stops */
+    (void)noh_crowd_agent_at(crowd, r->agent, &agent);
+    follow(s, r, a, agent.position);
+}
+
+noh_result noh_walkers_step(noh_walkers *walkers, const noh_crowd *crowd, noh_stage *stage, const noh_ground *ground,
+                            uint32_t ticks, noh_error *error)
+{
+    NOH_ASSERT(walkers && crowd && stage);
+    const step s = { walkers, stage, &stage->kinds[walkers->kind],
+                     ground,  ticks, (float)ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) };
+    if (stage->phase != NOH_STAGE_IDLE) {
+        return noh_fail(error, NOH_ERR_ARG, "walkers go on outside of steps and frames", 0, 0);
+    }
+    for (uint32_t i = 0; i < walkers->walker_max && ticks; i++) {
+        walker *r = noh_walker_at(walkers, i);
+        if (r->actor) step_walker(&s, crowd, r);
+    }
+    return NOH_OK;
+}

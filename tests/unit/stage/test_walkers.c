@@ -1,0 +1,504 @@
+/* Walkers: actors that go where agents of a crowd go. How far feet that stand slide is measured on the joints that are
+ * shown, at several speeds and frame rates. NOH_WALKERS_PACK names another pack to measure, with clips walk and run. */
+#include "support/stage_fixture.h"
+
+#include <math.h>
+
+#include "stage/walkers.h"
+
+#define RADIUS 0.25f
+
+typedef struct street {
+    cast cast;
+    noh_kind_feet feet;
+    noh_stage_part part;
+    noh_world world;
+    noh_plane floor;
+    noh_crowd *crowd;
+    noh_walkers *walkers;
+    void *crowd_memory, *walkers_memory;
+    size_t crowd_bytes;
+    uint32_t count, ticks;
+    int own_speed; /* 1: clips play at their own, as the source has them */
+} street;
+
+/* ---- a street ---- */
+
+static void map_pack(street *s)
+{
+    const char *other = getenv("NOH_WALKERS_PACK");
+    noh_ragdoll_source source;
+    noh_error said;
+    if (other) {
+        if (noh_file_map(other, &s->cast.files[0], &said) != NOH_OK) fail_msg("%s: %s", other, said.what);
+        s->cast.packs[0] = test_open(s->cast.files[0].data, s->cast.files[0].bytes);
+    } else {
+        cast_map(&s->cast, PUPPETS, "demo/puppet_levels.noh");
+    }
+    memset(&source, 0, sizeof source);
+    source.pack = &s->cast.packs[0];
+    source.metres = 1.0f;
+    assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
+    if (noh_feet_rig_make(&source, &s->feet.rig, &said) != NOH_OK) fail_msg("rig: %s", said.what);
+}
+
+static void make_crowd(street *s, uint32_t jobs)
+{
+    noh_crowd_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.agent_max = s->count;
+    desc.job_count = jobs;
+    desc.origin[0] = desc.origin[1] = -20.0f;
+    desc.extent[0] = desc.extent[1] = 40.0f;
+    s->crowd_bytes = noh_crowd_size(&desc);
+    s->crowd_memory = test_aligned(NULL, s->crowd_bytes);
+    assert_int_equal(noh_crowd_init(s->crowd_memory, noh_crowd_size(&desc), &desc, &s->crowd, NULL), NOH_OK);
+}
+
+static noh_walkers_desc walkers_desc(const street *s, uint32_t near_max)
+{
+    noh_walkers_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.walker_max = s->count;
+    desc.near_max = near_max;
+    desc.feet_part = 1;
+    desc.walk = "walk";
+    desc.idle = noh_stage_find(s->cast.stage, 0, NOH_NAME_CLIP, "idle") == NOH_NONE ? NULL : "idle";
+    desc.run = noh_stage_find(s->cast.stage, 0, NOH_NAME_CLIP, "run") == NOH_NONE ? NULL : "run";
+    return desc;
+}
+
+static void open_street(street *s, uint32_t count, uint32_t near_max, uint32_t jobs)
+{
+    static const noh_layer_desc layers[] = { { "body", NOH_LAYER_BASE, NULL, NULL, 3 } };
+    noh_error said;
+    memset(s, 0, sizeof *s);
+    map_pack(s);
+    s->floor.normal[1] = 1.0f;
+    s->world.planes = &s->floor;
+    s->world.plane_count = 1;
+    s->feet.ground.world = &s->world;
+    s->part = noh_walkers_feet_part(&s->feet);
+    s->count = count;
+    noh_kind_desc *k = &s->cast.kinds[0];
+    k->mesh = &s->cast.packs[0];
+    k->actor_count = count;
+    k->layers = layers;
+    k->layer_count = 1;
+    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
+    k->root_up = 1;
+    k->root_told = 1;
+    k->parts = &s->part;
+    k->part_count = 1;
+    s->cast.desc.kinds = s->cast.kinds;
+    s->cast.desc.kind_count = 1;
+    s->cast.desc.job_count = jobs;
+    s->cast.desc.full_detail = near_max != 0;
+    cast_make(&s->cast, NULL);
+    make_crowd(s, jobs);
+    const noh_walkers_desc desc = walkers_desc(s, near_max);
+    s->walkers_memory = test_aligned(NULL, noh_walkers_size(&desc));
+    if (noh_walkers_init(s->walkers_memory, noh_walkers_size(&desc), &desc, s->cast.stage, &s->walkers, &said)) {
+        fail_msg("walkers: %s", said.what);
+    }
+}
+
+static void close_street(street *s)
+{
+    cast_close_stage(&s->cast);
+    noh_file_unmap(&s->cast.files[0]);
+    free(s->crowd_memory);
+    free(s->walkers_memory);
+}
+
+static noh_actor enter(street *s, uint32_t index, const float at[2], const float goal[2], float speed)
+{
+    const noh_crowd_agent agent = { { at[0], at[1] }, { 0, 0 }, { goal[0], goal[1] }, RADIUS, speed, 0, index };
+    const float x = goal[0] - at[0], z = goal[1] - at[1], length = hypotf(x, z);
+    const float heading[2] = { x / length, z / length };
+    noh_look look;
+    noh_actor actor;
+    noh_error said;
+    memset(&look, 0, sizeof look);
+    look.posed = 1;
+    assert_int_equal(noh_crowd_put(s->crowd, index, &agent, NULL), NOH_OK);
+    assert_int_equal(noh_stage_spawn(s->cast.stage, 0, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(s->cast.stage, actor, &look, NULL), NOH_OK);
+    if (noh_walkers_put(s->walkers, index, s->cast.stage, actor, index, heading, &said)) fail_msg("%s", said.what);
+    return actor;
+}
+
+static noh_controller *controller_of(street *s, uint32_t index)
+{
+    return noh_actor_controller(s->cast.stage, noh_stage_actor_at(s->cast.stage, index), NULL);
+}
+
+static void frame(street *s, uint32_t ticks)
+{
+    static const float eye[3] = { 0.0f, 2.0f, 0.0f };
+    noh_stage_view view;
+    noh_crowd_agent agent;
+    (void)noh_crowd_step(s->crowd, ticks);
+    assert_int_equal(noh_walkers_step(s->walkers, s->crowd, s->cast.stage, NULL, ticks, NULL), NOH_OK);
+    if (s->own_speed) (void)noh_controller_set_speed(controller_of(s, 0), 0, 65536);
+    assert_int_equal(noh_stage_step(s->cast.stage, ticks, NULL, NULL, NULL), NOH_OK);
+    (void)noh_walkers_near(s->walkers, s->cast.stage, eye);
+    assert_true(noh_crowd_agent_at(s->crowd, 0, &agent));
+    const float middle[3] = { agent.position[0], 1.0f, agent.position[1] };
+    noh_view_orbit(&view, middle, 0.5f, 0.3f, 4.0f, 640, 360);
+    assert_int_equal(noh_stage_frame_begin(s->cast.stage, &view, 1, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_end(s->cast.stage, NULL), NOH_OK);
+    s->ticks += ticks;
+}
+
+/* ---- slides ---- */
+
+#define SWITCH_M 0.0003f /* lower by so much: the other foot stands */
+
+/* Of the feet of an actor: the one that stands is the lower one, and what its lowest part moves adds up. */
+typedef struct slides {
+    uint32_t foot, part, steps, ready;
+    float was[NOH_FEET_LEGS_MAX][3][3], slid[2], landed[2];
+    float sum, worst, length; /* of whole steps, metres */
+    uint32_t small;           /* of these, those that slid by at most 3 % of a step of 0.426 m */
+} slides;
+
+static void parts_of(const street *s, noh_actor actor, uint32_t leg, float out[3][3])
+{
+    for (uint32_t p = 0; p < 3; p++) {
+        float lowest = 1e9f;
+        memset(out[p], 0, sizeof out[p]);
+        for (uint32_t side = 0; side < 2; side++) {
+            const noh_feet_point *point = &s->feet.rig.legs[leg].points[2u * p + side];
+            float m[12], y;
+            assert_int_equal(noh_actor_joint(s->cast.stage, actor, point->joint, m, NULL), NOH_OK);
+            for (int i = 0; i < 3; i++) {
+                out[p][i] += 0.5f * (m[4 * i] * point->at[0] + m[4 * i + 1] * point->at[1] +
+                                     m[4 * i + 2] * point->at[2] + m[4 * i + 3]);
+            }
+            y = m[4] * point->at[0] + m[5] * point->at[1] + m[6] * point->at[2] + m[7];
+            lowest = y < lowest ? y : lowest;
+        }
+        out[p][1] = lowest;
+    }
+}
+
+static uint32_t lowest_of(float parts[3][3])
+{
+    uint32_t lowest = 0;
+    for (uint32_t p = 1; p < 3; p++) lowest = parts[p][1] < parts[lowest][1] ? p : lowest;
+    return lowest;
+}
+
+static void land(slides *m, uint32_t foot, const float at[3])
+{
+    const float slid = hypotf(m->slid[0], m->slid[1]);
+    if (m->ready > 1) { /* the first step began before */
+        m->sum += slid;
+        m->worst = fmaxf(m->worst, slid);
+        m->length += hypotf(at[0] - m->landed[0], at[2] - m->landed[1]);
+        m->steps++;
+        m->small += slid <= 0.03f * 0.426f ? 1u : 0u;
+    }
+    m->ready++;
+    m->foot = foot;
+    m->landed[0] = at[0];
+    m->landed[1] = at[2];
+    m->slid[0] = m->slid[1] = 0.0f;
+}
+
+static void measure(const street *s, noh_actor actor, slides *m)
+{
+    float parts[NOH_FEET_LEGS_MAX][3][3];
+    uint32_t low[2];
+    for (uint32_t l = 0; l < 2; l++) {
+        parts_of(s, actor, l, parts[l]);
+        low[l] = lowest_of(parts[l]);
+    }
+    const uint32_t foot = m->foot, part = low[foot];
+    if (m->ready) {
+        for (int i = 0; i < 2; i++) m->slid[i] += parts[foot][part][2 * i] - m->was[foot][part][2 * i];
+    }
+    if (parts[1u - foot][low[1u - foot]][1] < parts[foot][part][1] - SWITCH_M)
+        land(m, 1u - foot, parts[1u - foot][low[1u - foot]]);
+    memcpy(m->was, parts, sizeof parts);
+    if (!m->ready) m->ready = 1;
+}
+
+static void tell(const char *name, float speed, uint32_t rate, const slides *m)
+{
+    printf("  %-22s %.2f m/s, %3u Hz: %3u steps of %.3f m, slide %.2f %%, at worst %.2f %%; %u small\n", name,
+           (double)speed, rate, m->steps, (double)(m->length / (float)m->steps), 100.0 * (double)(m->sum / m->length),
+           100.0 * (double)(m->worst * (float)m->steps / m->length), m->small);
+}
+
+/* Straight on, from second `from` to `to` of a walk that begins and ends with standing. */
+static slides walk_straight(float speed, uint32_t rate, float from, float to, uint32_t near_max)
+{
+    const float way = speed * 12.0f, start[2] = { 0.0f, -0.5f * way }, goal[2] = { 0.3f * way, 0.5f * way };
+    slides m;
+    street s;
+    memset(&m, 0, sizeof m);
+    open_street(&s, 1, near_max, 1);
+    const noh_actor actor = enter(&s, 0, start, goal, speed);
+    while ((float)s.ticks < 48000.0f * to) {
+        frame(&s, 48000u / rate);
+        if ((float)s.ticks >= 48000.0f * from) measure(&s, actor, &m);
+    }
+    close_street(&s);
+    return m;
+}
+
+/* An agent at nine tenths of a metre a second, its walk as fast as it was made, at half a metre. */
+static void errata_C13_2_clips_play_at_their_own_speed(void **state)
+{
+    static const float start[2] = { 0.0f, -5.0f }, goal[2] = { 0.0f, 5.0f };
+    float share[2];
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    for (int literal = 0; literal < 2; literal++) {
+        slides m;
+        street s;
+        memset(&m, 0, sizeof m);
+        open_street(&s, 1, 0, 1);
+        s.own_speed = literal;
+        const noh_actor actor = enter(&s, 0, start, goal, 0.9f);
+        for (uint32_t f = 0; f < 420; f++) {
+            frame(&s, CAST_STEP);
+            if (f > 60) measure(&s, actor, &m);
+        }
+        tell(literal ? "at its own speed" : "as fast as it goes", 0.9f, 60, &m);
+        share[literal] = m.sum / m.length;
+        close_street(&s);
+    }
+    assert_true(share[0] <= 0.03f && share[1] > 0.25f);
+}
+
+static void feet_that_stand_do_not_slide(void **state)
+{
+    static const float speeds[] = { 0.2f, 0.35f, 0.5f, 0.75f, 1.0f };
+    static const uint32_t rates[] = { 24, 60, 144 };
+    const int is_other = getenv("NOH_WALKERS_PACK") != NULL;
+    (void)state;
+    for (uint32_t i = 0; i < 15; i++) {
+        const float speed = is_other ? 0.6f + 0.5f * speeds[i / 3] : speeds[i / 3];
+        /* a clip that is no loop jumps at its end: within its first pass */
+        const slides m = walk_straight(speed, rates[i % 3], is_other ? 0.6f : 2.0f, is_other ? 2.6f / speed : 10.0f,
+                                       (uint32_t)is_other);
+        tell(is_other ? "straight on, held" : "straight on", speed, rates[i % 3], &m);
+        assert_true(m.steps > 0 && m.sum <= 0.03f * m.length);
+    }
+}
+
+/* ---- a crowd ----
+ * Agents turn on the spot, and are pushed aside: then feet slide, or step where their clip does not. Most steps do not
+ * slide, and feet that are held slide less. */
+
+#define COUNT 24u
+
+static float chance(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (float)(*seed >> 8) / 16777216.0f;
+}
+
+/* Across a circle, through a knot in the middle; or to and from random places of a square. */
+static void fill(street *s, int is_circle, noh_actor actors[COUNT])
+{
+    uint32_t seed = 5;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const float angle = 6.2831853f * (float)i / (float)COUNT, x = 4.0f * cosf(angle), z = 4.0f * sinf(angle);
+        const float at[2] = { is_circle ? x : 10.0f * chance(&seed), is_circle ? z : 10.0f * chance(&seed) };
+        const float goal[2] = { is_circle ? -x : 10.0f * chance(&seed), is_circle ? -z : 10.0f * chance(&seed) };
+        actors[i] = enter(s, i, at, goal, 0.5f + 0.02f * (float)i);
+    }
+}
+
+/* is_ahead: to places that are not behind it, as far as twenty tries find one. */
+static void aim_again(street *s, int is_ahead, uint32_t *seed)
+{
+    for (uint32_t i = 0; i < COUNT; i++) {
+        noh_crowd_agent a;
+        assert_true(noh_crowd_agent_at(s->crowd, i, &a));
+        if (hypotf(a.goal[0] - a.position[0], a.goal[1] - a.position[1]) > 0.5f) continue;
+        for (int try = 0; try < 20; try++) {
+            const float x = 10.0f * chance(seed), goal[2] = { x, 10.0f * chance(seed) };
+            float heading[2];
+            assert_true(noh_walkers_heading(s->walkers, i, heading));
+            noh_crowd_aim(s->crowd, i, goal);
+            const float way[2] = { goal[0] - a.position[0], goal[1] - a.position[1] };
+            if (!is_ahead || way[0] * heading[0] + way[1] * heading[1] > 0.7f * hypotf(way[0], way[1])) break;
+        }
+    }
+}
+
+enum { KNOT, ANYWHERE, AHEAD };
+
+static slides mill(const char *name, int where, uint32_t near_max)
+{
+    noh_actor actors[COUNT];
+    slides m[COUNT], all;
+    uint32_t seed = 9;
+    street s;
+    memset(m, 0, sizeof m);
+    memset(&all, 0, sizeof all);
+    open_street(&s, COUNT, near_max, 1);
+    fill(&s, where == KNOT, actors);
+    for (uint32_t f = 0; f < 900; f++) {
+        if (where != KNOT) aim_again(&s, where == AHEAD, &seed);
+        frame(&s, CAST_STEP);
+        for (uint32_t i = 0; i < COUNT && f > 60; i += 3) measure(&s, actors[i], &m[i]);
+    }
+    for (uint32_t i = 0; i < COUNT; i++) {
+        all.steps += m[i].steps;
+        all.sum += m[i].sum;
+        all.length += m[i].length;
+        all.small += m[i].small;
+        all.worst = fmaxf(all.worst, m[i].worst);
+    }
+    tell(name, 0.7f, 60, &all);
+    close_street(&s);
+    return all;
+}
+
+static void feet_of_the_nearest_hold_in_a_crowd(void **state)
+{
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    const slides free = mill("a square, by clips", AHEAD, 0), held = mill("a square, feet held", AHEAD, COUNT);
+    const slides about = mill("with U-turns, held", ANYWHERE, COUNT), knot = mill("a knot, feet held", KNOT, COUNT);
+    assert_true(free.steps > 100 && held.steps > 100 && about.steps > 100 && knot.steps > 50);
+    assert_true(held.small * 2u > held.steps && held.small > free.small && held.sum < free.sum);
+}
+
+/* ---- bits, bytes, and what is refused ---- */
+
+/* Any number of jobs gives the same bits; and so do copies of crowd, walkers and stage that are put back. */
+static void walkers_are_the_same_for_any_number_of_jobs(void **state)
+{
+    uint64_t want = 0;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    for (uint32_t jobs = 1; jobs <= 4; jobs += 3) {
+        noh_actor actors[COUNT];
+        size_t bytes;
+        street s;
+        open_street(&s, COUNT, 5, jobs);
+        fill(&s, 1, actors);
+        for (uint32_t f = 0; f < 120; f++) frame(&s, 700u);
+        const noh_walkers_desc desc = walkers_desc(&s, 5);
+        const size_t own = noh_walkers_size(&desc), crowd = s.crowd_bytes;
+        uint8_t *stage = test_aligned(noh_stage_state(s.cast.stage, &bytes), (size_t)s.cast.plan.state_bytes);
+        uint8_t *walkers = test_aligned(s.walkers_memory, own), *agents = test_aligned(s.crowd_memory, crowd);
+        for (int again = 0; again < 2; again++) {
+            for (uint32_t f = 0; f < 90; f++) frame(&s, 700u);
+            const uint64_t hash = noh_stage_hash(s.cast.stage) + noh_crowd_hash(s.crowd);
+            if (!want) want = hash;
+            if (hash != want) fail_msg("%u jobs, run %d", jobs, again);
+            assert_int_equal(noh_stage_set_state(s.cast.stage, stage, bytes, NULL), NOH_OK);
+            memcpy(s.walkers_memory, walkers, own);
+            memcpy(s.crowd_memory, agents, crowd);
+        }
+        free(stage);
+        free(walkers);
+        free(agents);
+        close_street(&s);
+    }
+}
+
+/* The pool holds the nearest, and as many as it has room for. */
+static void the_nearest_have_their_feet_on_the_ground(void **state)
+{
+    static const float eye[3] = { 4.0f, 0.0f, 0.0f }, other[3] = { -4.0f, 0.0f, 0.0f };
+    noh_actor actors[COUNT];
+    street s;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street(&s, COUNT, 5, 1);
+    fill(&s, 1, actors);
+    frame(&s, CAST_STEP);
+    assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, eye), 5);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const uint32_t *near_feet = noh_actor_part(s.cast.stage, actors[i], 0);
+        const uint32_t is_near = near_feet[sizeof(noh_feet) / 4u + 1u];
+        assert_int_equal(is_near, i < 3 || i > COUNT - 3u);
+    }
+    assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, other), 5);
+    assert_int_equal(((const uint32_t *)noh_actor_part(s.cast.stage, actors[0], 0))[sizeof(noh_feet) / 4u + 1u], 0);
+    assert_int_equal(noh_stage_despawn(s.cast.stage, actors[12], NULL), NOH_OK);
+    assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, other), 5);
+    for (uint32_t f = 0; f < 30; f++) frame(&s, CAST_STEP); /* one that is gone is let go */
+    float heading[2];
+    assert_int_equal(noh_walkers_heading(s.walkers, 12, heading), 0);
+    assert_int_equal(noh_walkers_heading(s.walkers, 11, heading), 1);
+    close_street(&s);
+}
+
+static void what_walkers_cannot_use_is_refused(void **state)
+{
+    street s;
+    noh_walkers *w = NULL;
+    noh_error said;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street(&s, 3, 2, 1);
+    noh_walkers_desc desc = walkers_desc(&s, 2);
+    const size_t bytes = noh_walkers_size(&desc);
+    assert_int_equal(bytes, (880u + 3u * 64u + 2u * 8u + 15u) / 16u * 16u);
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes - 1u, &desc, s.cast.stage, &w, &said), NOH_ERR_MEMORY);
+    assert_int_equal(said.need, bytes);
+    desc.walk = "stride";
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_NOT_FOUND);
+    desc.walk = "idle"; /* it stays where it is */
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
+    desc.walk_speed = 1.0f;
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_OK);
+    desc.layer = 1;
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
+    desc.layer = 0;
+    desc.feet_part = 2;
+    assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
+    desc.feet_part = 0;
+    assert_int_equal(noh_walkers_size(&desc), 0);
+    assert_int_equal(noh_walkers_put(s.walkers, 3, s.cast.stage, (noh_actor){ 0 }, 0, NULL, &said), NOH_ERR_NOT_FOUND);
+    close_street(&s);
+}
+
+/* Who stands turns to where it is asked to look, and steps while it turns. */
+static void who_stands_turns(void **state)
+{
+    static const float at[2] = { 0.0f, 0.0f }, ahead[2] = { 0.0f, 1e-3f }, aside[2] = { 3.0f, 0.0f };
+    street s;
+    float heading[2];
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street(&s, 1, 0, 1);
+    const noh_actor actor = enter(&s, 0, at, ahead, 0.5f);
+    for (uint32_t f = 0; f < 30; f++) frame(&s, CAST_STEP);
+    noh_walkers_face(s.walkers, 0, aside);
+    for (uint32_t f = 0; f < 10; f++) frame(&s, CAST_STEP);
+    assert_true(noh_walkers_heading(s.walkers, 0, heading));
+    assert_true(heading[0] > 0.3f && heading[0] < 0.9f); /* 4 radians a second */
+    for (uint32_t f = 0; f < 30; f++) frame(&s, CAST_STEP);
+    assert_true(noh_walkers_heading(s.walkers, 0, heading));
+    assert_true(heading[0] > 0.9999f);
+    noh_place place;
+    assert_int_equal(noh_actor_place(s.cast.stage, actor, &place, NULL), NOH_OK);
+    assert_true(fabsf(place.rotation[1] - 0.70710678f) < 1e-4f && place.position[0] < 1e-3f);
+    close_street(&s);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(feet_that_stand_do_not_slide),
+        cmocka_unit_test(errata_C13_2_clips_play_at_their_own_speed),
+        cmocka_unit_test(feet_of_the_nearest_hold_in_a_crowd),
+        cmocka_unit_test(walkers_are_the_same_for_any_number_of_jobs),
+        cmocka_unit_test(the_nearest_have_their_feet_on_the_ground),
+        cmocka_unit_test(what_walkers_cannot_use_is_refused),
+        cmocka_unit_test(who_stands_turns),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
