@@ -12,8 +12,9 @@ int crowd_meter_open(crowd_meter *meter, uint32_t count)
     meter->head = malloc(CROWD_METER_SIDE * CROWD_METER_SIDE * sizeof *meter->head);
     meter->next = malloc(count * sizeof *meter->next);
     meter->slow = calloc(count, sizeof *meter->slow);
+    meter->held = calloc(count, sizeof *meter->held);
     meter->count = count;
-    return meter->head && meter->next && meter->slow;
+    return meter->head && meter->next && meter->slow && meter->held;
 }
 
 void crowd_meter_close(crowd_meter *meter)
@@ -21,6 +22,7 @@ void crowd_meter_close(crowd_meter *meter)
     free(meter->head);
     free(meter->next);
     free(meter->slow);
+    free(meter->held);
 }
 
 typedef struct cells {
@@ -82,22 +84,24 @@ static around look(const crowd_meter *meter, const cells *c, const noh_crowd_age
     return out;
 }
 
-void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now, crowd_measures *m)
+void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now,
+                     const float (*ways)[2], crowd_measures *m)
 {
     const cells c = sorted(meter, now);
     for (uint32_t i = 0; i < meter->count; i++) {
         const noh_crowd_agent *a = &now[i], *b = &before[i];
         const double x = (double)b->goal[0] - (double)b->position[0], z = (double)b->goal[1] - (double)b->position[1];
-        const double far = sqrt(x * x + z * z), ahead[2] = { far > 0.0 ? x / far : 0.0, far > 0.0 ? z / far : 0.0 };
+        const double far = sqrt(x * x + z * z), ahead[2] = { (double)ways[i][0], (double)ways[i][1] };
         const double towards = (double)a->velocity[0] * ahead[0] + (double)a->velocity[1] * ahead[1];
         const double speed = hypot((double)a->velocity[0], (double)a->velocity[1]);
         const around seen = look(meter, &c, now, i, ahead);
         m->overlap_max = fmax(m->overlap_max, seen.overlap);
         m->overlapped += seen.overlap > 0.05;
         m->agent_steps++;
-        meter->slow[i] = far > 2.0 * (double)a->radius && !seen.blocked && speed < 0.05 * (double)a->speed
-                             ? meter->slow[i] + 1u
-                             : 0;
+        const int stands = far > 2.0 * (double)a->radius && speed < 0.05 * (double)a->speed;
+        meter->held[i] = stands ? meter->held[i] + 1u : 0;
+        meter->slow[i] = stands && !seen.blocked ? meter->slow[i] + 1u : 0;
+        m->held_max = meter->held[i] > m->held_max ? meter->held[i] : m->held_max;
         m->stuck_max = meter->slow[i] > m->stuck_max ? meter->slow[i] : m->stuck_max;
         if (far <= 2.0 * (double)a->radius || !(a->speed > 0.0f)) continue;
         m->progress += towards / (double)a->speed;

@@ -6,7 +6,8 @@
 
 /* Agents by cells, found anew in each step. */
 typedef struct crowd_meter {
-    uint32_t *head, *next, *slow; /* [CROWD_METER_SIDE^2], [count], [count] */
+    uint32_t *head, *next; /* [CROWD_METER_SIDE^2], [count] */
+    uint32_t *slow, *held; /* [count]: steps so far of standing with room in front, of standing at all */
     uint32_t count;
 } crowd_meter;
 
@@ -16,7 +17,9 @@ typedef struct crowd_meter {
 int crowd_meter_open(crowd_meter *meter, uint32_t count);
 void crowd_meter_close(crowd_meter *meter);
 
-/* Add a step: before[count] and now[count] are the agents on both sides of it. */
-void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now, crowd_measures *m);
+/* Add a step: before[count] and now[count] are the agents on both sides of it; ahead[count], unit: where they wanted to
+ * go. */
+void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now,
+                     const float (*ahead)[2], crowd_measures *m);
 
 #endif

@@ -63,8 +63,10 @@ static int print_json(const crowd_scene *s)
     json_number(&j, "overlapped_pct", share((double)m->overlapped, m->agent_steps));
     json_number(&j, "progress_pct", share(m->progress, m->under_way));
     json_number(&j, "stuck_max_s", (double)m->stuck_max / 30.0);
+    json_number(&j, "held_max_s", (double)m->held_max / 30.0);
     json_number(&j, "ns_per_agent_step", crowd_scene_cpu_ns(s) / (double)m->agent_steps);
     json_integer(&j, "bytes", crowd_scene_bytes(s));
+    json_integer(&j, "field_bytes", crowd_scene_field_bytes(s));
     snprintf(hash, sizeof hash, "%08x", noh_crowd_hash(crowd_scene_crowd(s)));
     json_text(&j, "hash", hash);
     return json_end(&j);
@@ -77,8 +79,9 @@ static int print_text(const char *name, const crowd_scene *s)
     if (m->done >= 0.0) printf("; half of them there after %.1f s, all after %.1f", m->half, m->done);
     printf("\n  overlapped by at most %.1f %% of two radii, by more than 5 %% in %.4f %% of all agents' steps\n",
            100.0 * m->overlap_max, share((double)m->overlapped, m->agent_steps));
-    printf("  progress %.1f %%; none stood still for more than %.1f s with room in front\n",
-           share(m->progress, m->under_way), (double)m->stuck_max / 30.0);
+    printf("  progress %.1f %%; none stood still for more than %.1f s with room in front, %.1f s at all\n",
+           share(m->progress, m->under_way), (double)m->stuck_max / 30.0, (double)m->held_max / 30.0);
+    if (crowd_scene_field_bytes(s)) printf("  %zu bytes of flow fields\n", crowd_scene_field_bytes(s));
     printf("  %.0f ns an agent and step, %zu bytes, %.1f an agent; hash %08x\n",
            crowd_scene_cpu_ns(s) / (double)m->agent_steps, crowd_scene_bytes(s),
            (double)crowd_scene_bytes(s) / (double)crowd_scene_agents(s), noh_crowd_hash(crowd_scene_crowd(s)));
