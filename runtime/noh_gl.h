@@ -33,6 +33,7 @@
 
 #include "stage_gl/stage_gl.h"   /* a stage, drawn */
 #include "stage_gl/backdrop.h"   /* what is behind it, where it is lit */
+#include "stage_gl/stage_blob.h" /* soft spots under them, where there is no shadow map */
 #include "stage_gl/stage_hair.h" /* hair of its actors */
 #include "gl/gl_api.h"           /* the functions that noh calls */
 #include "gl/gl_caps.h"          /* what this GPU can do, found by trying it */

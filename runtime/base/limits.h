@@ -143,6 +143,7 @@
 #define NOH_STAGE_GRAPHS_MAX 16u            /* of a kind */
 #define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u             /* of a plan */
+#define NOH_BLOBS_MAX 24u                   /* of an actor: parts that darken the ground */
 
 /* ---- light ---- */
 

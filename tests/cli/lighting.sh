@@ -10,7 +10,7 @@ done
 check 'environments differ' sh -c '! cmp -s "$1" "$2" && ! cmp -s "$1" "$3"' - "$work/studio.png" "$work/room.png" "$work/sky.png"
 noh render "$pack" -o "$work/again.png" --light room --size 128x128
 check 'the same picture again' cmp "$work/room.png" "$work/again.png"
-for more in '--rotate 90' '--tonemap none' '--shadow off' '--background gradient' '--background plain' '--debug light'; do
+for more in '--rotate 90' '--tonemap none' '--shadow off' '--shadow blob' '--background gradient' '--background plain' '--debug light'; do
     noh render "$pack" -o "$work/more.png" --light room --size 128x128 $more
     expect 0 "render --light room $more"
     check "$more changes the picture" sh -c '! cmp -s "$1" "$2"' - "$work/room.png" "$work/more.png"
@@ -60,9 +60,14 @@ noh render "$pack" -o "$work/auto.png" --size 128x128 --debug normal
 noh render "$pack" -o "$work/plain.png" --size 128x128 --debug normal --light none
 check 'values as colours are not' cmp -s "$work/auto.png" "$work/plain.png"
 
+noh render "$pack" -o "$work/off.png" --light room --size 128x128 --shadow off
+noh render "$pack" -o "$work/blob.png" --light room --size 128x128 --shadow blob
+expect 0 'render --shadow blob'
+check 'spots are drawn' sh -c '! cmp -s "$1" "$2"' - "$work/off.png" "$work/blob.png"
+
 noh bench "$pack" --only look --quick --json
 expect 0 'a bench of looks'
-for row in environment environment-shadow environment-tonemap environment-backdrop all; do
+for row in environment environment-shadow environment-tonemap environment-blob environment-teeth environment-backdrop all; do
     check "with a row for $row" grep -q "\"look/$row\"" "$work/out"
 done
 check 'none for maps that the pack lacks' sh -c '! grep -q look/surface-map "$1"' - "$work/out"

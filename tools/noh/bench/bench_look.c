@@ -22,7 +22,9 @@ enum {
     KEEP_SKIN = 64,
     KEEP_EYE = 128,
     KEEP_TRANSFER = 256,
-    KEEP_ALL = 511
+    KEEP_TEETH = 512,
+    KEEP_EMISSIVE = 1024,
+    KEEP_ALL = 2047
 };
 
 typedef struct look {
@@ -43,9 +45,12 @@ static const look looks[] = {
     { "environment", 0, "studio", "none", "off", "plain" },
     { "environment-shadow", 0, "studio", "none", "on", "plain" },
     { "environment-tonemap", 0, "studio", "filmic", "off", "plain" },
+    { "environment-blob", 0, "studio", "none", "blob", "plain" },
     { "environment-backdrop", 0, "studio", "none", "off", "light" },
     { "environment-skin", KEEP_SKIN, "studio", "none", "off", "plain" },
     { "environment-eyes", KEEP_EYE, "studio", "none", "off", "plain" },
+    { "environment-teeth", KEEP_TEETH, "studio", "none", "off", "plain" },
+    { "emissive", KEEP_EMISSIVE, NULL, NULL, NULL, NULL },
     { "transfer", KEEP_TRANSFER, "studio", "none", "off", "plain" },
     { "all", KEEP_ALL, "studio", "filmic", "on", "light" },
 };
@@ -63,6 +68,9 @@ static unsigned material_has(const noh_material *m)
     if (m->wrinkle_models & NOH_WRINKLE_BY_CHANNEL) has |= KEEP_CHANNEL;
     if (m->surface == NOH_SURFACE_SKIN) has |= KEEP_SKIN;
     if (m->surface == NOH_SURFACE_EYE) has |= KEEP_EYE;
+    if (m->surface == NOH_SURFACE_TEETH) has |= KEEP_TEETH;
+    if (m->emissive_texture != NOH_NONE || m->emissive[0] + m->emissive[1] + m->emissive[2] > 0.0f)
+        has |= KEEP_EMISSIVE;
     return has;
 }
 
@@ -71,6 +79,14 @@ static unsigned pack_has(const noh_pack *pack)
     unsigned has = pack->transfer_count ? KEEP_TRANSFER : 0;
     for (uint32_t i = 0; i < pack->material_count; i++) has |= material_has(&pack->materials[i]);
     return has;
+}
+
+static unsigned keep_of_surface(uint32_t surface)
+{
+    return surface == NOH_SURFACE_SKIN    ? KEEP_SKIN
+           : surface == NOH_SURFACE_EYE   ? KEEP_EYE
+           : surface == NOH_SURFACE_TEETH ? KEEP_TEETH
+                                          : 0u;
 }
 
 static void strip_material(noh_material *m, unsigned keeps)
@@ -82,7 +98,11 @@ static void strip_material(noh_material *m, unsigned keeps)
     if (!(keeps & KEEP_REGION)) m->wrinkle_models &= ~NOH_WRINKLE_BY_REGION;
     if (!(keeps & KEEP_CHANNEL)) m->wrinkle_models &= ~NOH_WRINKLE_BY_CHANNEL;
     if (!m->wrinkle_models) m->wrinkle_texture = NOH_NONE;
-    if (!(m->surface == NOH_SURFACE_SKIN ? keeps & KEEP_SKIN : keeps & KEEP_EYE)) m->surface = NOH_SURFACE_PLAIN;
+    if (!(keeps & keep_of_surface(m->surface))) m->surface = NOH_SURFACE_PLAIN;
+    if (!(keeps & KEEP_EMISSIVE)) {
+        m->emissive_texture = NOH_NONE;
+        memset(m->emissive, 0, sizeof m->emissive);
+    }
 }
 
 /* ---- a frame ---- */

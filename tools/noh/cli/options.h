@@ -123,9 +123,9 @@
         { .name = "--shadow",                                                                                          \
           .kind = OPTION_TEXT,                                                                                         \
           .at = offsetof(T, m.shadow),                                                                                 \
-          .value = "on|off",                                                                                           \
+          .value = "on|off|blob",                                                                                      \
           .initial = "on",                                                                                             \
-          .what = "whether the strongest part of that light casts shadows",                                            \
+          .what = "whether the strongest part of that light casts shadows; blob: none, but soft spots under feet",     \
           .example = "off",                                                                                            \
           __VA_ARGS__ },                                                                                               \
         { .name = "--transfer",                                                                                        \

@@ -293,6 +293,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     if (!status && desc->body) status = figure_body_open_gl(desc->body, g);
     if (!status) status = figure_open_hair(f);
     if (!status) status = open_actors(f);
+    if (!status) status = figure_open_blobs(f);
     if (status) figure_close(f);
     return status;
 }
@@ -301,6 +302,7 @@ void figure_close(figure *f)
 {
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
+    if (f->blob.gl) noh_stage_blob_delete(&f->blob);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->hair.gl) noh_stage_hair_delete(&f->hair);
     if (f->stage) noh_stage_delete(f->stage);
@@ -317,6 +319,7 @@ int figure_restore(figure *f)
     noh_result result = noh_stage_restore(f->stage, &error);
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
     if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
+    if (!result && f->blob.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
     if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
@@ -420,6 +423,7 @@ int figure_draw(figure *f)
     noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
+    if (f->blob.gl) figure_draw_blobs(f);
     if (!f->hair.gl || f->shader) {
         result = noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     } else { /* what blends shows the hair behind it, and hair what is opaque */

@@ -27,6 +27,7 @@
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "stage_gl/backdrop.h"
+#include "stage_gl/stage_blob.h"
 #include "stage_gl/stage_hair.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
@@ -86,7 +87,10 @@ typedef struct figure {
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's own, lit */
     noh_backdrop backdrop;    /* zeros: no light */
-    noh_stage_hair hair;      /* zeros: none */
+    noh_stage_blob blob;      /* zeros: no spots under it */
+    noh_blob_rig blob_rigs[NOH_STAGE_KINDS_MAX];
+    float floor;         /* y of the ground where the body has none */
+    noh_stage_hair hair; /* zeros: none */
     void *hair_memory;
     noh_stage_view seen; /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
@@ -157,6 +161,10 @@ int figure_feel(figure *f, const option_list *emotions);
 /* Time moves on, clips, faces, hair and what a body obeys, 60 steps a second; meanwhile the figure turns, in degrees a
  * second about y, to where it stands without. */
 int figure_live(figure *f, double seconds, double turn);
+
+/* The spots under a figure (--shadow blob): opened with its actors, closed; drawn, before the figure. */
+int figure_open_blobs(figure *f);
+void figure_draw_blobs(figure *f);
 
 /* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
 int figure_add_hair(figure *f);

@@ -73,13 +73,13 @@ static int read_light(lighting *l, const char *name)
 
 int lighting_open(lighting *l, const light_options *o)
 {
-    static const char *const tonemaps[] = { "filmic", "none" }, *const switches[] = { "on", "off" };
+    static const char *const tonemaps[] = { "filmic", "none" }, *const switches[] = { "on", "off", "blob" };
     static const char *const backgrounds[] = { "light", "gradient", "plain" };
     int tonemap, shadow, transfer, background;
     int status;
     memset(l, 0, sizeof *l);
     status = choose("--tonemap", o->tonemap, tonemaps, 2, &tonemap);
-    if (!status) status = choose("--shadow", o->shadow, switches, 2, &shadow);
+    if (!status) status = choose("--shadow", o->shadow, switches, 3, &shadow);
     if (!status) status = choose("--transfer", o->transfer, switches, 2, &transfer);
     if (!status) status = choose("--background", o->background, backgrounds, 3, &background);
     if (!status) status = read_light(l, o->light);
@@ -87,7 +87,8 @@ int lighting_open(lighting *l, const light_options *o)
         lighting_close(l);
         return status;
     }
-    l->has_shadow = !shadow;
+    l->has_shadow = shadow == 0;
+    l->has_blobs = shadow == 2;
     l->without_transfer = transfer;
     l->background = background == 0 ? BACKGROUND_LIGHT : background == 1 ? BACKGROUND_GRADIENT : BACKGROUND_PLAIN;
     l->told.tonemap = tonemap ? NOH_TONEMAP_NONE : NOH_TONEMAP_FILMIC;

@@ -21,7 +21,7 @@ typedef struct lighting {
     noh_light light; /* not turned */
     noh_gl_light_desc desc;
     noh_lighting told;
-    int has_shadow, without_transfer;
+    int has_shadow, has_blobs, without_transfer;
     double degrees; /* how far it is turned */
     lighting_background background;
 } lighting;
