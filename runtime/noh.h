@@ -123,6 +123,7 @@
 #include "sim/reach.h"        /* hands that reach for points that move */
 #include "sim/shape.h"        /* boxes, rays */
 #include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
+#include "sim/terrain.h"      /* the height field of a pack */
 #include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
 
 /* ---- many of them, on the ground ---- */

@@ -68,6 +68,7 @@
 
 /* ---- bodies ---- */
 
+#define NOH_TERRAIN_SIZE_MAX 4097u /* heights along a side of a pack's terrain */
 #define NOH_OBSTACLES_MAX 16u      /* of a kind in a world */
 #define NOH_FEET_LEGS_MAX 2u       /* that are put on the ground */
 #define NOH_GAZE_JOINTS_MAX 8u     /* of spine, neck and head that turn together */

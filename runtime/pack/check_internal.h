@@ -57,6 +57,7 @@ noh_result noh_check_recipe(noh_check *check);
 noh_result noh_check_ragdoll(noh_check *check);
 noh_result noh_check_springs(noh_check *check);
 noh_result noh_check_hair(noh_check *check);
+noh_result noh_check_terrain(noh_check *check);
 
 /* check_mesh_part.c: what every level of a mesh has; `h` is that level's header. */
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);

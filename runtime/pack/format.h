@@ -36,6 +36,7 @@ extern "C" {
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
 #define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
 #define NOH_CHUNK_SPRINGS NOH_FOURCC('S', 'P', 'R', 'G')
+#define NOH_CHUNK_TERRAIN NOH_FOURCC('T', 'E', 'R', 'R')
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -502,6 +503,20 @@ typedef struct noh_pack_hair_header {
     float color_root[3], color_tip[3]; /* linear, 0..1 */
     float gloss;                       /* 0..4: 1 is hair that is combed and dry */
 } noh_pack_hair_header;
+
+/* ---- CHUNK_TERRAIN, none or one: header, heights. A height field of sim/world.h, which noh_terrain_of (sim/terrain.h)
+ * gives where it lies: 257 x 257 heights take 132,146 bytes. Programs from before there was such a chunk refuse a pack
+ * that has one, as of an unknown type. ---- */
+
+typedef struct noh_pack_terrain_header {
+    uint32_t width, depth;   /* 2..NOH_TERRAIN_SIZE_MAX */
+    float origin[3];         /* of heights[0][0] at 0, metres */
+    float spacing;           /* metres between heights, above 0 */
+    float scale;             /* metres of one unit of a height, 0.. */
+    uint32_t heights_offset; /* uint16_t[depth][width], rows along +X, one after the other along +Z */
+    uint32_t reserved[4];
+} noh_pack_terrain_header;
+NOH_STATIC_ASSERT(sizeof(noh_pack_terrain_header) == 48, pack_terrain_header);
 
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph as graph/graph.h has it, whose nodes,
  * parameters, clips and joints have names: it is checked, and bound to clips and a skeleton, when it is opened

@@ -26,6 +26,7 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_RAGDOLL: return 12;
     case NOH_CHUNK_SPRINGS: return 13;
     case NOH_CHUNK_HAIR: return 14;
+    case NOH_CHUNK_TERRAIN: return 15;
     default: return -1;
     }
 }
@@ -217,6 +218,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
         result = noh_check_hair(&check);
         pack->hair = (const noh_pack_hair_header *)(const void *)check.bytes;
         break;
+    case NOH_CHUNK_TERRAIN:
+        result = noh_check_terrain(&check);
+        pack->terrain = (const noh_pack_terrain_header *)(const void *)check.bytes;
+        break;
     default: /* a graph, which noh_pack_check_graph checks when it is opened */
         count_chunk(&pack->graph_count, &pack->first_graph, index);
         break;
@@ -246,7 +251,8 @@ static noh_result open_chunks(noh_pack *pack, noh_error *error)
         uint32_t type = pack->chunks[i].type;
         int rank = chunk_rank(type);
         int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES ||
-                     type == NOH_CHUNK_RECIPE || type == NOH_CHUNK_RAGDOLL || type == NOH_CHUNK_HAIR;
+                     type == NOH_CHUNK_RECIPE || type == NOH_CHUNK_RAGDOLL || type == NOH_CHUNK_HAIR ||
+                     type == NOH_CHUNK_TERRAIN;
         noh_result result;
         if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0)) {
             return noh_fail(error, NOH_ERR_DATA, "chunk of an unknown type, or out of order", table_at, 0);

@@ -40,7 +40,8 @@ typedef struct noh_pack {
     const noh_recipe_row *recipe_rows;
     uint32_t ragdoll_row_count; /* of the ragdoll's own table; 0: it has none */
     const noh_pack_ragdoll_row *ragdoll_rows;
-    const noh_pack_hair_header *hair; /* NULL: it has none */
+    const noh_pack_hair_header *hair;       /* NULL: it has none */
+    const noh_pack_terrain_header *terrain; /* likewise */
 } noh_pack;
 
 typedef struct noh_texture {

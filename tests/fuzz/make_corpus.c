@@ -135,6 +135,28 @@ static void write_transfer(const char *folder)
     model_free(m);
 }
 
+/* A terrain of 3 x 2 heights, and nothing else. */
+static void write_terrain(const char *in)
+{
+    static const uint8_t png[] = { 0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+                                   0x44, 0x52, 0x00, 0x00, 0x00, 0x03, 0x00, 0x00, 0x00, 0x02, 0x10, 0x00, 0x00, 0x00,
+                                   0x00, 0xe8, 0x8f, 0xe5, 0x85, 0x00, 0x00, 0x00, 0x16, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                   0xda, 0x63, 0x60, 0x60, 0x28, 0x35, 0xf8, 0xff, 0x9f, 0x81, 0xf9, 0x05, 0xfb, 0x85,
+                                   0x39, 0x0e, 0x00, 0x20, 0x82, 0x05, 0x42, 0xa0, 0xdf, 0x35, 0xa5, 0x00, 0x00, 0x00,
+                                   0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82 };
+    char path[4096];
+    convert_options options;
+    convert_failure failure;
+    byte_buffer out = { NULL, 0, 0, 0 };
+    memset(&options, 0, sizeof options);
+    options.terrain = test_path("hill.png");
+    test_write_file(options.terrain, png, sizeof png);
+    assert_int_equal(convert_files(NULL, 0, &options, &out, &failure), 0);
+    snprintf(path, sizeof path, "%s/terrain.noh", in);
+    test_write_file(path, out.bytes, out.count);
+    buffer_free(&out);
+}
+
 static const char *folder, *clip_folder;
 
 /* Encode a clip, take it, and write its bytes. */
@@ -211,6 +233,7 @@ static void corpus(void **state)
     write_weights(folder);
     write_graph(folder);
     write_transfer(folder);
+    write_terrain(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);
     write_levels(folder, "levels", lod_face_model(&face), 0);

@@ -335,6 +335,22 @@ static void walk_meshes(walk *w)
     free(meshes);
 }
 
+/* Heights and normals all over it and beyond, and rays. */
+static void walk_terrain(walk *w)
+{
+    noh_field field;
+    if (noh_terrain_of(w->pack, &field, NULL)) return;
+    for (uint32_t i = 0; i < 64u; i++) {
+        const float x = field.origin[0] + weight(w) * field.spacing * (float)field.width;
+        const float z = field.origin[2] + weight(w) * field.spacing * (float)field.depth;
+        const noh_ray ray = { { x, field.origin[1] + 1.0f, z }, { weight(w), weight(w), 1.0f }, 1e5f };
+        float at[4];
+        if (noh_field_height(&field, x, z, &at[0], at + 1)) eat(w, at, sizeof at);
+        at[0] = noh_field_ray(&field, &ray);
+        eat(w, at, sizeof at[0]);
+    }
+}
+
 /* Play every clip for a while, in every loop mode, forwards and backwards, at random times. */
 static void walk_clip(walk *w, noh_clip_bank *set, noh_controller *c, noh_pose_scratch *scratch, uint32_t clip)
 {
@@ -529,6 +545,7 @@ uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
     walk_nodes(&w);
     walk_springs(&w);
     walk_meshes(&w);
+    walk_terrain(&w);
     walk_clips(&w);
     return w.hash;
 }

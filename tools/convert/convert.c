@@ -146,6 +146,27 @@ static int read_hair(const convert_options *options, const source *s, hair_text 
     return hair_grow(*out, grown) ? out_of_memory(&failure->error) : 0;
 }
 
+/* The ground; *out NULL: there is none. */
+static int read_terrain(const convert_options *options, terrain *read, const terrain **out, convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    memset(read, 0, sizeof *read);
+    *out = NULL;
+    if (!options->terrain) return 0;
+    failure->file = options->terrain;
+    if (terrain_read(options->terrain, &options->ground, read, &failure->error)) return 1;
+    if (options->report) {
+        fprintf(options->report, "terrain: %u x %u heights, %g x %g m, %.3f to %.3f m, steps of %.3g mm", read->width,
+                read->depth, (double)read->spacing * (read->width - 1u), (double)read->spacing * (read->depth - 1u),
+                (double)read->low, (double)read->high, 1000.0 * (double)read->scale);
+        if (read->hole_count) fprintf(options->report, "; %u without ground, at its lowest", read->hole_count);
+        fprintf(options->report, "\n");
+    }
+    failure->file = model_file;
+    *out = read;
+    return 0;
+}
+
 /* The recipe: of a text, of extras, of names; *out NULL: there is none. */
 static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
 {
@@ -435,7 +456,8 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
 
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
                           const ragdoll_text *ragdoll, const set_springs *springs, const hair_text *hair,
-                          const hair_grown *grown, const convert_options *options, byte_buffer *out, model_error *error)
+                          const hair_grown *grown, const terrain *ground, const convert_options *options,
+                          byte_buffer *out, model_error *error)
 {
     model empty;
     const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -464,6 +486,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
         made.springs = springs;
         made.hair = hair;
         made.grown = grown;
+        made.ground = ground;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -529,7 +552,7 @@ static int join_all(const char *const *inputs, int count, int base, source *all,
             return 1;
         }
     }
-    failure->file = inputs[base];
+    if (count) failure->file = inputs[base];
     return 0;
 }
 
@@ -543,10 +566,13 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     set_springs *springs = NULL;
     hair_text *hair = NULL;
     hair_grown grown = { .hair_count = 0 };
+    const terrain *ground = NULL;
+    terrain read_ground = { .heights = NULL };
     int failed, base = 0;
     memset(failure, 0, sizeof *failure);
-    failure->file = inputs[0];
-    if (!all) {
+    failure->file = input_count ? inputs[0] : options->terrain;
+    if (!all || (!input_count && !(all[0].m = model_new()))) {
+        free(all);
         return out_of_memory(&failure->error);
     }
     failed = read_all(inputs, input_count, options, all, failure);
@@ -558,15 +584,16 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  read_graphs(options, &all[base], &graphs, failure) ||
                  read_recipe(options, &all[base], &recipe, failure) ||
                  read_ragdoll(options, &all[base], &ragdoll, failure) ||
-                 read_hair(options, &all[base], &hair, &grown, failure);
+                 read_hair(options, &all[base], &hair, &grown, failure) ||
+                 read_terrain(options, &read_ground, &ground, failure);
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
         failed = failed || read_springs(options, &all[base], &springs, failure);
-        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, hair, &grown, options, out,
-                                          &failure->error);
+        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, hair, &grown, ground, options,
+                                          out, &failure->error);
     }
     springs_free(springs, all[base].set_count);
-    for (int i = 0; i < input_count; i++) {
+    for (int i = 0; i < input_count || !i; i++) {
         source_free(&all[i]);
     }
     graph_text_free(graphs);
@@ -574,6 +601,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     ragdoll_free(ragdoll);
     hair_grown_free(&grown);
     hair_free(hair);
+    terrain_free(&read_ground);
     free(all);
     return failed;
 }

@@ -34,14 +34,16 @@ typedef struct convert_options {
     const char *springs;             /* a text file of springs (springs/springs_read.h); NULL: those of the glTF file */
     const char *const *spring_lines; /* [spring_line_count] lines of such a text, after those of the file */
     uint32_t spring_line_count;
-    const char *recipe;    /* a text file of what a face's targets are for; NULL: none */
-    const char *ragdoll;   /* a text file of a ragdoll's bodies; NULL: none */
-    const char *hair;      /* a text file of a haircut; NULL: none */
-    int lips;              /* 1: a target that brings the lower lip to the teeth */
-    int no_correctives;    /* 1: names of targets do not make correctives */
-    strip_levels lod_from; /* count 0: all levels stay */
-    FILE *report;          /* NULL: quiet */
-    FILE *progress;        /* a terminal, for progress; NULL: none */
+    const char *recipe;     /* a text file of what a face's targets are for; NULL: none */
+    const char *ragdoll;    /* a text file of a ragdoll's bodies; NULL: none */
+    const char *hair;       /* a text file of a haircut; NULL: none */
+    const char *terrain;    /* a picture or a model of the ground (terrain/terrain_read.h); NULL: none */
+    terrain_options ground; /* of it */
+    int lips;               /* 1: a target that brings the lower lip to the teeth */
+    int no_correctives;     /* 1: names of targets do not make correctives */
+    strip_levels lod_from;  /* count 0: all levels stay */
+    FILE *report;           /* NULL: quiet */
+    FILE *progress;         /* a terminal, for progress; NULL: none */
 } convert_options;
 
 typedef struct convert_failure {
@@ -50,7 +52,8 @@ typedef struct convert_failure {
     model_error error;
 } convert_failure;
 
-/* Read, join (sources.h; the first input with meshes gives the model), encode and write. 0 on success: *out is the
+/* Read, join (sources.h; the first input with meshes gives the model; none is needed with a terrain), encode and write.
+ * 0 on success: *out is the
  * whole pack, to be freed with buffer_free. The same inputs and options give the same bytes on every machine. */
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);

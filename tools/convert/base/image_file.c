@@ -16,7 +16,7 @@ static int is_png_or_jpeg(const char *bytes, size_t count)
     return count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0);
 }
 
-static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
+static int check_size(const unsigned char *bytes, size_t count, model_error *error)
 {
     int width = 0, height = 0, channels = 0;
     if (count > 0x7fffffffu || !stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) || width < 1 ||
@@ -27,6 +27,13 @@ static int decode(const unsigned char *bytes, size_t count, image_file *image, m
         return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu", width, height,
                           (unsigned long long)PIXELS_MAX);
     }
+    return 0;
+}
+
+static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
+{
+    int width = 0, height = 0, channels = 0;
+    if (check_size(bytes, count, error)) return 1;
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
     image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
     if (!image->rgba) {
@@ -50,5 +57,32 @@ int image_read(const char *path, image_file *image, model_error *error)
     failed = is_png_or_jpeg(bytes, count) ? decode((const unsigned char *)bytes, count, image, error)
                                           : model_fail(error, "", "it is neither PNG nor JPEG");
     free(bytes);
+    return failed;
+}
+
+static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2], uint16_t **grey, model_error *error)
+{
+    int width = 0, height = 0, channels = 0;
+    if (check_size(bytes, count, error)) return 1;
+    *grey = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
+    if (!*grey) return model_fail(error, "", "the image data is damaged, or memory is out");
+    size[0] = (uint32_t)width;
+    size[1] = (uint32_t)height;
+    return 0;
+}
+
+int image_read_grey(const char *path, uint32_t *width, uint32_t *height, uint16_t **grey, model_error *error)
+{
+    size_t count = 0;
+    char *bytes = input_read(path, &count, error);
+    uint32_t size[2] = { 0, 0 };
+    *grey = NULL;
+    if (!bytes) return 1;
+    const int failed = count > 8 && memcmp(bytes, "\x89PNG", 4) == 0
+                           ? decode_grey((const unsigned char *)bytes, count, size, grey, error)
+                           : model_fail(error, "", "it is no PNG");
+    free(bytes);
+    *width = size[0];
+    *height = size[1];
     return failed;
 }

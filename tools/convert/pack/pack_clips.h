@@ -13,6 +13,7 @@
 #include "convert/codec/named_errors.h"
 #include "convert/graph/graph_text.h"
 #include "convert/springs/springs_bind.h"
+#include "convert/terrain/terrain_read.h"
 
 typedef struct encoded_clip {
     uint32_t set; /* index into encoded_clips.sets */
@@ -33,6 +34,7 @@ typedef struct encoded_clips {
     const set_springs *springs; /* [set_count] */
     const hair_text *hair;
     const hair_grown *grown; /* of `hair` */
+    const terrain *ground;   /* NULL: none */
 } encoded_clips;
 
 typedef struct clips_settings {

@@ -417,6 +417,24 @@ static void write_hair(writer *w)
     end_chunk(w);
 }
 
+static void write_terrain(writer *w)
+{
+    const terrain *t = w->clips->ground;
+    noh_pack_terrain_header h;
+    if (!t) return;
+    memset(&h, 0, sizeof h);
+    h.width = t->width;
+    h.depth = t->depth;
+    memcpy(h.origin, t->origin, sizeof h.origin);
+    h.spacing = t->spacing;
+    h.scale = t->scale;
+    h.heights_offset = sizeof h;
+    begin_chunk(w, NOH_CHUNK_TERRAIN, "");
+    buffer_append(&w->out, &h, sizeof h);
+    buffer_append(&w->out, t->heights, sizeof *t->heights * t->width * t->depth);
+    end_chunk(w);
+}
+
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
 static int assemble(writer *w, byte_buffer *out)
 {
@@ -454,7 +472,7 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 6 +
+    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 7 +
            (made ? 2 * (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
@@ -494,6 +512,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
             write_ragdoll(&w);
             write_springs(&w);
             write_hair(&w);
+            write_terrain(&w);
         }
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);

@@ -18,9 +18,10 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
-        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models;
+        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
-    double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size;
+    double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
+        terrain_points;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines;
 } build_args;
 
@@ -191,6 +192,24 @@ static int fail_build(const convert_failure *f)
                              : tool_fail(f->file, "%s", f->error.what);
 }
 
+static int set_terrain(const build_args *a, convert_options *o)
+{
+    const double points = a->terrain_points;
+    if (!(a->terrain_size >= 0.0 && a->terrain_size <= 1e5)) {
+        return tool_usage("--terrain-size wants metres, 0 to 100000");
+    }
+    if (!(a->terrain_height >= 0.0 && a->terrain_height <= 1e5)) {
+        return tool_usage("--terrain-height wants metres, 0 to 100000");
+    }
+    if (!(points >= 2.0 && points <= NOH_TERRAIN_SIZE_MAX && points == (double)(uint32_t)points)) {
+        return tool_usage("--terrain-points wants a whole number from 2 to %u", NOH_TERRAIN_SIZE_MAX);
+    }
+    o->ground.size_m = a->terrain_size;
+    o->ground.height_m = a->terrain_height;
+    o->ground.points = (uint32_t)points;
+    return 0;
+}
+
 /* A folder of targets is an .obj model's. */
 static int check_targets(const build_args *a)
 {
@@ -213,6 +232,7 @@ static int run(void *args)
     memset(&o, 0, sizeof o);
     status = set_options(a, &o);
     if (!status) status = check_targets(a);
+    if (!status) status = set_terrain(a, &o);
     if (status) {
         return status;
     }
@@ -225,6 +245,7 @@ static int run(void *args)
     o.spring_lines = a->spring_lines.items;
     o.spring_line_count = (uint32_t)a->spring_lines.count;
     o.hair = a->hair;
+    o.terrain = a->terrain;
     o.lips = a->lips;
     o.no_correctives = a->no_correctives;
     o.report = report;
@@ -520,6 +541,37 @@ static const option options[] = {
           "a haircut: where hair grows on a skull, how it is combed and how it looks, a text file (noh help FORMATS)",
       .example = "hero.hair",
       .excludes = "--only=anim" },
+    { .name = "--terrain",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, terrain),
+      .value = "FILE",
+      .what =
+          "the ground: a .png whose brightness is height, a pixel a height, or a .glb or .gltf file whose highest surface it is. Without IN the pack is the ground alone",
+      .example = "hill.png" },
+    { .name = "--terrain-size",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, terrain_size),
+      .value = "M",
+      .initial = "0",
+      .what = "metres along X; 0: of a picture a metre between pixels, of a model as it is",
+      .example = "64",
+      .needs = "--terrain" },
+    { .name = "--terrain-height",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, terrain_height),
+      .value = "M",
+      .initial = "0",
+      .what = "metres from black to white; 0: a tenth of the size",
+      .example = "8",
+      .needs = "--terrain" },
+    { .name = "--terrain-points",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, terrain_points),
+      .value = "N",
+      .initial = "257",
+      .what = "heights along the longer side of a model, 2 to 4097; a picture has its own",
+      .example = "129",
+      .needs = "--terrain" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, no_correctives),
@@ -540,10 +592,11 @@ const verb verb_build = {
     .files = "IN...",
     .what = "convert .gltf, .glb, .obj, .bvh and .rcl files to one pack: the first model, the clips of all",
     .example =
-        "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1",
+        "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1\n--terrain hill.png -o hill.noh --terrain-size 64 --terrain-height 8",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = INPUTS_MAX,
+    .without = "--terrain",
     .files_at = offsetof(build_args, inputs),
     .file_count_at = offsetof(build_args, input_count),
     .args = &arguments,

@@ -199,18 +199,19 @@ static int check_output(const verb *v, const given *g, const option *o, const ch
     return 0;
 }
 
-/* There are files, or the option that stands in for them. */
+/* There are files, or the option that stands in for them, or makes do without. */
 static int check_files(const verb *v, const given *g)
 {
     const int instead = v->instead && was_given(v, g, v->instead, strlen(v->instead));
     if (instead) {
         return g->file_count ? tool_usage("'%s' has no effect with %s", g->files[0], v->instead) : 0;
     }
-    if (g->file_count) {
+    if (g->file_count || (v->without && was_given(v, g, v->without, strlen(v->without)))) {
         return 0;
     }
-    return v->instead ? tool_usage("noh %s wants %s or %s", v->name, v->files, v->instead)
-                      : tool_usage("noh %s wants %s", v->name, v->files);
+    const char *other = v->instead ? v->instead : v->without;
+    return other ? tool_usage("noh %s wants %s or %s", v->name, v->files, other)
+                 : tool_usage("noh %s wants %s", v->name, v->files);
 }
 
 static int check_all(const verb *v, const given *g)

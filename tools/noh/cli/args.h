@@ -47,6 +47,7 @@ typedef struct verb {
     int option_count;
     int file_max;         /* takes 1 to this many files */
     const char *instead;  /* an option that stands in for the files: with it there are none; NULL: there is none */
+    const char *without;  /* an option with which files may be left out; NULL: there is none */
     size_t files_at;      /* offsetof const char *[file_max] */
     size_t file_count_at; /* offsetof an int; used if file_max is over 1 */
     void *args;

@@ -6,6 +6,7 @@
 #include "info_hair.h"
 #include "info_joints.h"
 #include "info_materials.h"
+#include "info_terrain.h"
 #include "info_transfer.h"
 #include "cli/args.h"
 #include "cli/message.h"
@@ -157,6 +158,7 @@ static int print_info(const pack_file *file)
         status = print_clip(file, i);
     }
     info_print_hair(p);
+    info_print_terrain(p);
     for (uint32_t i = 0; i < p->graph_count && !status; i++) {
         status = info_print_graph(file, i);
     }
@@ -328,6 +330,7 @@ static int json_info(const pack_file *file)
     }
     json_close(&j, ']');
     info_json_hair(&j, p);
+    info_json_terrain(&j, p);
     json_open(&j, "graphs", '[');
     for (uint32_t i = 0; i < p->graph_count && !status; i++) {
         status = info_json_graph(&j, file, i);

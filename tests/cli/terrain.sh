@@ -1,0 +1,58 @@
+#!/bin/sh
+# noh build --terrain: pictures and models as the ground, in packs of their own and with others, and what is refused.
+. "$(dirname "$0")/lib.sh"
+
+# 5 x 3 heights, 16 bits of grey: 0, 16384, 32768, 49152, 65535 in each row.
+png=$work/hill.png
+{
+    printf '\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\005\000\000\000\003'
+    printf '\020\000\000\000\000\056\315\106\147\000\000\000\026\111\104\101\124\170\332\143\140\140\160\140'
+    printf '\150\140\070\300\360\377\077\003\126\046\000\224\126\012\173\230\231\237\024\000\000\000\000\111'
+    printf '\105\116\104\256\102\140\202'
+} >"$png"
+
+noh build
+expect 2 'nothing to build'
+says '--terrain'
+noh build -o "$work/out.noh" --terrain "$work/none.png"
+expect 1 'a picture that is not there'
+noh build -o "$work/out.noh" --terrain "$0"
+expect 1 'a ground that is neither picture nor model'
+says 'a .png, .glb or .gltf'
+head -c 60 "$png" >"$work/cut.png"
+noh build -o "$work/out.noh" --terrain "$work/cut.png"
+expect 1 'a picture that is cut'
+says 'cut.png'
+for refused in '--terrain-size -1' '--terrain-height nan' '--terrain-points 1' '--terrain-points 5000' '--terrain-points 2.5'; do
+    # shellcheck disable=SC2086 # words
+    noh build -o "$work/out.noh" --terrain "$png" $refused
+    expect 2 "$refused"
+done
+check 'nothing was written' test ! -e "$work/out.noh"
+
+noh build -o "$work/hill.noh" --terrain "$png" --terrain-size 8 --terrain-height 4
+expect 0 'a pack of the ground alone'
+noh info "$work/hill.noh"
+expect 0 'what is in it'
+check 'its heights and sizes' grep -q '^terrain: 5 x 3 heights, 2.000 m apart: 8.00 x 4.00 m, 0.000 to 4.000 m high' "$work/out"
+noh info "$work/hill.noh" --json
+check 'the same as JSON' grep -q '"wide_m": 8' "$work/out"
+noh build -o "$work/again.noh" --terrain "$png" --terrain-size 8 --terrain-height 4
+check 'the same bytes again' cmp "$work/hill.noh" "$work/again.noh"
+noh info "$build/mask.noh" --json
+check 'a pack without has none' grep -q '"terrain": null' "$work/out"
+
+head -c 200 "$work/hill.noh" >"$work/cut.noh"
+noh info "$work/cut.noh"
+expect 1 'a pack that is cut'
+if [ -f "$assets/khronos/RobotExpressive.glb" ]; then
+    noh build "$assets/khronos/RobotExpressive.glb" -o "$work/robot.noh" --only mesh --terrain "$png" --quiet
+    expect 0 'a model on its ground'
+    noh info "$work/robot.noh"
+    check 'both are there' awk '/^mesh/ { mesh = 1 } /^terrain: 5 x 3/ { ground = 1 } END { exit !(mesh && ground) }' "$work/out"
+    noh build -o "$work/hill.noh" --terrain "$assets/khronos/RobotExpressive.glb" --terrain-points 33
+    expect 0 'a ground out of any model'
+else
+    skip 'a model on its ground' 'no khronos/RobotExpressive.glb in NOH_ASSETS'
+fi
+finish
