@@ -281,17 +281,24 @@ static char *whole_text(noh_gl_variant_key key)
     return text;
 }
 
-static int fetches_of(uint32_t features, int lit, int crowd)
+/* transfer: as in the key; light is then that of gl_light.h */
+static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t transfer)
 {
     noh_gl_variant_key key = { 0 };
     key.features = (uint8_t)features;
-    key.lit = lit != 0;
+    key.lit = lit || transfer;
+    key.transfer = (uint8_t)transfer;
     key.crowd = key.texture = crowd != 0;
     key.fade = key.encode_srgb = 1;
     char *text = whole_text(key);
     const int fetches = fetches_of_text(text);
     free(text);
     return fetches;
+}
+
+static int fetches_of(uint32_t features, int lit, int crowd)
+{
+    return fetches_of_transfer(features, lit, crowd, 0);
 }
 
 #define MAPS (NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_SURFACE_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_WRINKLES)
@@ -323,6 +330,15 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
             const int fetches = fetches_of(features | surfaces[i >> 2], lit, crowd);
             assert_in_range(fetches, 1, NOH_GL_FETCHES_MAX);
             most = fetches > most ? fetches : most;
+        }
+    }
+    for (uint32_t features = 0; features < 128; features++) {
+        for (uint32_t i = 0; i < 32 && !(features & ~(uint32_t)MAPS);
+             i++) { /* a transfer's records are read at vertices */
+            const uint32_t transfer = (i & 1u ? 6u : 4u) | (i & 2u ? NOH_TRANSFER_ON_NORMAL : 0u);
+            const int crowd = i >> 2 & 1;
+            const uint32_t all = features | surfaces[i >> 3];
+            assert_in_range(fetches_of_transfer(all, 1, crowd, transfer), 1, fetches_of(all, 1, crowd));
         }
     }
     print_message("a pixel of skin with everything reads %d texels, a plain one %d, a plain one that is lit %d\n",
