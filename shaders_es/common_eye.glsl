@@ -75,7 +75,7 @@ vec3 noh_from_lids(noh_surface s)
 /* The share of light from all around that the lids let through: their edges darken the ball, the upper one more. */
 float noh_lids(vec3 from)
 {
-    return mix(0.7, 1.0, smoothstep(-0.02, 0.4, from.x)) * mix(0.8, 1.0, smoothstep(-0.02, 0.2, from.y));
+    return mix(0.75, 1.0, smoothstep(-0.02, 0.3, from.x)) * mix(0.85, 1.0, smoothstep(-0.02, 0.2, from.y));
 }
 
 /* Tears stand along the lower lid: there the film rises to it, least in the corners. The normal that mirrors, unit. */
@@ -124,7 +124,6 @@ vec3 noh_eye_light(inout noh_surface s)
 #if NOH_TRANSFER == 0 /* else the transfer knows the lids */
         float lids = noh_lids(from);
         s.occlusion *= lids;
-        s.albedo *= 0.7 + 0.3 * lids;
 #endif
     }
     return mirror;
