@@ -7,6 +7,7 @@
 #define REACH 3.0f /* by default */
 #define FIELD_CELL 0.5f
 #define FIELD_VISITS 8192u
+#define SLOPE_MAX 1.0f
 #define FAR 1e6f        /* of places: squares and differences keep their digits */
 #define SPEED_MAX 15.0f /* in radii per second: a step is shorter than a radius, even of one who is pushed */
 
@@ -18,6 +19,7 @@ static noh_crowd_desc with_defaults(const noh_crowd_desc *desc)
     if (!d.job_count) d.job_count = 1;
     if (!(d.reach > 0.0f)) d.reach = REACH;
     if (!(d.field_cell > 0.0f)) d.field_cell = FIELD_CELL;
+    if (!(d.slope_max > 0.0f)) d.slope_max = SLOPE_MAX;
     if (!d.field_visits) d.field_visits = FIELD_VISITS;
     return d;
 }
@@ -32,6 +34,14 @@ static int is_length(float length)
     return length > 0.0f && length <= FAR;
 }
 
+static int is_ground(const noh_field *field)
+{
+    noh_world world;
+    memset(&world, 0, sizeof world);
+    world.field = field;
+    return noh_world_check(&world, NULL) == NOH_OK;
+}
+
 static noh_result check_fields(const noh_crowd_desc *desc, noh_error *error)
 {
     crowd_cells cells;
@@ -44,8 +54,13 @@ static noh_result check_fields(const noh_crowd_desc *desc, noh_error *error)
         return noh_fail(error, NOH_ERR_ARG, "the cells of flow fields, or the radius that they are for, are too large",
                         0, 0);
     }
-    if (d.field_count && !noh_crowd_flow_cells(&d, &cells)) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a flow field has more cells than the limit: give it larger ones", 0,
+    if (!(desc->slope_max >= 0.0f && desc->slope_max <= 2.0f) || (desc->ground && !is_ground(desc->ground))) {
+        return noh_fail(error, NOH_ERR_ARG, "a crowd's ground has no area, or its steepest slope is out of its range",
+                        0, 0);
+    }
+    if ((d.field_count || d.ground) && !noh_crowd_flow_cells(&d, &cells)) {
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "flow fields, or the ground, have more cells than the limit: give them larger ones", 0,
                         NOH_CROWD_FIELD_CELLS_MAX);
     }
     return NOH_OK;
@@ -116,6 +131,12 @@ static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
         c->flow = bytes = (bytes + 7u) & ~7u;
         bytes += noh_crowd_flow_bytes(&cells, desc->field_count);
     }
+    if (desc->ground) {
+        crowd_cells cells;
+        (void)noh_crowd_flow_cells(desc, &cells);
+        c->ground = bytes = (bytes + 3u) & ~3u;
+        bytes += noh_crowd_ground_bytes(&cells);
+    }
     c->bytes = (bytes + 15u) & ~15u;
 }
 
@@ -147,6 +168,7 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
         memcpy(CROWD_ARRAY(noh_crowd_obstacle, *crowd, obstacle), d.obstacles, d.obstacle_count * sizeof *d.obstacles);
         noh_crowd_near(&c.cells, &d, CROWD_ARRAY(uint32_t, *crowd, near_start), CROWD_ARRAY(uint16_t, *crowd, near));
     }
+    if (c.ground) noh_crowd_ground_init(*crowd, &d); /* which flow fields lead around */
     if (c.flow) noh_crowd_flow_init(*crowd, &d);
     return NOH_OK;
 }

@@ -19,12 +19,16 @@
  * the shortest way to a goal, in one byte. Steps build it in slices of bounded work; any number of agents may follow
  * it.
  *
+ * Where the ground is a height field agents are slowed by its slopes, do not walk up what is too steep, and are led
+ * around it by flow fields. Their height is the field's (noh_field_height).
+ *
  * A crowd is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
  * source   Weiss, Litteneker, Jiang, Terzopoulos: Position-Based Multi-Agent Dynamics for Real-Time Crowd Simulation,
  *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations); van den Berg, Guy, Lin, Manocha:
  *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA); Zhao: A fast sweeping method for Eikonal
  *          equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi: Some improvements for the fast sweeping
  *          method, SIAM Journal on Scientific Computing 2010 (only cells whose neighbours have changed)
+ *          Tobler: Three presentations on geographical analysis and modeling, 1993 (speed by slope)
  * Threads: a crowd belongs to one thread at a time; noh_crowd_job alone may be called from several at once. */
 #ifndef NOH_CROWD_CROWD_H
 #define NOH_CROWD_CROWD_H
@@ -34,6 +38,7 @@
 
 #include "base/limits.h"
 #include "base/result.h"
+#include "sim/world.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -56,10 +61,12 @@ typedef struct noh_crowd_desc {
     uint32_t obstacle_count; /* 0..NOH_CROWD_OBSTACLES_MAX */
     const noh_crowd_obstacle *obstacles; /* [obstacle_count]; copied by init */
     uint32_t field_count;                /* flow fields over the grid's area, 0..NOH_CROWD_FIELDS_MAX */
-    float field_cell;      /* edge of their cells, which are at most NOH_CROWD_FIELD_CELLS_MAX; default (0) 0.5 */
-    float field_radius;    /* of the widest agent that follows one, 0..half of the reach, at least half a cell: a way is
-                              found where it is wider than twice this and a cell */
-    uint32_t field_visits; /* cells that a step looks at for a field that is being built; default (0) 8192 */
+    float field_cell;   /* edge of their cells, which are at most NOH_CROWD_FIELD_CELLS_MAX; default (0) 0.5 */
+    float field_radius; /* of the widest agent that follows one, 0..half of the reach, at least half a cell: a way is
+                           found where it is wider than twice this and a cell */
+    const noh_field *ground; /* slopes are read by init, for each of these cells; NULL: level */
+    float slope_max;         /* rise of a run of 1 that is too steep to walk up, 0..2; default (0) 1 */
+    uint32_t field_visits;   /* cells that a step looks at for a field that is being built; default (0) 8192 */
 } noh_crowd_desc;
 
 /* An agent as it enters, and as it is asked for. */
@@ -87,8 +94,8 @@ typedef struct noh_crowd noh_crowd;
 
 /* The exact bytes of a crowd: 132, 88 an agent, 4 a cell of the grid; with obstacles 4 a cell more, 20 an obstacle and
  * 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
- * many as agents, and one. With flow fields 2,136, 24 a field, and for each of their cells 5 and one a field. 0 for an
- * impossible desc. */
+ * many as agents, and one. With ground 28 and 2 a cell of flow fields. With flow fields 2,136, 24 a field, and for each
+ * of their cells 5 and one a field. 0 for an impossible desc. */
 size_t noh_crowd_size(const noh_crowd_desc *desc);
 
 /* A crowd without agents.

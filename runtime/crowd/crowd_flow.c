@@ -70,7 +70,7 @@ static void find_blocked(const noh_crowd *c, crowd_flow *flow, float radius)
     for (uint32_t row = 0; row < flow->cells.depth; row++) {
         for (uint32_t column = 0; column < flow->cells.width; column++) {
             const vec2 at = middle_of(&flow->cells, column, row);
-            *distance++ = is_blocked(c, at, radius) ? BLOCKED : UNKNOWN;
+            *distance++ = is_blocked(c, at, radius) || noh_crowd_is_steep(c, at) ? BLOCKED : UNKNOWN;
         }
     }
 }

@@ -63,9 +63,16 @@ struct noh_crowd {
     uint32_t bytes;
     uint32_t corrected; /* agents of the step whose plans are corrected */
     uint32_t flow;      /* a crowd_flow; 0: there are no flow fields */
-    uint32_t reserved;
+    uint32_t ground;    /* a crowd_ground; 0: it is level */
 };
 NOH_STATIC_ASSERT(sizeof(noh_crowd) == 128, crowd);
+
+/* Behind it: int8_t[cell][2], the rise along x and along z. */
+typedef struct crowd_ground {
+    crowd_cells cells;
+    float slope_max;
+} crowd_ground;
+NOH_STATIC_ASSERT(sizeof(crowd_ground) == 28, crowd_ground);
 
 #define CROWD_CODES 256u /* of directions: 0 none, then 255 in equal steps */
 
@@ -152,6 +159,15 @@ static inline uint32_t noh_crowd_rank_of(const uint32_t first[3], uint32_t name)
 }
 
 #define CROWD_ITEM(body) ((body)->item & CROWD_ITEMS)
+
+/* ---- crowd_ground.c ---- */
+
+uint32_t noh_crowd_ground_bytes(const crowd_cells *cells);
+void noh_crowd_ground_init(noh_crowd *c, const noh_crowd_desc *desc);
+/* Whether the ground is too steep to stand on. */
+int noh_crowd_is_steep(const noh_crowd *c, vec2 at);
+/* How fast an agent walks in a direction, of its speed on level ground; of a crowd with a ground. */
+float noh_crowd_ease(const noh_crowd *c, vec2 at, vec2 direction);
 
 /* ---- crowd_see.c ---- */
 

@@ -96,7 +96,7 @@ static int is_led(const noh_crowd *c, const crowd_field *field, const crowd_body
 }
 
 /* Towards the goal, past walls; *speed: how fast. returns 0 where it is there */
-static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish *w, vec2 *direction, float *speed)
+static int aim_of(const noh_crowd *c, const crowd_body *b, const crowd_wish *w, vec2 *direction, float *speed)
 {
     const crowd_field *field = noh_crowd_followed(c, CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(b)]);
     const vec2 to = v2_sub(!field ? w->goal : field->is_built ? field->goal : field->asked, b->at);
@@ -107,6 +107,14 @@ static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish 
     *speed = speed_at(w, distance);
     if (!(distance > 1e-6f)) return 0;
     *direction = noh_crowd_detour(c, b->at, b->radius, v2_scale(to, 1.0f / distance), distance);
+    return 1;
+}
+
+/* The same, as fast as the ground lets it. */
+static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish *w, vec2 *direction, float *speed)
+{
+    if (!aim_of(c, b, w, direction, speed)) return 0;
+    if (c->ground) *speed *= noh_crowd_ease(c, b->at, *direction);
     return 1;
 }
 

@@ -280,8 +280,11 @@ INIT(springs_init)
 
 INIT(crowd_init)
 {
+    static const uint16_t heights[6] = { 0, 100, 0, 30, 200, 60 };
+    static const noh_field hill = { heights, 3, 2, { -10.0f, 0.0f, -5.0f }, 10.0f, 0.01f };
     static const noh_crowd_obstacle wall = { { -3.0f, 0.0f }, { 5.0f, 1.0f }, 0.1f };
-    const noh_crowd_desc desc = { 33, 2, { -10.0f, -5.0f }, { 20.0f, 10.0f }, 2.0f, 1, &wall, 3, 0.7f, 0.4f, 100 };
+    const noh_crowd_desc desc = { 33,   2,  { -10.0f, -5.0f }, { 20.0f, 10.0f }, 2.0f, 1, &wall, 3, 0.7f, 0.4f, &hill,
+                                  0.5f, 100 };
     noh_crowd *crowd;
     return noh_crowd_init(memory, bytes, &desc, &crowd, error);
 }
