@@ -39,7 +39,9 @@ ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
-TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb -ldl -lm
+# Draco meshes in glTF are read where its library is.
+HAVE_DRACO := $(shell $(PKG) --exists draco && echo y)
+TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(if $(HAVE_DRACO),-ldraco) -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
 Q        := $(if $(V),,@)
 say       = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
@@ -182,6 +184,14 @@ $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+
+$(BUILD)/tools/convert/gltf/gltf_draco.o: ALL_CXXFLAGS += $(if $(HAVE_DRACO),-DNOH_DRACO)
+$(BUILD)/tools/convert/gltf/gltf_draco.o: $(BUILD)/gen/with_draco
+
+# Changes when Draco comes or goes.
+$(BUILD)/gen/with_draco: FORCE
+	@mkdir -p $(@D)
+	@echo '$(HAVE_DRACO)' | cmp -s - $@ || echo '$(HAVE_DRACO)' >$@
 
 # One file of the library, wherever it lies, for an instruction set, its entry renamed.
 kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))

@@ -321,6 +321,20 @@ static void GL_APIENTRY null_TexSubImage2D(GLenum target, GLint level, GLint x, 
     check_update(NULL_TexSubImage2D, is_face ? GL_TEXTURE_CUBE_MAP : target, level, at, count);
 }
 
+static void GL_APIENTRY null_CompressedTexSubImage2D(GLenum target, GLint level, GLint x, GLint y, GLsizei width,
+                                                     GLsizei height, GLenum format, GLsizei bytes, const void *data)
+{
+    const GLint at[3] = { x, y, 0 };
+    const GLsizei count[3] = { width, height, 1 };
+    const noh_gl_texture_desc desc = { .format = format, .width = (uint32_t)width, .height = (uint32_t)height };
+    (void)data;
+    check_update(NULL_CompressedTexSubImage2D, target, level, at, count);
+    if ((x | y) & 3) noh_null_wrong(NULL_CompressedTexSubImage2D, "blocks begin at multiples of 4");
+    if ((uint64_t)bytes != noh_gl_texture_bytes(&desc)) {
+        noh_null_wrong(NULL_CompressedTexSubImage2D, "%d bytes are not those of the blocks", (int)bytes);
+    }
+}
+
 static void GL_APIENTRY null_TexSubImage3D(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
                                            GLsizei height, GLsizei depth, GLenum format, GLenum type,
                                            const void *pixels)
@@ -397,6 +411,7 @@ const null_entry noh_null_object_functions[] = { NULL_ENTRY(GenBuffers),
                                                  NULL_ENTRY(TexStorage3D),
                                                  NULL_ENTRY(TexSubImage2D),
                                                  NULL_ENTRY(TexSubImage3D),
+                                                 NULL_ENTRY(CompressedTexSubImage2D),
                                                  NULL_ENTRY(TexParameteri),
                                                  NULL_ENTRY(BindRenderbuffer),
                                                  NULL_ENTRY(RenderbufferStorage),

@@ -39,10 +39,10 @@ struct noh_surface {
 };
 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
-/* The unit vector of a normal map in tangent space. Bytes have no value for 0; 128 stands for it. */
+/* The unit vector of a normal map in tangent space. */
 vec3 noh_unpack_normal(vec3 texel, float scale)
 {
-    vec3 v = (texel * 255.0 - 128.0) / 127.0;
+    vec3 v = noh_map_vector(texel);
     return normalize(vec3(v.xy * scale, max(v.z, 1e-3)));
 }
 

@@ -1,11 +1,22 @@
-/* common_wrinkle.glsl: noh_wrinkle_by_model, how much a pixel is wrinkled, and normals blended by it. It goes in front
- * of common_material.glsl, with NOH_WRINKLES only.
+/* common_wrinkle.glsl: noh_map_vector, the vector of a normal map; with NOH_WRINKLES noh_wrinkle_by_model, how much a
+ * pixel is wrinkled, and normals blended by it. It goes in front of common_material.glsl.
  *
  * Three models, of which the largest counts. A material chooses by bits of noh_wrinkle_models:
  *   1  area: how far the surface has shrunk in the pose, by derivatives
  *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
  *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6
  * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. */
+#if (defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)) && !defined(NOH_DEPTH_ONLY)
+/* The vector of a normal map's texel. Bytes have no value for 0; 128 stands for it. A map of two channels has no blue:
+ * z is what x and y leave of 1. */
+vec3 noh_map_vector(vec3 texel)
+{
+    vec3 v = (texel * 255.0 - 128.0) / 127.0;
+    if (texel.b == 0.0) v.z = sqrt(max(1.0 - dot(v.xy, v.xy), 0.0));
+    return v;
+}
+#endif
+
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
 uniform highp ivec2 noh_wrinkle_models; /* those that show; 255 times how strongly they do */
 uniform mediump sampler2D noh_wrinkle_texture;
@@ -53,7 +64,7 @@ vec3 noh_blend_normals(vec3 base, vec3 detail)
 /* A normal in tangent space with its wrinkles. */
 vec3 noh_wrinkled(vec3 base, vec3 texel, vec3 by)
 {
-    vec3 detail = (texel * 255.0 - 128.0) / 127.0;
+    vec3 detail = noh_map_vector(texel);
     float weight = max(by.x, max(by.y, by.z));
     return noh_blend_normals(base, normalize(vec3(detail.xy * weight, max(detail.z, 1e-3))));
 }

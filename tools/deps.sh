@@ -23,7 +23,8 @@ libgl1-mesa-dri:the software rasteriser
 libtinygltf-dev:reading glTF
 nlohmann-json3-dev:reading glTF
 libstb-dev:reading and writing pictures
-libmeshoptimizer-dev:reading compressed glTF'
+libmeshoptimizer-dev:reading compressed glTF
+?libdraco-dev:reading Draco meshes in glTF'
 packages_view='?libglfw3-dev:noh view
 ?libimgui-dev:noh view'
 packages_check='libcmocka-dev:unit tests

@@ -37,7 +37,8 @@ static const struct {
 
 void noh_web_enable_extensions(noh_platform_context *context)
 {
-    static const char *const wanted[] = { "EXT_color_buffer_float", "EXT_color_buffer_half_float", "EXT_float_blend" };
+    static const char *const wanted[] = { "EXT_color_buffer_float", "EXT_color_buffer_half_float", "EXT_float_blend",
+                                          "WEBGL_compressed_texture_etc" };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         emscripten_webgl_enable_extension(context->handle, wanted[i]);
     }

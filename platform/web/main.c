@@ -24,6 +24,7 @@ static noh_result open_context(void)
         return noh_fail(&web.error, NOH_ERR_UNSUPPORTED, "this browser gives no WebGL 2 context", 0, 0);
     }
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
+    web.gl.decode = noh_etc2_decode;
     return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
@@ -146,6 +147,7 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
+    web.gl.decode = noh_etc2_decode;
     if (!result) result = noh_stage_restore(web.stage, &web.error);
     return (int)(result ? result : web_light_restore());
 }

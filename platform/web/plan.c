@@ -24,7 +24,7 @@ static noh_gl_caps any_device(void)
     caps.uniform_block_bytes_max = 16384;
     caps.vertex_textures_max = caps.vertex_attributes_max = 16;
     caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
-    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = 1;
     return caps;
 }
 

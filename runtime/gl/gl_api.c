@@ -131,6 +131,19 @@ static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COU
     }
 }
 
+/* WebGL 2 calls itself OpenGL ES 3.0, but has these formats as an extension. */
+static int has_etc2(const noh_gl_api *api)
+{
+    const char *text = (const char *)api->GetString(GL_VERSION);
+    for (; text && *text; text++) {
+        if (text_starts(text, "WebGL")) {
+            return noh_gl_has_extension(api, "WEBGL_compressed_texture_etc") ||
+                   noh_gl_has_extension(api, "GL_WEBGL_compressed_texture_etc");
+        }
+    }
+    return api->is_es || api->version >= 430 || noh_gl_has_extension(api, "GL_ARB_ES3_compatibility");
+}
+
 static noh_gl_proc get_suffixed(noh_gl_get_proc get, void *user, const char *name, const char *suffix)
 {
     char full[PROC_NAME_BYTES];
@@ -163,6 +176,7 @@ noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh
     noh_result result = read_version(&table, error);
     if (result != NOH_OK) return result;
     load_optional(&table, get, user);
+    table.etc2 = has_etc2(&table);
     *api = table;
     return NOH_OK;
 }

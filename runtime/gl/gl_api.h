@@ -101,6 +101,7 @@ extern "C" {
     X(TexStorage3D, TEXSTORAGE3D)                                     \
     X(TexSubImage2D, TEXSUBIMAGE2D)                                   \
     X(TexSubImage3D, TEXSUBIMAGE3D)                                   \
+    X(CompressedTexSubImage2D, COMPRESSEDTEXSUBIMAGE2D)               \
     X(TexParameteri, TEXPARAMETERI)                                   \
     X(PixelStorei, PIXELSTOREI)                                       \
     /* framebuffers */                                                \
@@ -222,6 +223,12 @@ typedef struct noh_gl_api {
     int is_es;        /* 0 on a desktop GL that also compiles ES shaders (OSMesa) */
     int geometry_ext; /* geometry shaders need "#extension GL_EXT_geometry_shader" (1) or
                        * "GL_OES_geometry_shader" (2); 0 where core or where absent */
+    int etc2;         /* the context reads ETC2 and EAC textures: OpenGL ES does, desktop GL from 4.3 or with
+                       * GL_ARB_ES3_compatibility, WebGL 2 with WEBGL_compressed_texture_etc */
+
+    /* Decodes them where it does not. NULL after noh_gl_api_load: set it to noh_etc2_decode (pack/etc2.h), which is not
+     * linked otherwise, before textures are made. */
+    void (*decode)(uint32_t format, const uint8_t *blocks, uint32_t count, uint8_t *texels);
 } noh_gl_api;
 
 /* Any GL function; cast it to its own type before the call. */

@@ -476,6 +476,7 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
     caps->mrt3 = caps->render_f32 || caps->render_f16 || caps->render_u32;
     caps->layered = probe_layered(p);
     caps->timer_query = probe_timer(p->api);
+    caps->etc2 = p->api->etc2;
 }
 
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error)

@@ -47,6 +47,7 @@ typedef struct noh_gl_caps {
     int blend_f32_exact; /* blend_f32, with the bits of C's float addition */
     int layered;         /* a geometry shader reaches all three layers by gl_Layer */
     int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
+    int etc2;            /* not tried: that of noh_gl_api, for plans of textures */
 
     /* How this GPU rounds a float to a half. UNKNOWN: like neither model, so results are only known within a bound. */
     noh_half_mode f16_store_mode; /* half(source) */

@@ -86,11 +86,14 @@ noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh
  * first  byte offset of the level's indices in the index buffer; a submesh's first_index counts from there */
 noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
 
-/* The exact GPU bytes of a pack's texture with its mip levels. */
-uint64_t noh_gl_picture_bytes(const noh_texture *texture);
+/* The exact GPU bytes of a pack's texture with its mip levels.
+ * etc2  of noh_gl_caps: 0: blocks are decoded, to 4 bytes a texel */
+uint64_t noh_gl_picture_bytes(const noh_texture *texture, int etc2);
 
-/* Upload a pack's texture with its mip levels, as sRGB or, with NOH_TEXTURE_LINEAR, as data.
- * errors  as noh_gl_texture_create */
+/* Upload a pack's texture with its mip levels, as sRGB or, with NOH_TEXTURE_LINEAR, as data. Where the context does not
+ * read ETC2 (noh_gl_api.etc2), noh_gl_api.decode decodes its blocks.
+ * errors  as noh_gl_texture_create; UNSUPPORTED the texture has blocks, the context does not read them, and
+ *         noh_gl_api.decode is NULL */
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);
 

@@ -1,7 +1,8 @@
 /* gl_memory.c: GL objects and the bytes that they are counted with.
  *
  * A texture counts its texels in every mip level, each level half as wide and high as the one before, rounded down but
- * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel. A renderbuffer counts its samples. */
+ * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel; where it is compressed, blocks in
+ * place of texels. A renderbuffer counts its samples. */
 #include "gl/gl_memory.h"
 
 #define SIDE_MAX 65536u
@@ -28,6 +29,19 @@ static const texel_size texel_sizes[] = {
 };
 /* clang-format on */
 
+/* The bytes of a block of 4 x 4 texels; 0: a format without blocks. */
+static uint32_t block_bytes(GLenum format)
+{
+    switch (format) {
+    case GL_COMPRESSED_RGB8_ETC2:
+    case GL_COMPRESSED_SRGB8_ETC2: return 8;
+    case GL_COMPRESSED_RGBA8_ETC2_EAC:
+    case GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:
+    case GL_COMPRESSED_RG11_EAC: return 16;
+    default: return 0;
+    }
+}
+
 uint32_t noh_gl_texel_bytes(GLenum format)
 {
     for (size_t i = 0; i < sizeof texel_sizes / sizeof *texel_sizes; i++) {
@@ -47,19 +61,20 @@ static uint32_t levels_max(uint32_t width, uint32_t height)
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
 {
     NOH_ASSERT(desc);
-    uint64_t texel = noh_gl_texel_bytes(desc->format);
+    const uint32_t block = block_bytes(desc->format);
+    const uint64_t unit = block ? block : noh_gl_texel_bytes(desc->format);
     uint32_t width = desc->width, height = desc->height;
     uint64_t layers = desc->layers == NOH_GL_CUBE ? 6 : desc->layers ? desc->layers : 1;
     uint32_t levels = desc->levels ? desc->levels : 1;
-    if (!texel || !width || !height || width > SIDE_MAX || height > SIDE_MAX || layers > SIDE_MAX) return 0;
+    if (!unit || !width || !height || width > SIDE_MAX || height > SIDE_MAX || layers > SIDE_MAX) return 0;
     if (levels > levels_max(width, height) || (desc->layers == NOH_GL_CUBE && width != height)) return 0;
-    uint64_t texels = 0;
+    uint64_t units = 0;
     for (uint32_t level = 0; level < levels; level++) {
-        texels += (uint64_t)width * height;
+        units += block ? (uint64_t)((width + 3u) / 4u) * ((height + 3u) / 4u) : (uint64_t)width * height;
         width = width > 1 ? width / 2 : 1;
         height = height > 1 ? height / 2 : 1;
     }
-    return texels * layers * texel;
+    return units * layers * unit;
 }
 
 uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t height, uint32_t samples)

@@ -52,7 +52,7 @@ typedef struct noh_gl_renderbuffer {
 #define NOH_GL_CUBE UINT32_MAX
 
 typedef struct noh_gl_texture_desc {
-    GLenum format;   /* a sized internal format that noh_gl_texel_bytes knows */
+    GLenum format;   /* a sized internal format that noh_gl_texel_bytes knows, or one of ETC2's or RG11_EAC */
     uint32_t width;  /* texels, 1..65536 */
     uint32_t height; /* texels, 1..65536 */
     uint32_t layers; /* 0: a GL_TEXTURE_2D; NOH_GL_CUBE: the six faces of a GL_TEXTURE_CUBE_MAP, as high as wide;
@@ -62,7 +62,7 @@ typedef struct noh_gl_texture_desc {
     GLenum wrap;     /* 0: GL_CLAMP_TO_EDGE */
 } noh_gl_texture_desc;
 
-/* The bytes of one texel of an internal format; 0 for a format that noh does not use. */
+/* The bytes of one texel of an internal format; 0 for a format that noh does not use, or that has blocks. */
 uint32_t noh_gl_texel_bytes(GLenum format);
 
 /* The bytes of a texture; 0 for an impossible desc. */

@@ -1,4 +1,4 @@
-/* gl_mesh.c: a pack's meshes and textures as GL objects.
+/* gl_mesh.c: a pack's meshes as GL objects.
  *
  * All LOD levels of a mesh share its buffers. The vertices of a coarser level are the first ones of the finer level,
  * and its indices lie behind those of the finer level. So a draw chooses a level by an offset into the index buffer,
@@ -345,66 +345,4 @@ void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mes
     noh_gl_buffer_delete(api, ledger, &mesh->influences);
     noh_gl_buffer_delete(api, ledger, &mesh->transfer);
     noh_gl_buffer_delete(api, ledger, &mesh->indices);
-}
-
-static noh_gl_texture_desc picture_desc(const noh_texture *texture)
-{
-    const noh_texture_header *h = texture->header;
-    const noh_gl_texture_desc desc = { .format = h->flags & NOH_TEXTURE_LINEAR ? GL_RGBA8 : GL_SRGB8_ALPHA8,
-                                       .width = h->width,
-                                       .height = h->height,
-                                       .levels = h->level_count,
-                                       .filter = h->nearest ? GL_NEAREST : GL_LINEAR };
-    return desc;
-}
-
-uint64_t noh_gl_picture_bytes(const noh_texture *texture)
-{
-    NOH_ASSERT(texture && texture->header);
-    noh_gl_texture_desc desc = picture_desc(texture);
-    return noh_gl_texture_bytes(&desc);
-}
-
-static GLint wrap_of(uint32_t wrap)
-{
-    return wrap == NOH_WRAP_CLAMP ? GL_CLAMP_TO_EDGE : wrap == NOH_WRAP_MIRROR ? GL_MIRRORED_REPEAT : GL_REPEAT;
-}
-
-noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                 noh_gl_texture *out, noh_error *error)
-{
-    noh_gl_texture_desc desc = picture_desc(texture);
-    noh_gl_texture picture;
-    noh_result result;
-    NOH_ASSERT(api && ledger && out);
-    result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
-    if (result) {
-        return result;
-    }
-    api->BindTexture(GL_TEXTURE_2D, picture.name);
-    noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
-    api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    for (uint32_t i = 0; i < desc.levels; i++) {
-        const noh_texture_level level = noh_texture_level_at(texture, i);
-        api->TexSubImage2D(GL_TEXTURE_2D, (GLint)i, 0, 0, (GLsizei)level.width, (GLsizei)level.height, GL_RGBA,
-                           GL_UNSIGNED_BYTE, level.pixels);
-    }
-    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
-    api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
-    api->BindTexture(GL_TEXTURE_2D, 0);
-    result = noh_gl_error_check(api, "the driver refuses a texture's pixels", picture.bytes, error);
-    if (result) {
-        noh_gl_texture_delete(api, ledger, &picture);
-        return result;
-    }
-    *out = picture;
-    return NOH_OK;
-}
-
-noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                  noh_gl_texture *picture, noh_error *error)
-{
-    NOH_ASSERT(texture && texture->header && picture);
-    noh_gl_texture_delete(noh_gl_lost_api(), ledger, picture);
-    return noh_gl_picture_create(api, ledger, texture, picture, error);
 }

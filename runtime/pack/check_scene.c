@@ -11,14 +11,31 @@ static uint32_t chain_of(const noh_texture_header *h)
     return count;
 }
 
-static uint64_t pixel_count(const noh_texture_header *h)
+static uint64_t level_bytes(const noh_texture_header *h)
 {
-    uint64_t count = 0;
+    uint64_t bytes = 0;
     for (uint32_t i = 0; i < h->level_count; i++) {
         const uint32_t width = h->width >> i, height = h->height >> i;
-        count += (uint64_t)(width ? width : 1u) * (height ? height : 1u);
+        bytes += noh_texture_bytes(h->format, width ? width : 1u, height ? height : 1u);
     }
-    return count;
+    return bytes;
+}
+
+static noh_result check_texture_format(const noh_check *check, const noh_texture_header *h)
+{
+    const noh_check_field format[] = {
+        { offsetof(noh_texture_header, format), h->format > NOH_TEXTURE_EAC_RG },
+        { offsetof(noh_texture_header, format),
+          h->format == NOH_TEXTURE_EAC_RG && (!(h->flags & NOH_TEXTURE_LINEAR) || h->nearest) },
+    };
+    const noh_check_field error = { offsetof(noh_texture_header, error), !(h->error >= 0.0f && h->error <= 65025.0f) };
+    noh_result result = noh_check_fields(check, format, 2, "unknown texture format, or not one for such a texture", 0);
+    if (!result) result = noh_check_fields(check, &error, 1, "texture's error is not from 0 to 65025", 0);
+    for (uint32_t i = 0; !result && i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
+        const noh_check_field reserved = { offsetof(noh_texture_header, reserved) + 4u * i, h->reserved[i] != 0 };
+        result = noh_check_fields(check, &reserved, 1, "reserved field of a texture is not zero", 0);
+    }
+    return result;
 }
 
 static noh_result check_texture_fields(const noh_check *check, const noh_texture_header *h)
@@ -38,11 +55,7 @@ static noh_result check_texture_fields(const noh_check *check, const noh_texture
     noh_result result = noh_check_fields(check, size, 2, "texture size is zero or over the limit", 0);
     if (!result) result = noh_check_fields(check, sampling, 4, "unknown texture sampling", 0);
     if (!result) result = noh_check_fields(check, &levels, 1, "texture has another number of mip levels", 0);
-    for (uint32_t i = 0; !result && i < 4u; i++) {
-        const noh_check_field reserved = { offsetof(noh_texture_header, reserved) + 4u * i, h->reserved[i] != 0 };
-        result = noh_check_fields(check, &reserved, 1, "reserved field of a texture is not zero", 0);
-    }
-    return result;
+    return result ? result : check_texture_format(check, h);
 }
 
 noh_result noh_check_texture(noh_check *check)
@@ -54,7 +67,7 @@ noh_result noh_check_texture(noh_check *check)
     }
     result = check_texture_fields(check, h);
     if (!result) {
-        result = noh_check_array(check, offsetof(noh_texture_header, pixels_offset), pixel_count(h), 4);
+        result = noh_check_array(check, offsetof(noh_texture_header, pixels_offset), level_bytes(h), 1);
     }
     return result ? result : noh_check_end(check);
 }

@@ -311,8 +311,8 @@ typedef struct noh_material {
     uint32_t reserved[2];
 } noh_material;
 
-/* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, each uint8_t[height][width][4], top row first.
- * A level's sides are half of those before it, rounded down, at least 1. ---- */
+/* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, top row first. A level's sides are half of
+ * those before it, rounded down, at least 1. ---- */
 
 #define NOH_WRAP_REPEAT 0u
 #define NOH_WRAP_CLAMP 1u
@@ -320,14 +320,26 @@ typedef struct noh_material {
 
 #define NOH_TEXTURE_LINEAR 1u /* the bytes are data; else sRGB with straight alpha */
 
+/* What a level's bytes are: texels, or blocks of 4 x 4 texels, which cover the level from its top left corner and may
+ * reach over its edges (OpenGL ES 3.0, appendix C). Packs from before there were blocks have zeros here. */
+#define NOH_TEXTURE_RGBA8 0u     /* uint8_t[height][width][4] */
+#define NOH_TEXTURE_ETC2_RGB 1u  /* 8 bytes a block; alpha is 1 */
+#define NOH_TEXTURE_ETC2_RGBA 2u /* 16 bytes a block: alpha as EAC, then RGB */
+#define NOH_TEXTURE_EAC_RG                                                                   \
+    3u /* 16 bytes a block, 11 bits a channel: x and y of a normal map, z is what they leave \
+        * of 1. LINEAR, without `nearest` */
+
 typedef struct noh_texture_header {
     uint32_t width, height;
     uint32_t wrap_s, wrap_t; /* NOH_WRAP_* */
     uint32_t nearest;        /* 1: no filtering */
     uint32_t pixels_offset;
     uint32_t level_count; /* mip levels: all, down to 1 x 1; with `nearest` 1 */
-    uint32_t flags;       /* NOH_TEXTURE_* */
-    uint32_t reserved[4];
+    uint32_t flags;       /* NOH_TEXTURE_LINEAR, or 0 */
+    uint32_t format;      /* NOH_TEXTURE_RGBA8... */
+    float error;          /* for reports: mean square of how far bytes of the first level are from those that the
+                           * converter had, over the channels that count; 0: not at all */
+    uint32_t reserved[2];
 } noh_texture_header;
 
 /* ---- CHUNK_SKELETON: header, then four arrays. Joints are in an order in which each LOD level is a prefix: those

@@ -342,14 +342,21 @@ noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture
     return NOH_OK;
 }
 
+uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height)
+{
+    const uint32_t blocks = ((width + 3u) / 4u) * ((height + 3u) / 4u);
+    return format == NOH_TEXTURE_RGBA8 ? width * height * 4u : blocks * (format == NOH_TEXTURE_ETC2_RGB ? 8u : 16u);
+}
+
 noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level)
 {
     NOH_ASSERT(texture && level < texture->header->level_count);
-    noh_texture_level at = { texture->header->width, texture->header->height, texture->pixels };
+    noh_texture_level at = { texture->header->width, texture->header->height, 0, texture->pixels };
     for (uint32_t i = 0; i < level; i++) {
-        at.pixels += (size_t)at.width * at.height * 4u;
+        at.pixels += noh_texture_bytes(texture->header->format, at.width, at.height);
         at.width = at.width > 1u ? at.width / 2u : 1u;
         at.height = at.height > 1u ? at.height / 2u : 1u;
     }
+    at.bytes = noh_texture_bytes(texture->header->format, at.width, at.height);
     return at;
 }

@@ -47,13 +47,14 @@ typedef struct noh_pack {
 typedef struct noh_texture {
     const char *name;
     const noh_texture_header *header;
-    const uint8_t *pixels; /* of all mip levels: [height][width][4], top row first, then the next level's */
+    const uint8_t *pixels; /* of all mip levels, one behind the other, as header->format says */
 } noh_texture;
 
 /* A mip level of a texture. */
 typedef struct noh_texture_level {
     uint32_t width, height;
-    const uint8_t *pixels; /* [height][width][4], sRGB with straight alpha, or data (NOH_TEXTURE_LINEAR) */
+    uint32_t bytes;
+    const uint8_t *pixels; /* [bytes]: [height][width][4], or blocks, as header->format says (etc2.h decodes them) */
 } noh_texture_level;
 
 /* Open a pack: check all of it, and fill *pack.
@@ -72,7 +73,10 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
-/* A mip level of it.
+/* The bytes of a mip level of a format, NOH_TEXTURE_RGBA8 and so on. */
+uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height);
+
+/* A mip level of a texture.
  * ranges  level below texture->header->level_count */
 noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level);
 

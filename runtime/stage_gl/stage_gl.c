@@ -260,7 +260,7 @@ static noh_result visit(measure *m, noh_error *error)
         result = visit_site(m, site, error);
     }
     for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
-        const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i);
+        const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i, m->caps->etc2);
         if (bytes) add(m, "textures", i, m->arena.used, bytes);
     }
     return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;

@@ -73,13 +73,13 @@ static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
     return where->kind < end;
 }
 
-uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind)
+uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind, int etc2)
 {
     site where = { kind, 0, UINT32_MAX };
     uint64_t bytes = 0;
     while (next_site(desc, kind + 1u, &where)) {
         noh_texture texture;
-        if (owns(desc, where, &texture)) bytes += noh_gl_picture_bytes(&texture);
+        if (owns(desc, where, &texture)) bytes += noh_gl_picture_bytes(&texture, etc2);
     }
     return bytes;
 }

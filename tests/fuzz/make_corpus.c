@@ -60,6 +60,32 @@ static void write_springs(const char *in)
     free(bytes);
 }
 
+/* Textures of each format in blocks. */
+static void write_blocks(const char *in)
+{
+    const test_model_desc desc = { 1, 2, 0, TEST_UVS, 8 };
+    model *m = test_model(&desc);
+    char path[4096];
+    size_t count;
+    m->textures = test_zeros(3 * sizeof *m->textures);
+    m->texture_count = 3;
+    for (uint32_t t = 0; t < 3; t++) {
+        model_texture *to = &m->textures[t];
+        to->name = model_string("blocks");
+        to->width = 6;
+        to->height = 5;
+        to->rgba = test_zeros(6 * 5 * 4);
+        for (uint32_t i = 0; i < 6 * 5 * 4; i++) to->rgba[i] = (uint8_t)(128u + (i * (t + 1u)) % 7u);
+        to->use = (model_texture_use)t;
+        to->etc2 = to->with_alpha = 1;
+    }
+    uint8_t *bytes = test_pack_of(m, &count, NULL);
+    snprintf(path, sizeof path, "%s/blocks.noh", in);
+    test_write_file(path, bytes, count);
+    free(bytes);
+    model_free(m);
+}
+
 /* Weights, a joint, callback keys and sync markers. */
 static void write_weights(const char *folder)
 {
@@ -231,6 +257,7 @@ static void corpus(void **state)
     write_clip_pack(folder, "ragdoll", "a\nb forward bend -20 95 side 40 twist 30 friction 5\n");
     write_springs(folder);
     write_weights(folder);
+    write_blocks(folder);
     write_graph(folder);
     write_transfer(folder);
     write_terrain(folder);

@@ -135,7 +135,7 @@ static void load_and_draw(const pack_file *file, const way *w)
     for (uint32_t i = 0; i < file->pack.texture_count; i++) {
         noh_texture texture;
         assert_int_equal(noh_pack_texture_at(&file->pack, i, &texture, NULL), NOH_OK);
-        bytes += noh_gl_picture_bytes(&texture);
+        bytes += noh_gl_picture_bytes(&texture, 1);
     }
     noh_null_report loaded = report_of(&g);
     assert_true(loaded.bytes == bytes);

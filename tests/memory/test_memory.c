@@ -639,7 +639,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     memset(&ledger, 0, sizeof ledger);
     assert_int_equal(noh_pack_texture_at(&pack, 0, &texture, NULL), NOH_OK);
     assert_int_equal(noh_gl_picture_create(&g->gl, &ledger, &texture, &picture, NULL), NOH_OK);
-    assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture));
+    assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture, 1));
     assert_true(size > 0);
     memset(variants, 0x5a, size);
     assert_int_equal(noh_gl_renderer_create(&device, &desc, variants, size - 1u, &renderer, &error), NOH_ERR_MEMORY);
@@ -647,7 +647,7 @@ static void pictures_and_the_renderer_take_what_they_say(void **state)
     for (size_t i = 0; i < size; i++) assert_int_equal(variants[i], 0x5a);
     assert_int_equal(noh_gl_renderer_create(&device, &desc, variants, size, &renderer, NULL), NOH_OK);
     assert_int_equal(size, renderer.variant_count * sizeof *renderer.variants);
-    assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture) + NOH_GL_RENDERER_BYTES);
+    assert_int_equal(noh_gl_ledger_bytes(&ledger), noh_gl_picture_bytes(&texture, 1) + NOH_GL_RENDERER_BYTES);
     noh_gl_renderer_delete(&renderer);
     noh_gl_texture_delete(&g->gl, &ledger, &picture);
     assert_int_equal(noh_gl_ledger_bytes(&ledger), 0);

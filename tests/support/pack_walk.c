@@ -81,7 +81,7 @@ static void walk_textures(walk *w)
         eat_name(w, t.name);
         for (uint32_t level = 0; level < t.header->level_count; level++) {
             const noh_texture_level at = noh_texture_level_at(&t, level);
-            eat(w, at.pixels, (size_t)at.width * at.height * 4u);
+            eat(w, at.pixels, at.bytes);
         }
     }
     for (uint32_t i = 0; i < w->pack->material_count; i++) {

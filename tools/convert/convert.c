@@ -389,6 +389,7 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
         return 1;
     }
     if (report) {
+        convert_report_textures(report, &pack);
         convert_report_skins(report, &pack);
     }
     return 0;
@@ -454,6 +455,14 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
     return options->only != CONVERT_CLIPS && wrinkles_make(s->m, &settings, error);
 }
 
+static void set_textures(const source *s, const convert_options *options)
+{
+    for (uint32_t i = 0; i < s->m->texture_count; i++) {
+        s->m->textures[i].etc2 = options->etc2 != 0;
+        s->m->textures[i].size_max = options->texture_max;
+    }
+}
+
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
                           const ragdoll_text *ragdoll, const set_springs *springs, const hair_text *hair,
                           const hair_grown *grown, const terrain *ground, const convert_options *options,
@@ -474,6 +483,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
     failed = make_wrinkles(s, options, error);
+    set_textures(s, options);
     if (options->report) {
         report_warnings(options->report, s);
     }

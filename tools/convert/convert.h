@@ -27,6 +27,8 @@ typedef struct convert_options {
     uint32_t surface_count;
     const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
     const char *targets;  /* a folder of .obj files: the targets of the first .obj model; NULL: none */
+    int etc2;             /* 1: textures are compressed */
+    uint32_t texture_max; /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     int split_eyes;       /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;              /* a text file of callback keys; NULL: none */
@@ -67,5 +69,8 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
 
 /* Report the skin of each skinned mesh of a finished pack, and the parts that the mesh was split into. */
 void convert_report_skins(FILE *out, const noh_pack *pack);
+
+/* Report what blocks cost the textures of a finished pack. */
+void convert_report_textures(FILE *out, const noh_pack *pack);
 
 #endif

@@ -1,6 +1,7 @@
 /* report.c: what `noh build` prints of meshes, LOD levels and skins. The bytes of other engines' layouts are computed
  * from their bytes per vertex and target, or per pair. */
 #include "convert.h"
+#include "convert/texture/texture_blocks.h"
 #include "mesh/mesh.h"
 
 static double ratio(double a, double b)
@@ -104,5 +105,17 @@ void convert_report_skins(FILE *out, const noh_pack *pack)
             }
         }
         fputc('\n', out);
+    }
+}
+
+void convert_report_textures(FILE *out, const noh_pack *pack)
+{
+    noh_texture t;
+    for (uint32_t i = 0; noh_pack_texture_at(pack, i, &t, NULL) == NOH_OK; i++) {
+        const double quality = texture_quality_db(t.header);
+        if (t.header->format && quality < TEXTURE_QUALITY_DB) {
+            fprintf(out, "texture '%s' is %.1f dB from its source as %s, below %.0f: --textures raw keeps it exact\n",
+                    t.name, quality, texture_format_name(t.header->format), TEXTURE_QUALITY_DB);
+        }
     }
 }

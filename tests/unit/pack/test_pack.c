@@ -398,7 +398,12 @@ static float nan_value(void)
     X(texture_levels_overflow, DATA, "mip levels", f->texture->level_count = 0xffffffffu)                            \
     X(texture_levels_of_nearest, DATA, "mip levels", f->texture->nearest = 1)                                        \
     X(texture_flags, DATA, "sampling", f->texture->flags = 2)                                                        \
-    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[3] = 1)                            \
+    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[1] = 1)                            \
+    X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_EAC_RG + 1)                   \
+    X(texture_format_colors, DATA, "not one for such a texture", f->texture->format = NOH_TEXTURE_EAC_RG)            \
+    X(texture_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ETC2_RGBA)                                  \
+    X(texture_error, DATA, "texture's error", f->texture->error = -1.0f)                                             \
+    X(texture_error_nan, DATA, "texture's error", f->texture->error = nan_value())                                   \
     X(texture_of_data, DATA, "of data for colours", f->texture->flags = NOH_TEXTURE_LINEAR)                          \
     X(material_normal_missing, DATA, "texture", f->materials[0].normal_texture = 1)                                  \
     X(material_normal_colors, DATA, "of colours for data", f->materials[0].normal_texture = 0)                       \

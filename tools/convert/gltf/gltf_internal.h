@@ -10,6 +10,7 @@
  *   gltf_file.cpp      failures, warnings, names
  *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression
+ *   gltf_draco.cpp     KHR_draco_mesh_compression
  *   gltf_view.cpp      buffer views, plain or compressed
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
@@ -83,7 +84,7 @@ struct file {
     std::vector<image> images;
     bytes bin; /* the BIN chunk of a .glb */
     bool has_bin = false;
-    std::vector<bytes> decoded_views; /* of EXT_meshopt_compression, empty until used */
+    std::vector<bytes> decoded_views; /* by meshopt, empty until used; by Draco, behind the file's own */
     uint64_t input_bytes = 0;         /* of all files read */
     uint64_t output_bytes = 0;        /* of what the model needs so far */
     ::model *out = nullptr;
@@ -142,6 +143,12 @@ span buffer_bytes(file &f, int buffer, uint64_t offset, uint64_t size, const std
 
 /* --- gltf_meshopt.cpp --- */
 bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::string &where);
+
+/* --- gltf_draco.cpp --- */
+/* Whether noh was built with Draco. */
+bool reads_draco();
+/* Decode compressed primitives: their accessors then have bytes. */
+void decode_draco(file &f);
 
 /* --- gltf_view.cpp --- */
 /* A buffer view's bytes, decompressed if need be; checked to lie inside its buffer. */

@@ -37,24 +37,18 @@ static const integer_rule integer_rules[] = {
 };
 
 /* Extensions that are understood, or may be ignored if they are not required. */
-static const char *const supported[] = { "KHR_mesh_quantization",
-                                         "EXT_meshopt_compression",
-                                         "KHR_texture_transform",
-                                         "KHR_materials_unlit",
-                                         "KHR_materials_specular",
-                                         "KHR_materials_pbrSpecularGlossiness",
-                                         "KHR_materials_ior",
-                                         "KHR_materials_emissive_strength",
-                                         "EXT_texture_webp",
-                                         "VRMC_vrm",
-                                         "VRMC_springBone",
-                                         "VRM" };
+static const char *const supported[] = { "KHR_mesh_quantization",  "EXT_meshopt_compression",
+                                         "KHR_texture_transform",  "KHR_materials_unlit",
+                                         "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
+                                         "KHR_materials_ior",      "KHR_materials_emissive_strength",
+                                         "EXT_texture_webp",       "VRMC_vrm",
+                                         "VRMC_springBone",        "VRM" };
 
 bool is_supported(const std::string &name)
 {
     for (const char *known : supported)
         if (name == known) return true;
-    return false;
+    return name == "KHR_draco_mesh_compression" && reads_draco();
 }
 
 bool uses_extension(const file &f, const char *name)
@@ -213,8 +207,10 @@ static void check_required(const json &document)
         std::string extension = name.is_string() ? name.get<std::string>() : "?";
         if (is_supported(extension)) continue;
         const char *instead = extension == "KHR_draco_mesh_compression"
-                                  ? " Draco compression (EXT_meshopt_compression is read)"
-                              : extension == "KHR_texture_basisu" ? " KTX2 textures (PNG, JPEG and WebP are read)"
+                                  ? " Draco compression (EXT_meshopt_compression is read), or build noh with "
+                                    "Draco (Debian: apt install libdraco-dev)"
+                              : extension == "KHR_texture_basisu" ? " KTX2 textures (PNG, JPEG and WebP are read; "
+                                                                    "KTX-Software's ktx extract makes PNG of them)"
                                                                   : "";
         fail("extensionsRequired", "the file needs the extension " + printable(extension) +
                                        ", which is not supported: export it without" + instead);

@@ -140,7 +140,8 @@ static size_t image_of(const file &f, const tinygltf::Texture &texture, const st
         webp->second.Get("source").IsInt())
         index = webp->second.Get("source").Get<int>();
     if (index < 0 && texture.extensions.count("KHR_texture_basisu"))
-        fail(where, "its only image is that of KHR_texture_basisu (KTX2), which is not read: export PNG, JPEG or WebP");
+        fail(where, "its only image is that of KHR_texture_basisu (KTX2), which is not read: export PNG, JPEG or WebP, "
+                    "or make PNG of it by KTX-Software's ktx extract");
     if (index < 0) fail(where, "it has no image that can be read");
     if (static_cast<size_t>(index) >= f.images.size())
         fail(where, text("image %d does not exist: the file has %zu", index, f.images.size()));

@@ -89,6 +89,7 @@ static void read_model(file &f)
     f.directory = slash == std::string::npos ? "" : f.path.substr(0, slash + 1);
     read_container(f);
     load_buffers(f);
+    decode_draco(f);
     read_materials(f);
     read_meshes(f);
     read_nodes(f);

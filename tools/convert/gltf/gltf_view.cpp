@@ -1,4 +1,5 @@
-/* gltf_view.cpp: buffer views: a range of a buffer, or data decoded from EXT_meshopt_compression. */
+/* gltf_view.cpp: buffer views: a range of a buffer, or data decoded from EXT_meshopt_compression or by gltf_draco.cpp.
+ */
 #include "gltf_internal.h"
 
 namespace gltf
@@ -25,6 +26,8 @@ span view_bytes(file &f, int index, const std::string &where)
     auto extension = view.extensions.find("EXT_meshopt_compression");
     if (extension != view.extensions.end())
         return compressed_view(f, static_cast<size_t>(index), extension->second, inner);
+    const bytes &decoded = f.decoded_views[static_cast<size_t>(index)]; /* of Draco */
+    if (!decoded.empty()) return { decoded.data(), decoded.size(), view.byteStride };
     span s = buffer_bytes(f, view.buffer, view.byteOffset, view.byteLength, inner);
     s.stride = view.byteStride;
     return s;

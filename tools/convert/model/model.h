@@ -28,6 +28,8 @@ typedef struct model_texture {
     model_texture_use use;
     uint8_t with_alpha; /* a material cuts or blends by its alpha: where that is 0, colours do not count */
     float alpha_cutoff; /* of a material that cuts by it: mip levels cover as much; else 0 */
+    uint8_t etc2;       /* 1: to be compressed */
+    uint32_t size_max;  /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
 } model_texture;
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;

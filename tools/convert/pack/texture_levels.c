@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/texture/texture_blocks.h"
+
 #define ONE (1u << 20) /* linear light, data, alpha 1, length of a normal */
 
 /* A level before it is rounded to bytes. */
@@ -203,8 +205,9 @@ static uint32_t cutoff_of(const model_texture *t)
     return t->use == MODEL_TEXTURE_COLOR && cutoff > 0.0 && cutoff < 256.0 ? (uint32_t)cutoff : 0;
 }
 
-static int write_level(const model_texture *t, const image *level, const int32_t light[256], const uint8_t *as_is,
-                       uint8_t *bytes, byte_buffer *out)
+/* The bytes of a level; as_is: those of the source. */
+static void close_image(const model_texture *t, const image *level, const int32_t light[256], const uint8_t *as_is,
+                        uint8_t *bytes)
 {
     const size_t count = (size_t)level->width * level->height;
     if (as_is) {
@@ -212,7 +215,63 @@ static int write_level(const model_texture *t, const image *level, const int32_t
     } else {
         for (size_t i = 0; i < count; i++) close_texel(level->texels + i * 4, t->use, light, bytes + i * 4);
     }
-    return buffer_append(out, bytes, count * 4), out->failed;
+}
+
+/* Mean squares of errors, of bytes: 38 and 44 dB. */
+#define ERROR_GOOD 10.3f
+#define ERROR_FINE 6.5f
+#define SIDE_SMALL 64u
+
+/* The formats to try for a texture, the smallest first. Textures that are read texel by texel have none: blocks would
+ * mix their colours. */
+static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, const uint8_t *bytes,
+                           uint32_t formats[2])
+{
+    const size_t count = (size_t)h->width * h->height;
+    if (!t->etc2 || h->nearest || h->width < 4u || h->height < 4u) return 0;
+    formats[0] = NOH_TEXTURE_ETC2_RGB;
+    formats[1] = NOH_TEXTURE_EAC_RG;
+    if (t->use == MODEL_TEXTURE_NORMAL) return 2;
+    if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha) return 1; /* glTF ignores such alphas */
+    for (size_t i = 0; i < count; i++) {
+        if (bytes[i * 4 + 3] != 255) formats[0] = NOH_TEXTURE_ETC2_RGBA;
+    }
+    return 1;
+}
+
+/* The first level, in the smallest format that is good enough: a normal map's blocks of colours keep less than those of
+ * two channels, and small textures stay as they are where blocks lose too much. */
+static int append_first(const model_texture *t, noh_texture_header *h, const texture_image *pixels, byte_buffer *out)
+{
+    const size_t at = out->count;
+    uint32_t formats[2];
+    const uint32_t count = formats_of(t, h, pixels->rgba, formats);
+    const int is_small = h->width <= SIDE_SMALL && h->height <= SIDE_SMALL;
+    for (uint32_t i = 0; i < count; i++) {
+        out->count = at;
+        h->format = formats[i];
+        if (texture_blocks_append(pixels, h->format, out)) return 1;
+        h->error = texture_blocks_error(pixels, h->format, out->bytes + at);
+        if (h->error <= (i + 1u < count ? ERROR_FINE : is_small ? ERROR_GOOD : 65025.0f)) return 0;
+    }
+    out->count = at;
+    h->format = NOH_TEXTURE_RGBA8;
+    h->error = 0.0f;
+    return buffer_append(out, pixels->rgba, (size_t)h->width * h->height * 4u), out->failed;
+}
+
+static int append_level(const model_texture *t, noh_texture_header *h, const image *level, const uint8_t *bytes,
+                        byte_buffer *out)
+{
+    const texture_image pixels = { bytes, level->width, level->height, t->with_alpha };
+    if (!h->level_count) return append_first(t, h, &pixels, out);
+    if (h->format) return texture_blocks_append(&pixels, h->format, out);
+    return buffer_append(out, bytes, (size_t)level->width * level->height * 4u), out->failed;
+}
+
+static uint32_t size_max(const model_texture *t)
+{
+    return t->size_max && t->size_max < NOH_TEXTURE_SIZE_MAX ? t->size_max : NOH_TEXTURE_SIZE_MAX;
 }
 
 int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buffer *out)
@@ -223,7 +282,7 @@ int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buf
     const uint32_t cutoff = cutoff_of(t);
     uint8_t *bytes = malloc((size_t)t->width * t->height * 4);
     int failed = open_image(t, (linear_light(light), light), &level) || !bytes;
-    while (!failed && (level.width > NOH_TEXTURE_SIZE_MAX || level.height > NOH_TEXTURE_SIZE_MAX)) {
+    while (!failed && (level.width > size_max(t) || level.height > size_max(t))) {
         failed = halve(&level, t->with_alpha);
     }
     h->width = level.width;
@@ -231,15 +290,14 @@ int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buf
     h->level_count = 0;
     for (int more = 1; !failed && more;) {
         const uint64_t count = (uint64_t)level.width * level.height;
-        const size_t at = out->count;
-        failed = write_level(t, &level, light, level.width == t->width && level.height == t->height ? t->rgba : NULL,
-                             bytes, out);
-        if (!failed && !h->level_count) {
+        close_image(t, &level, light, level.width == t->width && level.height == t->height ? t->rgba : NULL, bytes);
+        if (!h->level_count) {
             share = covered(bytes, count, cutoff);
             whole = count;
-        } else if (!failed && cutoff) {
-            keep_coverage(out->bytes + at, count, cutoff, share, whole);
+        } else if (cutoff) {
+            keep_coverage(bytes, count, cutoff, share, whole);
         }
+        failed = append_level(t, h, &level, bytes, out);
         h->level_count++;
         more = !h->nearest && (level.width > 1 || level.height > 1);
         failed = failed || (more && halve(&level, t->with_alpha));

@@ -18,10 +18,11 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
-        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain;
+        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain,
+        *textures;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
-        terrain_points;
+        terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines;
 } build_args;
 
@@ -163,6 +164,18 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     return 0;
 }
 
+static int set_textures(const build_args *a, convert_options *o)
+{
+    o->etc2 = strcmp(a->textures, "etc2") == 0;
+    if (!o->etc2 && strcmp(a->textures, "raw") != 0) {
+        return tool_usage("--textures wants etc2 or raw, not '%s'", a->textures);
+    }
+    o->texture_max = a->texture_max >= 1.0 && a->texture_max <= NOH_TEXTURE_SIZE_MAX ? (uint32_t)a->texture_max : 0;
+    return a->texture_max != (double)o->texture_max
+               ? tool_usage("--texture-max wants a whole number from 1 to %u", NOH_TEXTURE_SIZE_MAX)
+               : 0;
+}
+
 static int set_options(const build_args *a, convert_options *o)
 {
     int status;
@@ -178,6 +191,7 @@ static int set_options(const build_args *a, convert_options *o)
     if (!status) status = set_rects(a, o);
     if (!status) status = set_transfer(a, o);
     if (!status) status = set_wrinkles(a, o);
+    if (!status) status = set_textures(a, o);
     return status;
 }
 
@@ -370,6 +384,23 @@ static const option options[] = {
       .what =
           "side of a generated map of creases, texels, a power of two from 64 to 2048; half the side is a quarter of its bytes; 0: 256 or 512, the smallest that shows each crease",
       .example = "256",
+      .excludes = "--only=anim" },
+    { .name = "--textures",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, textures),
+      .value = "etc2|raw",
+      .initial = "etc2",
+      .what =
+          "how textures are stored: in blocks of ETC2 and EAC, which GPUs read as they are (a quarter to an eighth of the bytes; noh info says what each lost), or every texel exact",
+      .example = "raw",
+      .excludes = "--only=anim" },
+    { .name = "--texture-max",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, texture_max),
+      .value = "N",
+      .initial = "2048",
+      .what = "halve textures until no side is longer than this, texels, 1 to 2048",
+      .example = "1024",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,

@@ -50,6 +50,7 @@ int gpu_open(gpu *g, const char *driver)
         g->platform->destroy(g->context);
         return tool_fail_error(name, &error);
     }
+    g->gl.decode = noh_etc2_decode;
     watch_errors(&g->gl);
     return 0;
 }
@@ -91,7 +92,7 @@ noh_gl_caps gpu_nominal_caps(void)
     caps.vertex_textures_max = 16;
     caps.vertex_attributes_max = 16;
     caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
-    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = 1;
     return caps;
 }
 

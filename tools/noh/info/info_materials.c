@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+#include "convert/texture/texture_blocks.h"
 #include "noh_gl.h"
 
 #define MAPS 8u
@@ -68,7 +69,7 @@ static material_cost cost_of(const noh_pack *pack, const noh_material *m)
         noh_texture t;
         if (maps[k].texture == NOH_NONE) continue;
         (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
-        cost.bytes += noh_gl_picture_bytes(&t);
+        cost.bytes += noh_gl_picture_bytes(&t, 1);
         cost.textures++;
         cost.fetches += k >= 1 && k <= 4 && !(m->flags & NOH_MATERIAL_UNLIT);
     }
@@ -110,9 +111,17 @@ void info_print_textures(const noh_pack *pack)
     for (uint32_t i = 0; i < pack->texture_count; i++) {
         noh_texture t;
         (void)noh_pack_texture_at(pack, i, &t, NULL);
-        printf("texture '%s': %u x %u, %u mip level%s, %s, %llu bytes on the GPU\n", t.name, t.header->width,
-               t.header->height, t.header->level_count, t.header->level_count == 1 ? "" : "s",
-               t.header->flags & NOH_TEXTURE_LINEAR ? "data" : "sRGB", (unsigned long long)noh_gl_picture_bytes(&t));
+        const noh_texture_header *h = t.header;
+        printf("texture '%s': %u x %u, %u mip level%s, %s, %s", t.name, h->width, h->height, h->level_count,
+               h->level_count == 1 ? "" : "s", h->flags & NOH_TEXTURE_LINEAR ? "data" : "sRGB",
+               texture_format_name(h->format));
+        if (h->format) {
+            const double db = texture_quality_db(h);
+            printf(" %.1f dB%s", db, db < TEXTURE_QUALITY_DB ? " (below 38: --textures raw)" : "");
+        }
+        printf(", %llu bytes on the GPU", (unsigned long long)noh_gl_picture_bytes(&t, 1));
+        if (h->format) printf(", %llu without ETC2", (unsigned long long)noh_gl_picture_bytes(&t, 0));
+        printf("\n");
     }
 }
 
@@ -152,7 +161,10 @@ void info_json_textures(json *j, const noh_pack *pack)
         json_integer(j, "height", t.header->height);
         json_integer(j, "levels", t.header->level_count);
         json_bool(j, "data", (t.header->flags & NOH_TEXTURE_LINEAR) != 0);
-        json_integer(j, "gpu_bytes", noh_gl_picture_bytes(&t));
+        json_text(j, "format", texture_format_name(t.header->format));
+        json_number(j, "psnr_db", texture_quality_db(t.header));
+        json_integer(j, "gpu_bytes", noh_gl_picture_bytes(&t, 1));
+        json_integer(j, "gpu_bytes_without_etc2", noh_gl_picture_bytes(&t, 0));
         json_close(j, '}');
     }
     json_close(j, ']');

@@ -94,6 +94,7 @@ static int start_context(view_context *c, noh_gl_caps *caps)
     if (noh_gl_api_load(&c->gpu->gl, find_proc, NULL, &error) || noh_gl_caps_probe(&c->gpu->gl, caps, &error)) {
         return tool_fail_error("view", &error);
     }
+    c->gpu->gl.decode = noh_etc2_decode;
     find_reset_status(c, caps);
     watch_errors(c);
     return 0;

@@ -1,0 +1,45 @@
+/* etc2_block.h: the block of ETC2 or EAC that is the nearest to 4 x 4 texels.
+ *
+ *   etc2_encode_rgb    colours: individual, differential, T, H and planar, whichever is off by the least
+ *   eac_encode         one channel, of 8 or 11 bits
+ *
+ * All sums are of integers: every machine makes the same bytes. Errors are squares of differences of bytes, summed over
+ * texels and channels; of 11 bits likewise, in their steps.
+ *
+ * Texel x, y has the number 4 x + y, as in the blocks. The search starts with the mean colour of each half, chooses
+ * table and selectors, sets the colour to the mean of what these leave, and again while that helps; then it moves each
+ * channel of the best by a step. Stroem and Pettersson, "ETC2: Texture Compression using Invalid Combinations"
+ * (Graphics Hardware 2007), has the modes; the bits are those of OpenGL ES 3.0.6, appendix C.1. */
+#ifndef NOH_CONVERT_TEXTURE_ETC2_BLOCK_H
+#define NOH_CONVERT_TEXTURE_ETC2_BLOCK_H
+
+#include <stdint.h>
+
+typedef struct etc2_texels {
+    int32_t rgb[16][3];
+    int32_t counts[16]; /* 1, or 0: nobody sees this colour */
+} etc2_texels;
+
+/* The best of a mode so far. */
+typedef struct etc2_best {
+    uint64_t block;
+    uint32_t error;
+} etc2_best;
+
+static inline int32_t etc2_clamp(int32_t value, int32_t most)
+{
+    return value < 0 ? 0 : value > most ? most : value;
+}
+
+/* Modes of their own; each replaces *best where it is nearer. */
+void etc2_try_halves(const etc2_texels *t, etc2_best *best);
+void etc2_try_paints(const etc2_texels *t, etc2_best *best);
+void etc2_try_planar(const etc2_texels *t, etc2_best *best);
+
+/* Writes 8 bytes. */
+void etc2_encode_rgb(const etc2_texels *t, uint8_t block[8]);
+
+/* values[16]: 0..255, with eleven 0..2047. Writes 8 bytes. */
+void eac_encode(const int32_t values[16], int eleven, uint8_t block[8]);
+
+#endif

@@ -1,0 +1,172 @@
+#include "texture_blocks.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "etc2_block.h"
+#include "pack/etc2.h"
+
+static const uint8_t *texel_at(const texture_image *level, uint32_t x, uint32_t y)
+{
+    x = x < level->width ? x : level->width - 1u;
+    y = y < level->height ? y : level->height - 1u;
+    return level->rgba + ((size_t)y * level->width + x) * 4u;
+}
+
+/* As the shader reads it, and unit. */
+static void vector_of(const uint8_t *texel, double v[3])
+{
+    double length = 0.0;
+    for (int c = 0; c < 3; c++) {
+        v[c] = (texel[c] - 128.0) / 127.0;
+        length += v[c] * v[c];
+    }
+    length = sqrt(length);
+    for (int c = 0; c < 3; c++) v[c] = length > 1e-9 ? v[c] / length : c == 2;
+}
+
+static int32_t eleven_bits(double component)
+{
+    const double value = floor((component * 127.0 + 128.0) / 255.0 * 2047.0 + 0.5);
+    return value < 0.0 ? 0 : value > 2047.0 ? 2047 : (int32_t)value;
+}
+
+static void encode_pair(const texture_image *level, uint32_t x, uint32_t y, uint8_t *block)
+{
+    int32_t values[2][16];
+    for (uint32_t i = 0; i < 16; i++) {
+        double v[3];
+        vector_of(texel_at(level, x + i / 4u, y + i % 4u), v);
+        for (int c = 0; c < 2; c++) values[c][i] = eleven_bits(v[c]);
+    }
+    eac_encode(values[0], 1, block);
+    eac_encode(values[1], 1, block + 8);
+}
+
+static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format, uint8_t *block)
+{
+    int32_t alphas[16];
+    etc2_texels t;
+    for (uint32_t i = 0; i < 16; i++) {
+        const uint8_t *texel = texel_at(level, x + i / 4u, y + i % 4u);
+        for (int c = 0; c < 3; c++) t.rgb[i][c] = texel[c];
+        alphas[i] = texel[3];
+        t.counts[i] = !level->with_alpha || texel[3] != 0;
+    }
+    if (format == NOH_TEXTURE_ETC2_RGBA) {
+        eac_encode(alphas, 0, block);
+        block += 8;
+    }
+    etc2_encode_rgb(&t, block);
+}
+
+/* Whether the texels of the block are those of the block to the left of it. */
+static int is_repeated(const texture_image *level, uint32_t x, uint32_t y)
+{
+    if (!x || x + 4u > level->width) return 0;
+    for (uint32_t j = y; j < y + 4u && j < level->height; j++) {
+        const uint8_t *row = texel_at(level, x, j);
+        if (memcmp(row, row - 16, 16) != 0) return 0;
+    }
+    return 1;
+}
+
+int texture_blocks_append(const texture_image *level, uint32_t format, byte_buffer *out)
+{
+    const size_t bytes = format == NOH_TEXTURE_ETC2_RGB ? 8 : 16;
+    uint8_t block[16];
+    for (uint32_t y = 0; y < level->height; y += 4u) {
+        for (uint32_t x = 0; x < level->width; x += 4u) {
+            if (is_repeated(level, x, y)) {
+                /* the same again */
+            } else if (format == NOH_TEXTURE_EAC_RG) {
+                encode_pair(level, x, y, block);
+            } else {
+                encode_color(level, x, y, format, block);
+            }
+            buffer_append(out, block, bytes);
+        }
+    }
+    return out->failed;
+}
+
+static double square(double v)
+{
+    return v * v;
+}
+
+/* The two halves of a decoded texel. */
+static double vector_error(const uint8_t *texel, const uint16_t pair[2])
+{
+    double v[3], got[3];
+    vector_of(texel, v);
+    for (int c = 0; c < 2; c++) got[c] = (pair[c] / 2047.0 * 255.0 - 128.0) / 127.0;
+    const double left = 1.0 - got[0] * got[0] - got[1] * got[1];
+    got[2] = left > 0.0 ? sqrt(left) : 0.0;
+    return (square(v[0] - got[0]) + square(v[1] - got[1]) + square(v[2] - got[2])) * 127.0 * 127.0;
+}
+
+typedef struct error_sum {
+    double squares;
+    uint64_t count;
+} error_sum;
+
+static void add_pair(const texture_image *level, uint32_t x, uint32_t y, const uint8_t *block, error_sum *sum)
+{
+    uint16_t values[2][16];
+    noh_eac_decode(block, 1, values[0]);
+    noh_eac_decode(block + 8, 1, values[1]);
+    for (uint32_t i = 0; i < 16; i++) {
+        const uint32_t at_x = x + i % 4u, at_y = y + i / 4u;
+        const uint16_t pair[2] = { values[0][i], values[1][i] };
+        if (at_x >= level->width || at_y >= level->height) continue;
+        sum->squares += vector_error(texel_at(level, at_x, at_y), pair);
+        sum->count += 3;
+    }
+}
+
+static void add_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format, const uint8_t *block,
+                      error_sum *sum)
+{
+    uint8_t texels[16][4];
+    noh_etc2_decode(format, block, 1, texels[0]);
+    for (uint32_t i = 0; i < 16; i++) {
+        const uint32_t at_x = x + i % 4u, at_y = y + i / 4u;
+        if (at_x >= level->width || at_y >= level->height) continue;
+        const uint8_t *texel = texel_at(level, at_x, at_y);
+        const int counts = !level->with_alpha || texel[3] != 0;
+        for (int c = 0; c < 3 && counts; c++) sum->squares += square((double)texels[i][c] - texel[c]);
+        sum->count += counts ? 3u : 0u;
+        if (format != NOH_TEXTURE_ETC2_RGBA) continue;
+        sum->squares += square((double)texels[i][3] - texel[3]);
+        sum->count++;
+    }
+}
+
+float texture_blocks_error(const texture_image *level, uint32_t format, const uint8_t *blocks)
+{
+    const size_t bytes = format == NOH_TEXTURE_ETC2_RGB ? 8 : 16;
+    error_sum sum = { 0.0, 0 };
+    for (uint32_t y = 0; y < level->height; y += 4u) {
+        for (uint32_t x = 0; x < level->width; x += 4u, blocks += bytes) {
+            if (format == NOH_TEXTURE_EAC_RG) {
+                add_pair(level, x, y, blocks, &sum);
+            } else {
+                add_color(level, x, y, format, blocks, &sum);
+            }
+        }
+    }
+    return sum.count ? (float)(sum.squares / (double)sum.count) : 0.0f;
+}
+
+double texture_quality_db(const noh_texture_header *header)
+{
+    const double db = header->error > 0.0f ? 10.0 * log10(255.0 * 255.0 / (double)header->error) : 99.0;
+    return db < 99.0 ? db : 99.0;
+}
+
+const char *texture_format_name(uint32_t format)
+{
+    static const char *const names[] = { "RGBA8", "ETC2 RGB", "ETC2 RGBA", "EAC RG" };
+    return names[format];
+}

@@ -1,0 +1,38 @@
+/* texture_blocks.h: levels of a texture as blocks of ETC2 and EAC, and how far these are off.
+ *
+ *   texture_blocks_append   encode a level
+ *   texture_blocks_error    the mean square of what a level lost
+ *   texture_quality_db      the same of a texture in a pack, as its peak signal to noise ratio
+ *   texture_format_name     "ETC2 RGB" and so on
+ *
+ * Vectors of normal maps are made unit first: EAC_RG keeps x and y, and z is what they leave of 1. */
+#ifndef NOH_CONVERT_TEXTURE_TEXTURE_BLOCKS_H
+#define NOH_CONVERT_TEXTURE_TEXTURE_BLOCKS_H
+
+#include "convert/base/byte_buffer.h"
+#include "pack/format.h"
+
+/* A level: rgba[height][width][4]. */
+typedef struct texture_image {
+    const uint8_t *rgba;
+    uint32_t width, height;
+    int with_alpha; /* colours do not count where alpha is 0 */
+} texture_image;
+
+/* format: NOH_TEXTURE_ETC2_RGB, _ETC2_RGBA or _EAC_RG. Texels beyond an edge are those at the edge. Returns 0, or 1:
+ * out of memory. */
+int texture_blocks_append(const texture_image *level, uint32_t format, byte_buffer *out);
+
+/* Decoded blocks against the level, in bytes: over red, green, blue where they count, with ETC2_RGBA alpha too; of
+ * normal maps over x, y and z. 0: nothing was lost. */
+float texture_blocks_error(const texture_image *level, uint32_t format, const uint8_t *blocks);
+
+/* Below this a texture is worth a word: errors of three of 255 steps. */
+#define TEXTURE_QUALITY_DB 38.0
+
+/* 10 log10(255^2 / error), at most 99: nothing was lost. */
+double texture_quality_db(const noh_texture_header *header);
+
+const char *texture_format_name(uint32_t format);
+
+#endif
