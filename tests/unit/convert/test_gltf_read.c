@@ -1636,8 +1636,8 @@ static void required_extensions_are_refused_by_name(void **state)
 {
     (void)state;
     scene *s = triangle("", "");
-    APPEND(s->rest, ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]");
-    refused(s, "KHR_draco_mesh_compression, which is not supported", "extensionsRequired");
+    APPEND(s->rest, ",\"extensionsRequired\":[\"KHR_texture_basisu\"]");
+    refused(s, "KHR_texture_basisu, which is not supported", "extensionsRequired");
 }
 
 static void unknown_extensions_are_warnings(void **state)

@@ -292,6 +292,28 @@ static void mark_untargeted_channels(json &document)
     }
 }
 
+/* tinygltf wants a buffer view for indices, also for those that Draco holds: gltf_draco.cpp gives them another. */
+static void repair_draco_indices(json &document)
+{
+    auto meshes = document.find("meshes");
+    auto accessors = document.find("accessors");
+    auto views = document.find("bufferViews");
+    if (meshes == document.end() || accessors == document.end() || views == document.end() || views->empty()) return;
+    for (json &mesh : *meshes) {
+        auto primitives = mesh.find("primitives");
+        for (size_t i = 0; primitives != mesh.end() && primitives->is_array() && i < primitives->size(); ++i) {
+            const json &primitive = (*primitives)[i];
+            if (!primitive.is_object() || !primitive.contains("extensions") || !primitive.contains("indices")) continue;
+            const json &indices = primitive["indices"];
+            if (!primitive["extensions"].contains("KHR_draco_mesh_compression") || !indices.is_number_unsigned() ||
+                indices.get<uint64_t>() >= accessors->size())
+                continue;
+            json &accessor = (*accessors)[indices.get<size_t>()];
+            if (!accessor.contains("bufferView")) accessor["bufferView"] = 0;
+        }
+    }
+}
+
 /* Note every extension of an object that is not read, with the object's name. */
 static void find_extensions(file &f, const json &value, const std::string &where)
 {
@@ -364,6 +386,7 @@ void parse_json(file &f, const char *text_begin, size_t size)
     take_images(f, document);
     repair_skins(document);
     mark_untargeted_channels(document);
+    repair_draco_indices(document);
     run_tinygltf(f, document);
     f.decoded_views.resize(f.json.bufferViews.size());
 }
