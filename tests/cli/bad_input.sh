@@ -80,10 +80,10 @@ echo '{"asset":{"version":"2.0"}}' >"$work/nothing.gltf"
 noh build "$work/nothing.gltf" -o "$work/folder/out.noh" --quiet
 expect 1 'build of a glTF without meshes'
 none_left
-echo '{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]}' >"$work/draco.gltf"
-noh build "$work/draco.gltf" -o "$work/folder/out.noh" --quiet
+echo '{"asset":{"version":"2.0"},"extensionsRequired":["KHR_texture_basisu"]}' >"$work/basisu.gltf"
+noh build "$work/basisu.gltf" -o "$work/folder/out.noh" --quiet
 expect 1 'build of a file that needs Draco'
-says 'KHR_draco_mesh_compression'
+says 'KHR_texture_basisu'
 none_left
 noh render "$work/bad.noh" -o "$work/folder/out.png"
 expect 1 'render of a broken pack'
