@@ -93,7 +93,7 @@ AMALGAM    := $(BUILD)/amalgam
 AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
 
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
-KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o
+KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
 .PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
@@ -219,6 +219,26 @@ $(BUILD)/kernel/ragdoll_lanes_%.o: $(call kernel_c,ragdoll_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_RAGDOLL_STEP=noh_ragdoll_step_dolls_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/spring_lanes_scalar.o: $(call kernel_c,spring_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SPRING_SCALAR -DNOH_SPRING_STEP=noh_spring_step_scalar -DNOH_SPRING_ROTATIONS=noh_spring_rotations_scalar -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/spring_lanes_%.o: $(call kernel_c,spring_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_SPRING_STEP=noh_spring_step_$* -DNOH_SPRING_ROTATIONS=noh_spring_rotations_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/hair_lanes_scalar.o: $(call kernel_c,hair_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_HAIR_SCALAR -DNOH_HAIR_ADVANCE=noh_hair_advance_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/hair_lanes_%.o: $(call kernel_c,hair_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_HAIR_ADVANCE=noh_hair_advance_$* -DNOH_HAIR_POINTS=noh_hair_points_$* -MMD -MP -c $< -o $@
 
 $(BUILD)/tools/noh/view/%.o: tools/noh/view/%.cpp | $(BUILD)/gen/shaders.gen.h
 	@mkdir -p $(@D)

@@ -99,6 +99,27 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
         _mm_storeu_ps(rows + (i + 4) * stride, _mm256_extractf128_ps(pairs[i], 1));
     }
 }
+/* the same of rows[NOH_LANES] that lie anywhere, from float `first` of each */
+static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
+{
+    lanes pairs[4];
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        pairs[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[i] + first)),
+                                        _mm_loadu_ps(rows[i + 4] + first), 1);
+    }
+    lanes_turn(pairs, out);
+}
+static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
+{
+    lanes pairs[4];
+    lanes_turn(columns, pairs);
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        _mm_storeu_ps(rows[i] + first, _mm256_castps256_ps128(pairs[i]));
+        _mm_storeu_ps(rows[i + 4] + first, _mm256_extractf128_ps(pairs[i], 1));
+    }
+}
 
 #elif defined(NOH_SSE2)
 #include <emmintrin.h>
@@ -176,6 +197,23 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
     NOH_UNROLL
     for (size_t i = 0; i < 4; i++) {
         _mm_storeu_ps(rows + i * stride, r[i]);
+    }
+}
+static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
+{
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        out[i] = _mm_loadu_ps(rows[i] + first);
+    }
+    _MM_TRANSPOSE4_PS(out[0], out[1], out[2], out[3]);
+}
+static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
+{
+    lanes r[4] = { columns[0], columns[1], columns[2], columns[3] };
+    _MM_TRANSPOSE4_PS(r[0], r[1], r[2], r[3]);
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        _mm_storeu_ps(rows[i] + first, r[i]);
     }
 }
 
@@ -266,6 +304,24 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
         vst1q_f32(rows + i * stride, out[i]);
     }
 }
+static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
+{
+    lanes in[4];
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        in[i] = vld1q_f32(rows[i] + first);
+    }
+    lanes_turn(in, out);
+}
+static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
+{
+    lanes out[4];
+    lanes_turn(columns, out);
+    NOH_UNROLL
+    for (size_t i = 0; i < 4; i++) {
+        vst1q_f32(rows[i] + first, out[i]);
+    }
+}
 
 #else
 #define NOH_LANES 1
@@ -329,6 +385,14 @@ static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride
 {
     (void)stride;
     memcpy(rows, columns, 4 * sizeof *rows);
+}
+static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
+{
+    memcpy(out, rows[0] + first, 4 * sizeof **rows);
+}
+static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
+{
+    memcpy(rows[0] + first, columns, 4 * sizeof **rows);
 }
 #endif
 

@@ -13,6 +13,8 @@
  * so lengths and spheres hold at the same time. Steps are of 1/60 s whatever the frame rate, with the head's place
  * interpolated, and what is shown lies between the last two of them.
  *
+ * Hairs are stepped side by side, one in each lane of the processor's vectors; the bits are the same at every width.
+ *
  * Hair is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
  * source   Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur, 2012 (follow the leader, and what of
  *          its corrections goes into speeds); Granberg, Character Animation with Direct3D, 2009, chapter 15, corrected:

@@ -2,8 +2,8 @@
  *
  *   noh_spring_size, noh_spring_init   a chain at rest
  *   noh_spring_reset                   at rest again, after what carries it has leapt
- *   noh_spring_step                    time moves on
- *   noh_spring_rotations               the local rotations of its joints
+ *   noh_spring_step                    time moves on, for any number of chains
+ *   noh_spring_rotations               the local rotations of their joints
  *   noh_spring_ends                    where its joints end
  *   noh_spring_check                   a spring that comes from outside
  *
@@ -12,6 +12,9 @@
  * of 1/60 s, for which what carries it and its colliders are interpolated, and what is shown lies between the last two
  * steps. The reference itself settles in 0.37 to 1.33 s as frames change from 15 to 240 Hz, because its drag counts
  * frames.
+ *
+ * Chains are stepped side by side, one in each lane of the processor's vectors, so several in one call take less time
+ * than one by one; the bits are the same.
  *
  * A spring is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
  * source   VRM Consortium: VRMC_springBone-1.0, "Spring Bone Algorithm"; Jakobsen: Advanced Character Physics, GDC 2001
@@ -62,6 +65,18 @@ typedef struct noh_spring_collider {
 
 typedef struct noh_spring noh_spring;
 
+/* A chain, and what a call does with it. */
+typedef struct noh_spring_move {
+    noh_spring *spring;
+    const noh_spring_desc *desc;
+    const noh_spring_carrier *carrier;    /* at the end of the call's time; in between it is interpolated */
+    const noh_spring_collider *colliders; /* [desc->collider_count], the same; NULL without any */
+    float *rotations;                     /* [desc->joint_count][4]: what noh_spring_rotations writes */
+} noh_spring_move;
+
+/* Floats of memory that chains of so many colliders at most are stepped with. */
+#define NOH_SPRING_SCRATCH_FLOATS(colliders) (72u * (size_t)(colliders) + 8u)
+
 /* The exact bytes of a spring: 104, 28 a joint and 28 a collider, rounded up to 16. 0 for an impossible desc. */
 size_t noh_spring_size(const noh_spring_desc *desc);
 
@@ -79,14 +94,15 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
 void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier);
 
 /* Time moves on, in any pieces; in one call by NOH_SPRING_STEPS_MAX steps, a quarter of a second.
- * carrier    where it is at the end of this time; in between it is interpolated
- * colliders  [collider_count], the same; NULL without any
- * returns    ticks that were dropped, 0 up to a quarter of a second */
-uint32_t noh_spring_step(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
-                         const noh_spring_collider *colliders, uint32_t ticks);
+ * moves    [count], no spring twice; `rotations` is not used
+ * scratch  [NOH_SPRING_SCRATCH_FLOATS] of the most colliders that one of them has; NULL if none has any; undefined
+ *          before and after
+ * returns  ticks that were dropped, 0 up to a quarter of a second: the most of any */
+uint32_t noh_spring_step(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch);
 
-/* shapes  rotations[joint_count][4], local, to be put into a pose in place of those at rest */
-void noh_spring_rotations(const noh_spring *spring, const noh_spring_desc *desc, float *rotations);
+/* The local rotations to be put into a pose in place of those at rest. `carrier` and `colliders` are not used.
+ * moves  [count], their `rotations` not overlapping */
+void noh_spring_rotations(const noh_spring_move *moves, uint32_t count);
 
 /* shapes  ends[joint_count][3], world space, as of the last step's carrier */
 void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, float *ends);

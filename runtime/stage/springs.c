@@ -18,12 +18,33 @@ typedef struct swing {
     uint32_t first_row;
     uint32_t collides;
     uint32_t state; /* where its spring lies in the state of an actor */
+    uint32_t after; /* chains before this one that must have swung: what carries it is of the last of them */
     float length;   /* stretched out, metres */
 } swing;
 
+#define TOGETHER 8u /* chains that are stepped in one call */
+
+/* What a job needs of them. */
+typedef struct together {
+    uint32_t count;
+    noh_spring_move moves[TOGETHER];
+    noh_spring_carrier carriers[TOGETHER];
+    const swing *swings[TOGETHER];
+    float shares[TOGETHER];
+} together;
+
+/* The memory of a job. */
+typedef struct workspace {
+    float *scratch; /* of noh_spring_step */
+    together *chains;
+    noh_spring_collider *all;     /* [collider_count] */
+    noh_spring_collider *near_by; /* [TOGETHER][collider_count] */
+    float *rotations;             /* [TOGETHER][joints of the longest chain][4] */
+} workspace;
+
 struct noh_springs {
     uint32_t row_count, chain_count, collider_count, joint_count;
-    uint32_t state_bytes, scratch_bytes;
+    uint32_t state_bytes, scratch_bytes, longest;
     uint32_t *joints;             /* [row_count] of the skeleton */
     noh_spring_joint *rows;       /* [row_count] */
     swing *swings;                /* [chain_count] */
@@ -220,15 +241,47 @@ static size_t state_bytes_of(const noh_springs_desc *d, uint32_t chains)
     return bytes;
 }
 
+static uint32_t longest_of(const noh_springs_desc *d)
+{
+    uint32_t longest = 0;
+    for (uint32_t i = 0; i < d->chain_count; i++) {
+        if (d->chains[i].row_count > longest) longest = d->chains[i].row_count;
+    }
+    return longest;
+}
+
+static size_t carve_workspace(noh_arena *arena, uint32_t colliders, uint32_t longest, workspace *out)
+{
+    out->scratch = noh_arena_carve(arena, NOH_SPRING_SCRATCH_FLOATS(colliders) * sizeof(float), 16);
+    out->chains = noh_arena_carve(arena, sizeof *out->chains, 16);
+    out->all = noh_arena_carve(arena, colliders * sizeof *out->all, 16);
+    out->near_by = noh_arena_carve(arena, TOGETHER * colliders * sizeof *out->near_by, 16);
+    out->rotations = noh_arena_carve(arena, TOGETHER * 4u * (size_t)longest * sizeof(float), 16);
+    return arena->used;
+}
+
 void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes)
 {
-    size_t longest = 0;
+    noh_arena arena = noh_arena_measure();
+    workspace none;
     NOH_ASSERT(desc && state_bytes && scratch_bytes);
-    for (uint32_t i = 0; i < desc->chain_count; i++) {
-        if (desc->chains[i].row_count > longest) longest = desc->chains[i].row_count;
-    }
     *state_bytes = state_bytes_of(desc, desc->chain_count);
-    *scratch_bytes = 2u * desc->collider_count * sizeof(noh_spring_collider) + longest * 4u * sizeof(float);
+    *scratch_bytes = carve_workspace(&arena, desc->collider_count, longest_of(desc), &none);
+}
+
+/* The number of the last chain before this one, plus 1, that has a joint above its first; 0: none has. */
+static uint32_t hangs_after(const noh_springs_desc *d, uint32_t chain)
+{
+    uint32_t joint = d->rows[d->chains[chain].first_row].joint, after = 0;
+    while ((joint = d->skeleton.parents[joint]) != NOH_JOINT_ROOT) {
+        for (uint32_t i = after; i < chain; i++) {
+            const noh_spring_row *rows = d->rows + d->chains[i].first_row;
+            for (uint32_t r = 0; r < d->chains[i].row_count; r++) {
+                if (rows[r].joint == joint) after = i + 1u;
+            }
+        }
+    }
+    return after;
 }
 
 static void fill(noh_springs *s, const noh_springs_desc *d)
@@ -247,6 +300,7 @@ static void fill(noh_springs *s, const noh_springs_desc *d)
         w->first_row = c->first_row;
         w->collides = c->collides;
         w->state = (uint32_t)state;
+        w->after = hangs_after(d, i);
         state += noh_spring_size(&w->desc);
     }
     for (uint32_t i = 0; i < d->collider_count; i++) {
@@ -283,6 +337,7 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
     s->chain_count = desc->chain_count;
     s->collider_count = desc->collider_count;
     s->joint_count = desc->skeleton.joint_count;
+    s->longest = longest_of(desc);
     fill(s, desc);
     *springs = s;
     return NOH_OK;
@@ -351,43 +406,77 @@ static void rest(const noh_part_work *w, const noh_springs *s, const swing *g)
     }
 }
 
-/* One chain and the colliders that it has. */
-static void swing_chain(const noh_part_work *w, const noh_springs *s, uint32_t chain,
-                        const noh_spring_collider *near_by, float *rotations)
+/* Swing those that were put together, all at once. */
+static void swing_together(const noh_part_work *w, const noh_springs *s, const workspace *space)
+{
+    together *t = space->chains;
+    (void)noh_spring_step(t->moves, t->count, w->ticks, space->scratch);
+    noh_spring_rotations(t->moves, t->count);
+    for (uint32_t i = 0; i < t->count; i++) show(w, s, t->swings[i], t->shares[i], t->moves[i].rotations);
+    t->count = 0;
+}
+
+/* The colliders that a chain has, out of all. */
+static const noh_spring_collider *gather(const noh_springs *s, const swing *g, const workspace *space)
+{
+    noh_spring_collider *out = space->near_by + space->chains->count * (size_t)s->collider_count;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < s->collider_count; k++) {
+        if (g->collides >> k & 1u) out[count++] = space->all[k];
+    }
+    return out;
+}
+
+/* A chain joins those that are put together, or rests. */
+static void add_chain(const noh_part_work *w, const noh_springs *s, uint32_t chain, const workspace *space)
 {
     const swing *g = &s->swings[chain];
-    const float share = share_of(w, g);
+    together *t = space->chains;
+    noh_spring_move *move = &t->moves[t->count];
     uint32_t *begun = (uint32_t *)w->state + chain;
     noh_spring *spring = (noh_spring *)(void *)((uint8_t *)w->state + g->state);
-    if (!(share > 0.0f)) {
+    t->shares[t->count] = share_of(w, g);
+    if (!(t->shares[t->count] > 0.0f)) {
         *begun = 0;
         rest(w, s, g);
         return;
     }
-    const noh_spring_carrier carrier = carrier_of(w, s->joints[g->first_row]);
-    if (w->cut || !*begun) {
-        *begun = noh_spring_init(spring, noh_spring_size(&g->desc), &g->desc, &carrier, &spring, NULL) == NOH_OK;
-        if (!*begun) return;
-    } else {
-        (void)noh_spring_step(spring, &g->desc, &carrier, near_by, w->ticks);
+    t->carriers[t->count] = carrier_of(w, s->joints[g->first_row]);
+    move->spring = spring;
+    move->desc = &g->desc;
+    move->carrier = &t->carriers[t->count];
+    move->colliders = gather(s, g, space);
+    move->rotations = space->rotations + t->count * 4u * (size_t)s->longest;
+    if (w->cut || !*begun) { /* at rest: there is no time to go by, and nothing to go on from */
+        *begun = noh_spring_init(spring, noh_spring_size(&g->desc), &g->desc, move->carrier, &spring, NULL) == NOH_OK;
+        if (*begun) {
+            noh_spring_rotations(move, 1);
+            show(w, s, g, t->shares[t->count], move->rotations);
+        }
+        return;
     }
-    noh_spring_rotations(spring, &g->desc, rotations);
-    show(w, s, g, share, rotations);
+    t->swings[t->count++] = g;
 }
 
 static void modify(noh_part_work *w)
 {
     const noh_springs *s = w->user;
-    noh_spring_collider *all = w->scratch, *near_by = all + s->collider_count;
+    noh_arena arena;
+    workspace space;
+    uint32_t first = 0; /* of the chains that are put together */
     if (w->skeleton->joint_count < s->joint_count) return;
-    for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &all[i]);
+    if (noh_arena_open(&arena, w->scratch, s->scratch_bytes, s->scratch_bytes, NULL)) return;
+    (void)carve_workspace(&arena, s->collider_count, s->longest, &space);
+    space.chains->count = 0;
+    for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &space.all[i]);
     for (uint32_t i = 0; i < s->chain_count; i++) {
-        uint32_t count = 0;
-        for (uint32_t k = 0; k < s->collider_count; k++) {
-            if (s->swings[i].collides >> k & 1u) near_by[count++] = all[k];
+        if (space.chains->count == TOGETHER || s->swings[i].after > first) {
+            swing_together(w, s, &space);
+            first = i;
         }
-        swing_chain(w, s, i, near_by, (float *)(void *)(near_by + s->collider_count));
+        add_chain(w, s, i, &space);
     }
+    swing_together(w, s, &space);
 }
 
 static const char *check(const void *user, const void *state)

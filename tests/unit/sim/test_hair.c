@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/quat.h"
+#include "sim/hair_internal.h"
 #include "support/support.h"
 
 #define HAIRS 40u
@@ -14,6 +16,9 @@
 #define ALL (HAIRS * POINTS)
 #define SECOND 48000u
 #define SEGMENT 0.03f
+#define CRC_OF_1 0xe7fcf178u
+#define CRC_OF_13 0xd4363d6eu
+#define CRC_OF_40 0x4d3c0307u
 
 static float rest[3u * ALL];
 static const noh_hair_sphere head[4] = { { { 0.0f, 0.08f, -0.01f }, 0.09f },
@@ -362,6 +367,55 @@ static void errata_C15_6_a_hit_at_the_centre(void **state)
     free(hair);
 }
 
+/* ---- side by side ---- */
+
+/* runtime/sim/hair_lanes.c built again (Makefile, KERNELS) */
+noh_hair_advance_fn noh_hair_advance_scalar, noh_hair_advance_sse2, noh_hair_advance_avx2;
+typedef void points_fn(const noh_hair *hair, const noh_hair_desc *desc, float *points);
+points_fn noh_hair_points_scalar, noh_hair_points_sse2, noh_hair_points_avx2;
+
+/* Four seconds of a head that shakes and leaps in the wind; a hash of every byte and point. */
+static uint32_t hash_by(noh_hair_advance_fn *advance, points_fn *show, uint32_t hairs)
+{
+    static float points[3u * ALL];
+    noh_hair_desc d = wig();
+    noh_hair *hair;
+    uint32_t crc = 0;
+    d.hair_count = hairs;
+    d.gravity = 0.5f;
+    hair = made(&d);
+    for (uint32_t f = 1; f <= 240; f++) {
+        noh_hair_carrier at = shaken(f / 60.0, f > 150u ? 3.0 : 1.0);
+        at.wind[0] = -4.0f;
+        (void)noh_hair_step_by(advance, hair, &d, &at, f % 50u ? 700u + f : 9000u);
+        show(hair, &d, points);
+        crc = noh_crc32c(noh_crc32c(crc, hair, noh_hair_size(&d)), points, (size_t)hairs * POINTS * 12u);
+    }
+    assert_null(noh_hair_check(hair, &d));
+    free(hair);
+    return crc;
+}
+
+static void every_width_gives_the_same_bits(void **state)
+{
+    static const struct {
+        uint32_t hairs, crc;
+    } wigs[] = { { 1, CRC_OF_1 }, { 13, CRC_OF_13 }, { 40, CRC_OF_40 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(wigs); i++) {
+        const uint32_t n = wigs[i].hairs, crc = hash_by(noh_hair_advance, noh_hair_points, n);
+        assert_int_equal(hash_by(noh_hair_advance_scalar, noh_hair_points_scalar, n), crc);
+#if defined(__x86_64__)
+        assert_int_equal(hash_by(noh_hair_advance_sse2, noh_hair_points_sse2, n), crc);
+        if (__builtin_cpu_supports("avx2")) {
+            assert_int_equal(hash_by(noh_hair_advance_avx2, noh_hair_points_avx2, n), crc);
+        }
+#endif
+        print_message("# %u hairs by every width: %08x\n", n, crc);
+        assert_int_equal(crc, wigs[i].crc); /* and on every processor */
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -370,6 +424,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(shakes_and_leaps_stay_finite),
         cmocka_unit_test(every_rate_moves_alike),
         cmocka_unit_test(a_copy_goes_on),
+        cmocka_unit_test(every_width_gives_the_same_bits),
         cmocka_unit_test(bad_descs_are_refused),
         cmocka_unit_test(errata_C15_2_tangents_are_halved),
         cmocka_unit_test(errata_C15_5_rest_turns_with_the_head),

@@ -5,10 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/quat.h"
 #include "support/support.h"
 
 #define JOINTS 5u
+#define COLLIDERS 8u
+#define BUNDLE_CRC 0xb0e2712eu
 #define SECOND 48000u
 
 static noh_spring_joint joints[JOINTS];
@@ -31,6 +34,21 @@ static noh_spring *made(const noh_spring_desc *desc, const noh_spring_carrier *c
     void *memory = malloc(bytes);
     assert_int_equal(noh_spring_init(memory, bytes, desc, carrier, &spring, NULL), NOH_OK);
     return spring;
+}
+
+/* One chain, by itself. */
+static uint32_t step_one(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
+                         const noh_spring_collider *colliders, uint32_t ticks)
+{
+    static float scratch[NOH_SPRING_SCRATCH_FLOATS(COLLIDERS)];
+    const noh_spring_move move = { spring, desc, carrier, colliders, NULL };
+    return noh_spring_step(&move, 1, ticks, scratch);
+}
+
+static void rotations_of(noh_spring *spring, const noh_spring_desc *desc, float *rotations)
+{
+    const noh_spring_move move = { spring, desc, NULL, NULL, rotations };
+    noh_spring_rotations(&move, 1);
 }
 
 static double apart(const float a[3], const double b[3])
@@ -180,7 +198,7 @@ static double off_reference(uint32_t collider_count, double *touched)
         reference_step(&r, &desc, &at, colliders, 1.0 / 60.0);
         reference_step(&free_of_all, &without, &at, NULL, 1.0 / 60.0);
         *touched += fabs(free_of_all.now[JOINTS - 1u][0] - r.now[JOINTS - 1u][0]) > 1e-3 ? 1.0 : 0.0;
-        assert_int_equal(noh_spring_step(spring, &desc, &at, collider_count ? colliders : NULL, SECOND / 60u), 0);
+        assert_int_equal(step_one(spring, &desc, &at, collider_count ? colliders : NULL, SECOND / 60u), 0);
         noh_spring_ends(spring, &desc, ends);
         for (uint32_t j = 0; j < JOINTS; j++) {
             float back[4], seen[3];
@@ -221,7 +239,7 @@ static void settle(uint32_t hertz, double *overshoot_mm, double *settle_s)
         float ends[3 * JOINTS];
         double off;
         at.position[0] = (float)(0.1 * share);
-        assert_int_equal(noh_spring_step(spring, &desc, &at, NULL, SECOND / hertz), 0);
+        assert_int_equal(step_one(spring, &desc, &at, NULL, SECOND / hertz), 0);
         noh_spring_ends(spring, &desc, ends);
         off = 1000.0 * ((double)ends[3 * (JOINTS - 1u)] - (double)at.position[0]);
         *overshoot_mm = fmax(*overshoot_mm, off);
@@ -277,12 +295,12 @@ static void time_may_be_cut_anywhere(void **state)
         const float from = n > 1 ? (float)(n - 1) * 0.1f : 0.0f;
         for (int k = 1; k <= 7; k++) {
             at.position[0] = from + 0.1f * (float)k / 7.0f;
-            (void)noh_spring_step(many, &desc, &at, NULL, 1000);
+            (void)step_one(many, &desc, &at, NULL, 1000);
         }
-        (void)noh_spring_step(one, &desc, &at, NULL, 7000);
+        (void)step_one(one, &desc, &at, NULL, 7000);
     }
-    noh_spring_rotations(one, &desc, a);
-    noh_spring_rotations(many, &desc, b);
+    rotations_of(one, &desc, a);
+    rotations_of(many, &desc, b);
     for (uint32_t i = 0; i < 4 * JOINTS; i++) assert_true(fabs((double)a[i] - (double)b[i]) < 1e-3);
     free(one);
     free(many);
@@ -299,9 +317,9 @@ static void it_stays_whole(void **state)
     for (int n = 1; n <= 600; n++) {
         float ends[3 * JOINTS], rotations[4 * JOINTS], rotation[4], head[3];
         at = swaying(n / 60.0);
-        (void)noh_spring_step(spring, &desc, &at, NULL, SECOND / 75u);
+        (void)step_one(spring, &desc, &at, NULL, SECOND / 75u);
         noh_spring_ends(spring, &desc, ends);
-        noh_spring_rotations(spring, &desc, rotations);
+        rotations_of(spring, &desc, rotations);
         memcpy(rotation, at.rotation, sizeof rotation);
         memcpy(head, at.position, sizeof head);
         for (uint32_t j = 0; j < JOINTS; j++) {
@@ -337,14 +355,14 @@ static void leaps_and_long_times_stay_finite(void **state)
             at.position[i] += test_random_float(&random, -50.0f, 50.0f);
         }
         noh_quat_from_rotation(by, at.rotation);
-        (void)noh_spring_step(spring, &desc, &at, NULL, test_random_below(&random, 9000));
-        noh_spring_rotations(spring, &desc, q);
+        (void)step_one(spring, &desc, &at, NULL, test_random_below(&random, 9000));
+        rotations_of(spring, &desc, q);
         for (uint32_t i = 0; i < 4 * JOINTS; i++) assert_true(fabs((double)q[i]) <= 1.001);
     }
     /* a minute at once: a quarter of a second is done, the rest told */
-    assert_true(noh_spring_step(spring, &desc, &at, NULL, 60u * SECOND) >= 60u * SECOND - 13000u);
+    assert_true(step_one(spring, &desc, &at, NULL, 60u * SECOND) >= 60u * SECOND - 13000u);
     noh_spring_reset(spring, &desc, &at);
-    noh_spring_rotations(spring, &desc, q);
+    rotations_of(spring, &desc, q);
     for (uint32_t j = 0; j < JOINTS; j++) assert_true(fabs((double)q[4 * j + 3]) > 0.99999);
     free(spring);
 }
@@ -359,12 +377,124 @@ static void a_copy_goes_on(void **state)
     for (int n = 1; n <= 200; n++) {
         if (n == 100) memcpy(copy, spring, bytes);
         at = swaying(n / 50.0);
-        (void)noh_spring_step(spring, &desc, &at, NULL, 960);
-        if (n >= 100) (void)noh_spring_step(copy, &desc, &at, NULL, 960);
+        (void)step_one(spring, &desc, &at, NULL, 960);
+        if (n >= 100) (void)step_one(copy, &desc, &at, NULL, 960);
     }
     assert_memory_equal(spring, copy, bytes);
     free(spring);
     free(copy);
+}
+
+/* ---- side by side ---- */
+
+#define CHAINS 23u
+#define CHAIN_JOINTS 9u
+
+/* runtime/sim/spring_lanes.c built again (Makefile, KERNELS) */
+typedef uint32_t step_many(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch);
+typedef void rotate_many(const noh_spring_move *moves, uint32_t count);
+step_many noh_spring_step_scalar, noh_spring_step_sse2, noh_spring_step_avx2;
+rotate_many noh_spring_rotations_scalar, noh_spring_rotations_sse2, noh_spring_rotations_avx2;
+
+/* Chains of one to nine joints with none to eight colliders, of two descs' worth of numbers. */
+typedef struct bundle {
+    noh_spring_joint joints[CHAINS][CHAIN_JOINTS];
+    noh_spring_desc descs[CHAINS];
+    noh_spring *springs[CHAINS];
+    noh_spring_carrier carriers[CHAINS];
+    noh_spring_collider colliders[COLLIDERS];
+    float rotations[CHAINS][CHAIN_JOINTS][4], scratch[NOH_SPRING_SCRATCH_FLOATS(COLLIDERS)];
+    noh_spring_move moves[CHAINS];
+} bundle;
+
+static void carry(bundle *b, uint32_t chain, double seconds)
+{
+    b->carriers[chain] = swaying(seconds + chain);
+    b->carriers[chain].position[1] += 0.02f * (float)chain;
+}
+
+static bundle *make_bundle(void)
+{
+    test_random random = test_random_from(11);
+    bundle *b = test_zeros(sizeof *b);
+    for (uint32_t k = 0; k < COLLIDERS; k++) {
+        noh_spring_collider *c = &b->colliders[k];
+        for (int i = 0; i < 3; i++) c->from[i] = c->to[i] = test_random_float(&random, -0.4f, 0.4f);
+        c->from[1] += 1.4f, c->to[1] += 1.4f, c->from[2] += 1.0f, c->to[2] += 1.0f;
+        if (k % 3u) c->to[k % 3u] += 0.3f;
+        c->radius = 0.12f;
+    }
+    for (uint32_t n = 0; n < CHAINS; n++) {
+        const uint32_t colliders = (5u * n) % (COLLIDERS + 1u);
+        for (uint32_t j = 0; j < CHAIN_JOINTS; j++) {
+            noh_spring_joint *to = &b->joints[n][j];
+            const float by[3] = { test_random_float(&random, -0.5f, 0.5f), test_random_float(&random, -2.5f, 2.5f),
+                                  0.2f };
+            *to = (noh_spring_joint){ { 0.01f, -test_random_float(&random, 0.02f, 0.1f), 0.0f },
+                                      { 0 },
+                                      test_random_float(&random, 0.0f, 3.0f),
+                                      test_random_float(&random, 0.0f, 0.6f),
+                                      0.02f,
+                                      { 0.0f, -0.4f, 0.1f } };
+            noh_quat_from_rotation(by, to->rest);
+        }
+        b->descs[n] = (noh_spring_desc){ b->joints[n], 1u + n % CHAIN_JOINTS, colliders };
+        carry(b, n, 0.0);
+        b->springs[n] = made(&b->descs[n], &b->carriers[n]);
+        b->moves[n] = (noh_spring_move){ b->springs[n], &b->descs[n], &b->carriers[n], b->colliders,
+                                         b->rotations[n][0] };
+    }
+    return b;
+}
+
+static void free_bundle(bundle *b)
+{
+    for (uint32_t n = 0; n < CHAINS; n++) free(b->springs[n]);
+    free(b);
+}
+
+/* Five seconds in frames of any length, in calls of so many chains; a hash of every byte and rotation. */
+static uint32_t hash_of_bundle(step_many *step, rotate_many *turn, uint32_t at_once)
+{
+    bundle *b = make_bundle();
+    uint32_t crc = 0;
+    for (uint32_t f = 1; f <= 300; f++) {
+        for (uint32_t n = 0; n < CHAINS; n++) carry(b, n, f / 60.0);
+        for (uint32_t k = 0; k < COLLIDERS; k++) b->colliders[k].from[0] += k & 1u ? 1e-3f : -1e-3f;
+        /* those that begin late are out of step with the others */
+        for (uint32_t n = 0; n < CHAINS && f % 40u == 0; n += 3) {
+            noh_spring_reset(b->springs[n], &b->descs[n], &b->carriers[n]);
+        }
+        for (uint32_t n = 0; n < CHAINS; n += at_once) {
+            const uint32_t count = CHAINS - n < at_once ? CHAINS - n : at_once;
+            step(b->moves + n, count, f % 50u ? 500u + f : 20000u, b->scratch);
+            turn(b->moves + n, count);
+        }
+        for (uint32_t n = 0; n < CHAINS; n++) {
+            crc = noh_crc32c(crc, b->springs[n], noh_spring_size(&b->descs[n]));
+            crc = noh_crc32c(crc, b->rotations[n], b->descs[n].joint_count * 4u * sizeof(float));
+        }
+    }
+    for (uint32_t n = 0; n < CHAINS; n++) assert_null(noh_spring_check(b->springs[n], &b->descs[n]));
+    free_bundle(b);
+    return crc;
+}
+
+static void every_width_and_company_gives_the_same_bits(void **state)
+{
+    const uint32_t crc = hash_of_bundle(noh_spring_step, noh_spring_rotations, CHAINS);
+    (void)state;
+    assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 1), crc);
+    assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 3), crc);
+    assert_int_equal(hash_of_bundle(noh_spring_step_scalar, noh_spring_rotations_scalar, CHAINS), crc);
+#if defined(__x86_64__)
+    assert_int_equal(hash_of_bundle(noh_spring_step_sse2, noh_spring_rotations_sse2, 5), crc);
+    if (__builtin_cpu_supports("avx2")) {
+        assert_int_equal(hash_of_bundle(noh_spring_step_avx2, noh_spring_rotations_avx2, CHAINS), crc);
+    }
+#endif
+    print_message("# %u chains by every width: %08x\n", CHAINS, crc);
+    assert_int_equal(crc, BUNDLE_CRC); /* and on every processor */
 }
 
 static void bad_values_are_refused(void **state)
@@ -404,6 +534,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(it_stays_whole),
         cmocka_unit_test(leaps_and_long_times_stay_finite),
         cmocka_unit_test(a_copy_goes_on),
+        cmocka_unit_test(every_width_and_company_gives_the_same_bits),
         cmocka_unit_test(bad_values_are_refused),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
