@@ -233,12 +233,12 @@ $(BUILD)/kernel/spring_lanes_%.o: $(call kernel_c,spring_lanes)
 $(BUILD)/kernel/hair_lanes_scalar.o: $(call kernel_c,hair_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_HAIR_SCALAR -DNOH_HAIR_ADVANCE=noh_hair_advance_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_HAIR_SCALAR -DNOH_HAIR_STEP=noh_hair_step_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
 
 $(BUILD)/kernel/hair_lanes_%.o: $(call kernel_c,hair_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_HAIR_ADVANCE=noh_hair_advance_$* -DNOH_HAIR_POINTS=noh_hair_points_$* -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_HAIR_STEP=noh_hair_step_$* -DNOH_HAIR_POINTS=noh_hair_points_$* -MMD -MP -c $< -o $@
 
 $(BUILD)/tools/noh/view/%.o: tools/noh/view/%.cpp | $(BUILD)/gen/shaders.gen.h
 	@mkdir -p $(@D)

@@ -84,7 +84,7 @@ void main()
     vec3 wide = cross(v_tangent, view);
     wide = dot(wide, wide) > 1e-12 * dot(view, view) ? normalize(wide) : normalize(to_world(side, 0.0));
     v_at = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, along);
-    v_position += v_at.x * scale * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.03, 0.06, along) * wide;
+    v_position += v_at.x * scale * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.02, 0.025, along) * wide;
     vec3 normal = to_world(away - dot(away, t) * t, 0.0);
     v_normal = dot(normal, normal) > 1e-20 ? normalize(normal) : wide;
     v_strip = b;

@@ -127,38 +127,13 @@ static void mix3(const float a[3], const float b[3], float t, float out[3])
     for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
 }
 
-static void step(noh_hair_advance_fn *advance, noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *carrier,
-                 float t)
+void noh_hair_carry(const noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *carrier, float t,
+                    noh_hair_carrier *at, noh_hair_motion *motion)
 {
-    noh_hair_carrier at = *carrier;
-    mix3(h->last.position, carrier->position, t, at.position);
-    mix3(h->last.wind, carrier->wind, t, at.wind);
-    noh_quat_nlerp(h->last.rotation, carrier->rotation, t, at.rotation);
-    const noh_hair_motion m = motion_of(h, d, &at);
-    advance(h, d, &m);
-    h->stepped = at;
-    h->steps++;
-}
-
-uint32_t noh_hair_step_by(noh_hair_advance_fn *advance, noh_hair *hair, const noh_hair_desc *desc,
-                          const noh_hair_carrier *carrier, uint32_t ticks)
-{
-    NOH_ASSERT(hair && desc && carrier && desc->hair_count == hair->hair_count &&
-               desc->point_count == hair->point_count);
-    const uint64_t whole = ((uint64_t)hair->left + ticks) / NOH_HAIR_STEP_TICKS;
-    const uint32_t steps = whole < NOH_HAIR_STEPS_MAX ? (uint32_t)whole : NOH_HAIR_STEPS_MAX;
-    const uint32_t dropped = (uint32_t)(whole - steps) * NOH_HAIR_STEP_TICKS, kept = ticks - dropped;
-    for (uint32_t i = 1; i <= steps; i++) {
-        step(advance, hair, desc, carrier, (float)(i * NOH_HAIR_STEP_TICKS - hair->left) / (float)kept);
-    }
-    hair->left += kept - steps * NOH_HAIR_STEP_TICKS;
-    hair->last = *carrier;
-    return dropped;
-}
-
-uint32_t noh_hair_step(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks)
-{
-    return noh_hair_step_by(noh_hair_advance, hair, desc, carrier, ticks);
+    mix3(h->last.position, carrier->position, t, at->position);
+    mix3(h->last.wind, carrier->wind, t, at->wind);
+    noh_quat_nlerp(h->last.rotation, carrier->rotation, t, at->rotation);
+    *motion = motion_of(h, d, at);
 }
 
 /* ---- from outside, and curves ---- */

@@ -43,21 +43,18 @@ static inline const noh_hair_point *noh_hair_const_points_of(const noh_hair *h)
     return (const noh_hair_point *)(const void *)(h + 1);
 }
 
-/* The step and noh_hair_points, for as many hairs at a time as the processor has lanes. hair_lanes.c can be compiled
- * again under other names, for other instructions. */
-#if !defined(NOH_HAIR_ADVANCE)
-#define NOH_HAIR_ADVANCE noh_hair_advance
+/* Where the head is at a share `t` of a call's time, and what a step to there knows of it. */
+void noh_hair_carry(const noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, float t,
+                    noh_hair_carrier *at, noh_hair_motion *motion);
+
+/* noh_hair_step and noh_hair_points, for as many hairs at a time as the processor has lanes. hair_lanes.c can be
+ * compiled again under other names, for other instructions. */
+#if !defined(NOH_HAIR_STEP)
+#define NOH_HAIR_STEP noh_hair_step
 #define NOH_HAIR_POINTS noh_hair_points
 #else
+uint32_t NOH_HAIR_STEP(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
 void NOH_HAIR_POINTS(const noh_hair *hair, const noh_hair_desc *desc, float *points);
 #endif
-
-/* 1/60 s of all points; the caller moves the carrier and counts the step. */
-void NOH_HAIR_ADVANCE(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_motion *motion);
-
-/* noh_hair_step by another noh_hair_advance. */
-typedef void noh_hair_advance_fn(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_motion *motion);
-uint32_t noh_hair_step_by(noh_hair_advance_fn *advance, noh_hair *hair, const noh_hair_desc *desc,
-                          const noh_hair_carrier *carrier, uint32_t ticks);
 
 #endif

@@ -269,12 +269,32 @@ static void step_group(const group *g, noh_hair *h, const noh_hair_desc *d, cons
     store_points(g, last, points, h->point_count - 1u);
 }
 
-void NOH_HAIR_ADVANCE(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_motion *motion)
+static void step_all(noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *carrier, float t)
 {
-    for (uint32_t first = 0; first < hair->hair_count; first += NOH_LANES) {
-        const group g = group_of(hair, first);
-        step_group(&g, hair, desc, motion);
+    noh_hair_carrier at;
+    noh_hair_motion motion;
+    noh_hair_carry(h, d, carrier, t, &at, &motion);
+    for (uint32_t first = 0; first < h->hair_count; first += NOH_LANES) {
+        const group g = group_of(h, first);
+        step_group(&g, h, d, &motion);
     }
+    h->stepped = at;
+    h->steps++;
+}
+
+uint32_t NOH_HAIR_STEP(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks)
+{
+    NOH_ASSERT(hair && desc && carrier && desc->hair_count == hair->hair_count &&
+               desc->point_count == hair->point_count);
+    const uint64_t whole = ((uint64_t)hair->left + ticks) / NOH_HAIR_STEP_TICKS;
+    const uint32_t steps = whole < NOH_HAIR_STEPS_MAX ? (uint32_t)whole : NOH_HAIR_STEPS_MAX;
+    const uint32_t dropped = (uint32_t)(whole - steps) * NOH_HAIR_STEP_TICKS, kept = ticks - dropped;
+    for (uint32_t i = 1; i <= steps; i++) {
+        step_all(hair, desc, carrier, (float)(i * NOH_HAIR_STEP_TICKS - hair->left) / (float)kept);
+    }
+    hair->left += kept - steps * NOH_HAIR_STEP_TICKS;
+    hair->last = *carrier;
+    return dropped;
 }
 
 /* ---- what comes out ---- */

@@ -8,7 +8,6 @@
 
 #include "base/hash.h"
 #include "base/quat.h"
-#include "sim/hair_internal.h"
 #include "support/support.h"
 
 #define HAIRS 40u
@@ -370,12 +369,13 @@ static void errata_C15_6_a_hit_at_the_centre(void **state)
 /* ---- side by side ---- */
 
 /* runtime/sim/hair_lanes.c built again (Makefile, KERNELS) */
-noh_hair_advance_fn noh_hair_advance_scalar, noh_hair_advance_sse2, noh_hair_advance_avx2;
+typedef uint32_t step_fn(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
+step_fn noh_hair_step_scalar, noh_hair_step_sse2, noh_hair_step_avx2;
 typedef void points_fn(const noh_hair *hair, const noh_hair_desc *desc, float *points);
 points_fn noh_hair_points_scalar, noh_hair_points_sse2, noh_hair_points_avx2;
 
 /* Four seconds of a head that shakes and leaps in the wind; a hash of every byte and point. */
-static uint32_t hash_by(noh_hair_advance_fn *advance, points_fn *show, uint32_t hairs)
+static uint32_t hash_by(step_fn *step, points_fn *show, uint32_t hairs)
 {
     static float points[3u * ALL];
     noh_hair_desc d = wig();
@@ -387,7 +387,7 @@ static uint32_t hash_by(noh_hair_advance_fn *advance, points_fn *show, uint32_t 
     for (uint32_t f = 1; f <= 240; f++) {
         noh_hair_carrier at = shaken(f / 60.0, f > 150u ? 3.0 : 1.0);
         at.wind[0] = -4.0f;
-        (void)noh_hair_step_by(advance, hair, &d, &at, f % 50u ? 700u + f : 9000u);
+        (void)step(hair, &d, &at, f % 50u ? 700u + f : 9000u);
         show(hair, &d, points);
         crc = noh_crc32c(noh_crc32c(crc, hair, noh_hair_size(&d)), points, (size_t)hairs * POINTS * 12u);
     }
@@ -403,12 +403,12 @@ static void every_width_gives_the_same_bits(void **state)
     } wigs[] = { { 1, CRC_OF_1 }, { 13, CRC_OF_13 }, { 40, CRC_OF_40 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(wigs); i++) {
-        const uint32_t n = wigs[i].hairs, crc = hash_by(noh_hair_advance, noh_hair_points, n);
-        assert_int_equal(hash_by(noh_hair_advance_scalar, noh_hair_points_scalar, n), crc);
+        const uint32_t n = wigs[i].hairs, crc = hash_by(noh_hair_step, noh_hair_points, n);
+        assert_int_equal(hash_by(noh_hair_step_scalar, noh_hair_points_scalar, n), crc);
 #if defined(__x86_64__)
-        assert_int_equal(hash_by(noh_hair_advance_sse2, noh_hair_points_sse2, n), crc);
+        assert_int_equal(hash_by(noh_hair_step_sse2, noh_hair_points_sse2, n), crc);
         if (__builtin_cpu_supports("avx2")) {
-            assert_int_equal(hash_by(noh_hair_advance_avx2, noh_hair_points_avx2, n), crc);
+            assert_int_equal(hash_by(noh_hair_step_avx2, noh_hair_points_avx2, n), crc);
         }
 #endif
         print_message("# %u hairs by every width: %08x\n", n, crc);

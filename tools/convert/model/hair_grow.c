@@ -135,7 +135,8 @@ static void grow_all(const hair_text *t, hair_grown *g)
     const skull s = skull_of(t);
     const uint32_t around = (uint32_t)t->around, rows = (uint32_t)t->rows;
     for (uint32_t r = 0; r < rows; r++) {
-        const double share = (double)r / (rows - 1u);
+        /* the outer rows lie closer: a hairline is thick, and a crown small */
+        const double inward = 1.0 - (double)r / (rows - 1u), share = 1.0 - inward * inward;
         for (uint32_t a = 0; a < around; a++) {
             const double azimuth = 360.0 * RADIANS * a / around;
             grow_hair(t, &s, root_at(t, &s, azimuth, share), t->length[0] + (t->length[1] - t->length[0]) * share,

@@ -7,7 +7,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "sim/hair_internal.h"
+#include "sim/hair.h"
 
 #define HAIRS 48u
 #define POINTS 12u
@@ -15,13 +15,14 @@
 #define SAMPLE_NS 5e6
 
 /* runtime/sim/hair_lanes.c built again (Makefile, KERNELS) */
-noh_hair_advance_fn noh_hair_advance_scalar, noh_hair_advance_sse2, noh_hair_advance_avx2;
+typedef uint32_t step_fn(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
+step_fn noh_hair_step_scalar, noh_hair_step_sse2, noh_hair_step_avx2;
 typedef void hair_points(const noh_hair *hair, const noh_hair_desc *desc, float *points);
 hair_points noh_hair_points_scalar, noh_hair_points_sse2, noh_hair_points_avx2;
 
 typedef struct hair_work {
     const char *name;
-    noh_hair_advance_fn *advance;
+    step_fn *step;
     hair_points *show;
     noh_hair_desc desc;
     noh_hair_sphere spheres[4];
@@ -68,7 +69,7 @@ static void move(void *self, uint32_t frame)
     const noh_hair_carrier at = { { 0.05f * sinf(0.1f * (float)frame), 1.5f, 0.0f },
                                   { nod, turn, 0.0f, sqrtf(1.0f - turn * turn - nod * nod) },
                                   { -2.0f, 0.0f, 0.0f } };
-    (void)noh_hair_step_by(w->advance, w->hair, &w->desc, &at, NOH_HAIR_STEP_TICKS);
+    (void)w->step(w->hair, &w->desc, &at, NOH_HAIR_STEP_TICKS);
 }
 
 static void show(void *self, uint32_t frame)
@@ -83,20 +84,20 @@ static uint32_t list_works(hair_work *works)
 {
     uint32_t count = 0;
     works[count].name = "scalar";
-    works[count].advance = noh_hair_advance_scalar;
+    works[count].step = noh_hair_step_scalar;
     works[count++].show = noh_hair_points_scalar;
 #if defined(__x86_64__)
     works[count].name = "sse2";
-    works[count].advance = noh_hair_advance_sse2;
+    works[count].step = noh_hair_step_sse2;
     works[count++].show = noh_hair_points_sse2;
     if (__builtin_cpu_supports("avx2")) {
         works[count].name = "avx2";
-        works[count].advance = noh_hair_advance_avx2;
+        works[count].step = noh_hair_step_avx2;
         works[count++].show = noh_hair_points_avx2;
     }
 #else
     works[count].name = "own";
-    works[count].advance = noh_hair_advance;
+    works[count].step = noh_hair_step;
     works[count++].show = noh_hair_points;
 #endif
     return count;
