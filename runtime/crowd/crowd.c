@@ -344,14 +344,17 @@ void noh_crowd_job(noh_crowd *crowd, uint32_t job)
     NOH_ASSERT(crowd && job < crowd->job_count && crowd->phase >= SEE && crowd->phase <= FINISH);
     const uint32_t begin = (uint32_t)((uint64_t)crowd->present * job / crowd->job_count);
     const uint32_t end = (uint32_t)((uint64_t)crowd->present * (job + 1u) / crowd->job_count);
+    crowd_runs runs;
+    runs.until = 0;
     if (crowd->phase > SEE && crowd->phase < FINISH) {
         noh_crowd_iterate(crowd, begin, end, crowd->phase - ITERATE);
         return;
     }
     for (uint32_t rank = begin; rank < end; rank++) {
         if (crowd->phase == SEE) {
-            noh_crowd_see(crowd, rank);
-            noh_crowd_plan(crowd, rank);
+            noh_crowd_runs_of(crowd, rank, &runs);
+            noh_crowd_see(crowd, rank, &runs);
+            noh_crowd_plan(crowd, rank, &runs);
         } else {
             noh_crowd_finish(crowd, rank);
         }

@@ -89,17 +89,15 @@ static vec2 corrected(const noh_crowd *c, const crowd_body *b, vec2 plan, const 
 }
 
 /* What is planned for an agent after all that its neighbours ask. */
-static vec2 asked_of(noh_crowd *c, uint32_t rank, const vec2 *plans, int is_side)
+static vec2 asked_of(noh_crowd *c, uint32_t rank, const crowd_runs *runs, const vec2 *plans, int is_side)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
     uint16_t *names = CROWD_ARRAY(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
     const vec2 plan = plans[rank];
     asked a = { { 0.0f, 0.0f }, { 0.0f, 0.0f }, 0 };
-    uint32_t first[3], end[3];
-    noh_crowd_runs(c, b->at, first, end);
     for (uint32_t k = 0; k < CROWD_NEIGHBORS && names[k] != CROWD_NO_NEIGHBOR; k++) {
         if (!is_side && !(names[k] & CROWD_CLOSE)) continue;
-        const uint32_t j = noh_crowd_rank_of(first, names[k]);
+        const uint32_t j = noh_crowd_rank_of(runs, names[k]);
         const int is_near = ask(&a, c, b, &bodies[j], v2_sub(plan, plans[j]), is_side);
         if (is_side && is_near) names[k] |= CROWD_CLOSE;
     }
@@ -113,10 +111,15 @@ void noh_crowd_iterate(noh_crowd *c, uint32_t begin, uint32_t end, uint32_t iter
     const vec2 *plans = iteration & 1u ? CROWD_CONST(vec2, c, plan[1]) : CROWD_CONST(vec2, c, plan[0]);
     vec2 *next = iteration & 1u ? CROWD_ARRAY(vec2, c, plan[0]) : CROWD_ARRAY(vec2, c, plan[1]);
     const int is_side = iteration < SIDE_ITERATIONS;
+    crowd_runs runs;
+    runs.until = 0;
     for (uint32_t rank = begin; rank < end; rank++) {
         const int stays = (bodies[rank].item & (CROWD_HOLDS | CROWD_ORCA)) ||
                           (!is_side && is_alone(names + (size_t)rank * CROWD_NEIGHBORS));
-        next[rank] = stays ? plans[rank] : asked_of(c, rank, plans, is_side);
+        next[rank] = plans[rank];
+        if (stays) continue;
+        noh_crowd_runs_of(c, rank, &runs);
+        next[rank] = asked_of(c, rank, &runs, plans, is_side);
     }
 }
 

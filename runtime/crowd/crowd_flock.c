@@ -19,17 +19,16 @@ static void avoid_obstacles(const noh_crowd *c, const crowd_body *b, float force
     }
 }
 
-vec2 noh_crowd_flock(const noh_crowd *c, uint32_t rank, vec2 wish, float speed)
+vec2 noh_crowd_flock(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, vec2 wish, float speed)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
     const vec2 *velocities = CROWD_CONST(vec2, c, plan[1]);
     const uint16_t *names = CROWD_CONST(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
     float to[CROWD_NEIGHBORS][2], other[CROWD_NEIGHBORS][2], force[2] = { wish.x, wish.z };
     float velocity[2] = { velocities[rank].x, velocities[rank].z };
-    uint32_t count, first[3], end[3];
-    noh_crowd_runs(c, b->at, first, end);
+    uint32_t count;
     for (count = 0; count < CROWD_NEIGHBORS && names[count] != CROWD_NO_NEIGHBOR; count++) {
-        const uint32_t j = noh_crowd_rank_of(first, names[count]);
+        const uint32_t j = noh_crowd_rank_of(runs, names[count]);
         to[count][0] = bodies[j].at.x - b->at.x;
         to[count][1] = bodies[j].at.z - b->at.z;
         other[count][0] = velocities[j].x;

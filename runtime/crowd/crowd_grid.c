@@ -33,18 +33,19 @@ uint32_t noh_crowd_cell_at(const crowd_cells *cells, vec2 at, uint32_t *column, 
     return *row * cells->width + *column;
 }
 
-uint32_t noh_crowd_runs(const noh_crowd *c, vec2 at, uint32_t first[3], uint32_t end[3])
+void noh_crowd_find_runs(const noh_crowd *c, uint32_t rank, crowd_runs *runs)
 {
     const uint32_t *start = CROWD_CONST(uint32_t, c, start);
     const uint32_t width = c->cells.width;
-    uint32_t column, row, count = 0;
-    noh_crowd_cell_at(&c->cells, at, &column, &row);
+    uint32_t column, row;
+    const uint32_t cell = noh_crowd_cell_at(&c->cells, CROWD_CONST(crowd_body, c, body)[rank].at, &column, &row);
     const uint32_t left = column ? column - 1u : 0, right = column + 1u < width ? column + 1u : column;
+    runs->count = 0;
+    runs->until = start[cell + 1u];
     for (uint32_t r = row ? row - 1u : 0; r <= row + 1u && r < c->cells.depth; r++) {
-        first[count] = start[r * width + left];
-        end[count++] = start[r * width + right + 1u];
+        runs->first[runs->count] = start[r * width + left];
+        runs->end[runs->count++] = start[r * width + right + 1u];
     }
-    return count;
 }
 
 /* ---- obstacles ---- */

@@ -149,13 +149,23 @@ uint32_t noh_crowd_cell_at(const crowd_cells *cells, vec2 at, uint32_t *column, 
 uint32_t noh_crowd_near(const crowd_cells *cells, const noh_crowd_desc *desc, uint32_t *start, uint16_t *list);
 void noh_crowd_sort(noh_crowd *c);
 
-/* The up to three runs of ranks in the cells around a place. returns how many */
-uint32_t noh_crowd_runs(const noh_crowd *c, vec2 at, uint32_t first[3], uint32_t end[3]);
+/* The up to three runs of ranks in the cells around a cell: the same for all of it, up to a rank. */
+typedef struct crowd_runs {
+    uint32_t first[3], end[3];
+    uint32_t count, until;
+} crowd_runs;
+/* Those of a rank: found anew where a cell ends, so that ranks in order find them once a cell. until: 0 before the
+ * first */
+void noh_crowd_find_runs(const noh_crowd *c, uint32_t rank, crowd_runs *runs);
+static inline void noh_crowd_runs_of(const noh_crowd *c, uint32_t rank, crowd_runs *runs)
+{
+    if (rank >= runs->until) noh_crowd_find_runs(c, rank, runs);
+}
 
 /* Neighbours are named by run and place in the run, in 2 and 13 bits. */
-static inline uint32_t noh_crowd_rank_of(const uint32_t first[3], uint32_t name)
+static inline uint32_t noh_crowd_rank_of(const crowd_runs *runs, uint32_t name)
 {
-    return first[name >> 14] + (name & CROWD_RUN_MAX);
+    return runs->first[name >> 14] + (name & CROWD_RUN_MAX);
 }
 
 #define CROWD_ITEM(body) ((body)->item & CROWD_ITEMS)
@@ -171,7 +181,7 @@ float noh_crowd_ease(const noh_crowd *c, vec2 at, vec2 direction);
 
 /* ---- crowd_see.c ---- */
 
-void noh_crowd_see(noh_crowd *c, uint32_t rank);
+void noh_crowd_see(noh_crowd *c, uint32_t rank, const crowd_runs *runs);
 
 /* ---- crowd_obstacle.c ---- */
 
@@ -208,10 +218,10 @@ void noh_crowd_direction_of(uint32_t id, uint32_t other, float direction[2]);
 /* ---- crowd_plan.c, crowd_avoid.c: the phases of a body's step ---- */
 
 /* The velocity that is nearest to `wish`, no faster than `fast`, and meets no neighbour (crowd_orca.c). */
-vec2 noh_crowd_orca(const noh_crowd *c, uint32_t rank, vec2 wish, float fast);
+vec2 noh_crowd_orca(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, vec2 wish, float fast);
 /* The velocity after a step by the rules of a flock (crowd_flock.c). */
-vec2 noh_crowd_flock(const noh_crowd *c, uint32_t rank, vec2 wish, float speed);
-void noh_crowd_plan(noh_crowd *c, uint32_t rank);
+vec2 noh_crowd_flock(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, vec2 wish, float speed);
+void noh_crowd_plan(noh_crowd *c, uint32_t rank, const crowd_runs *runs);
 void noh_crowd_iterate(noh_crowd *c, uint32_t begin, uint32_t end, uint32_t iteration); /* of ranks */
 void noh_crowd_finish(noh_crowd *c, uint32_t rank);
 

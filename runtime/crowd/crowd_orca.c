@@ -121,17 +121,16 @@ static void least_bad(const line *lines, uint32_t count, uint32_t from, float fa
     }
 }
 
-vec2 noh_crowd_orca(const noh_crowd *c, uint32_t rank, vec2 wish, float fast)
+vec2 noh_crowd_orca(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, vec2 wish, float fast)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
     const vec2 *velocities = CROWD_CONST(vec2, c, plan[1]);
     const uint16_t *names = CROWD_CONST(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
     line lines[CROWD_NEIGHBORS];
-    uint32_t count, first[3], end[3];
+    uint32_t count;
     vec2 result;
-    noh_crowd_runs(c, b->at, first, end);
     for (count = 0; count < CROWD_NEIGHBORS && names[count] != CROWD_NO_NEIGHBOR; count++) {
-        const uint32_t j = noh_crowd_rank_of(first, names[count]);
+        const uint32_t j = noh_crowd_rank_of(runs, names[count]);
         lines[count] = line_of(v2_sub(bodies[j].at, b->at), velocities[rank], velocities[j],
                                b->radius + bodies[j].radius);
     }

@@ -23,15 +23,13 @@ typedef struct view {
     uint32_t count;
 } view;
 
-static void look(const noh_crowd *c, uint32_t rank, view *v)
+static void look(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, view *v)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
     const vec2 *velocities = CROWD_CONST(vec2, c, plan[1]);
     const uint16_t *names = CROWD_CONST(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
-    uint32_t first[3], end[3];
-    noh_crowd_runs(c, b->at, first, end);
     for (v->count = 0; v->count < CROWD_NEIGHBORS && names[v->count] != CROWD_NO_NEIGHBOR; v->count++) {
-        const uint32_t j = noh_crowd_rank_of(first, names[v->count]);
+        const uint32_t j = noh_crowd_rank_of(runs, names[v->count]);
         v->to[v->count] = v2_sub(bodies[j].at, b->at);
         v->velocity[v->count] = velocities[j];
         v->radii[v->count] = b->radius + bodies[j].radius;
@@ -119,17 +117,18 @@ static int heading_of(const noh_crowd *c, const crowd_body *b, const crowd_wish 
 }
 
 /* Among others. */
-static vec2 way_among(const noh_crowd *c, uint32_t rank, float waited, vec2 direction, float speed)
+static vec2 way_among(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, float waited, vec2 direction,
+                      float speed)
 {
     const float push = push_of(waited) * speed;
     view v;
-    look(c, rank, &v);
+    look(c, rank, runs, &v);
     float most = speed_along(&v, direction, speed);
     if (most < push) most = push;
     return most < ASIDE * speed ? way_through(&v, direction, speed, most) : v2_scale(direction, most);
 }
 
-void noh_crowd_plan(noh_crowd *c, uint32_t rank)
+void noh_crowd_plan(noh_crowd *c, uint32_t rank, const crowd_runs *runs)
 {
     const crowd_body *b = CROWD_CONST(crowd_body, c, body) + rank;
     const crowd_wish *w = CROWD_CONST(crowd_wish, c, wish) + CROWD_ITEM(b);
@@ -140,12 +139,12 @@ void noh_crowd_plan(noh_crowd *c, uint32_t rank)
     const int goes = heading_of(c, b, w, &direction, &speed);
     if (b->item & CROWD_ORCA) {
         if (goes) wish = v2_scale(direction, speed);
-        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_orca(c, rank, wish, CROWD_FAST * w->speed);
+        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_orca(c, rank, runs, wish, CROWD_FAST * w->speed);
     } else if (b->item & CROWD_FORCES) {
         if (goes) wish = v2_scale(direction, speed);
-        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_flock(c, rank, wish, w->speed);
+        CROWD_ARRAY(vec2, c, plan[0])[rank] = noh_crowd_flock(c, rank, runs, wish, w->speed);
     } else {
-        if (goes) wish = way_among(c, rank, (float)waited, direction, speed);
+        if (goes) wish = way_among(c, rank, runs, (float)waited, direction, speed);
         CROWD_ARRAY(vec2, c, plan[0])[rank] = v2_madd(now, BLEND, v2_sub(wish, now));
     }
 }

@@ -32,25 +32,24 @@ static inline void insert(const noh_crowd *c, seen *s, float square, uint32_t ra
     s->name[at] = (uint16_t)name;
 }
 
-void noh_crowd_see(noh_crowd *c, uint32_t rank)
+void noh_crowd_see(noh_crowd *c, uint32_t rank, const crowd_runs *runs)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body);
     uint16_t *names = CROWD_ARRAY(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
     const vec2 at = bodies[rank].at;
     const uint32_t last = CROWD_NEIGHBORS - 1u;
     float limit = c->reach * c->reach; /* nothing further away is of use */
-    uint32_t first[3], end[3];
-    const uint32_t runs = noh_crowd_runs(c, at, first, end);
     seen s;
     s.count = 0;
-    for (uint32_t run = 0; run < runs; run++) {
-        const uint32_t stop = end[run] - first[run] > CROWD_RUN_MAX ? first[run] + CROWD_RUN_MAX : end[run];
-        for (uint32_t j = first[run]; j < stop; j++) {
+    for (uint32_t run = 0; run < runs->count; run++) {
+        const uint32_t first = runs->first[run], end = runs->end[run];
+        const uint32_t stop = end - first > CROWD_RUN_MAX ? first + CROWD_RUN_MAX : end;
+        for (uint32_t j = first; j < stop; j++) {
             const vec2 away = v2_sub(bodies[j].at, at);
             const float square = v2_dot(away, away);
             if (square > limit || j == rank) continue;
             if (s.count > last && !is_before(c, square, j, &s, last)) continue;
-            insert(c, &s, square, j, run << 14 | (j - first[run]));
+            insert(c, &s, square, j, run << 14 | (j - first));
             if (s.count > last) limit = s.square[last];
         }
     }
