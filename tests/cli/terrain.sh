@@ -50,6 +50,9 @@ if [ -f "$assets/khronos/RobotExpressive.glb" ]; then
     expect 0 'a model on its ground'
     noh info "$work/robot.noh"
     check 'both are there' awk '/^mesh/ { mesh = 1 } /^terrain: 5 x 3/ { ground = 1 } END { exit !(mesh && ground) }' "$work/out"
+    noh budget "$work/robot.noh" --nominal --json
+    expect 0 'its budget'
+    check 'has the ground: 48 bytes and 2 a height' grep -q '"terrain_bytes": 78' "$work/out"
     noh build -o "$work/hill.noh" --terrain "$assets/khronos/RobotExpressive.glb" --terrain-points 33
     expect 0 'a ground out of any model'
 else

@@ -44,6 +44,13 @@ static void json_levels(json *j, const pack_budget *b)
     json_close(j, ']');
 }
 
+/* Of its chunk; 0: there is none. */
+static uint64_t terrain_bytes(const pack_budget *b)
+{
+    const noh_pack_terrain_header *h = b->planned.desc.file->pack.terrain;
+    return h ? h->heights_offset + 2u * (uint64_t)h->width * h->depth : 0;
+}
+
 static void print_parts(const pack_budget *b)
 {
     const noh_stage_plan *plan = &b->planned.plan;
@@ -56,6 +63,7 @@ static void print_parts(const pack_budget *b)
     }
     printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)plan->cpu_bytes, (unsigned long long)plan->gpu_bytes);
     printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)plan->pack_bytes, "");
+    if (terrain_bytes(b)) printf("  %-30s %12llu\n", "  of it the terrain", (unsigned long long)terrain_bytes(b));
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
 }
 
@@ -85,6 +93,7 @@ static int json_budget(const pack_budget *b, const char *device)
     json_integer(&j, "cpu_bytes", plan->cpu_bytes);
     json_integer(&j, "gpu_bytes", plan->gpu_bytes);
     json_integer(&j, "pack_bytes", plan->pack_bytes);
+    json_integer(&j, "terrain_bytes", terrain_bytes(b));
     json_integer(&j, "stack_bytes", NOH_STACK_BYTES);
     json_text(&j, "path", noh_morph_path_name(b->morph.path));
     json_text(&j, "accumulate", noh_accumulate_name(b->morph.accumulate));
