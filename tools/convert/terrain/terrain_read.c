@@ -189,7 +189,7 @@ static int quantise(terrain *t, const double *heights, model_error *error)
     for (size_t i = 0; i < count; i++) {
         const int is_hole = heights[i] == -HUGE_VAL;
         t->hole_count += is_hole ? 1u : 0u;
-        t->heights[i] = is_hole || !(step > 0.0) ? 0 : (uint16_t)((heights[i] - low) / step + 0.5);
+        t->heights[i] = is_hole || !(step > 0.0) ? 0 : (uint16_t)lround((heights[i] - low) / step);
     }
     t->origin[1] = (float)low;
     t->scale = (float)step;

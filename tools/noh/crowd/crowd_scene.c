@@ -209,9 +209,10 @@ static void place_maze(crowd_scene *s, uint32_t index, noh_crowd_agent *a)
 {
     const float room = ROOM(s), side = ceilf(sqrtf((float)s->agents / (float)(ROOMS * ROOMS)));
     const uint32_t r = index % (ROOMS * ROOMS), place = index / (ROOMS * ROOMS), n = (uint32_t)side;
+    const uint32_t up = r / ROOMS, line = place / n;
     const float free = room - 1.0f;
     a->position[0] = room * (float)(r % ROOMS) + 0.5f + free * ((float)(place % n) + 0.5f) / side;
-    a->position[1] = room * (float)(r / ROOMS) + 0.5f + free * ((float)(place / n) + 0.5f) / side;
+    a->position[1] = room * (float)up + 0.5f + free * ((float)line + 0.5f) / side;
 }
 
 static void aim_maze(crowd_scene *s, uint32_t index)
@@ -227,8 +228,9 @@ static void aim_maze(crowd_scene *s, uint32_t index)
 /* Three rows of four. */
 static void middle_of_stall(const crowd_scene *s, uint32_t stall, float middle[2])
 {
+    const uint32_t row = stall / 4u;
     middle[0] = s->extent * ((float)(stall % 4u) + 0.5f) / 4.0f;
-    middle[1] = s->extent * ((float)(stall / 4u) + 0.5f) / 3.0f;
+    middle[1] = s->extent * ((float)row + 0.5f) / 3.0f;
 }
 
 static uint32_t build_stalls(crowd_scene *s, noh_crowd_obstacle *walls)
@@ -259,9 +261,9 @@ static void goal_of_stall(const crowd_scene *s, uint32_t field, float goal[2])
 /* Between the rows of stalls. */
 static void place_stalls(crowd_scene *s, uint32_t index, noh_crowd_agent *a)
 {
-    const uint32_t columns = (uint32_t)(s->extent / 0.8f), row = index / columns;
+    const uint32_t columns = (uint32_t)(s->extent / 0.8f), row = index / columns, lap = row / 3u;
     a->position[0] = 0.8f * ((float)(index % columns) + 0.5f);
-    a->position[1] = s->extent * ((float)(row % 3u) + 0.9f) / 3.0f + 0.8f * (float)(row / 3u);
+    a->position[1] = s->extent * ((float)(row % 3u) + 0.9f) / 3.0f + 0.8f * (float)lap;
 }
 
 static void aim_stalls(crowd_scene *s, uint32_t index)
