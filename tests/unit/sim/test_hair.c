@@ -32,7 +32,7 @@ static noh_hair_desc wig(void)
     noh_hair_desc d;
     memset(&d, 0, sizeof d);
     for (uint32_t h = 0; h < HAIRS; h++) {
-        const float a = 6.2831853f * (float)h / (float)HAIRS, x = sinf(a), z = cosf(a);
+        const float a = 6.2831853f * (float)h / (float)HAIRS, x = (float)sin((double)a), z = (float)cos((double)a);
         float *p = rest + 3u * POINTS * h;
         p[0] = 0.115f * x, p[1] = 0.12f, p[2] = 0.125f * z;
         for (uint32_t i = 1; i < POINTS; i++) {
