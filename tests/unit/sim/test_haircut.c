@@ -118,6 +118,22 @@ static void forged_haircuts_are_refused(void **state)
     close_wig(&w);
 }
 
+/* Counts are words of four bytes, low byte first, on every processor. The source's `long` has eight where most programs
+ * are built today, and takes the word behind the count into it. */
+static void errata_C15_4_counts_have_four_bytes(void **state)
+{
+    wig w;
+    uint64_t as_long = 0;
+    (void)state;
+    open_wig(&w);
+    const uint8_t *at = w.bytes + offsetof(noh_pack_hair_header, hair_count);
+    for (uint32_t i = 8; i-- > 0;) as_long = as_long << 8 | at[i];
+    assert_int_equal(at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24, w.grown.hair_count);
+    assert_int_equal(w.cut.desc.hair_count, w.grown.hair_count);
+    assert_true(as_long != w.grown.hair_count && as_long > NOH_HAIRS_MAX);
+    close_wig(&w);
+}
+
 /* Roots are within the skull's surface, all else is above it, and no hair is shorter or longer than the text says. */
 static void hair_grows_on_the_skull(void **state)
 {
@@ -250,9 +266,13 @@ static void a_wig_comes_along(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(forged_haircuts_are_refused),   cmocka_unit_test(hair_grows_on_the_skull),
-    cmocka_unit_test(strips_lie_within_their_patch), cmocka_unit_test(tangents_follow_their_strips),
-    cmocka_unit_test(fewer_strips_are_wider),        cmocka_unit_test(a_wig_comes_along),
+    cmocka_unit_test(errata_C15_4_counts_have_four_bytes),
+    cmocka_unit_test(forged_haircuts_are_refused),
+    cmocka_unit_test(hair_grows_on_the_skull),
+    cmocka_unit_test(strips_lie_within_their_patch),
+    cmocka_unit_test(tangents_follow_their_strips),
+    cmocka_unit_test(fewer_strips_are_wider),
+    cmocka_unit_test(a_wig_comes_along),
 };
 
 TEST_MAIN(tests, NULL, NULL)
