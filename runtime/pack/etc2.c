@@ -200,12 +200,18 @@ static void decode_pair(const uint8_t *block, uint8_t *to, size_t stride)
     }
 }
 
-static void decode_rgb(const uint8_t *color, const uint8_t *alpha, uint8_t *to, size_t stride)
+static void decode_opaque(const uint8_t *block, uint8_t *to, size_t stride)
+{
+    decode_color(block, to, stride);
+    for (uint32_t i = 0; i < 16; i++) to[i / 4u * stride + i % 4u * 4u + 3u] = 255;
+}
+
+static void decode_alpha(const uint8_t *block, uint8_t *to, size_t stride)
 {
     uint16_t values[16];
-    if (alpha) noh_eac_decode(alpha, 0, values);
-    decode_color(color, to, stride);
-    for (uint32_t i = 0; i < 16; i++) to[i / 4u * stride + i % 4u * 4u + 3u] = alpha ? (uint8_t)values[i] : 255u;
+    noh_eac_decode(block, 0, values);
+    decode_color(block + 8, to, stride);
+    for (uint32_t i = 0; i < 16; i++) to[i / 4u * stride + i % 4u * 4u + 3u] = (uint8_t)values[i];
 }
 
 void noh_etc2_decode(uint32_t format, const uint8_t *blocks, uint32_t count, uint8_t *texels)
@@ -214,9 +220,9 @@ void noh_etc2_decode(uint32_t format, const uint8_t *blocks, uint32_t count, uin
     for (uint32_t i = 0; i < count; i++) {
         uint8_t *to = texels + (size_t)i * 16u;
         if (format == NOH_TEXTURE_ETC2_RGB) {
-            decode_rgb(blocks + (size_t)i * 8u, NULL, to, stride);
+            decode_opaque(blocks + (size_t)i * 8u, to, stride);
         } else if (format == NOH_TEXTURE_ETC2_RGBA) {
-            decode_rgb(blocks + (size_t)i * 16u + 8u, blocks + (size_t)i * 16u, to, stride);
+            decode_alpha(blocks + (size_t)i * 16u, to, stride);
         } else {
             decode_pair(blocks + (size_t)i * 16u, to, stride);
         }
