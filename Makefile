@@ -111,7 +111,7 @@ help:
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make check-validator DIR=...  what noh build says to the glTF validator'"'"'s broken files'
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
-	@echo 'make fuzz       fuzz the pack reader and the clip decoder (FUZZ_SECONDS=60 each), needs clang'
+	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
 	@echo 'make budgets    what the demo characters take, to the byte, against a table; budgets-update: a new table'
@@ -490,7 +490,7 @@ fuzz: deps-fuzz
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
 tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS)) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
-       $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/corpus/.made
+       $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/fuzz_wire $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
 # tests/support. Of the tool each takes what it calls, and the library has its asserts on.
@@ -514,7 +514,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 # The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
+CROSS_SKIP  := wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
                joint_order clip_errors lod_pack strip stage stage_between stage_day blob stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads crowd_threads) \
                $(if $(SAN),,stage_threads)
@@ -540,8 +540,8 @@ $(BUILD)/cross/%: $(BUILD)/tests/%.o $(BUILD)/cross/libtests.a
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
 
 $(BUILD)/tests/fuzz/corpus/.made: $(BUILD)/tests/fuzz/make_corpus
-	@mkdir -p $(@D) $(BUILD)/tests/fuzz/clips
-	@$< $(@D) $(BUILD)/tests/fuzz/clips >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
+	@mkdir -p $(@D) $(BUILD)/tests/fuzz/clips $(BUILD)/tests/fuzz/wires
+	@$< $(@D) $(BUILD)/tests/fuzz/clips $(BUILD)/tests/fuzz/wires >$(BUILD)/tests/fuzz/make_corpus.txt 2>&1 || { cat $(BUILD)/tests/fuzz/make_corpus.txt; exit 1; }
 	@touch $@
 
 # ---- installing, and what is made of the library ----

@@ -56,6 +56,7 @@
 #include "base/limits.h"            /* every limit, in one place */
 #include "pack/pack.h"              /* open a pack; pack/format.h has its bytes */
 #include "pack/etc2.h"              /* decode the blocks of compressed textures */
+#include "wire/wire.h"              /* packs as they are sent, unpacked while they arrive */
 #include "mesh/wrinkles.h"          /* how much morph weights wrinkle regions of skin */
 #include "mesh/mesh.h"              /* its meshes and skins: vertices, triangles, targets, LOD levels */
 #include "clip/pack_clip.h"         /* its skeletons and clips */

@@ -1,7 +1,7 @@
 #!/bin/sh
-# fuzz.sh: runs libFuzzer on the pack reader and on the clip decoder, with AddressSanitizer, UBSan and all asserts on,
-# both at once for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus and clips. Closes like run.sh. A crash
-# is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or found_clips/, where `make check`
+# fuzz.sh: runs libFuzzer on the pack reader, the clip decoder and the wire form's unpacker, with AddressSanitizer, UBSan and all asserts on,
+# all at once for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus, clips and wires. Closes like run.sh. A crash
+# is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or found_clips/ or found_wires/, where `make check`
 # replays it.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -24,7 +24,7 @@ echo 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n); int L
 flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize-recover=all -fno-omit-frame-pointer -DNOH_ASSERT_LEVEL=2 -Iruntime -Itests -Itests/support -I$build/gen"
 
-# Both targets link the same objects.
+# All targets link the same objects.
 rm -rf "$work/objects"
 mkdir "$work/objects"
 # shellcheck disable=SC2016
@@ -49,6 +49,8 @@ fuzz fuzz_pack 8192 tests/fuzz/found "$build/tests/fuzz/corpus" &
 packs=$!
 fuzz fuzz_clip 4096 tests/fuzz/found_clips "$build/tests/fuzz/clips" &
 clips=$!
+fuzz fuzz_wire 16384 tests/fuzz/found_wires "$build/tests/fuzz/wires" &
+wires=$!
 
 # told TARGET RESULT: prints what its log says
 passed=0 failed=0
@@ -67,5 +69,7 @@ wait "$packs"
 told fuzz_pack $?
 wait "$clips"
 told fuzz_clip $?
+wait "$wires"
+told fuzz_wire $?
 echo "$passed passed, $failed failed, 0 skipped"
 [ $failed = 0 ]

@@ -1,13 +1,18 @@
-/* make_corpus.c: the fuzzers' seeds: small packs of every shape, and small clips, each in a folder. */
+/* make_corpus.c: the fuzzers' seeds: small packs of every shape, small clips, and wire forms of some packs, each in a
+ * folder. */
 #include "support/support.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "platform.h"
+
 #include "convert/convert.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/model/model_build.h"
+#include "convert/pack/pack_strip.h"
+#include "convert/pack/pack_wire.h"
 #include "support/graph_fixture.h"
 #include "support/lod_fixture.h"
 #include "support/clip_bank_fixture.h"
@@ -187,7 +192,7 @@ static void write_terrain(const char *in)
     buffer_free(&out);
 }
 
-static const char *folder, *clip_folder;
+static const char *folder, *clip_folder, *wire_folder;
 
 /* Encode a clip, take it, and write its bytes. */
 static void write_clip(const char *name, raw_set *set, const clip_options *options)
@@ -239,6 +244,45 @@ static void clips(void **state)
     write_clip("open", fixture_swing(4, 20, 1, 10.0f, 0.6, 0.5), &open);
 }
 
+/* The wire form of a seed, after a pack of its coarsest level where it has several. */
+static void write_wire(const char *name)
+{
+    static const wire_steps exact = { NULL, 32767, 65535, 0 };
+    const char *item = "7";
+    const strip_levels levels = { &item, 1 };
+    byte_buffer out = { NULL, 0, 0, 0 }, coarse = { NULL, 0, 0, 0 };
+    uint32_t first[8] = { 0 }, count = 1;
+    noh_file file;
+    noh_error failed;
+    noh_pack packs[2];
+    wire_report report;
+    model_error error;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.noh", folder, name);
+    assert_int_equal(noh_file_map(path, &file, &failed), NOH_OK);
+    packs[0] = test_open(file.data, file.bytes);
+    if (test_mesh(&packs[0], 0).header->level_count > 1u) {
+        packs[count++] = packs[0];
+        assert_int_equal(strip_levels_of(&levels, &packs[1], first, &error), 0);
+        assert_int_equal(pack_strip(&packs[1], first, &coarse, &error), 0);
+        packs[0] = test_open(coarse.bytes, coarse.count);
+    }
+    assert_int_equal(pack_wire(packs, count, &exact, &out, &report, &error), 0);
+    snprintf(path, sizeof path, "%s/%s.nohz", wire_folder, name);
+    test_write_file(path, out.bytes, out.count);
+    buffer_free(&out);
+    buffer_free(&coarse);
+    noh_file_unmap(&file);
+}
+
+static void wires(void **state)
+{
+    (void)state;
+    write_wire("scene");
+    write_wire("skin_split");
+    write_wire("levels");
+}
+
 static void corpus(void **state)
 {
     static const struct {
@@ -277,12 +321,13 @@ static void corpus(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(corpus), cmocka_unit_test(clips) };
-    if (argument_count != 3) {
-        fprintf(stderr, "usage: make_corpus FOLDER FOLDER_OF_CLIPS\n");
+    const struct CMUnitTest tests[] = { cmocka_unit_test(corpus), cmocka_unit_test(clips), cmocka_unit_test(wires) };
+    if (argument_count != 4) {
+        fprintf(stderr, "usage: make_corpus FOLDER FOLDER_OF_CLIPS FOLDER_OF_WIRE_FORMS\n");
         return 2;
     }
     folder = arguments[1];
     clip_folder = arguments[2];
+    wire_folder = arguments[3];
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

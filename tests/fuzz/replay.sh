@@ -1,5 +1,5 @@
 #!/bin/sh
-# replay.sh: the fuzzers' seeds, and whatever they once found (tests/fuzz/found, tests/fuzz/found_clips),
+# replay.sh: the fuzzers' seeds, and whatever they once found (tests/fuzz/found, found_clips, found_wires),
 # without libFuzzer.
 build=${NOH_BUILD:-build}
 failed=0
@@ -9,4 +9,7 @@ set -- "$build/tests/fuzz/corpus"
 set -- "$build/tests/fuzz/clips"
 [ ! -d tests/fuzz/found_clips ] || set -- "$@" tests/fuzz/found_clips
 "$build/tests/fuzz/fuzz_clip" "$@" || failed=1
+set -- "$build/tests/fuzz/wires"
+[ ! -d tests/fuzz/found_wires ] || set -- "$@" tests/fuzz/found_wires
+"$build/tests/fuzz/fuzz_wire" "$@" || failed=1
 exit $failed

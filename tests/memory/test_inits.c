@@ -328,6 +328,14 @@ INIT(walkers_init)
     return noh_walkers_init(memory, bytes, &desc, stage, &walkers, error);
 }
 
+INIT(wire_init)
+{
+    static uint8_t block[64] __attribute__((aligned(16)));
+    const noh_wire_desc desc = { block, sizeof block };
+    noh_wire *wire;
+    return noh_wire_init(memory, bytes, &desc, &wire, error);
+}
+
 INIT(joint_lod_measure)
 {
     const uint32_t counts[1] = { JOINTS };
@@ -453,6 +461,7 @@ static const struct {
     ROW(springs_init),
     ROW(hair_init),
     ROW(crowd_init),
+    ROW(wire_init),
     ROW(smart_init),
     ROW(walkers_init),
     ROW(schedule_init),

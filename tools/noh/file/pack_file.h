@@ -1,4 +1,4 @@
-/* pack_file.h: a pack mapped from a file. */
+/* pack_file.h: a pack mapped from a file, or unpacked from its wire form. */
 #ifndef NOH_NOH_FILE_PACK_FILE_H
 #define NOH_NOH_FILE_PACK_FILE_H
 
@@ -7,11 +7,13 @@
 
 typedef struct pack_file {
     const char *path;
-    noh_file file;
+    noh_file file;  /* empty where the file is a wire form */
+    void *unpacked; /* NULL where it is a pack */
     noh_pack pack;
 } pack_file;
 
-/* Map and open a pack; prints the error and returns an exit code, 0 on success. */
+/* Map and open a pack, or unpack and open a wire form, whatever the name ends in; prints the error and returns an exit
+ * code, 0 on success. */
 int pack_file_open(pack_file *file, const char *path);
 /* The same, with messages about `subject`: "cast.txt:3: head.noh". */
 int pack_file_open_as(pack_file *file, const char *path, const char *subject);
