@@ -93,8 +93,7 @@ size_t noh_wire_size(void)
     return sizeof(noh_wire);
 }
 
-noh_result noh_wire_init(void *memory, size_t memory_bytes, const noh_wire_desc *desc, noh_wire **wire,
-                         noh_error *error)
+noh_result noh_wire_init(void *memory, size_t bytes, const noh_wire_desc *desc, noh_wire **wire, noh_error *error)
 {
     noh_wire *w = memory;
     if (!memory || !desc || !wire || !desc->block) {
@@ -103,7 +102,7 @@ noh_result noh_wire_init(void *memory, size_t memory_bytes, const noh_wire_desc 
     if ((uintptr_t)memory % NOH_MEMORY_ALIGN || (uintptr_t)desc->block % NOH_MEMORY_ALIGN) {
         return noh_fail(error, NOH_ERR_ARG, "memory or block is not aligned to NOH_MEMORY_ALIGN", 0, sizeof *w);
     }
-    if (memory_bytes < sizeof *w) {
+    if (bytes < sizeof *w) {
         return noh_fail(error, NOH_ERR_MEMORY, "memory is too small for a noh_wire", 0, sizeof *w);
     }
     memset(w, 0, sizeof *w);

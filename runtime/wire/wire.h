@@ -49,8 +49,7 @@ typedef struct noh_wire_desc {
 size_t noh_wire_size(void);
 
 /* errors  ARG memory, desc or block NULL or misaligned; MEMORY (need: the bytes needed) */
-noh_result noh_wire_init(void *memory, size_t memory_bytes, const noh_wire_desc *desc, noh_wire **wire,
-                         noh_error *error);
+noh_result noh_wire_init(void *memory, size_t bytes, const noh_wire_desc *desc, noh_wire **wire, noh_error *error);
 
 /* The next bytes of the file, as many as there are. After an error the noh_wire refuses all that follows; packs that
  * were handed out before stay good.

@@ -50,7 +50,7 @@ static void store_index(noh_wire_filter *f, uint64_t at, uint32_t index)
 /* An edge that waits for the triangle on its other side. */
 static void push_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t across)
 {
-    memmove(f->edges + 1, f->edges, (NOH_WIRE_EDGES - 1u) * sizeof *f->edges);
+    for (uint32_t i = NOH_WIRE_EDGES - 1u; i > 0; i--) f->edges[i] = f->edges[i - 1u];
     f->edges[0].a = a;
     f->edges[0].b = b;
     f->edges[0].across = across;
@@ -58,7 +58,7 @@ static void push_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t acros
 
 static void drop_edge(noh_wire_filter *f, uint32_t i)
 {
-    memmove(f->edges + i, f->edges + i + 1u, (NOH_WIRE_EDGES - 1u - i) * sizeof *f->edges);
+    for (; i + 1u < NOH_WIRE_EDGES; i++) f->edges[i] = f->edges[i + 1u];
     memset(f->edges + NOH_WIRE_EDGES - 1u, 0xff, sizeof *f->edges);
 }
 
@@ -111,7 +111,7 @@ static void pass_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t c)
 
 static void push_recent(noh_wire_filter *f, uint32_t vertex)
 {
-    memmove(f->recent + 1, f->recent, (NOH_WIRE_EDGES - 1u) * sizeof *f->recent);
+    for (uint32_t i = NOH_WIRE_EDGES - 1u; i > 0; i--) f->recent[i] = f->recent[i - 1u];
     f->recent[0] = vertex;
 }
 

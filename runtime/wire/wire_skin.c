@@ -126,7 +126,7 @@ static uint32_t code_joint(noh_wire_filter *f, choice *c, const influences *in, 
     if (symbol >= c->count) return 0;
     joint = c->joints[symbol];
     c->count--;
-    memmove(c->joints + symbol, c->joints + symbol + 1u, (c->count - symbol) * sizeof *c->joints);
+    for (uint32_t k = symbol; k < c->count; k++) c->joints[k] = c->joints[k + 1u];
     return joint;
 }
 

@@ -3,7 +3,7 @@
 # that cannot be written.
 . "$(dirname "$0")/lib.sh"
 
-full=$build/mask_levels.noh
+pack=$build/mask.noh full=$build/mask_levels.noh
 
 # ---- there and back ----
 
