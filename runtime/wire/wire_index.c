@@ -50,7 +50,9 @@ static void store_index(noh_wire_filter *f, uint64_t at, uint32_t index)
 /* An edge that waits for the triangle on its other side. */
 static void push_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t across)
 {
-    for (uint32_t i = NOH_WIRE_EDGES - 1u; i > 0; i--) f->edges[i] = f->edges[i - 1u];
+    noh_wire_edge before[NOH_WIRE_EDGES]; /* copied twice: compilers make a memmove of a loop */
+    memcpy(before, f->edges, sizeof before);
+    memcpy(f->edges + 1, before, (NOH_WIRE_EDGES - 1u) * sizeof *before);
     f->edges[0].a = a;
     f->edges[0].b = b;
     f->edges[0].across = across;
@@ -58,7 +60,9 @@ static void push_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t acros
 
 static void drop_edge(noh_wire_filter *f, uint32_t i)
 {
-    for (; i + 1u < NOH_WIRE_EDGES; i++) f->edges[i] = f->edges[i + 1u];
+    noh_wire_edge behind[NOH_WIRE_EDGES];
+    memcpy(behind, f->edges + i, (NOH_WIRE_EDGES - i) * sizeof *behind);
+    memcpy(f->edges + i, behind + 1, (NOH_WIRE_EDGES - 1u - i) * sizeof *behind);
     memset(f->edges + NOH_WIRE_EDGES - 1u, 0xff, sizeof *f->edges);
 }
 
@@ -111,7 +115,9 @@ static void pass_edge(noh_wire_filter *f, uint32_t a, uint32_t b, uint32_t c)
 
 static void push_recent(noh_wire_filter *f, uint32_t vertex)
 {
-    for (uint32_t i = NOH_WIRE_EDGES - 1u; i > 0; i--) f->recent[i] = f->recent[i - 1u];
+    uint32_t before[NOH_WIRE_EDGES];
+    memcpy(before, f->recent, sizeof before);
+    memcpy(f->recent + 1, before, (NOH_WIRE_EDGES - 1u) * sizeof *before);
     f->recent[0] = vertex;
 }
 

@@ -115,7 +115,7 @@ static int32_t weight_of(const influences *in, uint32_t count, uint32_t joint)
 /* A joint that was chosen is out of the choice: the places of those behind it are lower by one. */
 static uint32_t code_joint(noh_wire_filter *f, choice *c, const influences *in, uint32_t i)
 {
-    uint32_t symbol = NEW_JOINT, joint = in->joints[i];
+    uint32_t symbol = NEW_JOINT, joint = in->joints[i], behind[CHOICES];
     for (uint32_t k = c->count; k > 0; k--) {
         if (c->joints[k - 1u] == joint) symbol = k - 1u;
     }
@@ -126,7 +126,8 @@ static uint32_t code_joint(noh_wire_filter *f, choice *c, const influences *in, 
     if (symbol >= c->count) return 0;
     joint = c->joints[symbol];
     c->count--;
-    for (uint32_t k = symbol; k < c->count; k++) c->joints[k] = c->joints[k + 1u];
+    memcpy(behind, c->joints, sizeof behind);
+    memcpy(c->joints + symbol, behind + symbol + 1u, (c->count - symbol) * sizeof *behind);
     return joint;
 }
 

@@ -301,6 +301,10 @@ static void write_texture(writer *w, const noh_pack *pack, uint32_t index)
     s.params[1] = texture.header->height;
     s.params[2] = texture.header->level_count;
     write_bytes(w, c->offset, head, &w->report->textures);
+    if (texture.header->format != NOH_TEXTURE_RGBA8) { /* blocks */
+        write_bytes(w, s.at, c->bytes - head, &w->report->textures);
+        return;
+    }
     write_section(w, &s, &w->report->textures);
 }
 
