@@ -95,7 +95,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -105,6 +105,7 @@ help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, dances, falls and gets up'
+	@echo 'make demo-crowd a square at a festival, with hundreds of puppets who know where they are'
 	@echo 'make demo-face  the puppet and the mask say a sentence: sound, strips, a film'
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'
@@ -355,6 +356,10 @@ demo-face: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/mask.noh
 	@sh tools/demo_face.sh $(BUILD)
 
+demo-crowd: deps-build
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo_assets $(BUILD)/demo/puppet_levels.noh
+	@sh tools/demo_crowd.sh $(BUILD)
+
 FILE    ?= $(BUILD)/demo/puppet.noh
 view: deps-view
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(FILE)
@@ -516,7 +521,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 CROSS       ?=
 CROSS_SKIP  := wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
-               joint_order clip_errors lod_pack strip stage stage_between stage_day blob stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads crowd_threads) \
+               joint_order clip_errors lod_pack strip stage stage_between stage_day blob stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file place_file walkers graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads crowd_threads) \
                $(if $(SAN),,stage_threads)
 CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \

@@ -149,7 +149,9 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
 
 /* ---- who walks ---- */
 
-static noh_result start(const noh_walkers *w, const noh_stage_kind *k, noh_controller *c, noh_error *error)
+/* share: of a pass, at which clips begin. */
+static noh_result start(const noh_walkers *w, const noh_stage_kind *k, noh_controller *c, uint32_t share,
+                        noh_error *error)
 {
     noh_result result = NOH_OK;
     uint32_t track = k->layers[w->layer].first_track;
@@ -160,6 +162,7 @@ static noh_result start(const noh_walkers *w, const noh_stage_kind *k, noh_contr
         memset(&d, 0, sizeof d);
         d.clip = w->clips[i].clip;
         d.loop = NOH_LOOP_REPEAT;
+        d.position_ticks = (int64_t)((uint64_t)w->clips[i].ticks * share >> 32);
         d.mask = k->layers[w->layer].mask;
         d.sync_group = w->in_step && i != WALKER_IDLE ? 1u : 0u;
         d.flags = i == (stands ? (uint32_t)WALKER_IDLE : (uint32_t)WALKER_WALK) ? 0u : NOH_TRACK_SILENT;
@@ -179,7 +182,8 @@ noh_result noh_walkers_put(noh_walkers *walkers, uint32_t index, noh_stage *stag
     if (index >= walkers->walker_max || k != &stage->kinds[walkers->kind]) {
         return noh_fail(error, NOH_ERR_ARG, "there is no such walker, or the actor is of another kind", index, 0);
     }
-    result = start(walkers, k, noh_character_controller(noh_stage_character(k, noh_stage_index(k, a))), error);
+    result = start(walkers, k, noh_character_controller(noh_stage_character(k, noh_stage_index(k, a))),
+                   index * 2654435769u, error);
     if (result) return result;
     noh_walkers_remove(walkers, index);
     walker *r = noh_walker_at(walkers, index);

@@ -80,6 +80,37 @@ noh crowd --test door200 --agents 40 --seconds 1 --dump "$work/agents.csv"
 expect 0 'a dump'
 check 'it has a line for each agent and step' awk -F, 'NR == 1 { head = $0 == "frame,agent,x,z,vx,vz,radius"; next } NF != 7 || $7 != 0.25 { bad = 1 } END { exit !(head && !bad && NR == 1201) }' "$work/agents.csv"
 
+# ---- places ----
+
+festival=tools/demo_assets/festival/festival.place
+noh crowd --place "$festival" --agents 150 --seconds 20 --dump "$work/agents.csv" --json
+expect 0 'a festival'
+bound 'its agents get on, and do not overlap' 'value["agents"] == 150 && value["seconds"] == 20 && value["progress_pct"] > 60 && value["overlap_max_pct"] < 8 && value["stuck_max_s"] < 2 && value["bytes"] > 0'
+cp "$work/out" "$work/first"
+check 'its dump has a line for each agent and step' awk -F, 'NR == 1 { head = $0 == "frame,agent,x,z,vx,vz,radius" } END { exit !(head && NR == 90001) }' "$work/agents.csv"
+noh crowd --place "$festival" --agents 150 --seconds 20 --json
+expect 0 'again'
+check 'comes to the same hash' sh -c 'grep hash "$1" >"$1.a"; grep hash "$2" | cmp -s - "$1.a"' - "$work/out" "$work/first"
+noh crowd --place door --agents 40 --seconds 2 --json
+expect 0 'a word for a scene of --test'
+bound 'is that scene' 'value["agents"] == 40 && value["seconds"] == 2'
+printf 'area 0 0 9 9\nspan 0 0 1 1\n' >"$work/bad.place"
+noh crowd --place "$work/bad.place" --json
+expect 1 'a place with a mistake'
+says 'bad.place:2'
+says "did you mean 'spawn'?"
+noh crowd --place "$work/none.place"
+expect 1 'a place that is not there'
+printf 'area 0 0 9 9\nspawn 0 0 1 1\ngoal 5 5\n' >"$work/small.place"
+noh crowd --place "$work/small.place" --agents 100
+expect 1 'too many for where they enter'
+says 'there is no room'
+for refused in '--place door --test door200' '--scenery x.noh' '--place door --camera 1' '--place door --orca' '--place door -o out.png'; do
+    # shellcheck disable=SC2086 # words
+    noh crowd $refused
+    expect 2 "crowd $refused"
+done
+
 # ---- with a GL ----
 
 noh crowd "$pack" -o "$work/out.png"
@@ -121,6 +152,16 @@ noh crowd "$puppets" -o "$work/plain.png" --instances 40 --time 0.3 --size 320x1
 expect 0 'without LOD'
 planned 'without LOD'
 check 'the picture stays nearly the same' "$build/tests/gl/picture_diff" "$work/lit.png" "$work/plain.png" 0.3 0.02
+
+# ---- a place of puppets ----
+
+noh crowd "$puppets" --place "$festival" --agents 60 --time 3 -o "$work/place.png" --size 320x180 --light sky
+expect 0 'puppets at a festival'
+check 'of whom those who are near stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
+noh crowd "$pack" --place "$festival" --agents 10 -o "$work/no.png"
+expect 1 'a mask does not walk'
+says 'a body that walks'
+check 'no picture is left of it' test ! -e "$work/no.png"
 
 if [ -f "$assets/hero/body.glb" ]; then
     printf 'walk 0.1 step\nrun 0.2 step\njump 0.5 land\n' >"$work/keys.txt"

@@ -1,7 +1,9 @@
 /* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
  * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
  * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
- * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning. */
+ * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning.
+ * demo_assets --festival OUT: a festival's square, as OUT.obj and OUT.mtl. */
+#include "festival/festival.h"
 #include "mask/gltf_write.h"
 #include "shared/grab.h"
 #include "arm/arm_write.h"
@@ -88,6 +90,27 @@ static int make_arm(const char *path)
     return good;
 }
 
+static int make_festival(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int length = (int)strlen(path) + 5;
+    char *obj = grab(NULL, length, 1), *mtl = grab(NULL, length, 1);
+    Buffer model = { 0 }, colors = { 0 };
+    snprintf(obj, (size_t)length, "%s.mtl", name);
+    FestivalCensus census = festival_write(&model, &colors, obj);
+    snprintf(obj, (size_t)length, "%s.obj", path);
+    snprintf(mtl, (size_t)length, "%s.mtl", path);
+    int good = save(mtl, &colors) && save(obj, &model);
+    if (good) {
+        printf("%s: %d vertices, %d faces, %d bytes\n", obj, census.vertices, census.faces, model.count);
+    }
+    free(obj);
+    free(mtl);
+    buffer_free(&model);
+    buffer_free(&colors);
+    return good;
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 2 && argv[1][0] != '-') {
@@ -102,6 +125,9 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--arm")) {
         return make_arm(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr, "usage: demo_assets [--puppet|--get-up|--arm] OUT.glb\n");
+    if (argc == 3 && !strcmp(argv[1], "--festival")) {
+        return make_festival(argv[2]) ? 0 : 1;
+    }
+    fprintf(stderr, "usage: demo_assets [--puppet|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
     return 2;
 }

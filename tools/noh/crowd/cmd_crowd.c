@@ -5,6 +5,7 @@
 
 #include "crowd_bodies.h"
 #include "crowd_test.h"
+#include "place_draw.h"
 #include "gpu/canvas.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
@@ -16,7 +17,8 @@
 #define FRAME_TICKS 800u /* 60 frames a second */
 
 typedef struct crowd_args {
-    const char *pack, *output, *debug, *driver, *test, *dump;
+    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera;
+    light_options light;
     double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
     int plain, as_json, orca;
@@ -123,26 +125,99 @@ static int is_whole(double value, double high)
     return value >= 0.0 && value <= high && value == (double)(uint32_t)value;
 }
 
-static int test(const crowd_args *a)
+static int check_agents(const crowd_args *a)
 {
-    const crowd_scene_options options = { a->test, (uint32_t)a->agents,          a->seconds, (uint32_t)a->seed,
-                                          1,       a->orca ? NOH_CROWD_ORCA : 0u };
     if (!is_whole(a->agents, NOH_CROWD_AGENTS_MAX)) {
         return tool_usage("--agents wants a whole number from 1 to %u; 0: as many as the scene's name says",
                           NOH_CROWD_AGENTS_MAX);
     }
     if (!(a->seconds >= 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds wants a number up to 3600");
     if (!is_whole(a->seed, 4294967295.0)) return tool_usage("--seed wants a whole number below 2^32");
-    return crowd_test_run(&options, a->dump, a->as_json);
+    return 0;
+}
+
+/* The scene that a word of --place stands for; NULL: a file. */
+static const char *scene_of(const char *place)
+{
+    static const char *const words[][2] = { { "square", "dense1000" },
+                                            { "door", "door200" },
+                                            { "circle", "circle250" } };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        if (strcmp(place, words[i][0]) == 0) return words[i][1];
+    }
+    return NULL;
+}
+
+static int test(const crowd_args *a)
+{
+    const char *scene = a->test ? a->test : scene_of(a->place);
+    const crowd_scene_options options = {
+        scene ? scene : a->place, (uint32_t)a->agents, a->seconds, (uint32_t)a->seed, 1, a->orca ? NOH_CROWD_ORCA : 0u
+    };
+    if (!scene && a->orca) return tool_usage("--orca compares scenes of --test, not places");
+    return scene ? crowd_test_run(&options, a->dump, a->as_json) : crowd_place_run(&options, a->dump, a->as_json);
+}
+
+/* ---- a place drawn ---- */
+
+static void print_place(const place_drawn *d, const crowd_args *a)
+{
+    FILE *out = report_stream(a->output);
+    fprintf(out, "%s: %u in %s, %u visible", a->output, d->agents, a->place, d->stats.seen);
+    for (uint32_t k = 0; k < d->level_count; k++) fprintf(out, "%s %u", k ? "," : "; by level:", d->stats.at_level[k]);
+    fprintf(out, "; feet of %u on the ground\nstage: CPU %llu bytes, GPU %llu; walkers %llu; crowd %llu\n",
+            d->near_count, (unsigned long long)d->cpu_bytes, (unsigned long long)d->gpu_bytes,
+            (unsigned long long)d->walkers_bytes, (unsigned long long)d->crowd_bytes);
+}
+
+static int draw_place_of(const pack_file *file, const place_file *place, const crowd_args *a)
+{
+    const place_draw_options options = { (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels, a->time_s, a->camera,
+                                         a->scenery,          a->light,          a->size[0],       a->size[1] };
+    place_drawn d;
+    gpu g;
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    int status = rgba ? gpu_open_drawing(&g, a->driver) : tool_fail(a->pack, "out of memory");
+    if (!status) {
+        status = place_draw(&g, file, place, &options, rgba, &d);
+        gpu_close(&g);
+    }
+    if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    if (!status) print_place(&d, a);
+    free(rgba);
+    return status;
+}
+
+static int draw_place(const crowd_args *a)
+{
+    place_file *place = NULL;
+    pack_file file;
+    int status = scene_of(a->place) ? tool_usage("--place %s is drawn by no -o: it wants a file", a->place) : 0;
+    if (!status) status = place_read(a->place, &place);
+    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) {
+        status = draw_place_of(&file, place, a);
+        pack_file_close(&file);
+    }
+    place_free(place);
+    return status;
 }
 
 static int run(void *args)
 {
     crowd_args *a = args;
     pack_file file;
-    if (a->test) return test(a);
-    if (!a->output) return tool_usage("noh crowd wants -o OUT.png, or --test SCENE");
-    int status = check_args(a);
+    int status = check_agents(a);
+    if (status) return status;
+    if (!a->output && (a->scenery || a->camera)) return tool_usage("--scenery and --camera have no effect without -o");
+    if (a->test || (a->place && !a->output)) {
+        return a->pack ? tool_usage("agents are measured without a pack; one is drawn with --place FILE -o OUT.png")
+                       : test(a);
+    }
+    if (!a->output) return tool_usage("noh crowd wants -o OUT.png, --test SCENE or --place PLACE");
+    if (!a->pack) return tool_usage("noh crowd -o OUT.png wants a PACK: whose bodies are drawn");
+    status = check_args(a);
+    if (!status && a->place) return draw_place(a);
     if (!status) status = pack_file_open(&file, a->pack);
     if (!status) {
         status = draw_pack(&file, a);
@@ -158,7 +233,7 @@ static const option options[] = {
       .kind = OPTION_OUTPUT,
       .at = offsetof(crowd_args, output),
       .value = "OUT.png",
-      .what = "the picture; wanted, unless --test is given",
+      .what = "the picture; wanted, unless agents are measured",
       .example = "crowd.png",
       .excludes = "--test" },
     OPTION_INSTANCES(crowd_args, instances, "1000", .what = "number of bodies, 1 to 65536"),
@@ -199,22 +274,47 @@ static const option options[] = {
       .at = offsetof(crowd_args, test),
       .value = "circle250|door200|dense1000|open10000|maze400|stalls600",
       .what = "draw nothing: run agents through this scene, and measure how they get on" },
+    { .name = "--place",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, place),
+      .value = "FILE|square|door|circle",
+      .what =
+          "agents in a place (noh help FORMATS, places): measured, or with -o drawn as bodies of the pack; square, door and circle are scenes of --test",
+      .example = "festival.place",
+      .excludes = "--test" },
+    { .name = "--scenery",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, scenery),
+      .value = "PACK",
+      .what = "with --place FILE -o: drawn with the bodies, where it is",
+      .example = "festival.noh",
+      .needs = "--place" },
+    { .name = "--camera",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, camera),
+      .value = "AZ,EL,DIST[,X,Z]",
+      .what = "with --place FILE -o: degrees, and metres from the middle of the place or from X, Z",
+      .example = "30,12,14,0,4",
+      .needs = "--place" },
+    OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
     { .name = "--agents",
       .kind = OPTION_NUMBER,
       .at = offsetof(crowd_args, agents),
       .value = "N",
       .initial = "0",
-      .what = "how many, up to 262144; 0: as many as the scene's name says. The room for each stays the same",
+      .what =
+          "how many, up to 262144; 0: as many as the scene's name says, 100 in a place. In scenes the room for each stays the same",
       .example = "2000",
-      .needs = "--test" },
+      .needs = "--test --place" },
     { .name = "--seconds",
       .kind = OPTION_NUMBER,
       .at = offsetof(crowd_args, seconds),
       .value = "S",
       .initial = "0",
-      .what = "how long at most, up to 3600; 0: 300 for circle250, 120 for door200, maze400 and stalls600, else 30",
+      .what =
+          "how long at most, up to 3600; 0: 300 for circle250, 120 for door200, maze400 and stalls600, 60 in a place, else 30",
       .example = "10",
-      .needs = "--test" },
+      .needs = "--test --place" },
     { .name = "--seed",
       .kind = OPTION_NUMBER,
       .at = offsetof(crowd_args, seed),
@@ -222,7 +322,7 @@ static const option options[] = {
       .initial = "1",
       .what = "of where they start and want to go",
       .example = "7",
-      .needs = "--test" },
+      .needs = "--test --place" },
     { .name = "--orca",
       .kind = OPTION_FLAG,
       .at = offsetof(crowd_args, orca),
@@ -234,12 +334,12 @@ static const option options[] = {
       .value = "OUT.csv",
       .what = "where every agent is in every step of 1/30 s: frame,agent,x,z,vx,vz,radius",
       .example = "agents.csv",
-      .needs = "--test" },
+      .needs = "--test --place" },
     { .name = "--json",
       .kind = OPTION_FLAG,
       .at = offsetof(crowd_args, as_json),
       .what = "print JSON on stdout; errors too: {\"error\": {...}}",
-      .needs = "--test" },
+      .needs = "--test --place" },
 };
 
 const verb verb_crowd = {
@@ -247,13 +347,14 @@ const verb verb_crowd = {
     .files = "PACK",
     .what = "draw a crowd of a pack's skinned mesh, each body at the LOD level that its size in pixels needs",
     .more =
-        "--test runs agents without a pack. circle250: 250 of 3 m across, at 2 m/s, on a circle of 200 m, each to the opposite side. door200: 200 of half a metre, at 1.3 m/s, a metre apart, out through a door of 1.6 m. dense1000: 1,000 of half a metre on a square with a square metre for each, to one random place after the other; open10000: 10,000 of 0.6 m with 4 square metres for each. maze400: 400 of half a metre, from corner to corner of a maze, by flow fields; stalls600: 600 from one of 12 stalls to another, where each stays for 5 to 15 s. Printed are when half and all of them were there, the worst overlap of two, how often one overlapped by more than 5 %, the mean speed towards the goal (of the speed that they like), the longest time in which one stood still with room in front, CPU time and bytes, and a hash of where all are: the same on every processor.",
+        "--test runs agents without a pack. circle250: 250 of 3 m across, at 2 m/s, on a circle of 200 m, each to the opposite side. door200: 200 of half a metre, at 1.3 m/s, a metre apart, out through a door of 1.6 m. dense1000: 1,000 of half a metre on a square with a square metre for each, to one random place after the other; open10000: 10,000 of 0.6 m with 4 square metres for each. maze400: 400 of half a metre, from corner to corner of a maze, by flow fields; stalls600: 600 from one of 12 stalls to another, where each stays for 5 to 15 s. Printed are when half and all of them were there, the worst overlap of two, how often one overlapped by more than 5 %, the mean speed towards the goal (of the speed that they like), the longest time in which one stood still with room in front, CPU time and bytes, and a hash of where all are: the same on every processor. --place does the same in a place of a file: its agents walk from goal to goal and use what they need; all are there when each has been at a first goal.",
     .example =
-        "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod\n--test door200 --seed 2 --json",
+        "body.noh -o crowd.png\nbody.noh -o crowd.png --instances 200 --pixels 4 --debug lod\n--test door200 --seed 2 --json\n--place festival.place --agents 300 --json\nbody.noh --place festival.place --agents 300 --time 20 -o festival.png",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
     .instead = "--test",
+    .without = "--place",
     .files_at = offsetof(crowd_args, pack),
     .args = &arguments,
     .run = run,

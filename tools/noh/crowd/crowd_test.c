@@ -7,7 +7,19 @@
 #include "cli/json.h"
 #include "cli/message.h"
 #include "convert/base/byte_buffer.h"
+#include "place_life.h"
 #include "platform.h"
+
+#define PLACE_S 60.0
+
+/* What agents came to. */
+typedef struct result {
+    const char *name;
+    uint32_t agents, steps, hash;
+    size_t bytes, field_bytes; /* field_bytes: of these, flow fields */
+    double cpu_ns;
+    const crowd_measures *measures;
+} result;
 
 static void print_to(byte_buffer *out, const char *format, ...)
 {
@@ -19,13 +31,10 @@ static void print_to(byte_buffer *out, const char *format, ...)
     buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
 }
 
-static void dump_step(byte_buffer *out, const crowd_scene *s)
+static void dump_agent(byte_buffer *out, uint32_t step, uint32_t index, const noh_crowd_agent *a)
 {
-    for (uint32_t i = 0; i < crowd_scene_agents(s); i++) {
-        const noh_crowd_agent *a = crowd_scene_agent(s, i);
-        print_to(out, "%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g\n", crowd_scene_steps(s), i, (double)a->position[0],
-                 (double)a->position[1], (double)a->velocity[0], (double)a->velocity[1], (double)a->radius);
-    }
+    print_to(out, "%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g\n", step, index, (double)a->position[0], (double)a->position[1],
+             (double)a->velocity[0], (double)a->velocity[1], (double)a->radius);
 }
 
 static int write_dump(const char *path, const byte_buffer *out)
@@ -50,13 +59,13 @@ static void json_time(json *j, const char *key, double seconds)
         json_null(j, key);
 }
 
-static int print_json(const crowd_scene *s)
+static int print_json(const result *r)
 {
-    const crowd_measures *m = crowd_scene_measures(s);
+    const crowd_measures *m = r->measures;
     char hash[16];
     json j = json_begin();
-    json_integer(&j, "agents", crowd_scene_agents(s));
-    json_number(&j, "seconds", (double)crowd_scene_steps(s) / 30.0);
+    json_integer(&j, "agents", r->agents);
+    json_number(&j, "seconds", (double)r->steps / 30.0);
     json_time(&j, "half_s", m->half);
     json_time(&j, "done_s", m->done);
     json_number(&j, "overlap_max_pct", 100.0 * m->overlap_max);
@@ -64,28 +73,35 @@ static int print_json(const crowd_scene *s)
     json_number(&j, "progress_pct", share(m->progress, m->under_way));
     json_number(&j, "stuck_max_s", (double)m->stuck_max / 30.0);
     json_number(&j, "held_max_s", (double)m->held_max / 30.0);
-    json_number(&j, "ns_per_agent_step", crowd_scene_cpu_ns(s) / (double)m->agent_steps);
-    json_integer(&j, "bytes", crowd_scene_bytes(s));
-    json_integer(&j, "field_bytes", crowd_scene_field_bytes(s));
-    snprintf(hash, sizeof hash, "%08x", noh_crowd_hash(crowd_scene_crowd(s)));
+    json_number(&j, "ns_per_agent_step", r->cpu_ns / (double)m->agent_steps);
+    json_integer(&j, "bytes", r->bytes);
+    json_integer(&j, "field_bytes", r->field_bytes);
+    snprintf(hash, sizeof hash, "%08x", r->hash);
     json_text(&j, "hash", hash);
     return json_end(&j);
 }
 
-static int print_text(const char *name, const crowd_scene *s)
+static int print_text(const result *r)
 {
-    const crowd_measures *m = crowd_scene_measures(s);
-    printf("%s: %u agents, %.4g s", name, crowd_scene_agents(s), (double)crowd_scene_steps(s) / 30.0);
+    const crowd_measures *m = r->measures;
+    printf("%s: %u agents, %.4g s", r->name, r->agents, (double)r->steps / 30.0);
     if (m->done >= 0.0) printf("; half of them there after %.1f s, all after %.1f", m->half, m->done);
     printf("\n  overlapped by at most %.1f %% of two radii, by more than 5 %% in %.4f %% of all agents' steps\n",
            100.0 * m->overlap_max, share((double)m->overlapped, m->agent_steps));
     printf("  progress %.1f %%; none stood still for more than %.1f s with room in front, %.1f s at all\n",
            share(m->progress, m->under_way), (double)m->stuck_max / 30.0, (double)m->held_max / 30.0);
-    if (crowd_scene_field_bytes(s)) printf("  %zu bytes of flow fields\n", crowd_scene_field_bytes(s));
-    printf("  %.0f ns an agent and step, %zu bytes, %.1f an agent; hash %08x\n",
-           crowd_scene_cpu_ns(s) / (double)m->agent_steps, crowd_scene_bytes(s),
-           (double)crowd_scene_bytes(s) / (double)crowd_scene_agents(s), noh_crowd_hash(crowd_scene_crowd(s)));
+    if (r->field_bytes) printf("  %zu bytes of flow fields\n", r->field_bytes);
+    printf("  %.0f ns an agent and step, %zu bytes, %.1f an agent; hash %08x\n", r->cpu_ns / (double)m->agent_steps,
+           r->bytes, (double)r->bytes / (double)r->agents, r->hash);
     return 0;
+}
+
+static int report(const result *r, byte_buffer *out, const char *dump, int as_json)
+{
+    const int status = dump ? write_dump(dump, out) : 0;
+    buffer_free(out);
+    if (status) return status;
+    return as_json ? print_json(r) : print_text(r);
 }
 
 int crowd_test_run(const crowd_scene_options *options, const char *dump, int as_json)
@@ -96,11 +112,46 @@ int crowd_test_run(const crowd_scene_options *options, const char *dump, int as_
     if (status) return status;
     if (dump) print_to(&out, "frame,agent,x,z,vx,vz,radius\n");
     while (crowd_scene_step(s)) {
-        if (dump) dump_step(&out, s);
+        for (uint32_t i = 0; i < crowd_scene_agents(s) && dump; i++) {
+            dump_agent(&out, crowd_scene_steps(s), i, crowd_scene_agent(s, i));
+        }
     }
-    if (dump) status = write_dump(dump, &out);
-    if (!status) status = as_json ? print_json(s) : print_text(options->name, s);
-    buffer_free(&out);
+    const result r = { options->name,         crowd_scene_agents(s),
+                       crowd_scene_steps(s),  noh_crowd_hash(crowd_scene_crowd(s)),
+                       crowd_scene_bytes(s),  crowd_scene_field_bytes(s),
+                       crowd_scene_cpu_ns(s), crowd_scene_measures(s) };
+    status = report(&r, &out, dump, as_json);
     crowd_scene_close(s);
+    return status;
+}
+
+static int run_place(const crowd_scene_options *options, const place_file *place, const char *dump, int as_json)
+{
+    const uint32_t steps = (uint32_t)((options->seconds > 0.0 ? options->seconds : PLACE_S) * 30.0 + 0.5);
+    byte_buffer out = { NULL, 0, 0, 0 };
+    place_life *l = NULL;
+    int status = place_life_open(place, options->agents, options->seed, &l);
+    if (status) return status;
+    if (dump) print_to(&out, "frame,agent,x,z,vx,vz,radius\n");
+    while (place_life_steps(l) < steps) {
+        place_life_step(l);
+        for (uint32_t i = 0; i < place_life_agents(l) && dump; i++) {
+            dump_agent(&out, place_life_steps(l), i, place_life_agent(l, i));
+        }
+    }
+    const result r = { options->name,        place_life_agents(l),  place_life_steps(l),
+                       place_life_hash(l),   place_life_bytes(l),   0,
+                       place_life_cpu_ns(l), place_life_measures(l) };
+    status = report(&r, &out, dump, as_json);
+    place_life_close(l);
+    return status;
+}
+
+int crowd_place_run(const crowd_scene_options *options, const char *dump, int as_json)
+{
+    place_file *place = NULL;
+    int status = place_read(options->name, &place);
+    if (!status) status = run_place(options, place, dump, as_json);
+    place_free(place);
     return status;
 }

@@ -205,6 +205,26 @@ const char *const help_formats_text[] = {
     "as without --json. result: usage, failed, arg, memory, data, version, limit, not_found, unsupported, gl. what: a sentence. where: a byte "
     "offset or an index; need: a size or a count; both are null where they have no meaning. A check that ran and failed (verify, zoom) "
     "prints its figures with \"ok\": false.",
+    "# places (noh crowd --place FILE)",
+    "Where agents walk, and what they use: one thing a line, metres, on the ground of x and z; # begins a comment, names with blanks "
+    "stand in double quotes. Angles are degrees: 0 faces +z, 90 +x.",
+    "   area X0 Z0 X1 Z1                            all of it; once",
+    "   wall X0 Z0 X1 Z1 [THICKNESS]                stands in the way, with rounded ends (0 thick)",
+    "   post X Z RADIUS                             likewise",
+    "   step X0 Z0 X1 Z1 HEIGHT                     the ground is higher there; of two that overlap the higher counts",
+    "   agents RADIUS SLOWEST FASTEST               metres, metres a second (0.25 1 1.4); once",
+    "   spawn X0 Z0 X1 Z1                           agents enter there, where there is room; one at least",
+    "   goal X Z [RADIUS]                           they walk from one to another, to places within the radius (1)",
+    "   need NAME GROWTH                            0 to 1; it grows by so much a second. Above 0.6 it is satisfied",
+    "   object NAME NEED RATE GOING_S               satisfies a need by so much a second; who does not come within GOING_S loses the slot",
+    "   slot X Z FACING [USE_S [CLIP]]              of the object above: one agent at a time, at most USE_S (20), playing a clip",
+    "   area -10 -8 10 8",
+    "   spawn -9 -7 9 7",
+    "   goal -7 0 2",
+    "   goal 7 0 2",
+    "   need rest 0.02",
+    "   object bench rest 0.1 40",
+    "   slot 0 3 180 15 look_round",
     "# sessions (noh replay, noh bisect)",
     "What a game did to characters of one pack, a line for each input, in the order of frames; then, if it was played, the hashes of each "
     "frame. # begins a comment, names with blanks stand in double quotes:",

@@ -1,0 +1,15 @@
+/* The square of a festival, as an .obj model of boxes and round pillars: stalls, benches, lanterns, a drum on its
+ * stage, a terrace with stairs. What of it stands in the way, and what people do there, is in festival.place. */
+#ifndef FESTIVAL_FESTIVAL_H
+#define FESTIVAL_FESTIVAL_H
+
+#include "shared/buffer.h"
+
+typedef struct {
+    int vertices, faces;
+} FestivalCensus;
+
+/* obj: the model, whose materials are in `library`; mtl: these. */
+FestivalCensus festival_write(Buffer *obj, Buffer *mtl, const char *library);
+
+#endif

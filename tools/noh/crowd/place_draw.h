@@ -1,0 +1,37 @@
+/* place_draw.h: a place (place_file.h) drawn: its inhabitants as characters of a pack, on its ground and steps. */
+#ifndef NOH_NOH_CROWD_PLACE_DRAW_H
+#define NOH_NOH_CROWD_PLACE_DRAW_H
+
+#include "draw/camera.h"
+#include "draw/lighting.h"
+#include "file/pack_file.h"
+#include "gpu/gpu.h"
+#include "place_life.h"
+#include "stage_gl/backdrop.h"
+#include "stage_gl/stage_gl.h"
+#include "stage/walkers.h"
+
+#define PLACE_NEAR 48u /* whose feet are put on the ground */
+
+typedef struct place_draw_options {
+    uint32_t agents, seed;
+    float pixels;        /* the largest error of LOD levels */
+    double time_s;       /* when the picture is taken */
+    const char *camera;  /* "AZ,EL,DIST[,X,Z]": about the place's middle, or about X, Z; NULL: over the whole place */
+    const char *scenery; /* a pack drawn where it is; NULL: none */
+    light_options light;
+    uint32_t width, height;
+} place_draw_options;
+
+/* What was drawn. */
+typedef struct place_drawn {
+    noh_stage_stats stats;
+    uint32_t agents, level_count, near_count;
+    uint64_t cpu_bytes, gpu_bytes, walkers_bytes, crowd_bytes;
+} place_drawn;
+
+/* Into rgba[height][width][4]. Prints an error and returns an exit code; 0 on success. */
+int place_draw(gpu *g, const pack_file *file, const place_file *place, const place_draw_options *o, uint8_t *rgba,
+               place_drawn *drawn);
+
+#endif

@@ -1,0 +1,31 @@
+/* place_life.h: agents who live in a place (place_file.h): they walk from goal to goal along flow fields, and use what
+ * they need. */
+#ifndef NOH_NOH_CROWD_PLACE_LIFE_H
+#define NOH_NOH_CROWD_PLACE_LIFE_H
+
+#include "crowd_measure.h"
+#include "place_file.h"
+
+typedef struct place_life place_life;
+
+/* place  must outlive it. agents 0: PLACE_AGENTS. Prints an error and returns an exit code; 0 on success. */
+int place_life_open(const place_file *place, uint32_t agents, uint32_t seed, place_life **life);
+void place_life_close(place_life *l);
+
+/* One step of 1/30 s, and what all of them decide then. */
+void place_life_step(place_life *l);
+
+/* So far. `done` is when each had been at a first goal, or at a slot. */
+const crowd_measures *place_life_measures(const place_life *l);
+uint32_t place_life_agents(const place_life *l);
+uint32_t place_life_steps(const place_life *l);
+size_t place_life_bytes(const place_life *l); /* of the crowd and what it uses */
+double place_life_cpu_ns(const place_life *l);
+uint32_t place_life_hash(const place_life *l); /* of agents, and of who holds what */
+noh_crowd *place_life_crowd(const place_life *l);
+const noh_crowd_agent *place_life_agent(const place_life *l, uint32_t index);
+/* phase NOH_SMART_AWAY in a place without objects */
+noh_smart_use place_life_use(const place_life *l, uint32_t index);
+const noh_smart_slot *place_life_slot(const place_life *l, uint32_t slot);
+
+#endif
