@@ -14,12 +14,13 @@
 #define CELL_M 0.4f
 #define WANTS 0.6f     /* of a need: it goes and satisfies it */
 #define THERE_M 0.25f  /* from its slot: it is there */
+#define NEAR_M 2.0f    /* from its slot: it goes straight there */
 #define PATIENCE_S 40u /* on the way to a goal; then it takes another */
 #define SPAWN_TRIES 200u
 
 typedef struct inhabitant {
     float speed;
-    uint32_t goal;  /* NOH_NONE: its slot */
+    uint32_t goal;  /* the field that it follows; NOH_NONE: none */
     uint32_t since; /* step at which it began to go there */
     uint32_t was_anywhere;
     noh_smart_phase phase; /* that it has acted on */
@@ -32,6 +33,7 @@ struct place_life {
     void *crowd_memory, *smart_memory;
     size_t bytes;
     noh_crowd_agent *now, *before;
+    float (*ahead)[2]; /* where each wants to go next */
     inhabitant *people;
     crowd_meter meter;
     crowd_measures measures;
@@ -49,6 +51,13 @@ static float chance(place_life *l)
 
 /* ---- opening ---- */
 
+/* One for each goal, then one for each object, as many as there may be. */
+static uint32_t field_count(const place_file *p)
+{
+    const uint32_t count = p->goal_count + p->smart.object_count;
+    return count < NOH_CROWD_FIELDS_MAX ? count : NOH_CROWD_FIELDS_MAX;
+}
+
 static int open_crowd(place_life *l)
 {
     const place_file *p = l->place;
@@ -63,7 +72,7 @@ static int open_crowd(place_life *l)
     }
     desc.obstacles = p->obstacles;
     desc.obstacle_count = p->obstacle_count;
-    desc.field_count = p->goal_count;
+    desc.field_count = field_count(p);
     desc.field_cell = CELL_M;
     desc.field_radius = p->radius > 0.5f * CELL_M ? p->radius : 0.5f * CELL_M;
     const size_t bytes = noh_crowd_size(&desc);
@@ -72,7 +81,10 @@ static int open_crowd(place_life *l)
     if (noh_crowd_init(l->crowd_memory, bytes, &desc, &l->crowd, &error)) return tool_fail("crowd", "%s", error.what);
     l->bytes += bytes;
     for (uint32_t g = 0; g < p->goal_count; g++) noh_crowd_field_aim(l->crowd, g, p->goals[g].at);
-    while (p->goal_count && noh_crowd_field_build(l->crowd, 1u << 20)) {}
+    for (uint32_t i = p->goal_count; i < desc.field_count; i++) {
+        noh_crowd_field_aim(l->crowd, i, p->slots[p->objects[i - p->goal_count].first_slot].at);
+    }
+    while (desc.field_count && noh_crowd_field_build(l->crowd, 1u << 20)) {}
     return 0;
 }
 
@@ -191,7 +203,8 @@ int place_life_open(const place_file *place, uint32_t agents, uint32_t seed, pla
     l->now = calloc(l->agents, sizeof *l->now);
     l->before = calloc(l->agents, sizeof *l->before);
     l->people = calloc(l->agents, sizeof *l->people);
-    status = l->now && l->before && l->people && crowd_meter_open(&l->meter, l->agents)
+    l->ahead = calloc(l->agents, sizeof *l->ahead);
+    status = l->now && l->before && l->people && l->ahead && crowd_meter_open(&l->meter, l->agents)
                  ? open_crowd(l)
                  : tool_fail("crowd", "out of memory");
     if (!status) status = open_smart(l);
@@ -212,6 +225,7 @@ void place_life_close(place_life *l)
     free(l->now);
     free(l->before);
     free(l->people);
+    free(l->ahead);
     free(l);
 }
 
@@ -222,10 +236,15 @@ static float distance(const float a[2], const float b[2])
     return hypotf(a[0] - b[0], a[1] - b[1]);
 }
 
-static void go_to_slot(place_life *l, uint32_t index, uint32_t slot)
+/* Along the object's field, and straight once it is near. */
+static void go_to_slot(place_life *l, uint32_t index, const noh_smart_use *use)
 {
-    noh_crowd_follow(l->crowd, index, NOH_NONE);
-    noh_crowd_aim(l->crowd, index, noh_smart_slot_at(l->smart, slot)->at);
+    const float *at = noh_smart_slot_at(l->smart, use->slot)->at;
+    const uint32_t field = l->place->goal_count + use->object;
+    const int is_near = distance(l->now[index].position, at) < NEAR_M || field >= field_count(l->place);
+    noh_crowd_aim(l->crowd, index, at);
+    noh_crowd_follow(l->crowd, index, is_near ? NOH_NONE : field);
+    l->people[index].goal = is_near ? NOH_NONE : field;
 }
 
 /* The phase of its use has changed. */
@@ -233,7 +252,7 @@ static void act(place_life *l, uint32_t index, const noh_smart_use *use)
 {
     inhabitant *h = &l->people[index];
     if (use->phase == NOH_SMART_GOING) {
-        go_to_slot(l, index, use->slot);
+        go_to_slot(l, index, use);
     } else if (use->phase == NOH_SMART_ENTERING) {
         noh_crowd_pace(l->crowd, index, 0.0f);
     } else if (use->phase == NOH_SMART_FREE && h->phase >= NOH_SMART_GOING) {
@@ -257,14 +276,15 @@ static void use(place_life *l, uint32_t index)
     }
     noh_smart_use_of(l->smart, index, &u);
     if (u.phase != l->people[index].phase) act(l, index, &u);
+    if (u.phase == NOH_SMART_GOING) go_to_slot(l, index, &u);
 }
 
 static void walk(place_life *l, uint32_t index)
 {
     inhabitant *h = &l->people[index];
     const noh_crowd_agent *a = &l->now[index];
-    const int is_at_goal = h->goal != NOH_NONE && distance(a->position, l->place->goals[h->goal].at) <
-                                                      l->place->goals[h->goal].radius + 2.0f * a->radius;
+    const int is_at_goal = h->goal < l->place->goal_count && distance(a->position, l->place->goals[h->goal].at) <
+                                                                 l->place->goals[h->goal].radius + 2.0f * a->radius;
     if (h->phase >= NOH_SMART_GOING) return;
     if (is_at_goal || distance(a->position, a->goal) < 2.0f * a->radius) {
         h->was_anywhere = 1;
@@ -272,6 +292,18 @@ static void walk(place_life *l, uint32_t index)
     } else if (l->step - h->since > PATIENCE_S * STEPS_PER_S) {
         choose_goal(l, index);
     }
+}
+
+/* Along its flow field, or straight to its goal. */
+static void look_ahead(place_life *l, uint32_t index)
+{
+    const noh_crowd_agent *a = &l->now[index];
+    const inhabitant *h = &l->people[index];
+    const float x = a->goal[0] - a->position[0], z = a->goal[1] - a->position[1], far = hypotf(x, z);
+    l->ahead[index][0] = far > 0.0f ? x / far : 0.0f;
+    l->ahead[index][1] = far > 0.0f ? z / far : 0.0f;
+    if (h->goal == NOH_NONE || h->phase > NOH_SMART_GOING) return;
+    (void)noh_crowd_field_at(l->crowd, h->goal, a->position, l->ahead[index]);
 }
 
 static double cpu_ns(void)
@@ -293,6 +325,7 @@ static void count_arrived(place_life *l)
 void place_life_step(place_life *l)
 {
     noh_crowd_agent *agents = l->before;
+    for (uint32_t i = 0; i < l->agents; i++) look_ahead(l, i);
     l->before = l->now;
     l->now = agents;
     const double start = cpu_ns();
@@ -301,7 +334,7 @@ void place_life_step(place_life *l)
     l->cpu_ns += cpu_ns() - start;
     l->step++;
     for (uint32_t i = 0; i < l->agents; i++) (void)noh_crowd_agent_stepped(l->crowd, i, &l->now[i]);
-    crowd_meter_add(&l->meter, l->before, l->now, &l->measures);
+    crowd_meter_add(&l->meter, l->before, l->now, (const float(*)[2])l->ahead, &l->measures);
     for (uint32_t i = 0; i < l->agents; i++) {
         if (l->smart) use(l, i);
         walk(l, i);
