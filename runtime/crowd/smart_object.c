@@ -340,7 +340,8 @@ static int end_phase(noh_smart *s, uint32_t agent)
     smart_agent *a = &agents_of(s)[agent];
     const noh_smart_slot *slot = &slots_of(s)[a->slot].slot;
     const uint32_t over = a->ticks;
-    if (a->phase == NOH_SMART_GOING && over >= objects_of(s)[a->object].going_ticks) {
+    const int is_late = a->phase == NOH_SMART_GOING && over >= objects_of(s)[a->object].going_ticks;
+    if (is_late || (a->phase == NOH_SMART_LEAVING && over >= slot->leave_ticks)) {
         let_go(s, a);
         be_free(a);
     } else if (a->phase == NOH_SMART_ENTERING && over >= slot->enter_ticks) {
@@ -348,9 +349,6 @@ static int end_phase(noh_smart *s, uint32_t agent)
     } else if (a->phase == NOH_SMART_USING && (over >= slot->use_ticks || needs_of(s, agent)[a->need] <= 0.0f)) {
         begin(a, NOH_SMART_LEAVING);
         return !slot->leave_ticks;
-    } else if (a->phase == NOH_SMART_LEAVING && over >= slot->leave_ticks) {
-        let_go(s, a);
-        be_free(a);
     }
     return 0;
 }

@@ -205,10 +205,10 @@ void noh_walkers_face(noh_walkers *walkers, uint32_t index, const float directio
 {
     NOH_ASSERT(walkers && index < walkers->walker_max);
     walker *r = noh_walker_at(walkers, index);
-    const float square = direction ? direction[0] * direction[0] + direction[1] * direction[1] : 0.0f;
+    const float x = direction ? direction[0] : 0.0f, z = direction ? direction[1] : 0.0f, square = x * x + z * z;
     const float per = square > 1e-20f && noh_is_finite(square) ? 1.0f / noh_sqrt(square) : 0.0f;
-    r->face[0] = per > 0.0f ? direction[0] * per : 0.0f;
-    r->face[1] = per > 0.0f ? direction[1] * per : 0.0f;
+    r->face[0] = per > 0.0f ? x * per : 0.0f;
+    r->face[1] = per > 0.0f ? z * per : 0.0f;
 }
 
 int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float heading[2])

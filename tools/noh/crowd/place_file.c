@@ -47,7 +47,7 @@ static int number(reader *r, const char *what, double least, double most, float 
 
 static int seconds(reader *r, const char *what, double least, uint32_t *ticks)
 {
-    float s;
+    float s = 0.0f;
     if (number(r, what, least, 3600.0, &s)) return 1;
     *ticks = (uint32_t)((double)s * TICKS_PER_S + 0.5);
     return 0;
@@ -61,7 +61,7 @@ static int point(reader *r, float at[2])
 /* X0 Z0 X1 Z1, of any two corners. */
 static int area(reader *r, place_area *out)
 {
-    float a[2], b[2];
+    float a[2] = { 0.0f, 0.0f }, b[2] = { 0.0f, 0.0f };
     if (point(r, a) || point(r, b)) return 1;
     for (int i = 0; i < 2; i++) {
         out->low[i] = a[i] < b[i] ? a[i] : b[i];
@@ -185,8 +185,9 @@ static int find_need(reader *r, uint32_t *need)
     const place_file *p = r->place;
     char *wanted = NULL;
     int status = name(r, "NEED", &wanted);
-    for (*need = 0; !status && *need < p->smart.need_count && strcmp(p->need_names[*need], wanted) != 0; ++*need) {}
-    if (!status && *need == p->smart.need_count) {
+    if (status || !wanted) return 1;
+    for (*need = 0; *need < p->smart.need_count && strcmp(p->need_names[*need], wanted) != 0; ++*need) {}
+    if (*need == p->smart.need_count) {
         const char *near = nearest_name(wanted, (const char *const *)p->need_names, p->smart.need_count);
         status = text_fail(&r->s, r->line, "there is no need '%.40s' above this line%s%.40s%s", wanted,
                            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
@@ -214,7 +215,7 @@ static int take_clip(reader *r, uint32_t *clip)
 {
     place_file *p = r->place;
     char *wanted = NULL;
-    if (name(r, "CLIP", &wanted)) return 1;
+    if (name(r, "CLIP", &wanted) || !wanted) return 1;
     for (*clip = 0; *clip < p->clip_count && strcmp(p->clips[*clip], wanted) != 0; ++*clip) {}
     if (*clip < p->clip_count) {
         free(wanted);
@@ -232,7 +233,7 @@ static int take_clip(reader *r, uint32_t *clip)
 static int read_slot(reader *r)
 {
     place_file *p = r->place;
-    float degrees;
+    float degrees = 0.0f;
     if (!p->smart.object_count) return text_fail(&r->s, r->line, "a slot stands below its object");
     noh_smart_slot *slot = grown(r, (void **)&p->slots, &p->smart.slot_count, NOH_SMART_SLOTS_MAX, sizeof *slot,
                                  "slots");
