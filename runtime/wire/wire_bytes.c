@@ -60,7 +60,7 @@ static int32_t median(int32_t left, int32_t above, int32_t corner)
 /* A mip level's texel is about the mean of the four finer ones. */
 static int32_t mean(const place *p, uint32_t c)
 {
-    const uint32_t w = p->width > 1u ? p->width : p->width, x = 2u * p->x, y = 2u * p->y;
+    const uint32_t w = p->width, x = 2u * p->x, y = 2u * p->y;
     const uint32_t x1 = x + 1u < w ? x + 1u : x, y1 = y + 1u < p->height ? y + 1u : y;
     return (p->finer[4u * ((size_t)y * w + x) + c] + p->finer[4u * ((size_t)y * w + x1) + c] +
             p->finer[4u * ((size_t)y1 * w + x) + c] + p->finer[4u * ((size_t)y1 * w + x1) + c] + 2) /
@@ -127,7 +127,7 @@ static int texture_fits(const noh_wire_filter *f)
 int noh_wire_run_texture(noh_wire_filter *f)
 {
     uint32_t width = f->section.params[0], height = f->section.params[1], at = f->section.at, finer = at;
-    if (!texture_fits(f)) return noh_wire_wrong(f, "a texture lies outside the pack");
+    if (!f->image || !texture_fits(f)) return noh_wire_wrong(f, "a texture lies outside the pack");
     for (uint32_t i = 0; i < f->section.params[2]; i++) {
         if (i == f->cursor[2]) {
             f->cursor[0] = at;

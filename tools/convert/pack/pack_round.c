@@ -392,6 +392,7 @@ static void append_mesh(rounder *r)
     append_skin(r);
     change_headers(r);
     if (!r->out->failed) memcpy(r->out->bytes + r->base, headers, r->level_count * sizeof *headers);
+    r->h = NULL;
 }
 
 /* ---- the pack ---- */

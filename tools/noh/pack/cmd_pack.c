@@ -123,14 +123,15 @@ static int make_coarse(packing *p)
     const noh_pack *whole = &p->packs[0];
     uint32_t *first = calloc(whole->mesh_count + 1u, sizeof *first), levels = 0;
     model_error error;
-    int status = first ? 0 : tool_fail(p->a->pack, "out of memory");
-    for (uint32_t i = 0; !status && i < whole->mesh_count; i++) {
+    int status = 0;
+    if (!first) return tool_fail(p->a->pack, "out of memory");
+    for (uint32_t i = 0; i < whole->mesh_count; i++) {
         noh_mesh mesh;
         (void)noh_pack_mesh_at(whole, i, &mesh, NULL);
         first[i] = mesh.header->level_count - 1u;
         levels += first[i] - mesh.header->level_first;
     }
-    if (!status && levels && !p->a->at_once) {
+    if (levels && !p->a->at_once) {
         if (pack_strip(whole, first, &p->coarse, &error)) status = tool_fail(p->a->pack, "%s", error.what);
         p->packs[1] = p->packs[0];
         if (!status) status = open_made(p, &p->coarse, &p->packs[0]);
