@@ -23,7 +23,6 @@
  *   bench_springs.c     rows sim/spring: characters whose joints swing
  *   bench_hair.c        rows sim/hair, sim/hair_points: control hairs of a head that shakes
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
- *   bench_walkers.c     row crowd/simulation: agents and walkers in a frame of a thousand bodies
  *   bench_report.c      rows, storage, and how they are printed
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
@@ -232,7 +231,6 @@ int bench_hair(bench_job *job);
 #define BENCH_TWO_BONE_SOLVES 1000u
 void bench_two_bone(void *self, uint32_t frame);
 int bench_agents(bench_job *job);
-int bench_walkers(bench_job *job); /* of the group agents */
 
 void bench_print(bench_job *job);
 int bench_print_json(bench_job *job);
