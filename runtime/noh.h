@@ -48,6 +48,7 @@
 #include "stage/walkers.h"          /* actors that go where agents of a crowd go */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
 #include "stage/blob.h"             /* where actors darken the ground */
+#include "stage/decal.h"            /* marks on actors */
 #include "stage/springs.h"          /* chains of joints that swing */
 #include "stage/wig.h"              /* hair of actors */
 #include "stage/view.h"             /* cameras and lights for it */

@@ -145,6 +145,7 @@
 #define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u             /* of a plan */
 #define NOH_BLOBS_MAX 24u                   /* of an actor: parts that darken the ground */
+#define NOH_DECALS_MAX 64u                  /* of a ring */
 
 /* ---- light ---- */
 

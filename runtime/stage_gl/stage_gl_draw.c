@@ -5,15 +5,7 @@
 #include "pose/local_to_model.h"
 #include "stage_gl/stage_gl_internal.h"
 
-typedef struct drawing {
-    const noh_stage *s;
-    const noh_stage_gl *gl;
-    const noh_stage_kind *k;
-    const noh_gl_kind *on_gl;
-    noh_gl_renderer *renderer;
-    uint32_t view;
-    int pass;
-} drawing;
+typedef noh_gl_drawing drawing;
 
 static const noh_stage_shown *shown_at(const drawing *d, uint32_t place)
 {
@@ -160,10 +152,38 @@ static void draw_pass(drawing *d, int pass)
     }
 }
 
-noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error)
+/* What a draw of a view needs. */
+static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colour, noh_error *error)
+{
+    if (stage->phase != NOH_STAGE_IDLE || view >= stage->view_count) {
+        return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
+                        stage->view_count);
+    }
+    if (stage->desc.light && is_colour && !((const noh_stage_gl *)stage->gpu)->lighting) {
+        return noh_fail(error, NOH_ERR_ARG, "the stage is lit, and noh_stage_set_lighting was not called", 0, 0);
+    }
+    return NOH_OK;
+}
+
+static void begin_draw(drawing *d, const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view)
 {
     noh_gl_camera camera;
+    memset(d, 0, sizeof *d);
+    d->s = stage;
+    d->gl = stage->gpu;
+    d->renderer = renderer;
+    d->view = view;
+    memcpy(camera.view_projection, stage->views[view].view_projection, sizeof camera.view_projection);
+    memcpy(camera.eye, stage->views[view].eye, sizeof camera.eye);
+    memcpy(camera.key, stage->views[view].light, sizeof camera.key);
+    if (stage->desc.light) noh_gl_renderer_light(renderer, d->gl->light, d->gl->lighting);
+    noh_gl_draw_begin(renderer, &camera);
+}
+
+noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error)
+{
     drawing d;
+    noh_result result;
     NOH_ASSERT(stage && stage->gpu);
     if ((stage->desc.without_shader && !shader) || (stage->desc.without_depth && pass == NOH_PASS_DEPTH)) {
         return noh_fail(error, NOH_ERR_ARG,
@@ -171,23 +191,9 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
                         "without_depth",
                         (uint64_t)pass, 0);
     }
-    if (stage->phase != NOH_STAGE_IDLE || view >= stage->view_count) {
-        return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
-                        stage->view_count);
-    }
-    if (stage->desc.light && pass != NOH_PASS_DEPTH && !((const noh_stage_gl *)stage->gpu)->lighting) {
-        return noh_fail(error, NOH_ERR_ARG, "the stage is lit, and noh_stage_set_lighting was not called", 0, 0);
-    }
-    memset(&d, 0, sizeof d);
-    d.s = stage;
-    d.gl = stage->gpu;
-    d.renderer = shader ? &shader->renderer : d.gl->renderer;
-    d.view = view;
-    memcpy(camera.view_projection, stage->views[view].view_projection, sizeof camera.view_projection);
-    memcpy(camera.eye, stage->views[view].eye, sizeof camera.eye);
-    memcpy(camera.key, stage->views[view].light, sizeof camera.key);
-    if (stage->desc.light) noh_gl_renderer_light(d.renderer, d.gl->light, d.gl->lighting);
-    noh_gl_draw_begin(d.renderer, &camera);
+    result = check_draw(stage, view, pass != NOH_PASS_DEPTH, error);
+    if (result) return result;
+    begin_draw(&d, stage, shader ? &shader->renderer : ((noh_stage_gl *)stage->gpu)->renderer, view);
     if (pass == NOH_PASS_DEPTH) {
         draw_pass(&d, NOH_DRAW_DEPTH);
     } else {
@@ -196,6 +202,40 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
     }
     noh_gl_draw_end(d.renderer);
     return NOH_OK;
+}
+
+/* ---- one actor ---- */
+
+noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view, noh_actor actor,
+                              noh_gl_alone *alone, noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_shown *shown;
+    noh_result result = check_draw(stage, view, 1, error);
+    if (result) return result;
+    shown = a ? &stage->shown[a - stage->actors] : NULL;
+    if (!a || shown->frame != stage->frame || !(shown->views >> view & 1u)) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, or the view did not see it in the last frame",
+                        actor.id, 0);
+    }
+    begin_draw(&alone->drawing, stage, renderer, view);
+    alone->drawing.k = k;
+    alone->drawing.on_gl = &alone->drawing.gl->kinds[k - stage->kinds];
+    alone->drawing.pass = NOH_DRAW_OPAQUE;
+    alone->place = shown->place;
+    alone->mesh_count = k->plan->mesh_count;
+    return NOH_OK;
+}
+
+uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index)
+{
+    return alone->drawing.k->meshes[index].item.mesh;
+}
+
+void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index)
+{
+    draw_fading(&alone->drawing, index, alone->place);
 }
 
 void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting)

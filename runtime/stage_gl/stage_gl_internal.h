@@ -69,6 +69,29 @@ struct noh_stage_shader {
     noh_gl_renderer renderer;
 };
 
+/* A pass of a view that is under way. */
+typedef struct noh_gl_drawing {
+    const noh_stage *s;
+    const noh_stage_gl *gl;
+    const noh_stage_kind *k;
+    const noh_gl_kind *on_gl;
+    noh_gl_renderer *renderer;
+    uint32_t view;
+    int pass;
+} noh_gl_drawing;
+
+/* The opaque meshes of one actor, drawn by a renderer of all meshes of the stage. End it with noh_gl_draw_end.
+ * errors  as noh_stage_decals_draw: nothing has begun */
+typedef struct noh_gl_alone {
+    noh_gl_drawing drawing;
+    uint32_t place, mesh_count;
+} noh_gl_alone;
+noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view, noh_actor actor,
+                              noh_gl_alone *alone, noh_error *error);
+/* The index-th mesh: its number in the pack; drawn, with whatever render state was set since. */
+uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index);
+void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index);
+
 /* Kinds of one actor are drawn by the programs of single instances. */
 static inline int noh_gl_is_crowd(const noh_stage_kind *kind)
 {

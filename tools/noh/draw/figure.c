@@ -57,7 +57,7 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->graphs = d->graphs;
     k->root_axes = d->root_axes;
     k->root_up = 1;
-    k->unpickable = !d->pickable;
+    k->unpickable = !d->pickable && !d->marks;
     k->without_springs = d->without_springs;
     f->stage_desc.kind_count++;
     return 0;
@@ -294,6 +294,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     if (!status) status = figure_open_hair(f);
     if (!status) status = open_actors(f);
     if (!status) status = figure_open_blobs(f);
+    if (!status) status = figure_open_decals(f);
     if (status) figure_close(f);
     return status;
 }
@@ -303,6 +304,8 @@ void figure_close(figure *f)
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
     if (f->blob.gl) noh_stage_blob_delete(&f->blob);
+    if (f->decals.gl) noh_stage_decals_delete(&f->decals);
+    free(f->decal_memory);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->hair.gl) noh_stage_hair_delete(&f->hair);
     if (f->stage) noh_stage_delete(f->stage);
@@ -320,6 +323,7 @@ int figure_restore(figure *f)
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
     if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
     if (!result && f->blob.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
+    if (!result && f->decals.gl) result = noh_stage_decals_restore(&f->decals, NULL, log, sizeof log, &error);
     if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
@@ -417,20 +421,25 @@ static void draw_backdrop(const figure *f)
                       noh_stage_light_of(f->stage), &l->told, &f->seen);
 }
 
+/* What is opaque, then marks and hair on it, then what blends and shows them. */
+static noh_result draw_in_parts(figure *f, noh_error *error)
+{
+    noh_result result = noh_stage_draw(f->stage, NOH_PASS_OPAQUE, 0, NULL, error);
+    if (!result && figure_draw_decals(f)) return noh_fail(error, NOH_ERR_GL, "marks could not be drawn", 0, 0);
+    if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
+    if (!result) result = noh_stage_draw(f->stage, NOH_PASS_BLENDED, 0, NULL, error);
+    if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);
+    return result;
+}
+
 int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
+    const int in_parts = !f->shader && (f->hair.gl || f->decals.gl);
     noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
     if (f->blob.gl) figure_draw_blobs(f);
-    if (!f->hair.gl || f->shader) {
-        result = noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
-    } else { /* what blends shows the hair behind it, and hair what is opaque */
-        result = noh_stage_draw(f->stage, NOH_PASS_OPAQUE, 0, NULL, &error);
-        if (!result) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
-        if (!result) result = noh_stage_draw(f->stage, NOH_PASS_BLENDED, 0, NULL, &error);
-        if (!result) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);
-    }
+    result = in_parts ? draw_in_parts(f, &error) : noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     return result ? tool_fail_error(f->desc.file->path, &error) : 0;
 }

@@ -28,12 +28,20 @@
 #include "gpu/gpu.h"
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_blob.h"
+#include "stage_gl/stage_decal.h"
 #include "stage_gl/stage_hair.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */
 
 /* Zero is a good value for all but file. */
+/* A mark that is struck: where in the picture, from the upper left corner, 0 to 1; half a side, 0: a share of the
+ * figure's height. */
+typedef struct figure_mark {
+    double x, y, size;
+    uint8_t color[4];
+} figure_mark;
+
 typedef struct figure_desc {
     const pack_file *file;
     const pack_file *clips;      /* whose clips are played; may be `file`. NULL: none */
@@ -60,10 +68,12 @@ typedef struct figure_desc {
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_debug_view view;
-    figure_body *body; /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */
-    int hair;          /* 1: the hair of the pack, where it has some */
-    float wind[3];     /* that blows in it, as in noh_hair_carrier */
-    lighting *light;   /* NULL: the plain renderer's own. Must stay, and not move */
+    figure_body *body;        /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */
+    int hair;                 /* 1: the hair of the pack, where it has some */
+    float wind[3];            /* that blows in it, as in noh_hair_carrier */
+    const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
+    uint32_t mark_count;
+    lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
 typedef struct figure {
@@ -88,6 +98,9 @@ typedef struct figure {
     noh_stage_shader *shader; /* NULL: the library's own, lit */
     noh_backdrop backdrop;    /* zeros: no light */
     noh_stage_blob blob;      /* zeros: no spots under it */
+    noh_stage_decals decals;  /* zeros: none */
+    noh_decals rings[NOH_STAGE_KINDS_MAX];
+    void *decal_memory;
     noh_blob_rig blob_rigs[NOH_STAGE_KINDS_MAX];
     float floor;         /* y of the ground where the body has none */
     noh_stage_hair hair; /* zeros: none */
@@ -165,6 +178,13 @@ int figure_live(figure *f, double seconds, double turn);
 /* The spots under a figure (--shadow blob): opened with its actors, closed; drawn, before the figure. */
 int figure_open_blobs(figure *f);
 void figure_draw_blobs(figure *f);
+
+/* --decal X,Y[,SIZE[,RRGGBB]]: marks[NOH_DECALS_MAX]. */
+int figure_read_marks(const option_list *texts, figure_mark *marks);
+/* The marks of a figure: opened with it; struck as it stands, seen by a camera; drawn over what is opaque. */
+int figure_open_decals(figure *f);
+int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32_t height);
+int figure_draw_decals(figure *f);
 
 /* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
 int figure_add_hair(figure *f);

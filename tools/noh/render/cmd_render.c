@@ -17,7 +17,8 @@ typedef struct render_args {
     uint32_t size[2];
     double time_s, lod, turn, swing;
     int show_bones;
-    option_list weights, clips, anims, emotions;
+    option_list weights, clips, anims, emotions, decals;
+    figure_mark marks[NOH_DECALS_MAX];
     view_options view;
     light_options light;
     body_options body_wants;
@@ -74,6 +75,9 @@ static int check_args(render_args *a)
     a->figure.without_springs = !springs;
     if (!status) status = check_body(a);
     if (!status) status = tool_switch("--hair", a->hair, &a->figure.hair);
+    if (!status) status = figure_read_marks(&a->decals, a->marks);
+    a->figure.marks = a->decals.count ? a->marks : NULL;
+    a->figure.mark_count = (uint32_t)a->decals.count;
     if (!status && a->wind) status = parse_wind(a->wind, a->figure.wind);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
@@ -96,13 +100,25 @@ static void print_done(const render_args *a, const noh_gl_morph_plan *plan)
             noh_accumulate_name(plan->accumulate), plan->reason);
 }
 
+/* On the figure at rest, as the camera would see it. */
+static int strike(picture *p, const render_args *a)
+{
+    noh_gl_camera camera;
+    int status = a->figure.mark_count ? figure_pose(&p->figure) : 0;
+    if (status || !a->figure.mark_count) return status;
+    const bounds box = picture_bounds(p, view_wants_face(&a->view));
+    status = view_camera(&a->view, &box, &camera);
+    return status ? status : figure_strike(&p->figure, &camera, a->size[0], a->size[1]);
+}
+
 static int draw(picture *p, const render_args *a, uint8_t *rgba)
 {
     noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->body.has_ground;
     const int hangs = !lives && !a->clips.count && p->figure.hair_kind != NOH_NONE;
-    int status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
+    int status = p->shows_bones ? 0 : strike(p, a);
+    if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
     if (!status && (lives || hangs)) status = figure_live(&p->figure, lives ? a->time_s : a->swing, a->turn);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
@@ -222,6 +238,14 @@ static const option options[] = {
       .initial = "2",
       .what = "how long hair has moved before the picture, seconds, where no clip plays",
       .example = "0.5" },
+    { .name = "--decal",
+      .kind = OPTION_LIST,
+      .at = offsetof(render_args, decals),
+      .value = "X,Y[,SIZE[,RRGGBB]]",
+      .what =
+          "a mark on the figure, struck at rest: where in the picture, 0 to 1 from its upper left corner; half its width, in model units; its colour. May repeat, up to 64 times",
+      .example = "0.5,0.4,0.01,aa2211",
+      .excludes = "--bones" },
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),

@@ -1,0 +1,69 @@
+/* decal_fragment.glsl: the marks on a surface, looked up by where a pixel is at rest. Behind #version goes noh_gl_shader_prefix.
+ *
+ * A mark is a row of u_decals: centre and size; right and tile; normal and alpha; sRGB colour and roughness. It is a
+ * square about its centre, within a sphere, on what faces as it does. Later rows lie over earlier ones. */
+uniform highp sampler2D u_decals;
+uniform sampler2D u_picture;
+uniform highp vec4 u_marks; /* how many rows; columns and rows of tiles of the picture, 0: round spots; the mesh's number */
+
+in vec3 v_world;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec2 v_uv;
+in vec4 v_color;
+in highp vec3 v_rest;
+in vec3 v_rest_normal;
+
+#ifdef NOH_DEPTH_ONLY
+void main()
+{
+    discard;
+}
+#else
+layout(location = 0) out vec4 o_color;
+
+vec3 linear_of(vec3 c)
+{
+    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
+}
+
+/* A round spot with a soft edge; or a tile. at: -1 to 1 */
+vec4 mark_at(vec2 at, float tile, vec2 dx, vec2 dy)
+{
+    if (u_marks.y < 0.5) {
+        return vec4(1.0, 1.0, 1.0, 1.0 - smoothstep(0.8, 1.0, length(at)));
+    }
+    vec2 scale = 0.5 / u_marks.yz, corner = vec2(mod(tile, u_marks.y), floor(tile / u_marks.y)) / u_marks.yz;
+    return textureGrad(u_picture, corner + (vec2(at.x, -at.y) + 1.0) * scale, dx * scale, dy * scale);
+}
+
+void main()
+{
+    highp vec3 along_x = dFdx(v_rest), along_y = dFdy(v_rest);
+    vec3 facing = normalize(v_rest_normal);
+    vec4 over = vec4(0.0);
+    float roughness = 0.0;
+    for (int i = 0; i < int(u_marks.x); i++) {
+        highp vec4 centre = texelFetch(u_decals, ivec2(0, i), 0);
+        highp vec3 to = (v_rest - centre.xyz) / centre.w;
+        if (dot(to, to) >= 2.0) continue;
+        highp vec4 right = texelFetch(u_decals, ivec2(1, i), 0), normal = texelFetch(u_decals, ivec2(2, i), 0);
+        highp vec3 up = cross(normal.xyz, right.xyz);
+        vec2 at = vec2(dot(to, right.xyz), dot(to, up));
+        if (max(abs(at.x), abs(at.y)) >= 1.0 || dot(facing, normal.xyz) < 0.2) continue;
+        vec4 color = texelFetch(u_decals, ivec2(3, i), 0);
+        vec2 dx = vec2(dot(along_x, right.xyz), -dot(along_x, up)) / centre.w;
+        vec2 dy = vec2(dot(along_y, right.xyz), -dot(along_y, up)) / centre.w;
+        vec4 mark = mark_at(at, right.w, dx, dy) * vec4(linear_of(color.rgb), normal.w);
+        over = vec4(mark.rgb * mark.a, mark.a) + over * (1.0 - mark.a);
+        roughness = color.a * mark.a + roughness * (1.0 - mark.a);
+    }
+    if (over.a < 0.004) discard;
+    noh_cut(noh_base(v_uv, v_color).a);
+    noh_surface s = noh_surface_of(vec4(over.rgb / over.a, 1.0), v_world, v_normal, v_tangent, v_uv);
+    s.roughness = roughness / over.a;
+    s.metallic = 0.0;
+    o_color = vec4(noh_encode(noh_material.w > 0.5 ? over.rgb / over.a : noh_light(s)), over.a);
+    noh_fade();
+}
+#endif

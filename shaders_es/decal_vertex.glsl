@@ -1,0 +1,27 @@
+/* decal_vertex.glsl: a mesh once more, with where its pixels are at rest, for decal_fragment.glsl. Behind #version goes
+ * noh_gl_shader_prefix. */
+out vec3 v_world;
+out vec3 v_normal;
+out vec4 v_tangent;
+out vec2 v_uv;
+out vec4 v_color;
+out highp vec3 v_rest;
+out vec3 v_rest_normal;
+
+void main()
+{
+    noh_vertex v = noh_fetch();
+    v_world = v.position;
+    v_normal = v.normal;
+    v_tangent = v.tangent;
+    v_uv = v.uv;
+    v_color = v.color * v.tint;
+    v_rest = noh_a_position;
+#ifdef NOH_DEPTH_ONLY
+    v_rest_normal = vec3(0.0);
+#else
+    v_rest_normal = noh_direction_of_pair(noh_a_normal);
+#endif
+    gl_Position = noh_view_projection * vec4(v.position, 1.0);
+    gl_Position.z -= 2e-5 * gl_Position.w; /* in front of the surface that it lies on */
+}
