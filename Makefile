@@ -377,11 +377,11 @@ threads: deps-fuzz
 
 # The same bits from every compiler, optimisation and processor that is here, and as in tests/golden/golden.txt.
 golden: deps-cross
-	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
+	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh
 
 golden-update:
-	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
+	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh update
 
 # What characters take, to the byte, as in tests/golden/budgets.txt.

@@ -72,7 +72,7 @@ target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static
 target wasm emcc emar '-s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
 
 # Ten seconds of the demo's packs, where `make check` has made them.
-if [ -f "$build/demo/puppet_levels.noh" ] && [ -f "$build/mask_levels.noh" ]; then
+if [ -f "$build/demo/puppet_levels.noh" ] && [ -f "$build/demo/puppet.noh" ] && [ -f "$build/mask_levels.noh" ]; then
     echo '== golden'
     make --no-print-directory BUILD="$build" DEPS=0 amalgam >"$build/golden.log" 2>&1
     sh tests/golden.sh cross >"$build/golden.tap" 2>&1

@@ -15,7 +15,7 @@ cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 work=$build/golden
-packs="$build/mask_levels.noh $build/demo/puppet_levels.noh"
+packs="$build/mask_levels.noh $build/demo/puppet_levels.noh $build/demo/puppet.noh"
 table=tests/golden/golden.txt
 sources="$build/amalgam/noh.c tests/golden/golden.c tools/noh/replay/session.c tools/noh/replay/session_input.c
     tools/noh/replay/session_stage.c tools/noh/replay/session_draw.c platform/file.c"

@@ -706,7 +706,8 @@ static void impossible_rates_are_refused(void **state)
     refused(turning(2, 1.0, 5.0, 0.0), -1.0, "rate of -1 Hz", "");
     refused(turning(2, 1.0, 5.0, 0.0), (double)NAN, "is not possible", "");
     refused(turning(2, 1e-7, 5.0, 0.0), 0.0, "which is the limit; ask for a lower sample rate", "animation 'act'");
-    refused(turning(2, 1e-30, 5.0, 0.0), 1000.0, "which is the limit", "animation 'act'");
+    refused(turning(2, 1e-11, 5.0, 0.0), 1000.0, "which is the limit", "animation 'act'");
+    refused(turning(2, 1e-30, 5.0, 0.0), 1000.0, "the limit is 1e12", "accessor");
 }
 
 /* --- weights --- */
