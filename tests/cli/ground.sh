@@ -24,6 +24,20 @@ check 'the same each time' cmp "$work/left.png" "$work/again.png"
 for pair in plain:left left:right plain:stairs stairs:slope slope:both left:alive; do
     check "pictures differ: $pair" sh -c '! cmp -s "$1" "$2"' - "$work/${pair%:*}.png" "$work/${pair#*:}.png"
 done
+# A plane that rises by 4 in 16.
+cat >"$work/hill.gltf" <<'HILL'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-8,0,-8],"max":[8,4,8]},{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
+ "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+ "buffers":[{"byteLength":60,"uri":"hill.bin"}]}
+HILL
+# (-8,0,-8) (-8,4,8) (8,4,8) (8,0,-8); 0 1 2, 0 2 3
+printf '\000\000\000\301\000\000\000\000\000\000\000\301\000\000\000\301\000\000\200\100\000\000\000\101\000\000\000\101\000\000\200\100\000\000\000\101\000\000\000\101\000\000\000\000\000\000\000\301\000\000\001\000\002\000\000\000\002\000\003\000' >"$work/hill.bin"
+picture hill --ground "$work/hill.gltf"
+check 'a hill is another ground' sh -c '! cmp -s "$1" "$2"' - "$work/hill.png" "$work/slope.png"
+noh render "$puppet" -o "$work/no.png" --clip walk --ground "$work/none.png"
+expect 1 'terrain that is not there'
 noh sheet "$puppet" -o "$work/sheet.png" --clip walk --tiles 3 --tile 48 --ground stairs --look-at 0,1,3
 expect 0 'a sheet is drawn'
 

@@ -142,17 +142,18 @@
         .example = "plain", __VA_ARGS__                                                                                \
     }
 
-#define OPTIONS_BODY(T, m)                                                                                           \
-    { .name = "--look-at",                                                                                           \
-      .kind = OPTION_TEXT,                                                                                           \
-      .at = offsetof(T, m.look_at),                                                                                  \
-      .value = "X,Y,Z",                                                                                              \
-      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body looks along +z",        \
-      .example = "0.5,1.6,2" },                                                                                      \
-    {                                                                                                                \
-        .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope",               \
-        .what = "feet on steps of 0.17 m up, or on 20 degrees down, along +z, as far as the clips walk; drawn, too", \
-        .needs = "--clip", .excludes = "--bones"                                                                     \
+#define OPTIONS_BODY(T, m)                                                                                                                                                                           \
+    { .name = "--look-at",                                                                                                                                                                           \
+      .kind = OPTION_TEXT,                                                                                                                                                                           \
+      .at = offsetof(T, m.look_at),                                                                                                                                                                  \
+      .value = "X,Y,Z",                                                                                                                                                                              \
+      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body looks along +z",                                                                                        \
+      .example = "0.5,1.6,2" },                                                                                                                                                                      \
+    {                                                                                                                                                                                                \
+        .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope|FILE",                                                                                          \
+        .what =                                                                                                                                                                                      \
+            "feet on steps of 0.17 m up, on 20 degrees down, along +z, or on terrain (.png: a metre between pixels, a tenth as high as wide; .glb: as it is), as far as the clips walk; drawn, too", \
+        .needs = "--clip", .excludes = "--bones"                                                                                                                                                     \
     }
 
 #define OPTION_CAMERA(T, m, text)                                                                                    \

@@ -16,6 +16,7 @@
 #define STEPS_FROM 0.6f
 #define STAIRS_HALF 0.9f
 #define LANDING 6.0f
+#define HIGHEST 5000.0f         /* metres: nothing of a ground is above */
 #define SLOPE_RAD 0.3490658504f /* 20 degrees, downhill along +z */
 #define FLOATS 9u               /* of a corner: position, normal, colour */
 
@@ -38,6 +39,18 @@ static int parse_point(const char *text, float point[3])
     return 0;
 }
 
+/* A file has a dot or a folder in its name. */
+static int read_land(const char *path, figure_body *b)
+{
+    const terrain_options options = { 0.0, 0.0, 0 };
+    model_error error = { "", "" };
+    if (!strchr(path, '.') && !strchr(path, '/')) {
+        return tool_usage("--ground wants stairs, slope or a file (.png, .glb), not '%s'", path);
+    }
+    if (!terrain_read(path, &options, &b->land, &error)) return 0;
+    return tool_fail(path, *error.where ? "%s (%s)" : "%s", error.what, error.where);
+}
+
 int figure_body_parse(const body_options *o, figure_body *b, int *wanted)
 {
     memset(b, 0, sizeof *b);
@@ -48,10 +61,13 @@ int figure_body_parse(const body_options *o, figure_body *b, int *wanted)
     if (o->look_at && parse_point(o->look_at, b->point)) {
         return tool_usage("--look-at wants X,Y,Z in the pack's unit, each at most 1e6, not '%s'", o->look_at);
     }
-    if (o->ground && strcmp(o->ground, "stairs") != 0 && strcmp(o->ground, "slope") != 0) {
-        return tool_usage("--ground wants stairs or slope, not '%s'", o->ground);
-    }
-    return 0;
+    return o->ground && strcmp(o->ground, "stairs") != 0 && strcmp(o->ground, "slope") != 0 ? read_land(o->ground, b)
+                                                                                            : 0;
+}
+
+void figure_body_free(figure_body *b)
+{
+    terrain_free(&b->land);
 }
 
 /* ---- the world ---- */
@@ -71,8 +87,21 @@ static void lay_stairs(figure_body *b)
     b->world.box_count = FIGURE_STEPS;
 }
 
+static void lay_land(figure_body *b)
+{
+    b->field = terrain_field(&b->land);
+    for (int i = 0; i < 3; i++) b->field.origin[i] *= b->metre;
+    b->field.spacing *= b->metre;
+    b->field.scale *= b->metre;
+    b->world.field = &b->field;
+}
+
 static void lay_ground(figure_body *b)
 {
+    if (b->land.heights) {
+        lay_land(b);
+        return;
+    }
     b->planes[0].normal[1] = 1.0f;
     b->world.planes = b->planes;
     b->world.plane_count = 1;
@@ -87,9 +116,9 @@ static void lay_ground(figure_body *b)
 float figure_body_height(const figure_body *b, const float at[3])
 {
     const noh_ground ground = { &b->world, NULL, NULL };
-    const float from[3] = { at[0], 50.0f * b->metre, at[2] };
+    const float from[3] = { at[0], HIGHEST * b->metre, at[2] };
     float normal[3];
-    const float distance = b->has_ground ? noh_ground_below(&ground, from, 100.0f * b->metre, normal) : -1.0f;
+    const float distance = b->has_ground ? noh_ground_below(&ground, from, 2.0f * HIGHEST * b->metre, normal) : -1.0f;
     return distance >= 0.0f ? from[1] - distance : 0.0f;
 }
 
@@ -189,6 +218,26 @@ static float *put_plane(const figure_body *b, float fall, float *out)
     return out;
 }
 
+/* Half metres of terrain, as far as there is some. Their normal is that of the middle. */
+static float *put_land(const figure_body *b, float *out)
+{
+    static const float corner[4][2] = { { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } };
+    const float half = 0.5f * b->metre;
+    for (uint32_t i = 0; i < TILES * TILES; i++) {
+        const float x = half * ((float)(i % TILES) - 0.5f * (float)TILES);
+        const float z = half * ((float)(i / TILES) - 0.5f * (float)TILES);
+        float p[4][3], normal[3], middle;
+        int there = noh_field_height(&b->field, x + 0.5f * half, z + 0.5f * half, &middle, normal);
+        for (int k = 0; k < 4 && there; k++) {
+            p[k][0] = x + half * corner[k][0];
+            p[k][2] = z + half * corner[k][1];
+            there = noh_field_height(&b->field, p[k][0], p[k][2], &p[k][1], NULL);
+        }
+        if (there) out = put_quad(out, (const float(*)[3])p, normal, (i / TILES + i % TILES) % 2u ? 0.26f : 0.31f);
+    }
+    return out;
+}
+
 /* Of each step its front, its top and its sides. */
 static float *put_steps(const figure_body *b, float *out)
 {
@@ -244,7 +293,8 @@ int figure_body_open_gl(figure_body *b, gpu *g)
     b->g = g;
     vertices = malloc(sizeof(float) * FLOATS * 6u * QUADS);
     if (!vertices) return tool_fail("--ground", "out of memory");
-    float *end = put_plane(b, b->world.box_count ? 0.0f : tanf(SLOPE_RAD), vertices);
+    float *end = b->world.field ? put_land(b, vertices)
+                                : put_plane(b, b->world.box_count ? 0.0f : tanf(SLOPE_RAD), vertices);
     if (b->world.box_count) end = put_steps(b, end);
     b->corners = (uint32_t)((size_t)(end - vertices) / FLOATS);
     describe_vertices(b, vertices);

@@ -1,9 +1,12 @@
-/* figure_body.h: figures that obey a world: they look at a point, and stand on stairs or a slope, which are drawn. */
+/* figure_body.h: figures that obey a world: they look at a point, and stand on stairs, a slope or terrain, which are
+ * drawn. */
 #ifndef NOH_NOH_DRAW_FIGURE_BODY_H
 #define NOH_NOH_DRAW_FIGURE_BODY_H
 
 #include "gpu/gpu.h"
 #include "noh_gl.h"
+
+#include "convert/terrain/terrain_read.h"
 
 #define FIGURE_STEPS 14u
 
@@ -15,11 +18,13 @@ typedef struct body_options {
 typedef struct figure_body {
     int looks;
     float point[3];   /* world */
-    int has_ground;   /* 1: stairs or a slope */
+    int has_ground;   /* 1: stairs, a slope or terrain */
     const char *name; /* of the ground */
     noh_world world;
     noh_plane planes[1];
     noh_obb boxes[FIGURE_STEPS];
+    terrain land; /* of a file; without heights: none */
+    noh_field field;
     float metre; /* in the pack's unit */
     /* of each kind */
     noh_kind_gaze gazes[NOH_STAGE_KINDS_MAX];
@@ -34,6 +39,7 @@ typedef struct figure_body {
 /* What the options ask for. *wanted: whether they ask for something. Prints an error and returns an exit code; 0 on
  * success. */
 int figure_body_parse(const body_options *o, figure_body *b, int *wanted);
+void figure_body_free(figure_body *b); /* in any case */
 
 /* Give kinds their parts, each for its own skeleton. Prints an error and returns an exit code where none of them can do
  * what is asked for. */

@@ -188,6 +188,7 @@ static int run(void *args)
             pack_file_close(&file);
         }
     }
+    figure_body_free(&a->body);
     return status;
 }
 

@@ -252,6 +252,7 @@ static int run(void *args)
         }
     }
     if (a->s.figure.light) lighting_close(&a->s.lit);
+    figure_body_free(&a->s.body);
     return status;
 }
 
