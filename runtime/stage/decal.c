@@ -110,6 +110,7 @@ static void set_right(noh_decal *d, float roll)
 /* The place of a new mark: that of one close by, or of the oldest. */
 static uint32_t place_of(noh_decals *decals, const noh_decal *mark)
 {
+    uint32_t at;
     for (uint32_t i = 0; i < decals->capacity; i++) {
         const noh_decal *d = &decals->decals[i];
         float square = 0.0f;
@@ -117,8 +118,9 @@ static uint32_t place_of(noh_decals *decals, const noh_decal *mark)
         for (int k = 0; k < 3; k++) square += (d->centre[k] - mark->centre[k]) * (d->centre[k] - mark->centre[k]);
         if (square <= MERGE * MERGE * mark->size * mark->size) return i;
     }
-    decals->next = (decals->next + 1u) % decals->capacity;
-    return (decals->next + decals->capacity - 1u) % decals->capacity;
+    at = decals->next;
+    decals->next = at + 1u < decals->capacity ? at + 1u : 0u;
+    return at;
 }
 
 /* The level of a mesh of the pack that the actor was shown at. 0: none. */
