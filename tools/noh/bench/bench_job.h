@@ -21,6 +21,7 @@
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_sim.c         rows sim/ragdoll: dolls that fall, by lanes
  *   bench_springs.c     rows sim/spring: characters whose joints swing
+ *   bench_ik.c          rows sim/two-bone, sim/feet: a leg, and both feet on a slope
  *   bench_hair.c        rows sim/hair, sim/hair_points: control hairs of a head that shakes
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
  *   bench_report.c      rows, storage, and how they are printed
@@ -226,6 +227,7 @@ int bench_skin_cpu(bench_job *job);
 int bench_sim(bench_job *job);
 int bench_springs(bench_job *job);
 int bench_hair(bench_job *job);
+int bench_ik(bench_job *job);
 
 /* A cell of so many two-bone solves (sim/ik.h): what springs and hair are measured against. self: unused */
 #define BENCH_TWO_BONE_SOLVES 1000u

@@ -94,6 +94,7 @@ int bench_sim(bench_job *job)
     noh_ragdoll_doll *start;
     int status = bench_springs(job);
     if (!status) status = bench_hair(job);
+    if (!status) status = bench_ik(job);
     if (status || !drop_scene_can(&job->files[0])) return status;
     status = drop_scene_open(&scene, &job->files[0], DOLLS, 1.0, 10, 1);
     if (status) return status;
