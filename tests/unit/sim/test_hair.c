@@ -404,8 +404,8 @@ static void every_width_gives_the_same_bits(void **state)
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(wigs); i++) {
         const uint32_t n = wigs[i].hairs, crc = hash_by(noh_hair_step, noh_hair_points, n);
+#if defined(__x86_64__) /* elsewhere the tests are linked with the library's own width alone */
         assert_int_equal(hash_by(noh_hair_step_scalar, noh_hair_points_scalar, n), crc);
-#if defined(__x86_64__)
         assert_int_equal(hash_by(noh_hair_step_sse2, noh_hair_points_sse2, n), crc);
         if (__builtin_cpu_supports("avx2")) {
             assert_int_equal(hash_by(noh_hair_step_avx2, noh_hair_points_avx2, n), crc);

@@ -486,8 +486,8 @@ static void every_width_and_company_gives_the_same_bits(void **state)
     (void)state;
     assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 1), crc);
     assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 3), crc);
+#if defined(__x86_64__) /* elsewhere the tests are linked with the library's own width alone */
     assert_int_equal(hash_of_bundle(noh_spring_step_scalar, noh_spring_rotations_scalar, CHAINS), crc);
-#if defined(__x86_64__)
     assert_int_equal(hash_of_bundle(noh_spring_step_sse2, noh_spring_rotations_sse2, 5), crc);
     if (__builtin_cpu_supports("avx2")) {
         assert_int_equal(hash_of_bundle(noh_spring_step_avx2, noh_spring_rotations_avx2, CHAINS), crc);

@@ -224,8 +224,8 @@ static float *put_land(const figure_body *b, float *out)
     static const float corner[4][2] = { { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } };
     const float half = 0.5f * b->metre;
     for (uint32_t i = 0; i < TILES * TILES; i++) {
-        const float x = half * ((float)(i % TILES) - 0.5f * (float)TILES);
-        const float z = half * ((float)(i / TILES) - 0.5f * (float)TILES);
+        const uint32_t row = i / TILES, column = i % TILES;
+        const float x = half * ((float)column - 0.5f * (float)TILES), z = half * ((float)row - 0.5f * (float)TILES);
         float p[4][3], normal[3], middle;
         int there = noh_field_height(&b->field, x + 0.5f * half, z + 0.5f * half, &middle, normal);
         for (int k = 0; k < 4 && there; k++) {
@@ -233,7 +233,7 @@ static float *put_land(const figure_body *b, float *out)
             p[k][2] = z + half * corner[k][1];
             there = noh_field_height(&b->field, p[k][0], p[k][2], &p[k][1], NULL);
         }
-        if (there) out = put_quad(out, (const float(*)[3])p, normal, (i / TILES + i % TILES) % 2u ? 0.26f : 0.31f);
+        if (there) out = put_quad(out, (const float(*)[3])p, normal, (row + column) % 2u ? 0.26f : 0.31f);
     }
     return out;
 }
