@@ -14,7 +14,6 @@
 #define WIDTH 240u
 #define HEIGHT 240u
 #define PIXELS (WIDTH * HEIGHT)
-#define STEP 3u /* of pixels that are looked at */
 
 typedef struct shot {
     cast c;
@@ -214,19 +213,31 @@ static double nearest_mark(const noh_decals *ring, uint32_t mesh, const float re
     return least;
 }
 
+/* Rays of the CPU are slow: of the pixels that marks have changed every fifth each way is looked at, of the others
+ * every fifteenth; under sanitizers every eighth and twenty-fourth. */
+static uint32_t pixel_step(void)
+{
+    const char *sanitizers = getenv("NOH_SAN");
+    return sanitizers && *sanitizers ? 8u : 5u;
+}
+
 /* Pixels well inside of a spot are red, those well outside are as they were. */
 static void expect_marks(shot *s, uint32_t kind, uint32_t mesh_count, const char *pose)
 {
     surface meshes[4];
     uint8_t *without = picture(s, 0), *with = picture(s, 1);
+    const uint32_t step = pixel_step();
     uint32_t inside = 0, outside = 0, wrong_inside = 0, wrong_outside = 0;
     for (uint32_t m = 0; m < mesh_count; m++) open_surface(s, kind, m, &meshes[m]);
-    for (uint32_t y = STEP; y + STEP < HEIGHT; y += STEP) {
-        for (uint32_t x = STEP; x + STEP < WIDTH; x += STEP) {
+    for (uint32_t y = step; y + step < HEIGHT; y += step) {
+        for (uint32_t x = step; x + step < WIDTH; x += step) {
             const size_t at = 4u * ((size_t)y * WIDTH + x);
+            const int changed = memcmp(with + at, without + at, 3) != 0;
             noh_pick_hit hit;
-            const uint32_t found = rest_at(s, meshes, mesh_count, x + 0.5, y + 0.5, &hit);
             double normal[3], sure = 1e9, any = 1e9;
+            uint32_t found;
+            if (!changed && (x % (3u * step) || y % (3u * step))) continue;
+            found = rest_at(s, meshes, mesh_count, x + 0.5, y + 0.5, &hit);
             if (found) {
                 const surface *u = &meshes[found - 1u];
                 rest_normal(&u->mesh, &hit, normal);
@@ -238,14 +249,14 @@ static void expect_marks(shot *s, uint32_t kind, uint32_t mesh_count, const char
                 wrong_inside += with[at] < with[at + 1u] + 20 || with[at] < with[at + 2u] + 20;
             } else if (any > 1.5) {
                 outside++;
-                wrong_outside += memcmp(with + at, without + at, 3) != 0;
+                wrong_outside += (uint32_t)changed;
             }
         }
     }
     print_message("%s: %u of %u pixels inside are not red, %u of %u outside are not as before\n", pose, wrong_inside,
                   inside, wrong_outside, outside);
-    assert_true(inside > 60u && outside > 1000u);
-    assert_true(wrong_inside * 20u <= inside && wrong_outside * 100u <= outside); /* edges of the figure */
+    assert_true(inside * step * step > 800u && outside > 40u);
+    assert_true(wrong_inside * 20u <= inside + 19u && wrong_outside * 20u <= outside); /* edges of the figure */
     for (uint32_t m = 0; m < mesh_count; m++) close_surface(&meshes[m]);
     free(without);
     free(with);
