@@ -1,3 +1,5 @@
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +28,17 @@ void *buffer_append(byte_buffer *b, const void *bytes, size_t count)
     }
     b->count += count;
     return b->bytes + b->count - count;
+}
+
+void buffer_print(byte_buffer *b, const char *format, ...)
+{
+    char text[512];
+    va_list args;
+    int count;
+    va_start(args, format);
+    count = vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (count > 0) buffer_append(b, text, count < (int)sizeof text ? (size_t)count : sizeof text - 1);
 }
 
 void buffer_align(byte_buffer *b, size_t alignment)

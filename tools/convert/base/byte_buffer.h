@@ -15,6 +15,11 @@ typedef struct byte_buffer {
 } byte_buffer;
 
 void *buffer_append(byte_buffer *b, const void *bytes, size_t count); /* bytes NULL: zeros */
+/* Formatted text of less than 512 bytes, without a final zero; longer text is cut. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void buffer_print(byte_buffer *b, const char *format, ...);
 void buffer_align(byte_buffer *b, size_t alignment);
 void buffer_free(byte_buffer *b);
 

@@ -10,20 +10,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "base/version.h"
 #include "mesh/mesh.h"
+#include "pack_copy.h"
 
 typedef struct rounder {
     const noh_pack *pack;
     const round_desc *desc;
+    round_mesh *meshes; /* [pack->mesh_count], what became of each */
     byte_buffer *out;
     size_t base; /* of the chunk in out */
     noh_mesh from;
     noh_mesh_header *h; /* [level_count], as they become */
     uint32_t level_count;
     int drop;
-    round_mesh *report;
+    round_mesh *report; /* of this mesh */
 } rounder;
 
 /* ---- tangents ---- */
@@ -397,16 +397,16 @@ static void append_mesh(rounder *r)
 
 /* ---- the pack ---- */
 
-static void append_chunk(rounder *r, uint32_t index, noh_pack_chunk *chunk, round_mesh *meshes)
+static void append_chunk(void *context, uint32_t index, byte_buffer *out)
 {
+    rounder *r = context;
     const uint32_t mesh = index - r->pack->first_mesh;
     int change = 0;
-    *chunk = r->pack->chunks[index];
-    buffer_align(r->out, NOH_PACK_ALIGN);
-    r->base = r->out->count;
+    r->out = out;
+    r->base = out->count;
     if (index >= r->pack->first_mesh && mesh < r->pack->mesh_count) {
         (void)noh_pack_mesh_at(r->pack, mesh, &r->from, NULL);
-        r->report = &meshes[mesh];
+        r->report = &r->meshes[mesh];
         memset(r->report, 0, sizeof *r->report);
         r->report->had_tangents = (r->from.header->flags & NOH_MESH_TANGENTS) != 0;
         r->drop = r->report->had_tangents && !r->desc->keep_tangents && !wants_tangents(r->pack, &r->from);
@@ -416,36 +416,15 @@ static void append_chunk(rounder *r, uint32_t index, noh_pack_chunk *chunk, roun
     if (change)
         append_mesh(r);
     else
-        buffer_append(r->out, r->pack->bytes + chunk->offset, chunk->bytes);
-    chunk->offset = (uint32_t)r->base;
-    chunk->bytes = (uint32_t)(r->out->count - r->base);
-    chunk->crc = r->out->failed ? 0 : noh_crc32c(0, r->out->bytes + r->base, chunk->bytes);
+        pack_copy_as_is(r->pack, index, out);
 }
 
 int pack_round(const noh_pack *pack, const round_desc *desc, byte_buffer *out, round_mesh *meshes, model_error *error)
 {
-    const size_t table = pack->chunk_count * sizeof(noh_pack_chunk);
-    noh_pack_chunk *chunks = malloc(table);
-    noh_pack_header h;
     rounder r;
     memset(&r, 0, sizeof r);
     r.pack = pack;
     r.desc = desc;
-    r.out = out;
-    memcpy(&h, pack->bytes, sizeof h);
-    buffer_append(out, NULL, sizeof h + table);
-    for (uint32_t i = 0; chunks && i < pack->chunk_count; i++) append_chunk(&r, i, &chunks[i], meshes);
-    buffer_align(out, NOH_PACK_ALIGN);
-    if (!chunks || out->failed) {
-        free(chunks);
-        buffer_free(out);
-        return model_fail(error, "", "out of memory");
-    }
-    h.byte_count = (uint32_t)out->count;
-    h.crc = 0;
-    h.crc = noh_crc32c(noh_crc32c(0, &h, sizeof h), chunks, table);
-    memcpy(out->bytes, &h, sizeof h);
-    memcpy(out->bytes + sizeof h, chunks, table);
-    free(chunks);
-    return 0;
+    r.meshes = meshes;
+    return pack_copy(pack, append_chunk, &r, out, error);
 }

@@ -6,12 +6,10 @@
  * mesh's transfer is cut likewise. */
 #include "pack_strip.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "base/version.h"
 #include "mesh/mesh.h"
+#include "pack_copy.h"
 
 /* ---- which levels ---- */
 
@@ -233,55 +231,31 @@ static void append_transfer(stripper *s, uint32_t index)
 
 /* ---- the pack ---- */
 
-static void append_chunk(stripper *s, uint32_t index, noh_pack_chunk *chunk)
+static void append_chunk(void *context, uint32_t index, byte_buffer *out)
 {
+    stripper *s = context;
     const uint32_t mesh = index - s->pack->first_mesh;
-    *chunk = s->pack->chunks[index];
-    buffer_align(s->out, NOH_PACK_ALIGN);
-    s->base = s->out->count;
-    if (index >= s->pack->first_mesh && mesh < s->pack->mesh_count) {
+    const int is_mesh = index >= s->pack->first_mesh && mesh < s->pack->mesh_count;
+    s->out = out;
+    s->base = out->count;
+    if (is_mesh) {
         (void)noh_pack_mesh_at(s->pack, mesh, &s->from, NULL);
     }
-    if (index >= s->pack->first_mesh && mesh < s->pack->mesh_count && s->first[mesh] > s->from.header->level) {
+    if (is_mesh && s->first[mesh] > s->from.header->level) {
         s->from = noh_mesh_at_lod(&s->from, s->first[mesh]);
         append_mesh(s);
-    } else if (chunk->type == NOH_CHUNK_TRANSFER) {
+    } else if (s->pack->chunks[index].type == NOH_CHUNK_TRANSFER) {
         append_transfer(s, index);
     } else {
-        buffer_append(s->out, s->pack->bytes + chunk->offset, chunk->bytes);
+        pack_copy_as_is(s->pack, index, out);
     }
-    chunk->offset = (uint32_t)s->base;
-    chunk->bytes = (uint32_t)(s->out->count - s->base);
-    chunk->crc = s->out->failed ? 0 : noh_crc32c(0, s->out->bytes + s->base, chunk->bytes);
 }
 
 int pack_strip(const noh_pack *pack, const uint32_t *first, byte_buffer *out, model_error *error)
 {
-    const size_t table = pack->chunk_count * sizeof(noh_pack_chunk);
-    noh_pack_chunk *chunks = malloc(table);
-    noh_pack_header h;
     stripper s;
     memset(&s, 0, sizeof s);
     s.pack = pack;
     s.first = first;
-    s.out = out;
-    memcpy(&h, pack->bytes, sizeof h);
-    buffer_append(out, NULL, sizeof h + table);
-    for (uint32_t i = 0; chunks && i < pack->chunk_count; i++) {
-        append_chunk(&s, i, &chunks[i]);
-    }
-    buffer_align(out, NOH_PACK_ALIGN);
-    if (!chunks || out->failed) {
-        free(chunks);
-        buffer_free(out);
-        return model_fail(error, "", "out of memory");
-    }
-    h.library_version = noh_version_number();
-    h.byte_count = (uint32_t)out->count;
-    h.crc = 0;
-    h.crc = noh_crc32c(noh_crc32c(0, &h, sizeof h), chunks, table);
-    memcpy(out->bytes, &h, sizeof h);
-    memcpy(out->bytes + sizeof h, chunks, table);
-    free(chunks);
-    return 0;
+    return pack_copy(pack, append_chunk, &s, out, error);
 }

@@ -1,7 +1,6 @@
 /* crowd_test.c: a scene's steps, its dump, and what is said about it. */
 #include "crowd_test.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 
 #include "cli/json.h"
@@ -21,20 +20,10 @@ typedef struct result {
     const crowd_measures *measures;
 } result;
 
-static void print_to(byte_buffer *out, const char *format, ...)
-{
-    char line[192];
-    va_list args;
-    va_start(args, format);
-    const int count = vsnprintf(line, sizeof line, format, args);
-    va_end(args);
-    buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
-}
-
 static void dump_agent(byte_buffer *out, uint32_t step, uint32_t index, const noh_crowd_agent *a)
 {
-    print_to(out, "%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g\n", step, index, (double)a->position[0], (double)a->position[1],
-             (double)a->velocity[0], (double)a->velocity[1], (double)a->radius);
+    buffer_print(out, "%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g\n", step, index, (double)a->position[0], (double)a->position[1],
+                 (double)a->velocity[0], (double)a->velocity[1], (double)a->radius);
 }
 
 static int write_dump(const char *path, const byte_buffer *out)
@@ -110,7 +99,7 @@ int crowd_test_run(const crowd_scene_options *options, const char *dump, int as_
     crowd_scene *s = NULL;
     int status = crowd_scene_open(options, &s);
     if (status) return status;
-    if (dump) print_to(&out, "frame,agent,x,z,vx,vz,radius\n");
+    if (dump) buffer_print(&out, "frame,agent,x,z,vx,vz,radius\n");
     while (crowd_scene_step(s)) {
         for (uint32_t i = 0; i < crowd_scene_agents(s) && dump; i++) {
             dump_agent(&out, crowd_scene_steps(s), i, crowd_scene_agent(s, i));
@@ -132,7 +121,7 @@ static int run_place(const crowd_scene_options *options, const place_file *place
     place_life *l = NULL;
     int status = place_life_open(place, options->agents, options->seed, &l);
     if (status) return status;
-    if (dump) print_to(&out, "frame,agent,x,z,vx,vz,radius\n");
+    if (dump) buffer_print(&out, "frame,agent,x,z,vx,vz,radius\n");
     while (place_life_steps(l) < steps) {
         place_life_step(l);
         for (uint32_t i = 0; i < place_life_agents(l) && dump; i++) {

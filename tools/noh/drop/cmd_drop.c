@@ -1,5 +1,4 @@
 /* cmd_drop.c: ragdolls of a character, dropped: how well they fall, where to, and what it takes. */
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,16 +19,6 @@ typedef struct drop_args {
     int as_json;
 } drop_args;
 
-static void print_to(byte_buffer *out, const char *format, ...)
-{
-    char line[256];
-    va_list args;
-    va_start(args, format);
-    const int count = vsnprintf(line, sizeof line, format, args);
-    va_end(args);
-    buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
-}
-
 static void dump_frame(byte_buffer *out, const drop_scene *s)
 {
     for (uint32_t d = 0; d < s->dolls; d++) {
@@ -37,8 +26,8 @@ static void dump_frame(byte_buffer *out, const drop_scene *s)
         noh_ragdoll_bodies(s->set, d, poses);
         for (uint32_t i = 0; i < s->rig.body_count; i++) {
             const float *p = poses[i].position, *q = poses[i].rotation;
-            print_to(out, "%u,%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g\n", s->step, d, i, (double)p[0], (double)p[1],
-                     (double)p[2], (double)q[0], (double)q[1], (double)q[2], (double)q[3]);
+            buffer_print(out, "%u,%u,%u,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g\n", s->step, d, i, (double)p[0],
+                         (double)p[1], (double)p[2], (double)q[0], (double)q[1], (double)q[2], (double)q[3]);
         }
     }
 }
@@ -113,7 +102,7 @@ static int drop(const drop_args *a, drop_scene *s)
     drop_picture picture = { 0, 0, NULL };
     int status = 0;
     if (a->output && drop_picture_open(&picture, TILE)) return tool_fail(a->output, "out of memory");
-    if (a->dump) print_to(&dump, "frame,doll,body,x,y,z,qx,qy,qz,qw\n");
+    if (a->dump) buffer_print(&dump, "frame,doll,body,x,y,z,qx,qy,qz,qw\n");
     play(s, a->dump ? &dump : NULL, a->output ? &picture : NULL);
     if (a->dump) status = write_dump(a, &dump);
     if (!status && a->output) status = tool_write_png(a->output, DROP_TILES * TILE, TILE, picture.rgba);

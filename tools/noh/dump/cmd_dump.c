@@ -1,8 +1,6 @@
 /* cmd_dump.c: the deformed mesh as an OBJ file: by default the CPU reference, which needs no GL; with --path the
  * vertices of the GPU's vertex shader. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,17 +20,6 @@ typedef struct dump_args {
     option_list weights, clips;
     figure_desc figure;
 } dump_args;
-
-static void print_to(byte_buffer *out, const char *format, ...)
-{
-    char line[512];
-    va_list args;
-    int count;
-    va_start(args, format);
-    count = vsnprintf(line, sizeof line, format, args);
-    va_end(args);
-    buffer_append(out, line, count < (int)sizeof line ? (size_t)count : sizeof line - 1);
-}
 
 /* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for
  * every matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
@@ -55,16 +42,16 @@ static void transform_normal(const float w[12], const float n[3], double out[3])
 static void dump_vertex(byte_buffer *out, const noh_vertex *v, const float world[12])
 {
     double n[3];
-    print_to(out, "v");
+    buffer_print(out, "v");
     for (int r = 0; r < 3; r++) {
         const float *row = world + 4 * r;
-        print_to(out, " %.9g",
-                 (double)row[0] * v->position[0] + (double)row[1] * v->position[1] + (double)row[2] * v->position[2] +
-                     (double)row[3]);
+        buffer_print(out, " %.9g",
+                     (double)row[0] * v->position[0] + (double)row[1] * v->position[1] +
+                         (double)row[2] * v->position[2] + (double)row[3]);
     }
-    print_to(out, " %.4f %.4f %.4f\n", (double)v->color[0], (double)v->color[1], (double)v->color[2]);
+    buffer_print(out, " %.4f %.4f %.4f\n", (double)v->color[0], (double)v->color[1], (double)v->color[2]);
     transform_normal(world, v->normal, n);
-    print_to(out, "vn %.6f %.6f %.6f\nvt %.7g %.7g\n", n[0], n[1], n[2], (double)v->uv[0], 1.0 - (double)v->uv[1]);
+    buffer_print(out, "vn %.6f %.6f %.6f\nvt %.7g %.7g\n", n[0], n[1], n[2], (double)v->uv[0], 1.0 - (double)v->uv[1]);
 }
 
 static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
@@ -72,15 +59,15 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
     for (uint32_t s = 0; s < mesh->header->submesh_count; s++) {
         const noh_submesh *sub = &mesh->submeshes[s];
         if (sub->material != NOH_NONE) {
-            print_to(out, "usemtl %s\n", noh_pack_string(mesh->pack, mesh->pack->materials[sub->material].name));
+            buffer_print(out, "usemtl %s\n", noh_pack_string(mesh->pack, mesh->pack->materials[sub->material].name));
         }
         for (uint32_t i = 0; i < sub->index_count; i += 3) {
-            print_to(out, "f");
+            buffer_print(out, "f");
             for (uint32_t k = 0; k < 3; k++) {
                 uint32_t v = first + noh_mesh_index(mesh, sub->first_index + i + k);
-                print_to(out, " %u/%u/%u", v, v, v);
+                buffer_print(out, " %u/%u/%u", v, v, v);
             }
-            print_to(out, "\n");
+            buffer_print(out, "\n");
         }
     }
 }
@@ -88,9 +75,9 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
 static void dump_mesh(byte_buffer *out, const noh_mesh *mesh, const noh_vertex *vertices, const float world[12],
                       uint32_t *first)
 {
-    print_to(out, "o %s\n", mesh->name);
+    buffer_print(out, "o %s\n", mesh->name);
     if (mesh->header->level) {
-        print_to(out, "# LOD level %u of 0 to %u\n", mesh->header->level, mesh->header->level_count - 1u);
+        buffer_print(out, "# LOD level %u of 0 to %u\n", mesh->header->level, mesh->header->level_count - 1u);
     }
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         dump_vertex(out, &vertices[v], world);
@@ -174,7 +161,7 @@ static int dump_figure(byte_buffer *out, const dump_args *a, gpu *g)
     if (!status) status = figure_hold_options(&f, &a->weights);
     if (!status) status = figure_pose(&f);
     if (!status) {
-        print_to(out, "# baked by noh: positions in world space, vertex colours linear\n");
+        buffer_print(out, "# baked by noh: positions in world space, vertex colours linear\n");
         status = g ? dump_by_gpu(out, &f) : dump_meshes(out, &f, NULL);
     }
     figure_close(&f);

@@ -1,7 +1,5 @@
 #include "session_text.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,45 +12,32 @@
 
 /* ---- writing ---- */
 
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-static void
-print(byte_buffer *out, const char *format, ...)
-{
-    char line[NOH_NAME_BYTES_MAX + 64];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(line, sizeof line, format, list);
-    va_end(list);
-    buffer_append(out, line, strlen(line));
-}
-
 static void write_input(const session_input *in, byte_buffer *out)
 {
     const session_form *form = &session_forms[in->what];
-    print(out, "%u %s %u", in->frame, form->word, in->actor);
-    if (form->has_name) print(out, strpbrk(in->name, " \t#") || !in->name[0] ? " \"%s\"" : " %s", in->name);
-    for (uint32_t i = 0; i < form->number_count; i++) print(out, " %.9g", (double)in->numbers[i]);
-    print(out, "\n");
+    buffer_print(out, "%u %s %u", in->frame, form->word, in->actor);
+    if (form->has_name) buffer_print(out, strpbrk(in->name, " \t#") || !in->name[0] ? " \"%s\"" : " %s", in->name);
+    for (uint32_t i = 0; i < form->number_count; i++) buffer_print(out, " %.9g", (double)in->numbers[i]);
+    buffer_print(out, "\n");
 }
 
 static void write_hashes(const session *s, byte_buffer *out)
 {
-    print(out, "hashes");
-    for (uint32_t p = 0; p < SESSION_PARTS; p++) print(out, " %s", session_part_name((session_part)p));
-    print(out, "\n");
+    buffer_print(out, "hashes");
+    for (uint32_t p = 0; p < SESSION_PARTS; p++) buffer_print(out, " %s", session_part_name((session_part)p));
+    buffer_print(out, "\n");
     for (uint32_t f = 0; f < s->frame_count; f++) {
-        print(out, "%u", f);
-        for (uint32_t p = 0; p < SESSION_PARTS; p++) print(out, " %08x", s->hashes[f].part[p]);
-        print(out, "\n");
+        buffer_print(out, "%u", f);
+        for (uint32_t p = 0; p < SESSION_PARTS; p++) buffer_print(out, " %08x", s->hashes[f].part[p]);
+        buffer_print(out, "\n");
     }
 }
 
 int session_write(const session *s, byte_buffer *out, size_t *input_bytes, model_error *error)
 {
     size_t before;
-    print(out, TITLE " %u\npack %08x\nactors %u\nframes %u\n", VERSION, s->pack_crc, s->actor_count, s->frame_count);
+    buffer_print(out, TITLE " %u\npack %08x\nactors %u\nframes %u\n", VERSION, s->pack_crc, s->actor_count,
+                 s->frame_count);
     before = out->count;
     for (uint32_t i = 0; i < s->input_count; i++) {
         if (strpbrk(s->inputs[i].name, "\"\n")) {
