@@ -15,20 +15,6 @@
 
 /* ---- the library's own text, as a game's ---- */
 
-/* A file of shaders_es/ behind its #version, to be freed. */
-static char *body_of(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    char *text = test_zeros(1u << 16), *start;
-    if (!file) test_skip("%s is not here: run in the repository's root", path);
-    assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 100, (1u << 16) - 2u);
-    fclose(file);
-    assert_true(strncmp(text, "#version", 8) == 0);
-    start = strchr(text, '\n');
-    memmove(text, start, strlen(start) + 1);
-    return text;
-}
-
 typedef struct tube_kind {
     uint32_t dual, uniform, is_uint; /* each 0 or 1 */
     noh_debug_view view;
@@ -127,7 +113,7 @@ static void check_same(const tube *t, const tube_kind *k, noh_gl_renderer r[2])
 /* texts: which of the two are given: 1 vertex, 2 fragment, 3 both. */
 static void check_own(const tube_kind *k, int texts)
 {
-    char *vertex = body_of("shaders_es/mesh.vert"), *fragment = body_of("shaders_es/mesh.frag");
+    char *vertex = test_shader_body("shaders_es/mesh.vert"), *fragment = test_shader_body("shaders_es/mesh.frag");
     const noh_gl_shader_desc own = { .name = "own",
                                      .vertex = texts & 1 ? vertex : NULL,
                                      .fragment = texts & 2 ? fragment : NULL };

@@ -283,6 +283,19 @@ void fixture_frame_close(fixture_frame *f)
 
 /* ---- texts ---- */
 
+char *test_shader_body(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    char *text = test_zeros(1u << 16), *start;
+    if (!file) test_skip("%s is not here: run in the repository's root", path);
+    assert_in_range(fread(text, 1, (1u << 16) - 1u, file), 100, (1u << 16) - 2u);
+    fclose(file);
+    assert_true(strncmp(text, "#version", 8) == 0);
+    start = strchr(text, '\n');
+    memmove(text, start, strlen(start) + 1);
+    return text;
+}
+
 char *test_example(const char *path, int n)
 {
     FILE *file = fopen(path, "rb");

@@ -79,6 +79,9 @@ float *fixture_layers(const fixture_morph *m, uint32_t instance);
 /* The n-th ```glsl block of a file, to be freed; skips the test where the file is not. */
 char *test_example(const char *path, int n);
 
+/* A file of shaders_es/ behind its #version, to be freed; skips the test where the file is not. */
+char *test_shader_body(const char *path);
+
 /* A square of pixels to draw to, RGBA8 with depth, cleared to zeros and bound. */
 typedef struct fixture_frame {
     noh_gl_ledger ledger; /* its own, and what is made while it is open */
