@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/math_internal.h"
 #include "deform/bounds.h"
+#include "deform/pick_internal.h"
 #include "deform/skin.h"
 
 #define EDGE 1e-6f /* how far beyond a triangle's edge is still a hit, so that rays do not slip between two */
@@ -140,6 +141,7 @@ static int is_candidate(const ray *r, const noh_mesh *mesh, const uint32_t corne
 static void pick_submesh(const noh_pick_surface *s, uint32_t index, const float *near, ray *r, noh_pick_hit *hit)
 {
     const noh_submesh *sub = &s->mesh->submeshes[index];
+    noh_pick_hit own = *hit;
     for (uint32_t i = 0; i < sub->index_count; i += 3) {
         uint32_t vertices[3];
         float corners[3][3];
@@ -152,8 +154,10 @@ static void pick_submesh(const noh_pick_surface *s, uint32_t index, const float 
         for (uint32_t c = 0; c < 3; c++) {
             corner_position(s, vertices[c], corners[c]);
         }
-        if (ray_meets_triangle(r, corners, hit)) {
-            r->limit = hit->distance;
+        if (ray_meets_triangle(r, corners, &own) &&
+            noh_pick_shows(s->mesh, sub, vertices, own.barycentric, s->tint ? s->tint[3] : 255)) {
+            r->limit = own.distance;
+            *hit = own;
             hit->submesh = index;
             hit->triangle = (sub->first_index + i) / 3;
         }

@@ -4,6 +4,12 @@
  * of the joints near its corners, and only then are its three corners morphed and skinned. Rigid meshes can be picked
  * too; both sides of a triangle count.
  *
+ * A ray goes through what does not show: where a material cuts by alpha and the alpha is below its cutoff, and where it
+ * blends and the alpha, with the tint's, rounds to 0 of 255. What blends and shows at all is hit. The alpha is that of
+ * the mesh pack's texture at its first mip level, filtered between four texels, times the material's and the vertex
+ * colour's: an actor's texture set does not count, and from afar, where coarser mip levels are drawn, an edge may be
+ * off by a pixel.
+ *
  * source  Moller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997; picking for decals: Granberg,
  *         Character Animation with Direct3D, 2009, chapters 3 and 14 (which clones the mesh and leaves rigid ones out)
  *
@@ -25,6 +31,7 @@ typedef struct noh_pick_surface {
     const noh_dual_quaternion *dual_quaternions; /* [skin's joint_count], where they draw the mesh; else NULL */
     const noh_morph_layers *layers;              /* NULL: no morph targets */
     const float *weights; /* [target_count], those that the layers were accumulated with; NULL without layers */
+    const uint8_t *tint;  /* [4] that it is drawn with, of which alpha counts; NULL: white */
 } noh_pick_surface;
 
 typedef struct noh_pick_hit {

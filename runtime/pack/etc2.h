@@ -3,8 +3,8 @@
  *   noh_etc2_decode   a row of blocks to texels
  *   noh_eac_decode    one channel of a block
  *
- * For contexts without ETC2 (desktop GL below 4.3, WebGL 2 on most desktops), and for renderers on the CPU. A program
- * that calls neither does not link them.
+ * For contexts without ETC2 (desktop GL below 4.3, WebGL 2 on most desktops), for renderers on the CPU, and for rays
+ * (deform/pick.h), which ask for alpha. A program without any of these does not link them.
  *
  * Threads: no state; any thread. */
 #ifndef NOH_PACK_ETC2_H

@@ -74,6 +74,13 @@ typedef struct noh_stage_actor {
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
 } noh_stage_actor;
 
+/* [4] as it is drawn; NULL: white. */
+static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
+{
+    const uint8_t *t = a->look.tint;
+    return t[0] | t[1] | t[2] | t[3] ? t : NULL;
+}
+
 /* The graph that an actor plays: its instance follows, in as many bytes as the largest of the kind takes. A track of
  * the actor's controller stands for it: graph g plays while one is on the set's clip first_graph_clip + g. */
 typedef struct noh_stage_graph_slot {

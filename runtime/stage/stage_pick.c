@@ -61,6 +61,7 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
         noh_pick_hit own;
         memset(&surface, 0, sizeof surface);
         surface.mesh = &level;
+        surface.tint = noh_stage_tint_of(&s->actors[index]);
         surface.world = mesh->skinned ? NULL : mesh->node_world;
         if (mesh->skinned) {
             noh_character_skin(ch, &mesh->skin, s->jobs[0].matrices);

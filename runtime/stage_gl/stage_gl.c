@@ -448,7 +448,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
     const float *weights = k->weights + (size_t)index * k->weight_count;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        upload_place(mesh, &items[m], shown, noh_gl_tint_of(&k->actors[index]), weights + mesh->first_weight);
+        upload_place(mesh, &items[m], shown, noh_stage_tint_of(&k->actors[index]), weights + mesh->first_weight);
         if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }
 }

@@ -69,7 +69,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     memcpy(world, shown->world, sizeof world);
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
-    noh_gl_draw_tint(d->renderer, noh_gl_tint_of(actor_at(d, place)));
+    noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
     set_wrinkles(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
                      &lod, pictures_of(d, place), d->pass);

@@ -40,13 +40,6 @@ static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage
     return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
 }
 
-/* NULL: white. */
-static inline const uint8_t *noh_gl_tint_of(const noh_stage_actor *a)
-{
-    const uint8_t *t = a->look.tint;
-    return t[0] | t[1] | t[2] | t[3] ? t : NULL;
-}
-
 typedef struct noh_gl_kind {
     noh_gl_item *items;       /* [mesh_count] */
     noh_gl_texture *pictures; /* [1 + texture_set_count][texture_count of the pack]: those that others own, too */

@@ -375,7 +375,7 @@ INIT(reflection_init)
 /* A ray at the tube's middle: its scratch is a block too. */
 INIT(pick)
 {
-    const noh_pick_surface surface = { &s.mesh, NULL, s.matrices, NULL, NULL, NULL };
+    const noh_pick_surface surface = { &s.mesh, NULL, s.matrices, NULL, NULL, NULL, NULL };
     const float origin[3] = { 0.01f, 0.5f, 5.0f }, direction[3] = { 0, 0, -1 };
     noh_pick_hit hit;
     return noh_pick(&surface, origin, direction, 100.0f, memory, bytes, &hit, error);

@@ -116,7 +116,7 @@ static noh_result layers_small(noh_error *e)
 static noh_result pick_along(const float direction[3], noh_error *e)
 {
     const float origin[3] = { 1e6f, 1e6f, 1e6f };
-    const noh_pick_surface surface = { &s.mesh, NULL, NULL, NULL, NULL, NULL };
+    const noh_pick_surface surface = { &s.mesh, NULL, NULL, NULL, NULL, NULL, NULL };
     noh_pick_hit hit;
     return noh_pick(&surface, origin, direction, 1.0f, NULL, 0, &hit, e);
 }

@@ -370,7 +370,7 @@ static void rays_agree(const scene_pose *p, test_random *r, void *context)
     ray_counts *counts = context;
     size_t bytes = noh_pick_scratch_size(&p->mesh);
     void *scratch = test_zeros(bytes);
-    const noh_pick_surface surface = { &p->mesh, NULL, p->matrices, p->dual, &p->layers, p->weights };
+    const noh_pick_surface surface = { &p->mesh, NULL, p->matrices, p->dual, &p->layers, p->weights, NULL };
     uint32_t vertices = p->mesh.header->vertex_count;
     for (int k = 0; k < 12; k++) {
         /* from near one vertex towards near another: most rays hit, and many just miss */
@@ -452,7 +452,7 @@ static void rays_at_a_rigid_mesh(void **state)
     noh_pack pack = test_open(bytes, count);
     noh_mesh mesh = test_mesh(&pack, 0);
     noh_morph_layers layers = test_layers(&mesh);
-    const noh_pick_surface surface = { &mesh, world, NULL, NULL, &layers, weights };
+    const noh_pick_surface surface = { &mesh, world, NULL, NULL, &layers, weights, NULL };
     (void)state;
     noh_morph_accumulate(&mesh, weights, &layers);
     assert_int_equal(noh_pick_scratch_size(&mesh), 0);
@@ -488,7 +488,7 @@ static void bad_picks_say_why(void **state)
     noh_mesh mesh = test_mesh(&pack, 0);
     float matrices[48], *scratch = test_zeros(49 * sizeof(float));
     const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 }, none[3] = { 0, 0, 0 };
-    noh_pick_surface surface = { &mesh, NULL, matrices, NULL, NULL, NULL };
+    noh_pick_surface surface = { &mesh, NULL, matrices, NULL, NULL, NULL, NULL };
     noh_error error;
     noh_pick_hit hit;
     (void)state;

@@ -303,11 +303,180 @@ static void what_a_far_joint_pulls_is_hit(void **state)
     }
 }
 
+/* ---- what alpha leaves ---- */
+
+#define PICTURE_SIDE 16u
+
+typedef struct cut {
+    model_alpha alpha;
+    uint32_t wrap;           /* a glTF enum value */
+    int nearest, blocks;     /* unfiltered; compressed */
+    float uv_scale, uv_from; /* over the sheet */
+    float base_alpha, cutoff;
+} cut;
+
+/* Both halves of the sheet with a picture of random alpha, in patches of 4 x 4 texels. */
+static void cut_sheet_open(sheet *s, const cut *c, int folded)
+{
+    const test_model_desc desc = { 1, SIDE, 0, TEST_SCENE | TEST_UVS, 1 };
+    test_random r = test_random_from(27);
+    model *m = test_model(&desc);
+    model_texture *t = &m->textures[0];
+    size_t count;
+    memset(s, 0, sizeof *s);
+    for (uint32_t v = 0; v < SIDE * SIDE; v++) {
+        float *p = m->meshes[0].position + 3 * v;
+        for (uint32_t k = 0; k < 2; k++) m->meshes[0].uv[2 * v + k] = c->uv_from + c->uv_scale * p[k] / 4.0f;
+        p[2] = folded && p[0] > 2.0f ? 1.0f : 0.0f;
+        p[0] = folded && p[0] > 2.0f ? 4.0f - p[0] : p[0];
+    }
+    free(t->rgba);
+    t->width = t->height = PICTURE_SIDE;
+    t->rgba = test_zeros(4u * PICTURE_SIDE * PICTURE_SIDE);
+    for (uint32_t i = 0; i < PICTURE_SIDE * PICTURE_SIDE; i++) {
+        t->rgba[4u * i + 3u] = (uint8_t)(i % 4u || i / PICTURE_SIDE % 4u ? test_random_below(&r, 256) : 0);
+    }
+    t->wrap_s = t->wrap_t = c->wrap;
+    t->mag_filter = t->min_filter = c->nearest ? 9728 : 9729;
+    t->with_alpha = 1;
+    t->etc2 = (uint8_t)c->blocks;
+    m->materials[0].alpha = c->alpha;
+    m->materials[0].alpha_cutoff = c->cutoff;
+    m->materials[0].base_color[3] = c->base_alpha;
+    m->meshes[0].submeshes[1].material = 0;
+    s->bytes = test_pack_of(m, &count, NULL);
+    s->pack = test_open(s->bytes, count);
+    s->mesh = test_mesh(&s->pack, 0);
+    s->surface.mesh = &s->mesh;
+    model_free(m);
+}
+
+/* The first level's alpha, decoded: 0..255. */
+static void alphas_of(const sheet *s, uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE])
+{
+    uint8_t rows[4 * PICTURE_SIDE * 4];
+    noh_texture t;
+    assert_int_equal(noh_pack_texture_at(&s->pack, 0, &t, NULL), NOH_OK);
+    for (uint32_t y = 0; y < PICTURE_SIDE; y += 4) {
+        const noh_texture_level level = noh_texture_level_at(&t, 0);
+        if (t.header->format == NOH_TEXTURE_RGBA8) {
+            memcpy(rows, level.pixels + 4u * PICTURE_SIDE * y, sizeof rows);
+        } else {
+            assert_int_equal(t.header->format, NOH_TEXTURE_ETC2_RGBA);
+            noh_etc2_decode(t.header->format, level.pixels + 4u * PICTURE_SIDE * y, PICTURE_SIDE / 4u, rows);
+        }
+        for (uint32_t i = 0; i < 4 * PICTURE_SIDE; i++) alphas[PICTURE_SIDE * y + i] = rows[4u * i + 3u];
+    }
+}
+
+/* A texel's place after wrapping, as OpenGL ES 3.0 has it (3.8.10). */
+static uint32_t texel_of(double at, uint32_t wrap)
+{
+    const int n = (int)PICTURE_SIDE, i = (int)floor(at), turn = (i % (2 * n) + 2 * n) % (2 * n);
+    if (wrap == 33071) return (uint32_t)(i < 0 ? 0 : i >= n ? n - 1 : i);
+    if (wrap == 33648) return (uint32_t)(turn < n ? turn : 2 * n - 1 - turn);
+    return (uint32_t)(turn % n);
+}
+
+static double alpha_of(const cut *c, const uint8_t *alphas, double x, double y)
+{
+    const double u = PICTURE_SIDE * (c->uv_from + c->uv_scale * x / 4.0) - (c->nearest ? 0.0 : 0.5);
+    const double v = PICTURE_SIDE * (c->uv_from + c->uv_scale * y / 4.0) - (c->nearest ? 0.0 : 0.5);
+    double sum = 0.0;
+    for (int k = 0; k < 4; k++) {
+        const double share_u = k % 2 ? u - floor(u) : 1.0 - (u - floor(u));
+        const double share_v = k / 2 ? v - floor(v) : 1.0 - (v - floor(v));
+        const uint32_t at = texel_of(v + k / 2, c->wrap) * PICTURE_SIDE + texel_of(u + k % 2, c->wrap);
+        if (c->nearest && k) break;
+        sum += (c->nearest ? 1.0 : share_u * share_v) * alphas[at] / 255.0;
+    }
+    return sum * c->base_alpha;
+}
+
+static void rays_go_through_what_is_cut_away(void **state)
+{
+    static const cut cuts[] = {
+        { MODEL_ALPHA_MASK, 10497, 1, 0, 2.5f, -0.7f, 1.0f, 0.5f },
+        { MODEL_ALPHA_MASK, 10497, 0, 0, 2.5f, -0.7f, 0.8f, 0.4f },
+        { MODEL_ALPHA_MASK, 33071, 0, 1, 1.5f, -0.2f, 1.0f, 0.5f },
+        { MODEL_ALPHA_MASK, 33648, 0, 1, 3.5f, -1.2f, 0.9f, 0.3f },
+        { MODEL_ALPHA_BLEND, 10497, 1, 0, 2.5f, -0.7f, 0.9f, 0.5f },
+        { MODEL_ALPHA_OPAQUE, 10497, 1, 0, 2.5f, -0.7f, 0.9f, 0.5f },
+    };
+    test_random r = test_random_from(28);
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cuts); i++) {
+        const cut *c = &cuts[i];
+        uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE];
+        uint32_t hits = 0, sure = 0;
+        sheet s;
+        cut_sheet_open(&s, c, 0);
+        alphas_of(&s, alphas);
+        for (int k = 0; k < 4000; k++) {
+            const float x = test_random_float(&r, 0.01f, 3.99f), y = test_random_float(&r, 0.01f, 3.99f);
+            const double alpha = alpha_of(c, alphas, x, y);
+            const double most = c->alpha == MODEL_ALPHA_MASK    ? c->cutoff
+                                : c->alpha == MODEL_ALPHA_BLEND ? 0.5 / 255
+                                                                : 0;
+            const double u = PICTURE_SIDE * (c->uv_from + c->uv_scale * x / 4.0);
+            const double v = PICTURE_SIDE * (c->uv_from + c->uv_scale * y / 4.0);
+            noh_pick_hit hit;
+            const int is_hit = pick(&s, x, y, 3, 0, 0, -1, 100, &hit) == NOH_OK;
+            if (c->nearest && (fabs(u - nearbyint(u)) < 0.01 || fabs(v - nearbyint(v)) < 0.01)) continue;
+            if (fabs(alpha - most) < 0.01 * most) continue;
+            assert_int_equal(is_hit, alpha >= most);
+            hits += (uint32_t)is_hit;
+            sure++;
+        }
+        assert_true(sure > 3500);
+        if (c->alpha == MODEL_ALPHA_MASK) assert_in_range(hits, sure / 5u, 4u * sure / 5u);
+        if (c->alpha == MODEL_ALPHA_BLEND) assert_in_range(hits, sure / 2u, sure - sure / 40u);
+        free(s.bytes);
+    }
+}
+
+/* Behind a hole is the layer below; a tint that leaves nothing leaves nothing to hit. */
+static void what_lies_behind_a_hole_is_hit(void **state)
+{
+    static const cut hole = { MODEL_ALPHA_MASK, 33071, 1, 0, 1.0f, 0.0f, 1.0f, 0.5f };
+    static const cut veil = { MODEL_ALPHA_BLEND, 33071, 1, 0, 1.0f, 0.0f, 1.0f, 0.5f };
+    static const uint8_t thin[4] = { 255, 255, 255, 128 }, gone[4] = { 255, 255, 255, 0 };
+    uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE];
+    uint32_t layers[3] = { 0 };
+    sheet s;
+    noh_pick_hit hit;
+    (void)state;
+    cut_sheet_open(&s, &hole, 1);
+    alphas_of(&s, alphas);
+    for (uint32_t y = 0; y < PICTURE_SIDE; y++) {
+        for (uint32_t x = 0; x < PICTURE_SIDE / 2u; x++) {
+            const float at[2] = { 0.25f * ((float)x + 0.4f), 0.25f * ((float)y + 0.4f) };
+            const int over = alphas[y * PICTURE_SIDE + PICTURE_SIDE - 1u - x] >= 128;
+            const int under = alphas[y * PICTURE_SIDE + x] >= 128;
+            const noh_result result = pick(&s, at[0], at[1], 3, 0, 0, -1, 100, &hit);
+            if (at[0] > 0.99f) continue; /* steeper beside the fold */
+            assert_int_equal(result, over || under ? NOH_OK : NOH_ERR_NOT_FOUND);
+            if (result == NOH_OK) assert_true(fabsf(hit.distance - (over ? 2.0f : 3.0f)) < 1e-5f);
+            layers[over ? 0 : under ? 1 : 2]++;
+        }
+    }
+    for (int i = 0; i < 3; i++) assert_true(layers[i] > 3);
+    free(s.bytes);
+    cut_sheet_open(&s, &veil, 0);
+    assert_int_equal(pick(&s, 0.4f, 0.4f, 3, 0, 0, -1, 100, &hit), NOH_OK);
+    s.surface.tint = thin;
+    assert_int_equal(pick(&s, 0.4f, 0.4f, 3, 0, 0, -1, 100, &hit), NOH_OK);
+    s.surface.tint = gone;
+    assert_int_equal(pick(&s, 0.4f, 0.4f, 3, 0, 0, -1, 100, &hit), NOH_ERR_NOT_FOUND);
+    free(s.bytes);
+}
+
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_hit_says_where_it_is),         cmocka_unit_test(a_ray_ends_at_its_distance),
-    cmocka_unit_test(no_ray_slips_through_an_edge),   cmocka_unit_test(no_ray_slips_through_an_edge_askew),
-    cmocka_unit_test(the_nearest_layer_is_hit),       cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
-    cmocka_unit_test(the_joint_is_that_of_the_point), cmocka_unit_test(what_a_far_joint_pulls_is_hit),
+    cmocka_unit_test(rays_go_through_what_is_cut_away), cmocka_unit_test(what_lies_behind_a_hole_is_hit),
+    cmocka_unit_test(a_hit_says_where_it_is),           cmocka_unit_test(a_ray_ends_at_its_distance),
+    cmocka_unit_test(no_ray_slips_through_an_edge),     cmocka_unit_test(no_ray_slips_through_an_edge_askew),
+    cmocka_unit_test(the_nearest_layer_is_hit),         cmocka_unit_test(placed_surfaces_are_hit_where_they_stand),
+    cmocka_unit_test(the_joint_is_that_of_the_point),   cmocka_unit_test(what_a_far_joint_pulls_is_hit),
 };
 
 TEST_MAIN(tests, NULL, NULL)

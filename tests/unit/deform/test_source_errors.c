@@ -280,7 +280,7 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     noh_morph_layers layers = test_layers(&t->mesh);
     const float weight = 1.0f, d[3] = { -1, 0, 0 };
     float *scratch = test_zeros(36 * sizeof(float)), at[3], o[3] = { 5, 0, 0.02f };
-    noh_pick_surface plain = { &t->mesh, NULL, t->matrices, NULL, NULL, NULL }, smiling = plain;
+    noh_pick_surface plain = { &t->mesh, NULL, t->matrices, NULL, NULL, NULL, NULL }, smiling = plain;
     noh_pick_hit hit, other, miss;
     (void)state;
     noh_morph_accumulate(&t->mesh, &weight, &layers);
