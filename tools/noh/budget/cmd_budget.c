@@ -61,7 +61,7 @@ static void print_parts(const pack_budget *b)
         printf("  %-30s %12llu %12llu\n", name, (unsigned long long)b->parts[i].cpu_bytes,
                (unsigned long long)b->parts[i].gpu_bytes);
     }
-    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)plan->cpu_bytes, (unsigned long long)plan->gpu_bytes);
+    printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
     printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)plan->pack_bytes, "");
     if (terrain_bytes(b)) printf("  %-30s %12llu\n", "  of it the terrain", (unsigned long long)terrain_bytes(b));
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
@@ -90,8 +90,8 @@ static int json_budget(const pack_budget *b, const char *device)
 {
     const noh_stage_plan *plan = &b->planned.plan;
     json j = json_begin();
-    json_integer(&j, "cpu_bytes", plan->cpu_bytes);
-    json_integer(&j, "gpu_bytes", plan->gpu_bytes);
+    json_integer(&j, "cpu_bytes", b->cpu_bytes);
+    json_integer(&j, "gpu_bytes", b->gpu_bytes);
     json_integer(&j, "pack_bytes", plan->pack_bytes);
     json_integer(&j, "terrain_bytes", terrain_bytes(b));
     json_integer(&j, "stack_bytes", NOH_STACK_BYTES);
@@ -175,6 +175,7 @@ static int budget_of_pack(const budget_args *a)
         return status;
     }
     desc.file = &file;
+    desc.hair = 1;
     status = figure_open_clips(&anim, a->anim, &file, &desc.clips);
     if (!status) status = budget_of(a, &desc);
     figure_close_clips(&anim, desc.clips);

@@ -6,15 +6,19 @@
 
 #include "cli/message.h"
 
+/* Those of the stage; behind them the hair, where there is some. */
 static int list_parts(pack_budget *b, const noh_gl_caps *caps)
 {
     const figure *f = &b->planned;
+    noh_stage_bytes hair = { .what = "hair", .kind = f->hair_kind };
     b->part_count = noh_stage_plan_parts(&f->stage_desc, caps, &f->plan, NULL, 0);
     b->parts = calloc(b->part_count + 1u, sizeof *b->parts);
     if (!b->parts) {
         return tool_fail(f->desc.file->path, "out of memory");
     }
     (void)noh_stage_plan_parts(&f->stage_desc, caps, &f->plan, b->parts, b->part_count);
+    figure_hair_bytes(f, &hair.cpu_bytes, &hair.gpu_bytes);
+    if (hair.cpu_bytes) b->parts[b->part_count++] = hair;
     return 0;
 }
 
@@ -59,8 +63,7 @@ static int find_levels(pack_budget *b, const noh_gl_caps *caps)
         status = figure_plan(&f, &desc, caps);
         if (status) break;
         count_work(&f, desc.level, cost);
-        cost->cpu_bytes = f.plan.cpu_bytes;
-        cost->gpu_bytes = f.plan.gpu_bytes;
+        figure_bytes(&f, &cost->cpu_bytes, &cost->gpu_bytes);
         figure_plan_free(&f);
     }
     return status;
@@ -81,6 +84,7 @@ int pack_budget_make(pack_budget *b, const figure_desc *desc, const noh_gl_caps 
         status = tool_fail_error(desc->file->path, &error);
     }
     count_segments(b);
+    figure_bytes(f, &b->cpu_bytes, &b->gpu_bytes);
     if (!status) status = list_parts(b, caps);
     if (!status) status = find_levels(b, caps);
     if (status) pack_budget_free(b);

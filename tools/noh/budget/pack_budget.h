@@ -12,8 +12,9 @@ typedef struct level_cost {
 
 typedef struct pack_budget {
     figure planned;
-    noh_gl_morph_plan morph; /* zeros but for `reason` where nothing is drawn */
-    noh_stage_bytes *parts;  /* [part_count] */
+    uint64_t cpu_bytes, gpu_bytes; /* of all parts */
+    noh_gl_morph_plan morph;       /* zeros but for `reason` where nothing is drawn */
+    noh_stage_bytes *parts;        /* [part_count] */
     uint32_t part_count;
     uint32_t cached_segment_count, segment_count; /* of all clips: held decoded at once; in all */
     level_cost levels[NOH_LOD_LEVELS_MAX];

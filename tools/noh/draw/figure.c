@@ -198,6 +198,13 @@ void figure_plan_free(figure *f)
     memset(f, 0, sizeof *f);
 }
 
+void figure_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes)
+{
+    figure_hair_bytes(f, cpu_bytes, gpu_bytes);
+    *cpu_bytes += f->plan.cpu_bytes;
+    *gpu_bytes += f->plan.gpu_bytes;
+}
+
 /* ---- its stage ---- */
 
 static int open_stage(figure *f)

@@ -1,6 +1,7 @@
 /* figure.h: a pack on a stage, as the verbs want it: everything that it holds, once, in the pose of its clips.
  *
  *   figure_plan            the bytes, without a driver; figure_open makes the stage; figure_close, figure_restore
+ *   figure_bytes           of its plan, and of the hair that is drawn beside it
  *   figure_reset           at rest: nothing plays, nothing is held; figure_set_look
  *   figure_play            a clip; figure_clip_seconds, figure_pause
  *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
@@ -114,6 +115,8 @@ typedef struct figure {
  * caps  NULL: nothing is drawn, and packs of skeletons or clips alone are taken, too */
 int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps);
 void figure_plan_free(figure *f); /* of a figure that is not opened */
+/* What it takes as planned: the stage and its hair. Lights, marks and debug views are not of it. */
+void figure_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 
 /* g  NULL: nothing is drawn, as above */
 int figure_open(figure *f, const figure_desc *desc, gpu *g);
@@ -188,6 +191,8 @@ int figure_draw_decals(figure *f);
 
 /* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
 int figure_add_hair(figure *f);
+/* Beside the stage; 0 without hair. */
+void figure_hair_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 int figure_open_hair(figure *f);
 int figure_update_hair(figure *f);
 

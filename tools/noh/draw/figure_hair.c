@@ -30,6 +30,13 @@ int figure_add_hair(figure *f)
     return 0;
 }
 
+void figure_hair_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes)
+{
+    const int drawn = f->hair_kind != NOH_NONE && f->stage_desc.gpu;
+    *cpu_bytes = drawn ? noh_stage_hair_size(&f->cut) : 0;
+    *gpu_bytes = drawn ? noh_stage_hair_bytes(&f->cut) : 0;
+}
+
 int figure_open_hair(figure *f)
 {
     char log[4096] = "";

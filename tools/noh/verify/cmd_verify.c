@@ -31,6 +31,28 @@ static uint64_t least_block(verify_job *job, const figure *planned)
     return ok ? bytes : 0;
 }
 
+/* The same of the hair. */
+static uint64_t least_hair(verify_job *job, const figure *planned)
+{
+    const noh_gl_device device = { &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_stage_hair hair;
+    uint64_t bytes, gpu_bytes;
+    figure_hair_bytes(planned, &bytes, &gpu_bytes);
+    if (!bytes) return 0;
+    uint8_t *memory = malloc((size_t)bytes);
+    int ok = memory != NULL;
+    if (ok) {
+        memset(memory, 0xa5, (size_t)bytes);
+        ok = noh_stage_hair_create(&device, &planned->wig, memory, (size_t)bytes - 1u, 0, 0, &hair, &error) ==
+                 NOH_ERR_MEMORY &&
+             error.need == bytes;
+        for (size_t i = 0; i < bytes; i++) ok &= memory[i] == 0xa5;
+    }
+    free(memory);
+    return ok ? bytes : 0;
+}
+
 /* A frame that a camera sees, with the first clip playing. */
 static int show(figure *f)
 {
@@ -58,9 +80,8 @@ static int verify_figure(verify_job *job)
     if (status) {
         return status;
     }
-    job->cpu_predicted = planned.plan.cpu_bytes;
-    job->gpu_predicted = planned.plan.gpu_bytes;
-    job->cpu_used = least_block(job, &planned);
+    figure_bytes(&planned, &job->cpu_predicted, &job->gpu_predicted);
+    job->cpu_used = least_block(job, &planned) + least_hair(job, &planned);
     figure_plan_free(&planned);
     status = figure_open(&f, &job->figure, &job->g);
     if (!status) {
@@ -134,6 +155,7 @@ static int run(void *args)
         return status;
     }
     job.figure.file = &job.file;
+    job.figure.hair = 1;
     status = figure_open_clips(&anim, a->anim, &job.file, &job.figure.clips);
     if (!status) status = verify_pack(&job, a);
     figure_close_clips(&anim, job.figure.clips);
