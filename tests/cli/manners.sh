@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
-verbs='build strip pack info clip budget light render sheet zoom dump verify view crowd drop speak mask face replay bisect bench'
+verbs='build strip pack info clip budget light render sheet zoom dump verify view crowd drop speak mask bake face replay bisect bench'
 
 silent() {
     check "$1" test ! -s "$work/err"

@@ -12,13 +12,13 @@ noh
 expect 2 'no verb is a usage error'
 noh help
 expect 0 'help is not an error'
-check 'help names every verb' sh -c 'for v in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask face replay bisect bench; do grep -q "noh $v " "$1" || exit 1; done' - "$work/out"
+check 'help names every verb' sh -c 'for v in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask bake face replay bisect bench; do grep -q "noh $v " "$1" || exit 1; done' - "$work/out"
 noh biuld "$pack"
 expect 2 'an unknown verb'
 says "there is no verb 'biuld'"
 quiet_stdout
 
-for verb in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask face replay bisect bench; do
+for verb in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask bake face replay bisect bench; do
     noh $verb
     expect 2 "$verb without a file"
     noh $verb "$pack" --no-such-option

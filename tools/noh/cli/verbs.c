@@ -5,9 +5,9 @@
 const verb *verb_at(int index)
 {
     static const verb *const all[VERB_COUNT] = {
-        &verb_build,  &verb_strip, &verb_pack, &verb_info, &verb_clip,   &verb_budget, &verb_light,
-        &verb_render, &verb_sheet, &verb_zoom, &verb_dump, &verb_verify, &verb_view,   &verb_crowd,
-        &verb_drop,   &verb_speak, &verb_mask, &verb_face, &verb_replay, &verb_bisect, &verb_bench,
+        &verb_build, &verb_strip, &verb_pack, &verb_info,   &verb_clip,   &verb_budget, &verb_light, &verb_render,
+        &verb_sheet, &verb_zoom,  &verb_dump, &verb_verify, &verb_view,   &verb_crowd,  &verb_drop,  &verb_speak,
+        &verb_mask,  &verb_bake,  &verb_face, &verb_replay, &verb_bisect, &verb_bench,
     };
     return all[index];
 }

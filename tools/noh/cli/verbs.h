@@ -4,11 +4,11 @@
 
 #include "args.h"
 
-#define VERB_COUNT 21
+#define VERB_COUNT 22
 
 extern const verb verb_build, verb_strip, verb_pack, verb_info, verb_clip, verb_budget, verb_light, verb_render,
-    verb_sheet, verb_zoom, verb_dump, verb_verify, verb_view, verb_crowd, verb_drop, verb_speak, verb_mask, verb_face,
-    verb_replay, verb_bisect, verb_bench;
+    verb_sheet, verb_zoom, verb_dump, verb_verify, verb_view, verb_crowd, verb_drop, verb_speak, verb_mask, verb_bake,
+    verb_face, verb_replay, verb_bisect, verb_bench;
 
 /* In the order of the help. */
 const verb *verb_at(int index);

@@ -1,0 +1,206 @@
+/* cmd_bake.c: normal maps out of height maps and fine models. */
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/json.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/report_stream.h"
+#include "cli/verbs.h"
+#include "convert/base/image_file.h"
+#include "convert/normal/normal_bake.h"
+#include "convert/normal/normal_height.h"
+#include "convert/obj/obj_read.h"
+#include "file/png_file.h"
+
+#define SIZE_MAX_TEXELS 8192.0
+
+typedef struct bake_args {
+    const char *file, *output, *from, *material;
+    double depth, size, reach_mm;
+    int tiles, as_json, quiet;
+} bake_args;
+
+static int has_ending(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), own = strlen(ending);
+    return length >= own && strcmp(path + length - own, ending) == 0;
+}
+
+static void report(const bake_args *a, uint32_t width, uint32_t height, const normal_map *map)
+{
+    FILE *out = report_stream(a->output);
+    if (a->as_json) {
+        json j = json_begin();
+        json_text(&j, "input", a->file);
+        json_text(&j, "output", a->output);
+        json_integer(&j, "width", width);
+        json_integer(&j, "height", height);
+        if (map) {
+            json_integer(&j, "covered", map->covered);
+            json_integer(&j, "overlapped", map->overlapped);
+            json_integer(&j, "missed", map->missed);
+            json_number(&j, "reach_mm", 1000.0 * map->reach);
+            json_number(&j, "lean_degrees", map->lean);
+        }
+        (void)json_end(&j);
+        return;
+    }
+    if (a->quiet) return;
+    fprintf(out, "%s: %u x %u texels", a->output, width, height);
+    if (map) {
+        fprintf(
+            out,
+            ", %u covered, %u overlaps, %u without a fine surface within %.3g mm; normals lean by %.2f degrees "
+            "in the mean",
+            map->covered, map->overlapped, map->missed, 1000.0 * map->reach, map->lean);
+    }
+    fprintf(out, "\n");
+}
+
+static int bake_height(const bake_args *a)
+{
+    model_error error = { "", "" };
+    uint32_t width, height;
+    uint16_t *heights;
+    uint8_t *rgba;
+    int status;
+    if (image_read_grey(a->file, &width, &height, &heights, &error)) return tool_fail(a->file, "%s", error.what);
+    rgba = normal_map_of_height(heights, width, height, a->depth, a->tiles);
+    free(heights);
+    if (!rgba) return tool_fail(a->file, "out of memory");
+    status = tool_write_png(a->output, width, height, rgba);
+    free(rgba);
+    if (!status) report(a, width, height, NULL);
+    return status;
+}
+
+static int read_model(const char *path, model **out)
+{
+    const obj_options obj = { 0.0, NULL };
+    model_error error = { "", "" };
+    const int failed = has_ending(path, ".obj") ? obj_read(path, &obj, out, &error)
+                                                : model_read_gltf(path, out, &error);
+    return failed
+               ? tool_fail(path, "%s%s%s%s", error.what, *error.where ? " (" : "", error.where, *error.where ? ")" : "")
+               : 0;
+}
+
+static int bake_model(const bake_args *a)
+{
+    const normal_bake_settings settings = { (uint32_t)a->size, a->reach_mm / 1000.0, a->material };
+    model_error error = { "", "" };
+    model *coarse = NULL, *fine = NULL;
+    normal_map map = { 0 };
+    int status = read_model(a->file, &coarse);
+    if (!status) status = read_model(a->from, &fine);
+    if (!status && normal_map_bake(coarse, fine, &settings, &map, &error))
+        status = tool_fail(a->file, "%s", error.what);
+    if (!status && map.missed == map.covered) {
+        status = tool_fail(a->from, "it lies nowhere within %.3g mm of %s: --reach-mm says how far it may be off",
+                           1000.0 * map.reach, a->file);
+    }
+    if (!status) status = tool_write_png(a->output, map.size, map.size, map.rgba);
+    if (!status) report(a, map.size, map.size, &map);
+    free(map.rgba);
+    if (coarse) model_free(coarse);
+    if (fine) model_free(fine);
+    return status;
+}
+
+static int run(void *args)
+{
+    const bake_args *a = args;
+    if (a->as_json && report_stream(a->output) != stdout) return tool_usage("--json and -o both write to stdout");
+    if (has_ending(a->file, ".png") == (a->from != NULL)) {
+        return tool_usage("bake wants a height map (.png), or a model and --from, the fine one");
+    }
+    if (!a->from) {
+        if (!(fabs(a->depth) <= 1e6) || a->depth == 0.0) {
+            return tool_usage("--depth wants texels from -1000000 to 1000000, not 0");
+        }
+        return bake_height(a);
+    }
+    if (!(a->size >= 16.0 && a->size <= SIZE_MAX_TEXELS) || a->size != floor(a->size)) {
+        return tool_usage("--size wants a whole number of texels from 16 to 8192");
+    }
+    if (!(a->reach_mm >= 0.0 && a->reach_mm <= 1e6)) return tool_usage("--reach-mm wants 0 to 1000000");
+    return bake_model(a);
+}
+
+static bake_args arguments;
+
+static const option options[] = {
+    { .name = "-o",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(bake_args, output),
+      .required = 1,
+      .value = "OUT.png",
+      .what = "the normal map: tangent space, +y up",
+      .example = "normal.png" },
+    { .name = "--depth",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(bake_args, depth),
+      .value = "TEXELS",
+      .initial = "8",
+      .what = "of a height map: how far white lies above black, in texels; negative: below",
+      .example = "20",
+      .excludes = "--from" },
+    { .name = "--tiles",
+      .kind = OPTION_FLAG,
+      .at = offsetof(bake_args, tiles),
+      .what = "of a height map: it repeats, so beyond an edge is the opposite one",
+      .excludes = "--from" },
+    { .name = "--from",
+      .kind = OPTION_INPUT,
+      .at = offsetof(bake_args, from),
+      .value = "FINE",
+      .what = "a model (.glb, .gltf, .obj) of more triangles that lies on FILE's, as both stand at rest",
+      .example = "sculpt.glb" },
+    { .name = "--size",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(bake_args, size),
+      .value = "N",
+      .initial = "1024",
+      .what = "side of the map, texels, 16 to 8192",
+      .example = "512",
+      .needs = "--from" },
+    { .name = "--reach-mm",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(bake_args, reach_mm),
+      .value = "MM",
+      .initial = "0",
+      .what = "how far the fine surface may be off along the normal; 0: 2 % of the diagonal of FILE's box",
+      .example = "4",
+      .needs = "--from" },
+    { .name = "--material",
+      .kind = OPTION_TEXT,
+      .at = offsetof(bake_args, material),
+      .value = "NAME",
+      .what = "only the triangles of FILE with this material, where several share the texture's square",
+      .example = "skin",
+      .needs = "--from" },
+    { .name = "--quiet",
+      .kind = OPTION_FLAG,
+      .at = offsetof(bake_args, quiet),
+      .what = "no report",
+      .excludes = "--json" },
+    OPTION_JSON(bake_args, as_json),
+};
+
+const verb verb_bake = {
+    .name = "bake",
+    .files = "FILE",
+    .what = "make a normal map, out of a height map or of a finer model",
+    .more =
+        "A map is for the texture coordinates, normals and tangents that FILE has, or that noh makes where it has none; a model's material names it as its normalTexture.",
+    .example = "heights.png -o normal.png --depth 12\nhead.glb --from sculpt.glb -o normal.png --size 1024",
+    .options = options,
+    .option_count = sizeof options / sizeof options[0],
+    .file_max = 1,
+    .files_at = offsetof(bake_args, file),
+    .args = &arguments,
+    .run = run,
+};
