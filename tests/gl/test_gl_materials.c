@@ -77,6 +77,135 @@ static void errata_C12_2_a_mirror_turns_the_frame_inside_out(void **state)
     assert_true(other > 4.0 * LIT_QUAD_CLOSE);
 }
 
+/* C12.2: the first listing has the light in the world, and normal and tangent in the object. */
+static void errata_C12_2_light_and_frame_are_in_one_space(void **state)
+{
+    static const uint8_t texel[4] = { 200, 160, 220, 255 };
+    const lit_quad q = mapped(texel, 1.0f);
+    double off, other;
+    (void)state;
+    compare(&q, FRAME_IN_OBJECT, &off, &other);
+    assert_true(off < LIT_QUAD_CLOSE);
+    assert_true(other > 4.0 * LIT_QUAD_CLOSE);
+}
+
+/* The quad elsewhere in the world, with the camera: what is seen does not change. */
+static lit_quad shifted(const lit_quad *q, const float by[3])
+{
+    lit_quad out = *q;
+    for (int i = 0; i < 3; i++) {
+        out.world[4 * i + 3] += by[i];
+        out.camera.view_projection[12 + i] -= out.camera.view_projection[5 * i] * by[i];
+        out.camera.eye[i] += by[i];
+    }
+    return out;
+}
+
+static uint32_t largest_difference(const uint8_t *a, const uint8_t *b)
+{
+    uint32_t largest = 0;
+    for (uint32_t i = 0; i < LIT_QUAD_SIDE * LIT_QUAD_SIDE * 4u; i++) {
+        const uint32_t d = (uint32_t)abs(a[i] - b[i]);
+        largest = d > largest ? d : largest;
+    }
+    return largest;
+}
+
+static const float far_away[3] = { 0.4f, -0.7f, 0.5f };
+
+/* C12.2: "a point in world space" is a vector: turned as a point, the light takes the world's shift along. */
+static void errata_C12_2_a_light_is_no_point(void **state)
+{
+    static const uint8_t texel[4] = { 200, 160, 220, 255 };
+    const lit_quad here = mapped(texel, 1.0f), there = shifted(&here, far_away);
+    lit_quad literal = there;
+    uint8_t *a = lit_quad_draw(fixture_gpu(), &here, NOH_DRAW_OPAQUE);
+    uint8_t *b = lit_quad_draw(fixture_gpu(), &there, NOH_DRAW_OPAQUE), *c;
+    float length = 0.0f;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        literal.camera.key[i] += far_away[i];
+        length += literal.camera.key[i] * literal.camera.key[i];
+    }
+    for (int i = 0; i < 3; i++) literal.camera.key[i] /= sqrtf(length);
+    c = lit_quad_draw(fixture_gpu(), &literal, NOH_DRAW_OPAQUE);
+    assert_true(largest_difference(a, b) <= 1);
+    assert_true(largest_difference(a, c) > 10);
+    free(a);
+    free(b);
+    free(c);
+}
+
+/* C12.4: float3 times float4x4 takes the world's shift into normal and tangent. */
+static void errata_C12_4_a_shift_turns_no_frame(void **state)
+{
+    static const uint8_t texel[4] = { 230, 150, 200, 255 };
+    const lit_quad here = mapped(texel, 1.0f), there = shifted(&here, far_away);
+    uint8_t *a = lit_quad_draw(fixture_gpu(), &here, NOH_DRAW_OPAQUE);
+    uint8_t *b = lit_quad_draw(fixture_gpu(), &there, NOH_DRAW_OPAQUE);
+    (void)state;
+    assert_true(largest_difference(a, b) <= 1);
+    for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
+        double n[3], cosine = 0.0, length = 0.0;
+        lit_quad_normal(&here, x, NORMALS_BY_INVERSE_TRANSPOSE, n);
+        for (int i = 0; i < 3; i++) {
+            const double literal = n[i] + (double)far_away[i];
+            cosine += n[i] * literal;
+            length += literal * literal;
+        }
+        assert_true(cosine / sqrt(length) < 0.97); /* 14 degrees and more */
+    }
+    free(a);
+    free(b);
+}
+
+/* C12.5: a normal that is filtered between vertices is shorter than one, and the exponent of a highlight makes much of
+ * it. */
+static void errata_C12_5_filtered_normals_are_unit(void **state)
+{
+    lit_quad q = lit_quad_of();
+    double off, other;
+    (void)state;
+    q.roughness = 0.35f;
+    compare(&q, NORMALS_NOT_UNIT, &off, &other);
+    assert_true(off < LIT_QUAD_CLOSE);
+    assert_true(other > 4.0 * LIT_QUAD_CLOSE);
+}
+
+/* C12.5: pow(sat(n h), 85) * 0.4 also shines where the light is behind the surface. The quad is metal, so that nothing
+ * but highlights shows the light; in the middle column it lies 3 degrees behind the surface and the eye 12 in front of
+ * it, on the other side. Then it is far behind, which must look the same. */
+static void errata_C12_5_nothing_shines_from_behind(void **state)
+{
+    const uint32_t middle = LIT_QUAD_SIDE / 2u;
+    lit_quad near = lit_quad_of(), far;
+    double n[3], nh = 0.0, length = 0.0;
+    uint8_t *a, *b;
+    (void)state;
+    near.metallic = 1.0f;
+    near.roughness = 0.3f;
+    lit_quad_normal(&near, middle, NORMALS_BY_INVERSE_TRANSPOSE, n);
+    assert_true(fabs(n[0]) < 1e-6);
+    far = near;
+    for (int i = 0; i < 3; i++) { /* the row runs along x */
+        near.camera.key[i] = (float)(i == 0 ? -cos(0.05) : -sin(0.05) * n[i]);
+        near.camera.eye[i] = (float)(100.0 * (i == 0 ? cos(0.2) : sin(0.2) * n[i]));
+        far.camera.key[i] = (float)-n[i];
+        far.camera.eye[i] = near.camera.eye[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        const double h = (double)(near.camera.key[i] + 0.01f * near.camera.eye[i]);
+        nh += n[i] * h;
+        length += h * h;
+    }
+    assert_true(0.4 * pow(nh / sqrt(length), 85.0) > 0.1); /* the literal highlight: 89 of 255 and more */
+    a = lit_quad_draw(fixture_gpu(), &near, NOH_DRAW_OPAQUE);
+    b = lit_quad_draw(fixture_gpu(), &far, NOH_DRAW_OPAQUE);
+    for (int i = 0; i < 3; i++) assert_true(abs(lit_quad_at(a, middle)[i] - lit_quad_at(b, middle)[i]) <= 1);
+    free(a);
+    free(b);
+}
+
 /* C12.1: bytes as 2 t - 1 have no zero, so a flat map leans. The byte 128 stands for it. */
 static void errata_C12_1_a_flat_map_changes_nothing(void **state)
 {
@@ -170,6 +299,11 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normal_maps_turn_the_normal),
     cmocka_unit_test(errata_C12_4_a_skewed_frame_leans_the_normal),
     cmocka_unit_test(errata_C12_2_a_mirror_turns_the_frame_inside_out),
+    cmocka_unit_test(errata_C12_2_light_and_frame_are_in_one_space),
+    cmocka_unit_test(errata_C12_2_a_light_is_no_point),
+    cmocka_unit_test(errata_C12_4_a_shift_turns_no_frame),
+    cmocka_unit_test(errata_C12_5_filtered_normals_are_unit),
+    cmocka_unit_test(errata_C12_5_nothing_shines_from_behind),
     cmocka_unit_test(errata_C12_1_a_flat_map_changes_nothing),
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
     cmocka_unit_test(programs_have_what_materials_have),

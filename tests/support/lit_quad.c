@@ -285,7 +285,7 @@ static void map_normal(const lit_quad *q, lit_quad_normals by, double n[3])
     double t[3], b[3], v[3], along = 0.0;
     for (int i = 0; i < 3; i++) {
         v[i] = ((double)q->normal_map[i] - 128.0) / 127.0 * (i < 2 ? (double)q->normal_scale : 1.0);
-        t[i] = (double)(q->world[5 * i] * q->tangent[i]);
+        t[i] = (double)((by == FRAME_IN_OBJECT ? 1.0f : q->world[5 * i]) * q->tangent[i]);
         along += t[i] * n[i];
     }
     for (int i = 0; i < 3 && by != FRAME_AS_IT_IS; i++) t[i] -= along * n[i];
@@ -305,9 +305,8 @@ void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, do
     quad_normal(x_of(q, column), normal);
     for (int i = 0; i < 3; i++) { /* NOT_UNIT: by the cofactors, with the length that they give */
         const double axis = (double)q->world[5 * i];
-        n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX    ? axis
-                                    : by == NORMALS_BY_NOTHING ? 1.0
-                                                               : fabs(determinant) / axis);
+        const int as_it_is = by == NORMALS_BY_NOTHING || by == FRAME_IN_OBJECT;
+        n[i] = (double)normal[i] * (by == NORMALS_BY_MATRIX ? axis : as_it_is ? 1.0 : fabs(determinant) / axis);
     }
     if (by != NORMALS_NOT_UNIT) {
         unit(n);

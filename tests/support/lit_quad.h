@@ -48,8 +48,9 @@ typedef enum lit_quad_normals {
     NORMALS_BY_MATRIX,
     NORMALS_BY_NOTHING,
     NORMALS_NOT_UNIT,
-    FRAME_AS_IT_IS,    /* with a normal map: the tangent not made orthogonal to the normal again */
-    FRAME_NOT_MIRRORED /* the bitangent by the cross product alone, in a mirrored world too */
+    FRAME_AS_IT_IS,     /* with a normal map: the tangent not made orthogonal to the normal again */
+    FRAME_NOT_MIRRORED, /* the bitangent by the cross product alone, in a mirrored world too */
+    FRAME_IN_OBJECT     /* normal and tangent as the mesh has them, under a light in the world */
 } lit_quad_normals;
 
 /* The normal in the world at a column of the middle row. world must be diagonal. */

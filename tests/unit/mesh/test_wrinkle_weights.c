@@ -64,12 +64,38 @@ static void errata_A12_areas_do_not_follow_the_camera(void **state)
     assert_true(noh_wrinkles_area(1.0f, 0.0f) == 1.0f);
     assert_true(fabsf(noh_wrinkles_area(1.0f, 3.0f) - 0.29f) < 1e-6f);
     assert_true(noh_wrinkles_area(1.0f, 1e9f) == 0.0f);
-    assert_true(noh_wrinkles_area(0.0f, 0.0f) == 0.3f); /* the source divides by it */
+}
+
+/* (A0 - A) / A0 of a triangle without area at rest is no number, and so is the normal that is mixed by it. */
+static void errata_A12_no_area_at_rest_is_no_number(void **state)
+{
+    const volatile float none = 0.0f; /* so that the division is not done by the compiler */
+    const float literal = (none - none) / none;
+    (void)state;
+    assert_true(literal != literal);
+    assert_true(noh_wrinkles_area(0.0f, 0.0f) == 0.3f);
+    assert_true(noh_wrinkles_area(0.0f, 2.0f) == 0.3f);
 }
 
 static float length_of(const float v[3])
 {
     return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* N = lerp(N_geo, N_bump, wrinkle) is not made unit again: with the weight that a triangle has at rest, and that of one
+ * that lost a third. */
+static void errata_A12_mixed_normals_are_unit(void **state)
+{
+    const float geometric[3] = { 0.0f, 0.0f, 1.0f }, bump[3] = { 0.8f, 0.0f, 0.6f };
+    (void)state;
+    for (int third = 0; third < 2; ++third) {
+        const float weight = noh_wrinkles_area(3.0f, third ? 2.0f : 3.0f);
+        float literal[3], out[3];
+        for (int i = 0; i < 3; ++i) literal[i] = geometric[i] + weight * (bump[i] - geometric[i]);
+        noh_wrinkles_normal(geometric, bump, weight, out);
+        assert_true(length_of(literal) < 0.96f);
+        assert_true(fabsf(length_of(out) - 1.0f) < 1e-6f);
+    }
 }
 
 /* N = lerp(base, wrinkle, weight) is shorter than one, and at weight 1 has nothing of the base's detail left. */
@@ -97,6 +123,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(regions_come_from_expressions),
         cmocka_unit_test(errata_A12_areas_do_not_follow_the_camera),
+        cmocka_unit_test(errata_A12_no_area_at_rest_is_no_number),
+        cmocka_unit_test(errata_A12_mixed_normals_are_unit),
         cmocka_unit_test(errata_B7_wrinkled_normals_are_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
