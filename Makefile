@@ -325,6 +325,9 @@ $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRI
 $(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
 	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --quiet
 
+$(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --transfer 4 --quiet
+
 PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
@@ -425,8 +428,8 @@ WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GRO
                -s MALLOC=emmalloc -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
-WEB_STATIC  := 131072
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js light.js faces.js speech.js microphone.js page.noh)
+WEB_STATIC  := 196608
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js light.js hair.js faces.js speech.js microphone.js page.noh)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
@@ -434,7 +437,7 @@ web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
-WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh,$(WEB_PACK))
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
@@ -466,7 +469,7 @@ $(WEB)/%: platform/web/%
 	@cp $< $@
 
 # What does not depend on the pack is compiled once, for all pages and for the planner.
-WEB_MAIN := $(addprefix platform/web/,main.c light.c faces.c sound.c) # these know the size of its memory
+WEB_MAIN := $(addprefix platform/web/,main.c light.c faces.c hair.c sound.c touch.c) # these know the size of its memory
 WEB_C := platform/web/bounds.c platform/web/cast.c platform/web/context.c $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
 WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/file.o $(filter-out %/context.o,$(WEB_O))

@@ -65,6 +65,45 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
     return NOH_OK;
 }
 
+/* The first kind that has the joint which carries it. */
+static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
+{
+    cast->hair_kind = NOH_NONE;
+    if (noh_haircut_open(pack, &cast->cut, NULL)) return NOH_OK;
+    for (uint32_t k = 0; k < cast->desc.kind_count && cast->hair_kind == NOH_NONE; k++) {
+        if (noh_wig_make(&cast->cut, pack, cast->kinds[k].skeleton, &cast->wig, error) == NOH_OK) cast->hair_kind = k;
+    }
+    if (cast->hair_kind == NOH_NONE) return NOH_ERR_NOT_FOUND;
+    cast->hair_part = noh_wig_part(&cast->wig);
+    cast->kinds[cast->hair_kind].parts = &cast->hair_part;
+    cast->kinds[cast->hair_kind].part_count = 1;
+    cast->hair_bytes = (noh_stage_hair_size(&cast->cut) + 15u) / 16u * 16u;
+    return NOH_OK;
+}
+
+/* On a floor at a height of 0, as `noh render --push` has it. */
+static void add_fall(web_cast *cast, const noh_pack *pack)
+{
+    static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
+    static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
+    static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    static noh_ragdoll_rig rig;
+    static noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_source source = { .pack = pack, .skeleton = cast->kinds[0].skeleton };
+    const noh_skeleton_header *header;
+    noh_error *why = &cast->cannot_fall;
+    uint32_t count;
+    if (source.skeleton == NOH_NONE) {
+        (void)noh_fail(why, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+    } else if (!noh_pack_skeleton_at(pack, source.skeleton, &source.joints, &header, why)) {
+        source.metres = header->unit_cm / 100.0f;
+        if (!noh_ragdoll_find_rows(&source, rows, &count, why)) {
+            (void)noh_ragdoll_rig_make(&source, rows, count, &rig, why);
+        }
+    }
+    if (!why->result) cast->kinds[0].ragdoll = &ragdoll;
+}
+
 static uint32_t most_skin_joints(const noh_pack *pack)
 {
     uint32_t most = 0;
@@ -109,9 +148,21 @@ static void place_rest(web_cast *cast, const noh_pack *pack)
     at += sizeof(float) * 12u * most_skin_joints(pack);
     cast->texels_at = at = (at + 15u) / 16u * 16u;
     at += noh_reflection_size(cast->reflection.side);
+    cast->hair_at = at = (at + 15u) / 16u * 16u;
+    at += cast->wants.actors * cast->hair_bytes;
     cast->scratch_at = (at + 15u) / 16u * 16u;
     cast->scratch_bytes = larger(to_bake, web_cast_scratch(pack));
     cast->bytes = cast->scratch_at + cast->scratch_bytes + (size_t)cast->plan.state_bytes;
+}
+
+/* With the hair of all actors. */
+static void add_up(web_cast *cast)
+{
+    cast->cpu_bytes = cast->plan.cpu_bytes;
+    cast->gpu_bytes = cast->plan.gpu_bytes;
+    if (cast->hair_kind == NOH_NONE) return;
+    cast->cpu_bytes += cast->wants.actors * noh_stage_hair_size(&cast->cut);
+    cast->gpu_bytes += cast->wants.actors * noh_stage_hair_bytes(&cast->cut);
 }
 
 static void describe(web_cast *cast)
@@ -123,6 +174,7 @@ static void describe(web_cast *cast)
     cast->desc.gpu = &noh_stage_on_gl;
     cast->desc.encode_srgb = 1; /* a canvas does not encode */
     cast->desc.without_depth = !cast->wants.lit;
+    cast->desc.without_transfer = cast->wants.without_transfer;
     cast->desc.morph_path = (uint32_t)cast->wants.path;
 }
 
@@ -134,6 +186,8 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     cast->wants = *wants;
     result = list_kinds(cast, pack, error);
     describe(cast);
+    if (!result) result = add_hair(cast, pack, error);
+    if (!result) add_fall(cast, pack);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
     for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the floats are counted by now */
@@ -141,6 +195,9 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
         cast->kinds[i].held_float_count = floats ? floats : NOH_NONE;
     }
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
-    if (!result) place_rest(cast, pack);
+    if (!result) {
+        place_rest(cast, pack);
+        add_up(cast);
+    }
     return result;
 }

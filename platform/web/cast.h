@@ -4,6 +4,8 @@
 #define NOH_PLATFORM_WEB_CAST_H
 
 #include "noh_gl.h"
+#include "stage/stage_ragdoll.h"
+#include "stage_gl/stage_hair.h"
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 
@@ -13,8 +15,9 @@ enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 typedef struct web_wants {
     uint32_t actors; /* of each kind */
     noh_morph_path path;
-    int lit;   /* 1: by an environment, with a shadow map */
-    int alive; /* 1: faces, where eyes are found, and springs */
+    int lit;              /* 1: by an environment, with a shadow map */
+    int alive;            /* 1: faces, where eyes are found, and springs */
+    int without_transfer; /* 1: light that was worked out for each vertex is left out */
 } web_wants;
 
 typedef struct web_cast {
@@ -25,12 +28,20 @@ typedef struct web_cast {
     uint32_t faces_found;      /* a bit for each kind */
     noh_reflection reflection; /* without its texels, which nothing asks for before the stage is made */
     noh_gl_light_desc light;
+    noh_haircut cut;
+    noh_wig wig;
+    noh_stage_part hair_part;
+    uint32_t hair_kind;                                         /* whose actors wear it; NOH_NONE: the pack has none */
+    noh_error cannot_fall;                                      /* OK: actors of the first kind can */
     uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */
     noh_stage_plan plan;
     /* What else the page keeps, behind the stage: the matrices that web_bounds works on, the texels of a reflection,
-     * what is needed while one is made or faces are found, and the state that another stage goes on with */
-    size_t matrices_at, texels_at, scratch_at, scratch_bytes;
-    size_t bytes; /* of all of it */
+     * where hair is, what is needed while a reflection is made or faces are found, and the state that another stage
+     * goes on with */
+    size_t matrices_at, texels_at, hair_at, scratch_at, scratch_bytes;
+    size_t hair_bytes;             /* of one actor's; 0: none */
+    size_t bytes;                  /* of all of it */
+    uint64_t cpu_bytes, gpu_bytes; /* of the stage and its hair */
 } web_cast;
 
 /* A kind for each skeleton of the pack that moves a mesh; every float may be held. Must not be moved afterwards.

@@ -35,7 +35,7 @@ static void tell(void)
                 c = (float)cos((double)web.light.degrees * RADIANS);
     const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
     if (!is_lit()) return;
-    noh_lighting_make(&web.light.all, rotation, web.light.shadow, &web.light.told);
+    noh_lighting_make(&web.light.all, rotation, web.light.shadow == WEB_SHADOW_MAP, &web.light.told);
     web.light.told.tonemap = (noh_tonemap)web.light.tonemap;
     noh_stage_set_lighting(web.stage, &web.light.told);
 }
@@ -43,20 +43,28 @@ static void tell(void)
 noh_result web_light_open(void)
 {
     const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
+    noh_result result;
     if (!is_lit()) return NOH_OK;
     tell();
-    return noh_backdrop_create(&device, 1, &web.light.backdrop, &web.error);
+    for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
+        (void)noh_blob_rig_make(&web.cast.kinds[k], &web.light.rigs[k], NULL); /* draws nothing: no spots */
+    }
+    result = noh_backdrop_create(&device, 1, &web.light.backdrop, &web.error);
+    return result ? result : noh_stage_blob_create(&device, &web.light.blob, &web.error);
 }
 
 void web_light_close(void)
 {
     if (web.light.backdrop.gl) noh_backdrop_delete(&web.light.backdrop);
+    if (web.light.blob.gl) noh_stage_blob_delete(&web.light.blob);
     memset(&web.light.backdrop, 0, sizeof web.light.backdrop);
+    memset(&web.light.blob, 0, sizeof web.light.blob);
 }
 
 noh_result web_light_restore(void)
 {
-    return is_lit() ? noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error) : NOH_OK;
+    const noh_result result = is_lit() ? noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error) : NOH_OK;
+    return result || !is_lit() ? result : noh_stage_blob_restore(&web.light.blob, NULL, 0, &web.error);
 }
 
 /* ---- a frame ---- */
@@ -65,7 +73,7 @@ int web_light_shadow(noh_stage_view *view)
 {
     noh_place place;
     float sphere[4], square = 0.0f;
-    if (!is_lit() || !web.light.shadow) return 0;
+    if (!is_lit() || web.light.shadow != WEB_SHADOW_MAP) return 0;
     (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
     for (int i = 0; i < 3; i++) {
         const float half = 0.5f * (web.bounds[3 + i] - web.bounds[i]);
@@ -86,6 +94,29 @@ void web_light_backdrop(void)
                       &web.light.told, &web.view);
 }
 
+#define LEVEL 0.05f /* of their height: a floor so near to 0 is there */
+
+void web_light_find_floor(void)
+{
+    const float low = web.bounds[1], height = web.bounds[4] - low;
+    web.light.floor = fabsf(low) < LEVEL * height ? 0.0f : low;
+}
+
+/* Behind the figures. */
+void web_light_spots(void)
+{
+    const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, web.light.floor };
+    const noh_world world = { .planes = &plane, .plane_count = 1 };
+    const noh_ground ground = { &world, NULL, NULL };
+    if (!is_lit() || web.light.shadow != WEB_SHADOW_SPOTS) return;
+    for (uint32_t i = 0; i < web.figure_count; i++) {
+        noh_blob blobs[NOH_BLOBS_MAX];
+        const web_figure *f = &web.figures[i];
+        const uint32_t count = noh_actor_blobs(web.stage, f->actor, &web.light.rigs[f->kind], &ground, blobs);
+        noh_stage_blob_draw(&web.light.blob, &web.view, blobs, count);
+    }
+}
+
 /* ---- what the page asks for ---- */
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_light_count(void)
@@ -97,8 +128,8 @@ EMSCRIPTEN_KEEPALIVE const char *web_light_name(uint32_t i)
     return noh_environment_at(i)->name;
 }
 
-/* degrees about the vertical axis; shadow: 0, 1; tonemap: a noh_tonemap; background: 0 plain, 1 a gradient, 2 the
- * light, blurred. Before web_open, too. */
+/* degrees about the vertical axis; shadow: a web_shadow; tonemap: a noh_tonemap; background: 0 plain, 1 a gradient, 2
+ * the light, blurred. Before web_open, too. */
 EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonemap, int background)
 {
     web.light.degrees = degrees;
@@ -125,4 +156,23 @@ EMSCRIPTEN_KEEPALIVE int web_set_light(int environment)
     if (!result && is_lit()) result = noh_gl_light_upload(noh_stage_light_of(web.stage), &web.error);
     tell();
     return (int)result;
+}
+
+/* 1: the pack has light that was worked out for each vertex. */
+EMSCRIPTEN_KEEPALIVE int web_has_transfer(void)
+{
+    for (uint32_t i = 0; i < web.pack.mesh_count; i++) {
+        noh_mesh mesh;
+        if (noh_pack_mesh_at(&web.pack, i, &mesh, NULL) == NOH_OK && mesh.transfer) return 1;
+    }
+    return 0;
+}
+
+/* Whether that is used; the stage is made anew for it. */
+EMSCRIPTEN_KEEPALIVE int web_set_transfer(int on)
+{
+    web_wants wants = web.cast.wants;
+    if (wants.without_transfer == !on) return 0;
+    wants.without_transfer = !on;
+    return (int)web_open_stage(&wants);
 }

@@ -9,7 +9,6 @@
 #include "bounds.h"
 #include "web.h"
 
-#define PICK_M 1e6f
 #define SPEED_ONE 65536
 
 static uint8_t pack_bytes[NOH_WEB_PACK_BYTES] __attribute__((aligned(64)));
@@ -47,7 +46,7 @@ static noh_result make_stage(const web_wants *wants)
                                 &web.stage, &web.error);
     }
     if (!result) result = web_light_open();
-    return result;
+    return result ? result : web_hair_open();
 }
 
 /* The state goes over at the end of the block, behind all that either stage and its light work on. */
@@ -60,6 +59,7 @@ noh_result web_open_stage(const web_wants *wants)
     if (web.stage) {
         memmove(kept, state, bytes);
         web_light_close();
+        web_hair_close();
         noh_stage_delete(web.stage);
         web.stage = NULL;
     }
@@ -67,7 +67,11 @@ noh_result web_open_stage(const web_wants *wants)
     if (!result && state) result = noh_stage_set_state(web.stage, kept, bytes, &web.error);
     if (result) return result;
     web.part_count = noh_stage_plan_parts(&web.cast.desc, &web.caps, &web.cast.plan, web.parts, WEB_PARTS_MAX);
-    web.part_count = web.part_count < WEB_PARTS_MAX ? web.part_count : WEB_PARTS_MAX;
+    web.part_count = web.part_count < WEB_PARTS_MAX ? web.part_count : WEB_PARTS_MAX - 1u;
+    if (web.cast.hair_kind != NOH_NONE) {
+        web.parts[web.part_count++] = (noh_stage_bytes){ "hair", NOH_NONE, web.cast.cpu_bytes - web.cast.plan.cpu_bytes,
+                                                         web.cast.gpu_bytes - web.cast.plan.gpu_bytes };
+    }
     web.view.cut = 1;
     return NOH_OK;
 }
@@ -132,13 +136,18 @@ EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
  * alive: 0: without faces */
 EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters, int alive)
 {
-    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive };
+    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
     noh_result result = noh_pack_open(pack_bytes, bytes, &web.pack, &web.error);
     if (!result) result = open_context();
     if (!result) result = web_open_stage(&wants);
     if (!result) result = enter(characters);
     if (!result) list_targets();
     web.speed = SPEED_ONE;
+    if (!result) {
+        (void)web_measure();
+        web.height = web.bounds[4] - web.bounds[1];
+        web_light_find_floor();
+    }
     return (int)result;
 }
 
@@ -149,6 +158,7 @@ EMSCRIPTEN_KEEPALIVE int web_restore(void)
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
     web.gl.decode = noh_etc2_decode;
     if (!result) result = noh_stage_restore(web.stage, &web.error);
+    if (!result) result = web_hair_restore();
     return (int)(result ? result : web_light_restore());
 }
 
@@ -387,33 +397,6 @@ EMSCRIPTEN_KEEPALIVE int web_fades(void)
     return noh_stage_stats_of(web.stage)->fading > 0;
 }
 
-/* ---- picking ---- */
-
-/* The nearest figure under a pixel of the canvas; x to the right, y down. Returns 0 for none. */
-EMSCRIPTEN_KEEPALIVE int web_pick(float x, float y)
-{
-    float origin[3], direction[3];
-    uint32_t width, height;
-    noh_platform_web.size(web.context, &width, &height);
-    return noh_view_ray(&web.view, x, y, width, height, origin, direction) &&
-           noh_stage_pick(web.stage, origin, direction, PICK_M, &web.hit, NULL) == NOH_OK;
-}
-/* Of what was picked last. */
-EMSCRIPTEN_KEEPALIVE const char *web_picked_mesh(void)
-{
-    noh_mesh mesh;
-    return noh_pack_mesh_at(&web.pack, web.hit.mesh, &mesh, NULL) == NOH_OK ? mesh.name : "";
-}
-/* "" for a mesh that no joint moves. */
-EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
-{
-    for (uint32_t i = 0; i < web.figure_count && web.hit.joint != NOH_NONE; i++) {
-        const web_figure *f = &web.figures[i];
-        if (f->actor.id == web.hit.actor.id) return noh_stage_name(web.stage, f->kind, NOH_NAME_JOINT, web.hit.joint);
-    }
-    return "";
-}
-
 /* ---- a frame ---- */
 
 /* Where the first character has walked to: 3 floats, what the camera follows. Valid until the next call. */
@@ -454,6 +437,9 @@ EMSCRIPTEN_KEEPALIVE float *web_view(void)
 /* Move time on. In a lost context it goes on, too. */
 EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 {
+    const noh_result result = web_rise(seconds);
+    web_hair_shake(seconds);
+    if (result) return (int)result;
     return (int)noh_stage_step(web.stage, noh_frame_clock_advance(&web.clock, seconds), NULL, NULL, &web.error);
 }
 
@@ -466,6 +452,7 @@ static void begin_frame(uint32_t width, uint32_t height)
     web.gl.ClearBufferfv(GL_COLOR, 0, background);
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
     web_light_backdrop();
+    web_light_spots();
 }
 
 /* Draw a frame. In a lost context nothing is drawn, which is no error. */
@@ -483,10 +470,12 @@ EMSCRIPTEN_KEEPALIVE int web_draw(void)
     result = noh_stage_frame_begin(web.stage, views, shadow ? 2 : 1, &web.error);
     if (!result) result = noh_stage_frame_end(web.stage, &web.error);
     web.view.cut = 0;
+    if (!result) result = web_hair_update();
     if (!result && shadow) result = noh_stage_draw_shadow(web.stage, 1, &web.error);
     if (result) return (int)result;
+    if (shadow) web_hair_shadow();
     begin_frame(width, height);
-    return (int)noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);
+    return (int)web_hair_draw();
 }
 
 /* An error if GL raised one since the last call. Waits for the GPU. */

@@ -2,7 +2,7 @@
 // The query: ?pack=NAME shows that pack instead of page.noh; ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
 // the camera where it is; ?actors=3 shows so many characters, as far as the page was built for them; ?size=512 draws a
-// canvas of so many pixels across. light.js, faces.js and speech.js have parts of the query of their own.
+// canvas of so many pixels across. light.js, hair.js, faces.js and speech.js have parts of the query of their own.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -24,6 +24,9 @@ function fail(text) {
     byId('message').textContent = text;
     throw new Error(text);
 }
+
+// What is not as the query asks, beside the picture.
+const say = (words) => { byId('message').textContent = words; };
 
 const text = (pointer) => Module.UTF8ToString(pointer);
 const check = (result) => { if (result) fail(text(Module._web_error())); };
@@ -89,6 +92,7 @@ function zoom(by) {
 function pick(event) {
     const r = canvas.getBoundingClientRect();
     const x = (event.clientX - r.left) * canvas.width / r.width, y = (event.clientY - r.top) * canvas.height / r.height;
+    if (event.altKey) return push((strength) => Module._web_push_at(x, y, strength));
     const names = Module._web_pick(x, y) ? [Module._web_picked_mesh(), Module._web_picked_joint()].map(text) : [];
     byId('picked').textContent = names.filter((name) => name).join(', joint ');
 }
@@ -119,6 +123,23 @@ canvas.addEventListener('wheel', (event) => {
     event.preventDefault();
     zoom(Math.exp(event.deltaY * 0.001));
 }, { passive: false });
+
+// A push at the chest or where a click with Alt hits, newton seconds. Who lies gets up, and goes on with the clip.
+const strength = 90;
+let fallen = 0;
+function push(by) {
+    const error = lost ? 0 : by(strength);
+    byId('push-text').hidden = !error;
+    byId('push-text').textContent = error ? `cannot be pushed: ${text(Module._web_error())}` : '';
+    redraw();
+}
+function showFall() {
+    const before = fallen;
+    fallen = Module._web_fallen();
+    if (before && !fallen && clip() >= 0) play(body, clip(), 0, transition);
+}
+byId('push').addEventListener('click', () => push(Module._web_push));
+
 byId('fit').addEventListener('click', fit);
 byId('front').addEventListener('click', () => { Object.assign(orbit, front); redraw(); });
 byId('follow').addEventListener('change', redraw);
@@ -132,13 +153,14 @@ function draw() {
     showSpeech();
     check(Module._web_step(Math.min(now - drawn, 100) / 1000));
     drawn = now;
+    showFall();
     setCamera();
     check(Module._web_draw());
     window.noh.frames++;
     showDetail();
     showTime();
     sliders.forEach(showWeight);
-    if (playing || now < busy || Module._web_fades() || isAlive() || isSpeaking()) redraw();
+    if (playing || now < busy || Module._web_fades() || isAlive() || isSpeaking() || fallen || hairMoves()) redraw();
 }
 
 function redraw() {
@@ -299,7 +321,7 @@ function beginClips() {
     listClips(byId('face'));
     byId('motion').hidden = byId('clips').options.length < 2;
     byId('faces-row').hidden = !moves || !sliders.length;
-    byId('follow-row').hidden = !moves;
+    byId('follow-row').hidden = byId('push-row').hidden = !moves;
     byId('follow').checked = query.get('camera') !== 'fixed';
     begin(byId('clips'), 'clip', 1);
     begin(byId('face'), 'face', 0);
@@ -363,10 +385,12 @@ async function start() {
     window.noh.path = text(Module._web_path());
     beginDetail();
     beginClips();
+    byId('message').textContent = '';
+    beginTransfer();
+    beginHair();
     beginFaces();
     beginSpeech();
     fit();
-    byId('message').textContent = '';
     window.noh.ready = true;
     resize();
     draw();

@@ -3,7 +3,8 @@
  *   plan PACK ACTORS
  *
  * Prints the bytes of the stage by each path, plain and lit, with faces that live and without; how many floats may be
- * held, which kinds have a face (a bit for each) and where the first one's eyes are; the bytes of the page's block. */
+ * held, which kinds have a face (a bit for each), whether the first falls, what hair takes (an actor's, on the CPU, on
+ * the GPU), where the first face's eyes are; the bytes of the page's block. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,11 +40,15 @@ static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_
     free(scratch);
     if (failed) return 1;
     printf("%s %s %s %llu %llu\n", noh_morph_path_name(wants->path), wants->lit ? "lit" : "plain",
-           wants->alive ? "alive" : "still", (unsigned long long)cast.plan.cpu_bytes,
-           (unsigned long long)cast.plan.gpu_bytes);
+           wants->alive ? "alive" : "still", (unsigned long long)cast.cpu_bytes, (unsigned long long)cast.gpu_bytes);
     if (cast.bytes > *most) *most = cast.bytes;
     if (wants->alive && wants->lit && wants->path == NOH_MORPH_CPU) {
         printf("floats %u\nfaces %u\n", cast.plan.kinds[0].float_count, cast.faces_found);
+        if (!cast.cannot_fall.result) printf("falls\n");
+        if (cast.hair_kind != NOH_NONE) {
+            printf("hair %u %zu %llu\n", cast.hair_part.state_bytes, noh_stage_hair_size(&cast.cut),
+                   (unsigned long long)noh_stage_hair_bytes(&cast.cut));
+        }
         for (int i = 0; i < 6; i++) printf("%s%.9g", i ? " " : "eyes ", (double)cast.faces[0].face.eyes[i / 3][i % 3]);
         printf("\n");
     }
@@ -55,7 +60,7 @@ static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
     static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER };
     size_t most = 0;
     for (uint32_t i = 0; i < 4u * sizeof paths / sizeof *paths; i++) {
-        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0 };
+        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0 };
         if (plan(pack, &wants, &most, error)) return 1;
     }
     printf("block %llu\n", (unsigned long long)most);

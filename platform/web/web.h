@@ -5,6 +5,7 @@
 #include "cast.h"
 #include "context.h"
 #include "stage_gl/backdrop.h"
+#include "stage_gl/stage_blob.h"
 
 #define WEB_PARTS_MAX 128u
 #define WEB_ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
@@ -22,14 +23,26 @@ typedef struct web_target {
     uint32_t figure, index; /* the first figure that has it */
 } web_target;
 
+typedef enum web_shadow { WEB_SHADOW_OFF, WEB_SHADOW_MAP, WEB_SHADOW_SPOTS } web_shadow;
+
 typedef struct web_light {
     int environment;                 /* WEB_PLAIN, or an index of noh_environment_at */
     float degrees;                   /* that it is turned by */
-    int shadow, tonemap, background; /* 1: a shadow; a noh_tonemap; 1 + a noh_backdrop_kind, 0: plain */
+    int shadow, tonemap, background; /* a web_shadow; a noh_tonemap; 1 + a noh_backdrop_kind, 0: plain */
     noh_light all;                   /* not turned */
     noh_lighting told;
     noh_backdrop backdrop;
+    noh_stage_blob blob; /* spots on the floor */
+    noh_blob_rig rigs[NOH_STAGE_KINDS_MAX];
+    float floor; /* its height */
 } web_light;
+
+typedef struct web_hair {
+    noh_stage_hair drawn[NOH_WEB_ACTORS]; /* of each character */
+    int off;                              /* 1: not shown */
+    float wind[3];
+    double shake_s; /* how long heads are still shaken */
+} web_hair;
 
 struct web {
     noh_platform_context *context;
@@ -50,6 +63,9 @@ struct web {
     noh_stage_view view;
     noh_stage_hit hit;
     web_light light;
+    web_hair hair;
+    double falls_s[WEB_ACTORS_MAX], lies_s[WEB_ACTORS_MAX]; /* for how long a figure has */
+    float height;                                           /* of the figures at rest */
     float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
     int32_t speed;                     /* 1/65,536, of what plays */
     uint8_t smoothed;                  /* noh_look.smoothed of all */
@@ -72,6 +88,24 @@ noh_result web_light_restore(void);
 /* The second view of a frame, which sees the shadows; 0: there are none. */
 int web_light_shadow(noh_stage_view *view);
 void web_light_backdrop(void);
+void web_light_spots(void);
+void web_light_find_floor(void); /* after the figures were measured at rest */
+
+/* The hair of all characters, if the pack has some: made with the stage, closed before it goes. */
+noh_result web_hair_open(void);
+void web_hair_close(void);
+noh_result web_hair_restore(void);
+noh_result web_hair_update(void); /* after a frame */
+void web_hair_shadow(void);
+noh_result web_hair_draw(void); /* with all that is drawn beside it */
+void web_hair_shake(double seconds);
+
+/* Who fell and lies gets up; so many seconds have passed. */
+noh_result web_rise(double seconds);
+
+/* What main.c and touch.c tell the page, too. */
+float *web_measure(void);
+int web_pick(float x, float y);
 
 /* What mouths show, [NOH_VISEME_COUNT]; NULL: nothing is said. */
 void web_say(const float *visemes);

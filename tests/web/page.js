@@ -2,65 +2,11 @@
 // searches, plays clips, turns the figure, loses the context and restores it, lights it, lets it live and speak. Saves canvases in OUT as PNG, among them
 // CLIP at TIME by each path, SIZE pixels across. Prints its checks as TAP.
 'use strict';
-const fs = require('fs');
 const path = require('path');
-const { serve, launch, save } = require('./browser.js');
+const { out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, run } = require('./harness.js');
 
-const [folder, executablePath, out, clip, time, size] = process.argv.slice(2);
+const [clip, time, size] = process.argv.slice(5);
 const forcedPaths = ['auto', 'mrt', 'gather'];
-let told = 0, failures = 0, address = '';
-
-function check(name, right, more) {
-    told++;
-    if (!right) failures++;
-    console.log(`${right ? '' : 'not '}ok ${told} - ${name}`);
-    if (!right && more !== undefined) console.log(`#   ${more}`);
-}
-
-const keep = (page, name) => save(page, '#canvas', path.join(out, name));
-const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
-
-// Act, and wait until the page has drawn the result: the frame that is due after the act. A page that is busy with what
-// came before draws others in between.
-async function drawn(page, act) {
-    const frames = await page.evaluate(() => window.noh.frames);
-    await act();
-    const due = await page.evaluate(() => window.noh.due);
-    await page.waitForFunction((n) => window.noh.frames >= n, Math.max(due, frames + 1));
-}
-
-const slide = (page, selector, value) => drawn(page, () => page.locator(selector).evaluate((slider, v) => {
-    slider.value = v;
-    slider.dispatchEvent(new Event('input'));
-}, value));
-const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
-
-// In plain light and without faces that live, unless the search says otherwise.
-async function open(browser, options, search) {
-    const page = await browser.newPage(options);
-    page.problems = [];
-    page.on('pageerror', (error) => page.problems.push(String(error)));
-    page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-    await page.goto(`${address}/?${search}&light=plain&alive=off`);
-    await page.waitForFunction(() => window.noh.ready || window.noh.error, null, { timeout: 60000 });
-    return page;
-}
-
-async function close(page, name) {
-    check(`${name}: no GL error`, await page.evaluate(() => Module._web_check()) === 0);
-    check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
-    await page.close();
-}
-
-async function loseAndRestore(page) {
-    await page.evaluate(() => {
-        window.taken = document.getElementById('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
-        window.taken.loseContext();
-    });
-    await page.waitForFunction(() => window.noh.lost === 1);
-    await page.evaluate(() => window.taken.restoreContext());
-    await page.waitForFunction(() => window.noh.restored === 1);
-}
 
 // Show the clip at its time, framed as by `noh render`.
 async function scrub(page) {
@@ -199,9 +145,6 @@ async function bodies(browser) {
 
 // ---- light ----
 
-const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
-const toggle = (page, selector) => drawn(page, () => page.click(selector));
-
 async function lights(browser, forced) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&detail=0&size=${size}&light=room`);
     const budget = async (words) => {
@@ -220,8 +163,8 @@ async function lights(browser, forced) {
         await keep(page, `${forced}_again.png`);
         check(`light by ${forced}: ${what}, it is the same picture`, same(`${forced}_room.png`, `${forced}_again.png`));
     };
-    await moves('a shadow less', 'flat', () => toggle(page, '#shadow'));
-    await toggle(page, '#shadow');
+    await moves('a shadow less', 'flat', () => choose(page, '#shadow', 'no shadow'));
+    await choose(page, '#shadow', 'shadow');
     await moves('the tone map', 'tones', () => toggle(page, '#tonemap'));
     await toggle(page, '#tonemap');
     await moves('what is behind', 'grey', () => choose(page, '#background', 'grey behind'));
@@ -243,7 +186,7 @@ async function lights(browser, forced) {
     await choose(page, '#light', 'studio');
     await drawn(page, () => page.click('#reset'));
     await slide(page, '#rotate', 40);
-    await toggle(page, '#shadow');
+    await choose(page, '#shadow', 'no shadow');
     await toggle(page, '#tonemap');
     await choose(page, '#background', 'gradient behind');
     await keep(page, `${forced}_studio.png`);
@@ -391,25 +334,8 @@ async function byPixels(browser) {
     await close(page, 'detail by pixels');
 }
 
-(async () => {
-    const served = await serve({ '/': folder });
-    address = served.address;
-    const browser = await launch(executablePath);
-    try {
-        for (const forced of forcedPaths) await onePath(browser, forced);
-        for (const forced of ['auto', 'gather']) await lights(browser, forced);
-        await wrinkles(browser);
-        await turns(browser);
-        await living(browser);
-        await panels(browser);
-        await levels(browser);
-        await held(browser);
-        await bodies(browser);
-        await phone(browser);
-    } finally {
-        await browser.close();
-        served.server.close();
-    }
-    console.log(`1..${told}`);
-    process.exit(failures ? 1 : 0);
-})().catch((error) => { console.log(`not ok ${told + 1} - ${error}`); process.exit(1); });
+run({
+    async paths(browser) { for (const forced of forcedPaths) await onePath(browser, forced); },
+    async lights(browser) { for (const forced of ['auto', 'gather']) await lights(browser, forced); },
+    wrinkles, turns, living, panels, levels, held, bodies, phone,
+});

@@ -291,6 +291,7 @@ typedef enum setting_kind {
     SET_FINER,
     SET_GRAPHS,
     SET_FACE,
+    SET_RAGDOLLS,
     SET_LAYER
 } setting_kind;
 
@@ -324,6 +325,7 @@ static const setting settings[] = {
     { "finer", SET_FINER, 1, 0, 0, 0, 0 },
     { "graphs", SET_GRAPHS, 1, 0, 0, 0, 0 },
     { "face", SET_FACE, 1, 0, 0, 0, 0 },
+    { "ragdolls", SET_RAGDOLLS, 1, 0, 0, 1, NOH_RAGDOLLS_MAX },
 };
 #define SETTING_COUNT (sizeof settings / sizeof settings[0])
 
@@ -345,6 +347,10 @@ static int set_number(reader *r, const setting *s, const char *text)
         return EXIT_FAILED;
     }
     switch (s->kind) {
+    case SET_RAGDOLLS:
+        r->file->ragdolls[r->kind - r->file->kinds].count = (uint32_t)value;
+        r->kind->ragdoll = &r->file->ragdolls[r->kind - r->file->kinds];
+        break;
     case SET_BYTES: *(uint64_t *)(void *)(in + s->at) = value; break;
     case SET_FLAG: *(int *)(void *)(in + s->at) = (int)value; break;
     case SET_HELD: *(uint32_t *)(void *)(in + s->at) = value ? (uint32_t)value : NOH_NONE; break;

@@ -4,6 +4,7 @@
 
 #include "file/pack_file.h"
 #include "noh.h"
+#include "stage/stage_ragdoll.h"
 
 #define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
 #define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 2u))
@@ -14,6 +15,7 @@ typedef struct stage_desc_file {
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
     noh_layer_desc layers[NOH_STAGE_KINDS_MAX][NOH_LAYERS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
+    noh_kind_ragdoll ragdolls[NOH_STAGE_KINDS_MAX];
     const noh_pack *clips[NOH_STAGE_KINDS_MAX][STAGE_DESC_CLIPS_MAX];
     pack_file packs[STAGE_DESC_PACKS_MAX]; /* each file once, so that kinds share it */
     char *pack_paths[STAGE_DESC_PACKS_MAX];

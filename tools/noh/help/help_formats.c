@@ -166,6 +166,7 @@ const char *const help_formats_text[] = {
     "     graphs \"NAME...\"                            animation graphs that its actors may play; NAME*: all of that beginning",
     "     finer PACK                                  where mesh has coarse levels alone: the pack with the finer ones",
     "     face joints | face X Y Z X Y Z              faces live: eyes by joints, or centres of the left and the right one",
+    "     ragdolls N                                  characters that may fall at one time (none)",
     "     held_float_count N                          floats that the game may hold (8; 0: none)",
     "     root_axes ground|x,y,z,heading              axes that clips move the character by; ground: x,z,heading. y is up",
     "     layer NAME [base|over|add] [joints=NAMES] [floats=NAMES] [tracks=N]",

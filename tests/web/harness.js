@@ -1,0 +1,84 @@
+// harness.js: what the tests of the page share: checks as TAP, a page that is opened, drawn, closed, loses its context.
+// NOH_WEB_ONLY=lights,held runs these parts alone.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const { serve, launch, save } = require('./browser.js');
+
+const [folder, executablePath, out] = process.argv.slice(2);
+let told = 0, failures = 0, address = '';
+
+function check(name, right, more) {
+    told++;
+    if (!right) failures++;
+    console.log(`${right ? '' : 'not '}ok ${told} - ${name}`);
+    if (!right && more !== undefined) console.log(`#   ${more}`);
+}
+
+const keep = (page, name) => save(page, '#canvas', path.join(out, name));
+const same = (a, b) => fs.readFileSync(path.join(out, a)).equals(fs.readFileSync(path.join(out, b)));
+
+// Act, and wait until the page has drawn the result: the frame that is due after the act. A page that is busy with what
+// came before draws others in between.
+async function drawn(page, act) {
+    const frames = await page.evaluate(() => window.noh.frames);
+    await act();
+    const due = await page.evaluate(() => window.noh.due);
+    await page.waitForFunction((n) => window.noh.frames >= n, Math.max(due, frames + 1));
+}
+
+const slide = (page, selector, value) => drawn(page, () => page.locator(selector).evaluate((slider, v) => {
+    slider.value = v;
+    slider.dispatchEvent(new Event('input'));
+}, value));
+const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
+
+// In plain light and without faces that live, unless the search says otherwise.
+async function open(browser, options, search) {
+    const page = await browser.newPage(options);
+    page.problems = [];
+    page.on('pageerror', (error) => page.problems.push(String(error)));
+    page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+    await page.goto(`${address}/?${search}&light=plain&alive=off`);
+    await page.waitForFunction(() => window.noh.ready || window.noh.error, null, { timeout: 60000 });
+    return page;
+}
+
+async function close(page, name) {
+    check(`${name}: no GL error`, await page.evaluate(() => Module._web_check()) === 0);
+    check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
+    await page.close();
+}
+
+async function loseAndRestore(page) {
+    await page.evaluate(() => {
+        window.taken = document.getElementById('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+        window.taken.loseContext();
+    });
+    await page.waitForFunction(() => window.noh.lost === 1);
+    await page.evaluate(() => window.taken.restoreContext());
+    await page.waitForFunction(() => window.noh.restored === 1);
+}
+
+const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
+const toggle = (page, selector) => drawn(page, () => page.click(selector));
+
+// { name: async (browser) => ... }, run one after another. flags: of the browser's command line.
+async function main(parts, flags) {
+    const served = await serve({ '/': folder });
+    address = served.address;
+    const browser = await launch(executablePath, flags);
+    const only = (process.env.NOH_WEB_ONLY || '').split(',').filter((name) => name);
+    try {
+        for (const name of Object.keys(parts)) if (!only.length || only.includes(name)) await parts[name](browser);
+    } finally {
+        await browser.close();
+        served.server.close();
+    }
+    console.log(`1..${told}`);
+}
+
+const run = (parts, flags) => main(parts, flags).then(() => process.exit(failures ? 1 : 0))
+    .catch((error) => { console.log(`not ok ${told + 1} - ${error}`); process.exit(1); });
+
+module.exports = { out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, run, address: () => address };
