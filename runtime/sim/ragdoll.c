@@ -9,7 +9,11 @@
 
 #define STILL_STEPS 30u  /* half a second */
 #define STILL_PART 0.02f /* of its size: 35 mm of 1.75 m */
-#define SPEED_PART 23.0f /* of its size in a second: 40 m/s of 1.75 m */
+#define SLOW_PART 0.15f  /* of its size in a second: 0.26 m/s of 1.75 m */
+#define SLOW_STEPS 6u    /* a tenth of a second, after which what is slow is braked, more and more in another half */
+#define BRAKE_STEPS 30u
+#define SLACK_PART 0.00115f /* of its size: 2 mm of 1.75 m */
+#define SPEED_PART 23.0f    /* of its size in a second: 40 m/s of 1.75 m */
 
 /* ---- rigs ---- */
 
@@ -241,6 +245,7 @@ static void set_shape(noh_ragdolls *set, const noh_ragdolls_desc *desc)
     shape->pair_count = rig->pair_count;
     shape->substeps = desc->substeps ? desc->substeps : 10u;
     shape->speed_max = SPEED_PART * set->size;
+    shape->slack = SLACK_PART * set->size;
     for (uint32_t i = 0; i < rig->body_count; i++) {
         noh_ragdoll_constants *c = &shape->bodies[i];
         const noh_ragdoll_body *b = &rig->bodies[i];
@@ -379,6 +384,7 @@ static void wake(noh_ragdoll_doll *doll)
 {
     doll->asleep = 0;
     doll->still = 0;
+    doll->slow = 0;
 }
 
 static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
@@ -502,6 +508,31 @@ static float strayed(const noh_ragdoll_constants *c, const noh_ragdoll_state *s,
     return most;
 }
 
+static int is_fast(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, float most)
+{
+    const float reach = c->half + c->radius;
+    const float square = noh_dot3(s->velocity, s->velocity) + reach * reach * noh_dot3(s->spin, s->spin);
+    return !(square < most * most);
+}
+
+/* What is solved by corrections creeps for seconds where it should lie. So speeds are taken away from a doll all of
+ * which has been slow for a while, until each step begins from none. Without a ground under it nothing stays slow. */
+static void brake(const noh_ragdolls *set, noh_ragdoll_doll *d)
+{
+    int fast = d->held != 0;
+    for (uint32_t i = 0; i < set->shape.body_count && !fast; i++) {
+        fast = is_fast(&set->shape.bodies[i], &d->bodies[i], SLOW_PART * set->size);
+    }
+    d->slow = fast ? 0 : d->slow < SLOW_STEPS + BRAKE_STEPS ? d->slow + 1u : d->slow;
+    if (d->slow <= SLOW_STEPS) return;
+    const float part = d->slow < SLOW_STEPS + BRAKE_STEPS ? (float)(d->slow - SLOW_STEPS) / (float)BRAKE_STEPS : 1.0f;
+    for (uint32_t i = 0; i < set->shape.body_count; i++) {
+        noh_ragdoll_state *s = &d->bodies[i];
+        noh_madd3(s->velocity, -part, s->velocity, s->velocity);
+        noh_madd3(s->spin, -part, s->spin, s->spin);
+    }
+}
+
 static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
 {
     const float reach = STILL_PART * set->size;
@@ -531,7 +562,10 @@ static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
         if (!dolls[i].asleep) awake[count++] = &dolls[i];
         if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
             noh_ragdoll_step_dolls(&set->shape, world, awake, count, scratch);
-            for (uint32_t k = 0; k < count; k++) rest_or_go_on(set, awake[k]);
+            for (uint32_t k = 0; k < count; k++) {
+                brake(set, awake[k]);
+                rest_or_go_on(set, awake[k]);
+            }
             count = 0;
         }
     }

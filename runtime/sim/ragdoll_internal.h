@@ -25,7 +25,7 @@ typedef struct noh_ragdoll_doll {
     uint32_t held;
     uint32_t asleep;
     uint32_t still; /* steps since then */
-    uint32_t reserved;
+    uint32_t slow;  /* steps since anything of it was fast */
 } noh_ragdoll_doll;
 
 /* What dolls share of a body and of the joint to its parent, in the bodies' own spaces. */
@@ -49,6 +49,7 @@ typedef struct noh_ragdoll_pair {
 typedef struct noh_ragdoll_shape {
     uint32_t body_count, pair_count, substeps;
     float speed_max; /* metres per second */
+    float slack;     /* metres by which a doll may be in the world at the end of a step */
     noh_ragdoll_constants bodies[NOH_RAGDOLL_BODIES_MAX];
     noh_ragdoll_pair pairs[NOH_RAGDOLL_PAIRS_MAX];
 } noh_ragdoll_shape;

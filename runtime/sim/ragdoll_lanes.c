@@ -2,7 +2,8 @@
  *
  * In each substep: predict; pairs of bodies; joints from the first body to the last, each by anchors, hinge or
  * swing, twist, strength; the world, with static friction; velocities from what has moved; no bounce; friction in
- * joints. Masked lanes keep their bits: what is corrected nowhere may be left out, so width does not matter.
+ * joints. After the last one positions alone are brought nearer to what they may be. Masked lanes keep their bits: what
+ * is corrected nowhere may be left out, so width does not matter.
  *
  * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers:
  * I^-1 v = across v + (along - across) z (z . v). */
@@ -520,6 +521,35 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
     }
 }
 
+static inline void settle_world(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *b, uint32_t body)
+{
+    noh_ragdoll_constants thinner = shape->bodies[body];
+    const float most = 0.5f * thinner.radius;
+    thinner.radius -= shape->slack < most ? shape->slack : most;
+    for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
+    solve_world(b, &thinner, world);
+}
+
+/* What the substeps have left, brought together without a change of speed: joints once more, then their anchors from
+ * the last body to the first, which is the way that they do not come in a substep, or what the ground has pushed apart
+ * would stay so as long as it pushes. The world comes last, but takes only what is deeper than its slack: the whole of
+ * it would push joints apart again. */
+static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *bodies)
+{
+    for (uint32_t i = 1; i < shape->body_count; i++) {
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        solve_joint(&j, lanes_set(0.0f));
+    }
+    for (uint32_t i = shape->body_count; i-- > 1u;) {
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        solve_anchors(&j);
+    }
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        if (world) settle_world(shape, world, &bodies[i], i);
+        bodies[i].q = lane4_normalize(bodies[i].q);
+    }
+}
+
 /* Held bodies arrive at their goals at the end of the step. */
 static void send_held(lane_body *b, lanes per_second)
 {
@@ -542,6 +572,7 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
         }
         for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));
         for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, bodies, seconds);
+        settle(shape, world, bodies);
         for (uint32_t lane = 0; lane < lanes_used; lane++) store_doll(shape, dolls[first + lane], bodies, lane);
     }
 }

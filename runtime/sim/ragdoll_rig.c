@@ -171,7 +171,7 @@ static float apart(const float a[3], const float b[3])
     return noh_length3(d);
 }
 
-/* Of a body without skin: as long as three tenths of the one above it. */
+/* Of a body without skin of its own, or hardly any: as long as three tenths of the one above it. */
 static float parent_length(const maker *m, uint32_t i)
 {
     const uint32_t parent = m->rig->bodies[i].parent;
@@ -198,13 +198,15 @@ static void aim_bone(maker *m, uint32_t i)
         const probe along = probe_body(m, i, b->start, b->direction, 0);
         b->length = along.count ? percentile(&along, 0.97f) : 0.0f;
     }
-    if (!(b->length > 1e-4f)) b->length = parent_length(m, i);
+    if (!(b->length > 1e-4f) || (!b->child_count && b->length < 0.3f * parent_length(m, i))) {
+        b->length = parent_length(m, i);
+    }
 }
 
 /* ---- capsules ---- */
 
 /* The line of a body with several others on it lies between the two that are farthest apart: hips, shoulders. */
-static int widest(const maker *m, uint32_t body, float axis[3])
+static int widest(const maker *m, uint32_t body, float axis[3], float middle[3])
 {
     float most = 0.0f;
     for (uint32_t i = 1; i < m->rig->body_count; i++) {
@@ -213,6 +215,7 @@ static int widest(const maker *m, uint32_t body, float axis[3])
             if (m->rig->bodies[i].parent == body && m->rig->bodies[k].parent == body && far > most) {
                 most = far;
                 noh_sub3(m->bones[i].start, m->bones[k].start, axis);
+                noh_madd3(m->bones[k].start, 0.5f, axis, middle);
             }
         }
     }
@@ -229,19 +232,22 @@ static void place_capsule(noh_ragdoll_body *b, const float centre[3], const floa
     noh_quat_between(z, axis, x, b->rotation);
 }
 
-/* A trunk's body: across, as wide as its skin. */
+/* A trunk's body: across, as wide as its skin; from one bone on it to the other, where it has little skin itself. */
 static int wide_capsule(const maker *m, uint32_t i)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
-    float axis[3] = { 0.0f, 0.0f, 0.0f }, centre[3];
-    if (m->bones[i].child_count < 2 || !widest(m, i, axis)) return 0;
+    float axis[3] = { 0.0f, 0.0f, 0.0f }, centre[3], middle[3];
+    if (m->bones[i].child_count < 2 || !widest(m, i, axis, middle)) return 0;
+    const float width = noh_length3(axis);
     noh_normalize3(axis, z);
     const probe along = probe_body(m, i, m->bones[i].start, axis, 0);
-    if (along.count < 8) return 0;
+    const float length = along.count < 8 ? 0.0f : percentile(&along, 0.95f) - percentile(&along, 0.05f);
+    if (length < 0.5f * width) {
+        place_capsule(&m->rig->bodies[i], middle, axis, width, 0.0f);
+        return 1;
+    }
     for (int k = 0; k < 3; k++) centre[k] = along.sum[k] / (float)along.count;
     const probe across = probe_body(m, i, centre, axis, 1);
-    const float length = percentile(&along, 0.95f) - percentile(&along, 0.05f);
-    if (!(length > 1e-4f)) return 0;
     place_capsule(&m->rig->bodies[i], centre, axis, length, percentile(&across, 0.7f));
     return 1;
 }
@@ -378,6 +384,26 @@ static void make_joint(maker *m, uint32_t i, float mass)
     j->twist_max = row->twist;
 }
 
+/* A small body that has far joints would be spun about by them in each correction: its inertia is at least a tenth of
+ * what its mass has at the farthest one, about each axis. */
+static void spread_inertia(noh_ragdoll_rig *rig)
+{
+    static const float z[3] = { 0.0f, 0.0f, 1.0f };
+    for (uint32_t i = 1; i < rig->body_count; i++) {
+        noh_ragdoll_body *both[2] = { &rig->bodies[i], &rig->bodies[rig->bodies[i].parent] };
+        for (int k = 0; k < 2; k++) {
+            noh_ragdoll_body *b = both[k];
+            float axis[3], arm[3], aside[3];
+            noh_quat_rotate(b->rotation, z, axis);
+            noh_sub3(rig->joints[i].anchor, b->position, arm);
+            noh_reject3(arm, axis, aside);
+            const float across = 0.1f * b->mass * noh_dot3(arm, arm), along = 0.1f * b->mass * noh_dot3(aside, aside);
+            b->inertia_across = across > b->inertia_across ? across : b->inertia_across;
+            b->inertia_along = along > b->inertia_along ? along : b->inertia_along;
+        }
+    }
+}
+
 /* ---- pairs ---- */
 
 /* How far from each other two capsules are at rest. */
@@ -483,6 +509,7 @@ noh_result noh_ragdoll_rig_make(const noh_ragdoll_source *source, const noh_ragd
     const float mass = scale_masses(&m);
     for (uint32_t i = 1; i < count; i++) make_joint(&m, i, mass);
     noh_ragdoll_stabilize(rig);
+    spread_inertia(rig);
     find_pairs(rig);
     return noh_ragdoll_rig_check(rig, error);
 }

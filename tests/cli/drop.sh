@@ -14,8 +14,8 @@ below() { # KEY BOUND
 }
 below limit_max_deg 12
 below penetration_max_mm 5
-below separation_mean_mm 0.6
-below settle_s 6
+below separation_mean_mm 0.3
+below settle_s 4
 below bytes_per_doll 4096
 check 'all of them lie still' grep -q '"asleep": 16' "$work/json"
 check 'the dump has a line for each frame, doll and body' test "$(wc -l <"$work/fall.csv")" = $((601 * 16 * 16 + 1))

@@ -510,7 +510,7 @@ static noh_ragdolls *thrown_set(const noh_ragdoll_rig *rig, uint32_t count)
 }
 
 /* After ten seconds, awake and asleep. The number is that of every processor: change it only with the algorithm. */
-#define BITS 0x36a320a9u
+#define BITS 0x93000dcau
 static void bits_are_those_of_every_processor(void **state)
 {
     const noh_ragdoll_rig rig = figure_rig();

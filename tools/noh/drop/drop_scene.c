@@ -3,6 +3,7 @@
 
 #include "drop_scene.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -11,7 +12,8 @@
 #include "cli/message.h"
 
 #define FRICTION 0.6f
-#define HEIGHT 1.5f /* of the first body, in heights of 1.75 m */
+#define HEIGHT 1.5f /* of the first body, metres; of characters that reach further from it, a tenth more than they do \
+                     */
 #define SPEED 3.0f  /* metres per second, sideways */
 
 /* -1..1; xorshift */
@@ -67,11 +69,29 @@ static void random_rotation(uint32_t *state, float q[4])
     noh_quat_normalize(q);
 }
 
+/* From the first body to the farthest end of another. */
+static float reach_of(const noh_ragdoll_rig *rig)
+{
+    float reach = 0.0f;
+    for (uint32_t i = 0; i < rig->body_count; i++) {
+        const noh_ragdoll_body *b = &rig->bodies[i];
+        float square = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            const float d = b->position[k] - rig->bodies[0].position[k];
+            square += d * d;
+        }
+        const float far = sqrtf(square) + b->half + b->radius;
+        reach = far > reach ? far : reach;
+    }
+    return reach;
+}
+
 static void throw_doll(drop_scene *s, uint32_t doll, uint32_t *state)
 {
     noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
     const noh_ragdoll_body *first = &s->rig.bodies[0];
+    const float reach = reach_of(&s->rig), height = 1.1f * reach > HEIGHT ? 1.1f * reach : HEIGHT;
     float turn[4], speed[3] = { 0.0f, 0.0f, 0.0f };
     random_rotation(state, turn);
     speed[0] = SPEED * random_float(state);
@@ -83,7 +103,7 @@ static void throw_doll(drop_scene *s, uint32_t doll, uint32_t *state)
         for (int k = 0; k < 3; k++) poses[i].position[k] = b->position[k] - first->position[k];
         noh_quat_rotate(turn, poses[i].position, poses[i].position);
         poses[i].position[0] += 2.0f * (float)column - 3.0f;
-        poses[i].position[1] += HEIGHT;
+        poses[i].position[1] += height;
         poses[i].position[2] += 2.0f * (float)row - 3.0f;
         noh_quat_mul(turn, b->rotation, poses[i].rotation);
         memcpy(motions[i].velocity, speed, sizeof speed);
