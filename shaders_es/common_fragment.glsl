@@ -11,14 +11,27 @@ uniform vec3 noh_camera;                             /* world */
 uniform vec3 noh_key;                                /* unit, towards the light, world */
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
-uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit */
+uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit, -1: strands */
 uniform mediump sampler2D noh_base_color_texture;
+
+/* Alpha of strands is painted to be blended in sRGB, as most programs do. Blended in linear light, dark strands on
+ * light skin come out thin and pale. So much alpha leaves as much of them as they have there, over what is 0.75 in
+ * sRGB; light strands keep theirs. */
+float noh_strand_alpha(vec4 color)
+{
+    float dark = max(0.75 - sqrt(dot(color.rgb, vec3(0.2126, 0.7152, 0.0722))), 0.0);
+    return 1.0 - pow(1.0 - min(color.a, 1.0), 1.0 + 2.06 * dark * dark);
+}
 
 /* The material's colour times the vertex's, linear, with alpha. */
 vec4 noh_base(vec2 uv, vec4 color)
 {
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    return noh_base_color * color * texture(noh_base_color_texture, uv);
+    vec4 base = noh_base_color * color * texture(noh_base_color_texture, uv);
+#ifndef NOH_ENCODE_SRGB
+    if (noh_material.w < -0.5) base.a = noh_strand_alpha(base);
+#endif
+    return base;
 #else
     return color;
 #endif

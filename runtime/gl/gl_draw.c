@@ -149,9 +149,10 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)
 {
+    const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core is cut by its own alpha */
     bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
-    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, (m->flags & NOH_MATERIAL_UNLIT) ? 1.0f : 0.0f);
+    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands);
 }
 
 /* What the variant's features read. */

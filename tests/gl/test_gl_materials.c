@@ -239,6 +239,42 @@ static void surface_maps_and_emissive_colours_count(void **state)
 
 /* ---- what a material lacks costs nothing ---- */
 
+/* A linear grey by row and an alpha by column, over what is 0.75 in sRGB, as strands are blended in linear light. */
+static const char strands_fragment[] =
+    "out vec4 o_color;\n"
+    "void main()\n"
+    "{\n"
+    "    vec2 at = gl_FragCoord.xy / 33.0;\n"
+    "    vec4 strand = vec4(vec3(pow(at.y, 2.2)), at.x);\n"
+    "    o_color = vec4(mix(vec3(pow(0.75, 2.2)), strand.rgb, noh_strand_alpha(strand)), 1.0);\n"
+    "}\n";
+
+/* Dark strands look as if they were blended in sRGB; as their alpha says, they would be up to 51 of 255 paler. */
+static void dark_strands_are_as_they_were_painted(void **state)
+{
+    const noh_gl_shader_desc own = { .name = "strands", .fragment = strands_fragment };
+    lit_quad q = lit_quad_of();
+    double worst = 0.0, literal = 0.0;
+    uint8_t *rgba;
+    (void)state;
+    q.shaders = &own;
+    rgba = lit_quad_draw(fixture_gpu(), &q, NOH_DRAW_OPAQUE);
+    for (uint32_t row = 0; row < LIT_QUAD_SIDE; row++) {
+        for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
+            const double shade = (LIT_QUAD_SIDE - row - 0.5) / LIT_QUAD_SIDE, alpha = (x + 0.5) / LIT_QUAD_SIDE;
+            const double linear = alpha * pow(shade, 2.2) + (1.0 - alpha) * pow(0.75, 2.2);
+            const double painted = 255.0 * (alpha * shade + (1.0 - alpha) * 0.75);
+            worst = fmax(worst, fabs(rgba[4u * (row * LIT_QUAD_SIDE + x)] - painted));
+            literal = fmax(literal, fabs(lit_quad_encoded(linear) - painted));
+        }
+    }
+    print_message("# off by at most %.1f of 255; as their alpha says %.1f\n", worst, literal);
+    assert_true(worst < 16.0);
+    assert_true(literal > 40.0);
+    free(rgba);
+    fixture_expect_no_errors();
+}
+
 static void programs_have_what_materials_have(void **state)
 {
     static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture",
@@ -306,6 +342,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(errata_C12_5_nothing_shines_from_behind),
     cmocka_unit_test(errata_C12_1_a_flat_map_changes_nothing),
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
+    cmocka_unit_test(dark_strands_are_as_they_were_painted),
     cmocka_unit_test(programs_have_what_materials_have),
     cmocka_unit_test(features_follow_material_and_mesh),
 };

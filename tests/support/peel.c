@@ -19,11 +19,13 @@ static const char behind[] = "\n#undef main\n"
                              "  gl_FragCoord.z <= texelFetch(u_peeled, at, 0).r) discard;\n"
                              "}\n";
 
+/* And what blends keeps the alpha that it is blended with. */
 static void bind_depths(void *user, const noh_gl_api *gl, GLuint program, const noh_material *material)
 {
     const peel *p = user;
-    (void)program;
-    (void)material;
+    const float strands = material->base_color_texture == NOH_NONE ? 0.0f : -1.0f;
+    gl->Uniform4f(gl->GetUniformLocation(program, "noh_material"), material->roughness, material->metallic, -1.0f,
+                  material->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
     gl->BindTexture(GL_TEXTURE_2D, p->depth[0]);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);
