@@ -26,6 +26,8 @@
 #define AHEAD 0.06f       /* twice */
 #define HEIGHT_RATE 35.0f /* of springs, 1/s */
 #define PELVIS_RATE 12.0f
+#define PELVIS_ACCELERATION 20.0f
+#define PELVIS_BRAKE 0.7f /* of that, so that what is left brakes in time */
 #define STRAIGHT 0.9995f
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f }, side_axis[3] = { 1.0f, 0.0f, 0.0f };
@@ -49,6 +51,7 @@ typedef struct leg_now {
     float rotation[4]; /* of the foot */
     float points[NOH_FEET_POINTS][3], parts[3][3];
     float shift;
+    float soon; /* its shift on the lowest ground that it comes to soon; `shift` where it stands */
 } leg_now;
 
 /* What is under a foot. */
@@ -199,6 +202,22 @@ static void follow(float *x, float *speed, float goal, float rate, float seconds
     *speed = (*speed - rate * part) * shrink;
 }
 
+/* Towards a goal, with an acceleration of at most `most` and braking in time; slower, near to it, by the rate. */
+static void drive(float *x, float *speed, float goal, float most, float seconds)
+{
+    const float time = seconds < 1.0f ? seconds : 1.0f;
+    const int pieces = 1 + (int)(time * 240.0f);
+    const float h = time / (float)pieces;
+    for (int i = 0; i < pieces; i++) {
+        const float off = goal - *x, far = off < 0.0f ? -off : off;
+        const float brake = noh_sqrt(2.0f * PELVIS_BRAKE * most * far), near = PELVIS_RATE * far;
+        const float size = brake < near ? brake : near, wanted = off < 0.0f ? -size : size;
+        const float change = wanted - *speed, limit = most * h;
+        *speed += change > limit ? limit : change < -limit ? -limit : change;
+        *x += *speed * h;
+    }
+}
+
 static float length2(float x, float z)
 {
     return noh_sqrt(x * x + z * z);
@@ -263,15 +282,17 @@ static void lean(const step *s, noh_foot *f, const under *u)
     noh_normalize3(f->normal, up);
 }
 
-/* The highest ground that a foot comes to soon. */
-static float need_ahead(const step *s, const noh_foot *f, const leg_now *n, float need)
+/* The highest ground that a foot comes to soon, and the lowest, for the pelvis. */
+static float need_ahead(const step *s, const noh_foot *f, leg_now *n, float need)
 {
     float speed[2];
+    n->soon = need;
     speed_of(s, f, n, speed);
     for (int i = 1; i <= 2 && !f->is_held && s->seconds > 0.0f && !s->cut; i++) {
         const float ahead[2] = { speed[0] * AHEAD * (float)i, speed[1] * AHEAD * (float)i };
         const under u = look_down(s, f, n, ahead, 1);
         need = u.has_ground && u.need > need ? u.need : need;
+        n->soon = u.has_ground && u.need < n->soon ? u.need : n->soon;
     }
     return need;
 }
@@ -292,9 +313,13 @@ static void raise(const step *s, noh_foot *f, leg_now *n)
     }
     follow(&f->height, &f->speed, goal, HEIGHT_RATE, s->seconds);
     n->shift = f->height - s->floor;
-    if (!u.has_ground) return;
+    if (!u.has_ground) {
+        n->soon = n->shift;
+        return;
+    }
     n->shift += (u.need - n->shift) * f->stands;
     n->shift = n->shift > u.need ? n->shift : u.need;
+    n->soon = f->is_held || n->soon > n->shift ? n->shift : n->soon;
 }
 
 static void begin_foot(const step *s, noh_foot *f, const leg_now *n)
@@ -328,13 +353,15 @@ static float highest(const noh_foot *f, const leg_now *n)
     return target[1] + (room > 0.0f ? noh_sqrt(room) : 0.0f) - n->hip[1];
 }
 
+/* The pelvis goes with the foot that is lowest or soon will be: it is on its way when the foot comes down. A foot in
+ * the air waits for it; only one that stands pulls it down at once. */
 static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
 {
     float goal = 0.0f;
     uint32_t known = 0;
     for (uint32_t i = 0; i < s->rig->leg_count; i++) {
         if (!feet->feet[i].has_ground) continue;
-        goal = !known++ || now[i].shift < goal ? now[i].shift : goal;
+        goal = !known++ || now[i].soon < goal ? now[i].soon : goal;
     }
     goal += s->floor;
     if (s->cut) {
@@ -342,11 +369,11 @@ static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
         feet->speed = 0.0f;
     }
     const float was = feet->pelvis;
-    follow(&feet->pelvis, &feet->speed, goal, PELVIS_RATE, s->seconds);
+    drive(&feet->pelvis, &feet->speed, goal, PELVIS_ACCELERATION * s->leg, s->seconds);
     const float free = feet->pelvis;
     for (uint32_t i = 0; i < s->rig->leg_count; i++) {
         const float over = feet->pelvis - s->floor - highest(&feet->feet[i], &now[i]);
-        if (feet->feet[i].has_ground && over > 0.0f) feet->pelvis -= over;
+        if (feet->feet[i].has_ground && feet->feet[i].stands > 0.5f && over > 0.0f) feet->pelvis -= over;
     }
     const float pulled = s->seconds > 0.0f && !s->cut ? (feet->pelvis - was) / s->seconds : 0.0f;
     if (feet->pelvis < free) feet->speed = pulled < feet->speed ? pulled : feet->speed;

@@ -8,8 +8,9 @@
  * Clips are made on a flat floor: the plane y = 0 of the model, where its place is. A foot keeps the height above the
  * ground that its clip gives it above that floor, and leans with the ground as far as it is flat enough to stand on. It
  * stands where its clip holds it still on the floor: the lowest part of its sole (heel, ball or toes) is then held at
- * its place, until the clip lifts it or takes it away. The pelvis follows the lower foot, as a critically damped
- * spring, and at once where a leg that stands would be too short.
+ * its place, until the clip lifts it or takes it away. The pelvis goes with the foot that is lowest
+ * or is about to be, with an acceleration of at most 20 legs a square second, and at once where a leg that stands would
+ * be too short.
  *
  * Soles do not enter the ground where the legs reach. Heights are remembered in the world, so that a place that leaps
  * from step to step moves the body smoothly. Nothing below a sole within reach: that foot is left to its clip.

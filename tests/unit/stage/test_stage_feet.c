@@ -232,6 +232,7 @@ static void expect(const measures *m)
     assert_true(m->slide <= 0.002f);
     assert_true(m->penetration <= 0.005f);
     assert_true(m->gap <= 0.010f);
+    assert_true(m->acceleration <= 20.0f);
     assert_true(m->held > 0.3f);
 }
 
