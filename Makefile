@@ -428,8 +428,8 @@ WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GRO
                -s MALLOC=emmalloc -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
-WEB_STATIC  := 196608
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js light.js hair.js faces.js speech.js microphone.js page.noh)
+WEB_STATIC  := 262144
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js light.js hair.js faces.js load.js speech.js microphone.js page.noh page.nohz)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
@@ -464,12 +464,15 @@ look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
 $(WEB)/page.noh: $(WEB_PACK)
 	@mkdir -p $(@D)
 	@cp $< $@
+$(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh pack $< -o $@ --quiet
 $(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
 # What does not depend on the pack is compiled once, for all pages and for the planner.
-WEB_MAIN := $(addprefix platform/web/,main.c light.c faces.c hair.c sound.c touch.c) # these know the size of its memory
+WEB_MAIN := $(addprefix platform/web/,main.c load.c light.c faces.c hair.c sound.c touch.c) # these know the size of its memory
 WEB_C := platform/web/bounds.c platform/web/cast.c platform/web/context.c $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
 WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/file.o $(filter-out %/context.o,$(WEB_O))
@@ -487,9 +490,9 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
 -include $(WEB_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
-$(WEB)/noh.js: $(WEB_MAIN) $(wildcard platform/web/*.h) $(WEB_O) $(WEB_OBJECTS)/plan.js $(WEB_PACK) tools/web.sh $(if $(filter 1,$(WEB_ACTORS)),,FORCE)
+$(WEB)/noh.js: $(WEB_MAIN) $(wildcard platform/web/*.h) $(WEB_O) $(WEB_OBJECTS)/plan.js $(WEB_PACK) $(WEB)/page.nohz tools/web.sh $(if $(filter 1,$(WEB_ACTORS)),,FORCE)
 	@mkdir -p $(@D)
-	@PLAN=$(WEB_OBJECTS)/plan.js PACK="$(WEB_PACK)" ACTORS=$(WEB_ACTORS) STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) \
+	@PLAN=$(WEB_OBJECTS)/plan.js PACK="$(WEB_PACK)" WIRE=$(WEB)/page.nohz ACTORS=$(WEB_ACTORS) STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) \
 	    STATIC=$(WEB_STATIC) OUT=$@ FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_MAIN) $(WEB_O)
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.

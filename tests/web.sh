@@ -1,6 +1,6 @@
 #!/bin/sh
 # web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js, and
-# tests/web/figure.js, tests/web/speech.js with the mask); its canvas is compared with `noh render`, its bytes with the plan that sized its
+# tests/web/figure.js, tests/web/load.js, tests/web/speech.js with the mask); its canvas is compared with `noh render`, its bytes with the plan that sized its
 # memory, and with `noh budget`. `make web-check` runs it; NOH_WEB_ONLY=lights,hair
 # runs these parts alone, without a comparison. The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
 set -u
@@ -89,6 +89,10 @@ check_pack() {
     [ "$all" = 0 ] || count $code "$out/log.txt"
     timeout -k 5 500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
     count $? "$out/figure.txt"
+    if [ "$all" = 1 ]; then
+        timeout -k 5 500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
+        count $? "$out/load.txt"
+    fi
     if [ "$name" = mask ]; then
         timeout -k 5 500 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
         count $? "$out/speech.txt"

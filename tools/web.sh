@@ -1,6 +1,6 @@
 #!/bin/sh
 # web.sh INPUT...: links the page's program (platform/web) with emscripten, in as much memory as the plan of its stage
-# says. Called by `make web`, which sets PLAN, PACK, ACTORS, OUT, STACK, HEAP, STATIC, FLAGS and LINK. Prints the sum,
+# says. Called by `make web`, which sets PLAN, PACK, WIRE, ACTORS, OUT, STACK, HEAP, STATIC, FLAGS and LINK. Prints the sum,
 # and what goes over the wire.
 set -eu
 command -v emcc >/dev/null 2>&1 || { echo 'make web needs emscripten (emcc)' >&2; exit 1; }
@@ -9,9 +9,10 @@ command -v emcc >/dev/null 2>&1 || { echo 'make web needs emscripten (emcc)' >&2
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
 # shellcheck disable=SC2086
-noh=$(node $fetch "$PLAN" "$PACK" "$ACTORS" | sed -n 's/^block //p')
+plan=$(node $fetch "$PLAN" "$PACK" "$ACTORS" "$WIRE")
+noh=$(echo "$plan" | sed -n 's/^block //p')
 [ -n "$noh" ] || exit 1
-pack_bytes=$(wc -c <"$PACK")
+pack_bytes=$(echo "$plan" | sed -n 's/^wire //p') # more than the pack has: it is unpacked behind itself
 pack_bytes=$(((pack_bytes + 63) / 64 * 64))
 sum=$((pack_bytes + noh + STATIC + STACK + HEAP))
 memory=$(((sum + 65535) / 65536 * 65536))
@@ -24,7 +25,7 @@ emcc $FLAGS -DNOH_WEB_PACK_BYTES=$pack_bytes -DNOH_WEB_MEMORY_BYTES="$noh" -DNOH
 
 cat <<END
 WebAssembly memory, which cannot grow:
-  the pack                     $pack_bytes
+  the pack, while it arrives   $pack_bytes
   its block, by the plan       $noh (the most of any path)
   static data of the program   $STATIC (at most)
   stack                        $STACK
@@ -33,3 +34,4 @@ WebAssembly memory, which cannot grow:
 END
 wasm=${OUT%.js}.wasm
 echo "$(wc -c <"$wasm") bytes of WebAssembly ($(gzip -9 -c "$wasm" | wc -c) with gzip), $(wc -c <"$OUT") of JavaScript ($(gzip -9 -c "$OUT" | wc -c))"
+echo "$(wc -c <"$WIRE") bytes of the pack's wire form, $(wc -c <"$PACK") as it is"

@@ -11,7 +11,6 @@
 
 #define SPEED_ONE 65536
 
-static uint8_t pack_bytes[NOH_WEB_PACK_BYTES] __attribute__((aligned(64)));
 static uint8_t memory[NOH_WEB_MEMORY_BYTES] __attribute__((aligned(16)));
 struct web web = { .light = { .environment = WEB_PLAIN } };
 
@@ -49,6 +48,14 @@ static noh_result make_stage(const web_wants *wants)
     return result ? result : web_hair_open();
 }
 
+static void close_stage(void)
+{
+    web_light_close();
+    web_hair_close();
+    noh_stage_delete(web.stage);
+    web.stage = NULL;
+}
+
 /* The state goes over at the end of the block, behind all that either stage and its light work on. */
 noh_result web_open_stage(const web_wants *wants)
 {
@@ -58,10 +65,7 @@ noh_result web_open_stage(const web_wants *wants)
     noh_result result;
     if (web.stage) {
         memmove(kept, state, bytes);
-        web_light_close();
-        web_hair_close();
-        noh_stage_delete(web.stage);
-        web.stage = NULL;
+        close_stage();
     }
     result = make_stage(wants);
     if (!result && state) result = noh_stage_set_state(web.stage, kept, bytes, &web.error);
@@ -126,21 +130,11 @@ static void list_targets(void)
     }
 }
 
-/* Where the page is to write the file; NULL if it has more bytes than the page was built for. */
-EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
+/* Its stage, with the characters on it, as they begin. */
+static noh_result begin(const web_wants *wants)
 {
-    return bytes <= sizeof pack_bytes ? pack_bytes : NULL;
-}
-
-/* Open the pack of so many bytes. path: a noh_morph_path. characters: on stage, at most as many as there is room for.
- * alive: 0: without faces */
-EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters, int alive)
-{
-    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
-    noh_result result = noh_pack_open(pack_bytes, bytes, &web.pack, &web.error);
-    if (!result) result = open_context();
-    if (!result) result = web_open_stage(&wants);
-    if (!result) result = enter(characters);
+    noh_result result = web_open_stage(wants);
+    if (!result) result = enter(web.character_count);
     if (!result) list_targets();
     web.speed = SPEED_ONE;
     if (!result) {
@@ -148,6 +142,30 @@ EMSCRIPTEN_KEEPALIVE int web_open(uint32_t bytes, int path, uint32_t characters,
         web.height = web.bounds[4] - web.bounds[1];
         web_light_find_floor();
     }
+    return result;
+}
+
+/* Open the pack that was loaded. path: a noh_morph_path. characters: on stage, at most as many as there is room for.
+ * alive: 0: without faces */
+EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
+{
+    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
+    noh_result result = web_load(&web.pack);
+    web.character_count = characters;
+    if (!result) result = open_context();
+    return (int)(result ? result : begin(&wants));
+}
+
+/* The whole pack is there in place of its coarsest levels: all begins anew with it. Nothing plays, nothing is held. */
+EMSCRIPTEN_KEEPALIVE int web_open_whole(void)
+{
+    const web_wants wants = web.cast.wants;
+    noh_result result;
+    close_stage();
+    web.figure_count = web.target_count = 0;
+    result = web_load(&web.pack);
+    if (!result) result = begin(&wants);
+    if (!result) go_home();
     return (int)result;
 }
 
@@ -177,10 +195,6 @@ EMSCRIPTEN_KEEPALIVE const char *web_path(void)
 {
     const uint32_t path = web.cast.plan.morph_path;
     return path ? noh_morph_path_name((noh_morph_path)path) : "";
-}
-EMSCRIPTEN_KEEPALIVE uint32_t web_pack_room(void)
-{
-    return sizeof pack_bytes;
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_memory_room(void)
 {

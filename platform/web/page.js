@@ -1,8 +1,8 @@
 // page.js: the page around the WebAssembly program (main.c): the camera, clips, sliders, the table of memory.
-// The query: ?pack=NAME shows that pack instead of page.noh; ?path=gather forces a path; ?clip=NAME begins with that
+// The query: ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
 // the camera where it is; ?actors=3 shows so many characters, as far as the page was built for them; ?size=512 draws a
-// canvas of so many pixels across. light.js, hair.js, faces.js and speech.js have parts of the query of their own.
+// canvas of so many pixels across. load.js, light.js, hair.js, faces.js and speech.js have parts of the query of their own.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -17,7 +17,7 @@ let drawn = 0; // time of the last frame, in ms
 let busy = 0; // until then something fades
 
 // Tests wait for these.
-window.noh = { ready: false, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
+window.noh = { ready: false, whole: false, coarse: 0, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
 
 function fail(text) {
     window.noh.error = text;
@@ -209,6 +209,7 @@ byId('detail').addEventListener('change', () => {
 // By pixels, or at the level that ?detail says.
 function beginDetail() {
     const count = Module._web_level_count();
+    byId('detail').length = 2; // by pixels, full
     for (let i = 1; i < count; i++) byId('detail').add(new Option(`level ${i}`, i));
     byId('details').hidden = count < 2;
     const asked = Number(query.get('detail') || -1);
@@ -228,6 +229,13 @@ function showWeight(s) {
     s.output.textContent = weight.toFixed(2);
 }
 
+function hold(s, weight) {
+    if (!s) return;
+    Module._web_hold(s.index, weight, 1);
+    s.label.classList.add('held');
+    redraw();
+}
+
 function addSlider(index, name) {
     const label = document.createElement('label'), span = document.createElement('span');
     const slider = document.createElement('input'), output = document.createElement('output');
@@ -235,11 +243,7 @@ function addSlider(index, name) {
     Object.assign(slider, { type: 'range', min: -1, max: 2, step: 0.01 });
     slider.dataset.target = name;
     const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN };
-    slider.addEventListener('input', () => {
-        Module._web_hold(index, Number(slider.value), 1);
-        label.classList.add('held');
-        redraw();
-    });
+    slider.addEventListener('input', () => hold(s, Number(slider.value)));
     label.append(span, slider, output);
     byId('targets').append(label);
     sliders.push(s);
@@ -367,20 +371,20 @@ function showMemory() {
     byId('device').textContent = (window.noh.path ? `path ${window.noh.path}, ` : '') + window.noh.renderer;
 }
 
-async function start() {
-    const answer = await fetch(query.get('pack') || 'page.noh');
-    if (!answer.ok) fail(`no pack: ${answer.status}`);
-    const file = new Uint8Array(await answer.arrayBuffer());
-    const place = Module._web_pack(file.length);
-    if (!place) fail(`the pack has ${file.length} bytes, more than the page was built for`);
-    Module.HEAPU8.set(file, place);
+function listTargets() {
+    byId('targets').replaceChildren();
+    sliders.length = 0;
+    for (let i = 0; i < Module._web_target_count(); i++) addSlider(i, text(Module._web_target_name(i)));
+    byId('faces').hidden = !sliders.length;
+}
+
+function showFirst() {
     beginLight();
-    check(Module._web_open(file.length, Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1),
+    check(Module._web_open(Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1),
         query.get('alive') === 'off' ? 0 : 1));
     const box = floats(Module._web_measure(), 6);
     Module._web_set_spacing((box[3] - box[0]) * 1.1);
-    for (let i = 0; i < Module._web_target_count(); i++) addSlider(i, text(Module._web_target_name(i)));
-    byId('faces').hidden = !sliders.length;
+    listTargets();
     window.noh.renderer = text(Module._web_renderer());
     window.noh.path = text(Module._web_path());
     beginDetail();
@@ -397,6 +401,34 @@ async function start() {
     check(Module._web_check());
     showMemory();
     new ResizeObserver(resize).observe(canvas);
+}
+
+// All levels in place of the coarsest: what was chosen and held meanwhile stays.
+function goOn() {
+    const time = Module._web_time(), kept = sliders.filter((s) => s.label.classList.contains('held')).map((s) => [s.slider.dataset.target, Number(s.slider.value)]);
+    const over = Number(byId('face').value);
+    check(Module._web_open_whole());
+    listTargets();
+    for (const [name, weight] of kept) hold(sliders.find((s) => s.slider.dataset.target === name), weight);
+    beginDetail();
+    play(body, clip(), time, 0);
+    if (over >= 0) play(face, over, 0, 0);
+    if (!byId('hair-section').hidden) setHair();
+    smooth();
+    setAlive();
+    feel();
+    draw();
+    check(Module._web_check());
+    showMemory();
+}
+
+async function start() {
+    await load((shows) => {
+        if (window.noh.ready) goOn();
+        else showFirst();
+        if (shows === 1) window.noh.coarse = window.noh.frames;
+        window.noh.whole = shows === 2;
+    });
 }
 
 var Module = { onRuntimeInitialized: () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }) };

@@ -1,16 +1,18 @@
 /* plan.c: what a page for a pack takes: run under node when the page is built, for pointers have another size there.
  *
- *   plan PACK ACTORS
+ *   plan PACK ACTORS [WIRE]
  *
  * Prints the bytes of the stage by each path, plain and lit, with faces that live and without; how many floats may be
  * held, which kinds have a face (a bit for each), whether the first falls, what hair takes (an actor's, on the CPU, on
- * the GPU), where the first face's eyes are; the bytes of the page's block. */
+ * the GPU), where the first face's eyes are; the bytes of the page's block, and of that in which the wire form is
+ * unpacked. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cast.h"
 #include "platform.h"
+#include "wire/wire.h"
 
 /* A plain device that does all that any path needs: which one it will be is found in the browser. */
 static noh_gl_caps any_device(void)
@@ -67,13 +69,22 @@ static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
     return 0;
 }
 
+static int plan_wire(const char *path, noh_error *error)
+{
+    noh_wire_info info;
+    noh_file file;
+    if (noh_file_map(path, &file, error) || noh_wire_info_read(file.data, file.bytes, &info, error)) return 1;
+    printf("wire %u\n", info.block_bytes);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     noh_error error = { NOH_OK, "give a pack and a number of actors", 0, 0 };
     noh_file file;
     noh_pack pack;
-    if (argc != 3 || noh_file_map(argv[1], &file, &error) || noh_pack_open(file.data, file.bytes, &pack, &error) ||
-        plan_all(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error)) {
+    if (argc < 3 || noh_file_map(argv[1], &file, &error) || noh_pack_open(file.data, file.bytes, &pack, &error) ||
+        plan_all(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error) || (argc > 3 && plan_wire(argv[3], &error))) {
         (void)fprintf(stderr, "plan: %s\n", error.what);
         return 1;
     }

@@ -6,6 +6,7 @@
 #include "context.h"
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_blob.h"
+#include "wire/wire.h"
 
 #define WEB_PARTS_MAX 128u
 #define WEB_ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
@@ -57,7 +58,7 @@ struct web {
     noh_stage_bytes parts[WEB_PARTS_MAX];
     uint32_t part_count;
     web_figure figures[WEB_ACTORS_MAX];
-    uint32_t figure_count;
+    uint32_t figure_count, character_count;
     web_target targets[NOH_TARGETS_MAX];
     uint32_t target_count;
     noh_stage_view view;
@@ -76,6 +77,9 @@ extern struct web web;
 
 /* The block's part at an offset of web.cast. */
 void *web_block(size_t at);
+
+/* The best pack that has arrived. */
+noh_result web_load(noh_pack *pack);
 
 /* Make the stage for what is wanted, in place of another one, whose state it then goes on with. */
 noh_result web_open_stage(const web_wants *wants);

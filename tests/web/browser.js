@@ -4,20 +4,31 @@
 const fs = require('fs');
 const http = require('http');
 const path = require('path');
+const zlib = require('zlib');
 
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
 // A file alone is served as itself.
 const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, name || 'index.html') : place;
 
-// Serve the files of { '/prefix/': folder or file }; resolves to the server and its address.
+// What is text or program goes over the wire with gzip, as servers send it.
+function send(request, answer, name, bytes) {
+    const type = types[path.extname(name)] || (name.endsWith('/') ? 'text/html' : 'application/octet-stream');
+    const packed = types[path.extname(name)] && /gzip/.test(request.headers['accept-encoding'] || '') ? zlib.gzipSync(bytes) : null;
+    answer.writeHead(200, { 'Content-Type': type, 'Content-Length': (packed || bytes).length, ...(packed ? { 'Content-Encoding': 'gzip' } : {}) });
+    answer.end(packed || bytes);
+}
+
+// Serve the files of { '/prefix/': folder, file or function (request, answer) }; resolves to the server and its address.
 function serve(folders) {
     const server = http.createServer((request, answer) => {
         const name = new URL(request.url, 'http://localhost').pathname;
         const prefix = Object.keys(folders).find((p) => name.startsWith(p) && !name.includes('..'));
-        fs.readFile(prefix ? fileOf(folders[prefix], name.slice(prefix.length)) : '', (error, bytes) => {
-            answer.writeHead(error ? 404 : 200, { 'Content-Type': types[path.extname(name)] || (name.endsWith('/') ? 'text/html' : 'application/octet-stream') });
-            answer.end(error ? '' : bytes);
+        if (typeof folders[prefix] === 'function') return folders[prefix](request, answer);
+        return fs.readFile(prefix ? fileOf(folders[prefix], name.slice(prefix.length)) : '', (error, bytes) => {
+            if (!error) return send(request, answer, name, bytes);
+            answer.writeHead(404);
+            return answer.end('');
         });
     });
     return new Promise((resolve) => {

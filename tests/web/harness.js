@@ -40,7 +40,7 @@ async function open(browser, options, search) {
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     await page.goto(`${address}/?${search}&light=plain&alive=off`);
-    await page.waitForFunction(() => window.noh.ready || window.noh.error, null, { timeout: 60000 });
+    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, { timeout: 60000 });
     return page;
 }
 
@@ -63,9 +63,10 @@ async function loseAndRestore(page) {
 const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
 const toggle = (page, selector) => drawn(page, () => page.click(selector));
 
-// { name: async (browser) => ... }, run one after another. flags: of the browser's command line.
-async function main(parts, flags) {
-    const served = await serve({ '/': folder });
+// { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served beside the
+// page.
+async function main(parts, flags, places) {
+    const served = await serve({ ...places, '/': folder });
     address = served.address;
     const browser = await launch(executablePath, flags);
     const only = (process.env.NOH_WEB_ONLY || '').split(',').filter((name) => name);
@@ -78,7 +79,7 @@ async function main(parts, flags) {
     console.log(`1..${told}`);
 }
 
-const run = (parts, flags) => main(parts, flags).then(() => process.exit(failures ? 1 : 0))
+const run = (parts, flags, places) => main(parts, flags, places).then(() => process.exit(failures ? 1 : 0))
     .catch((error) => { console.log(`not ok ${told + 1} - ${error}`); process.exit(1); });
 
-module.exports = { out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, run, address: () => address };
+module.exports = { folder, out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, run, address: () => address };

@@ -69,7 +69,7 @@ async function open(browser, options, prepare) {
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     if (prepare) await page.addInitScript(prepare);
     await page.goto(`${address}/?clip=none&light=plain&size=256`);
-    await page.waitForFunction(() => window.noh.ready || window.noh.error, null, minute);
+    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
     await page.click('#alive'); // a mouth that moves is then the speech's
     return page;
 }

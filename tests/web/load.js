@@ -1,0 +1,94 @@
+// load.js FOLDER CHROMIUM OUT: the page while its pack arrives: what it shows first, what it says when the pack is cut
+// short, damaged or missing, and, as "#" lines, how long it takes by 1.6 Mbit/s and 150 ms. Prints its checks as TAP.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const { folder, out, check, keep, same, drawn, setTarget, open, close, run, address } = require('./harness.js');
+
+const minute = { timeout: 60000 }, wide = { viewport: { width: 1440, height: 900 } };
+const sent = fs.readFileSync(path.join(folder, 'page.nohz'));
+const images = sent.readUInt32LE(16); // of the file's head: 2 where the coarsest levels come first
+let release = null;
+
+// All but the end, which comes when the test says so.
+function heldBack(request, answer) {
+    answer.writeHead(200, { 'Content-Type': 'application/octet-stream', 'Content-Length': sent.length });
+    answer.write(sent.subarray(0, sent.length - 1000));
+    release = () => answer.end(sent.subarray(sent.length - 1000));
+}
+const cut = (request, answer) => answer.end(sent.subarray(0, sent.length >> 1));
+function flipped(request, answer) {
+    const bytes = Buffer.from(sent);
+    bytes[bytes.length >> 1] ^= 16;
+    answer.end(bytes);
+}
+
+async function arrives(browser) {
+    const plain = await open(browser, wide, 'clip=none&size=256&detail=0&pack=page.noh');
+    check('the pack as it is: it loads', await plain.evaluate(() => window.noh.whole && !window.noh.error));
+    await drawn(plain, () => setTarget(plain, 'smile', 1));
+    await keep(plain, 'as_it_is.png');
+    await close(plain, 'the pack as it is');
+    const page = await browser.newPage(wide);
+    page.problems = [];
+    page.on('pageerror', (error) => page.problems.push(String(error)));
+    await page.goto(`${address()}/?clip=none&size=256&detail=0&light=plain&alive=off&pack=held`);
+    if (images > 1) {
+        await page.waitForFunction(() => window.noh.ready || window.noh.error, null, minute);
+        check('the wire form: its coarsest levels are shown while the end is not there', await page.evaluate(() => window.noh.ready && !window.noh.whole));
+        check('the wire form: and it says so', (await page.textContent('#progress-text')).startsWith('finer detail') && await page.isVisible('#progress-bar'));
+        check('the wire form: there is one level', await page.evaluate(() => Module._web_level_count()) === 1);
+        await setTarget(page, 'smile', 1);
+        await keep(page, 'coarse.png');
+        await page.screenshot({ path: path.join(out, 'coarse_page.png') });
+    } else {
+        await page.waitForFunction(() => document.getElementById('progress-text').textContent.startsWith('loading:'), null, minute);
+        check('the wire form: nothing is shown before its end', await page.evaluate(() => !window.noh.ready));
+    }
+    release();
+    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
+    check('the wire form: then all of it', await page.evaluate(() => window.noh.error) === '' && !await page.isVisible('#progress'));
+    if (images > 1) {
+        check('the wire form: what was held stays', await page.inputValue('input[data-target="smile"]') === '1');
+        check('the wire form: all levels are there', await page.evaluate(() => Module._web_level_count()) > 1 && await page.locator('#detail option').count() > 3);
+        await drawn(page, () => page.selectOption('#detail', '0'));
+    } else {
+        await setTarget(page, 'smile', 1);
+    }
+    await drawn(page, () => page.click('#fit'));
+    await keep(page, 'by_wire.png');
+    check('the wire form: the picture of the pack as it is', same('as_it_is.png', 'by_wire.png'));
+    if (images > 1) check('the wire form: which is finer than the first', !same('coarse.png', 'by_wire.png'));
+    await close(page, 'the wire form');
+}
+
+async function refused(browser) {
+    for (const [pack, words] of [['cut', 'cut short'], ['flipped', 'damaged'], ['none.nohz', '404'], ['page.js', 'not']]) {
+        const page = await browser.newPage();
+        await page.goto(`${address()}/?pack=${pack}`);
+        await page.waitForFunction(() => window.noh.error, null, minute);
+        const said = await page.textContent('#message');
+        check(`a pack that is ${pack}: it says so`, said.includes(words) && await page.evaluate(() => !window.noh.whole), said);
+        await page.close();
+    }
+}
+
+// By a slow network, in milliseconds since the page was asked for, and what had come by then.
+async function slow(browser) {
+    const page = await browser.newPage(wide), client = await page.context().newCDPSession(page);
+    let bytes = 0;
+    await client.send('Network.enable');
+    client.on('Network.dataReceived', (event) => { bytes += event.encodedDataLength; });
+    await client.send('Network.emulateNetworkConditions', { offline: false, latency: 150, downloadThroughput: 200000, uploadThroughput: 93750 });
+    const start = Date.now(), told = [];
+    await page.goto(`${address()}/?clip=none&size=256`, { waitUntil: 'commit' });
+    for (const what of ['ready', 'whole']) {
+        await page.waitForFunction((w) => window.noh && (window.noh[w] || window.noh.error), what, { ...minute, polling: 20 });
+        told.push(`${what === 'ready' ? 'first picture' : 'complete'} after ${((Date.now() - start) / 1000).toFixed(1)} s and ${Math.round(bytes / 1000)} kB`);
+    }
+    console.log(`# 1.6 Mbit/s, 150 ms: ${told.join(', ')}`);
+    check('by a slow network: it is all there', await page.evaluate(() => window.noh.whole && !window.noh.error));
+    await page.close();
+}
+
+run({ arrives, refused, slow }, [], { '/held': heldBack, '/cut': cut, '/flipped': flipped });
