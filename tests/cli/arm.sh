@@ -120,6 +120,19 @@ check 'half the weight is half way' sh -c '
 
 # ---- pictures ----
 
+# Data textures need no GL: the pixels are tests/unit/tools/test_data_page.c's.
+noh sheet "$work/arm.noh" -o "$work/data.png" --data
+expect 0 'a sheet of data textures'
+noh sheet "$work/arm.noh" -o "$work/less.png" --data --target stream_b=0.5
+expect 0 'of one target'
+noh sheet "$work/arm.noh" -o "$work/again.png" --data --target stream_b=0.25
+check 'at another weight its sum is another' sh -c '! cmp -s "$1" "$2"' - "$work/less.png" "$work/again.png"
+noh sheet "$work/arm.noh" -o "$work/x.png" --data --target stream_c
+expect 1 'data of a target that is not there'
+says "did you mean 'stream_b'"
+noh sheet "$build/demo/puppet.noh" -o "$work/x.png" --data --clip walk
+expect 2 'clips have none'
+
 noh sheet "$work/arm.noh" -o "$work/streams.png" --target stream_b=0.5 --target stream_b --columns 3 --tile 64
 if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
     skip 'sheet --target NAME=V' 'no GL context here'

@@ -64,6 +64,13 @@ for path in layered mrt per-layer gather cpu; do
         check 'and GL has nothing to say' test ! -s "$work/err"
     fi
 done
+for data in sums base smile; do # the pixels are tests/unit/tools/test_data_page.c's
+    noh view "$mask" --data $data --frames 2 --size 900x800
+    expect 0 "data textures: $data"
+    check 'and GL has nothing to say' test ! -s "$work/err"
+done
+noh view "$mask" --data smirk --frames 1
+expect 1 'and a target that is not there'
 cat >"$work/leg.bvh" <<'BVH'
 HIERARCHY
 ROOT hips

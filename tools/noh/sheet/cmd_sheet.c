@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sheet_data.h"
 #include "sheet_lods.h"
 #include "sheet_tiles.h"
 #include "draw/picture.h"
@@ -18,7 +19,7 @@
 typedef struct sheet {
     sheet_tiles tiles;
     uint32_t tile_count, columns, rows, tile; /* tile: pixels */
-    int show_bones, lods;
+    int show_bones, lods, data;
     bounds box; /* of all tiles, relative to the anchor */
     uint8_t *rgba;
     const char *pack, *output, *driver, *camera;
@@ -235,6 +236,21 @@ static int make_lods(sheet *s, const pack_file *file)
     return sheet_lods_write(&o);
 }
 
+static int make_data(sheet *s, const pack_file *file)
+{
+    const sheet_data o = { &s->tiles, s->output, s->tile, s->columns };
+    int status = sheet_tiles_open(&s->tiles, file);
+    if (!status) status = sheet_data_write(&o);
+    sheet_tiles_close(&s->tiles);
+    return status;
+}
+
+static int make(sheet *s, const pack_file *file)
+{
+    if (s->data) return make_data(s, file);
+    return s->lods ? make_lods(s, file) : make_sheet(s, file);
+}
+
 static int run(void *args)
 {
     sheet_args *a = args;
@@ -247,7 +263,7 @@ static int run(void *args)
     if (!status) {
         status = pack_file_open(&file, a->s.pack);
         if (!status) {
-            status = a->s.lods ? make_lods(&a->s, &file) : make_sheet(&a->s, &file);
+            status = make(&a->s, &file);
             pack_file_close(&file);
         }
     }
@@ -366,6 +382,12 @@ static const option options[] = {
       .what =
           "rows without wrinkles, and with those of each model: by area, region, channel, and as built; a column for each --target, NAME[=V],NAME[=V]..., or for five emotions",
       .excludes = "--clip --lods --faces --bones --columns" },
+    { .name = "--data",
+      .kind = OPTION_FLAG,
+      .at = offsetof(sheet_args, s.data),
+      .what =
+          "the data textures of each mesh, a pixel a vertex: the base, each target's deltas (default: all; or each --target), and their sum; positions, normals and tangents",
+      .excludes = "--clip --lods --faces --wrinkles --bones" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.show_bones),
@@ -396,9 +418,9 @@ const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK",
     .what =
-        "draw a contact sheet: every target at full weight, a clip over time, people by seed, models of wrinkles, or the LOD levels",
+        "draw a contact sheet: every target at full weight, a clip over time, people by seed, models of wrinkles, the LOD levels, or data textures",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

@@ -84,6 +84,13 @@ static const option options[] = {
       .value = "NAME",
       .what = "play this clip from the start",
       .example = "walk" },
+    { .name = "--data",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, run.data),
+      .value = "sums|base|TARGET",
+      .what =
+          "the data textures that the panel shows: what is accumulated, the mesh's own, or a target's deltas; default: sums",
+      .example = "jawOpen" },
     { .name = "--camera",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, camera),

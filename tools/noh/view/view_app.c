@@ -351,6 +351,41 @@ static int fit_canvas(view_app *a, int *x, int *y)
     return view_model_fit(a->model, &a->gpu, width, height);
 }
 
+int view_data_mesh(const view_model *m, noh_mesh *mesh)
+{
+    for (uint32_t i = 0; noh_pack_mesh_at(&m->file.pack, i, mesh, NULL) == NOH_OK; i++) {
+        if (mesh->header->touched_count) return 1;
+    }
+    return 0;
+}
+
+int view_show_data(view_app *a, const char *name)
+{
+    noh_mesh mesh;
+    const int has_mesh = view_data_mesh(a->model, &mesh);
+    a->data = strcmp(name, "base") == 0 ? VIEW_DATA_BASE : VIEW_DATA_DELTA;
+    if (strcmp(name, "sums") == 0) a->data = VIEW_DATA_SUMS;
+    if (a->data != VIEW_DATA_DELTA) return 0;
+    a->data_target = has_mesh ? noh_mesh_find_target(&mesh, name) : NOH_NONE;
+    return a->data_target == NOH_NONE ? figure_check_target(&a->model->file, name) : 0;
+}
+
+/* The mesh's own textures, or a target's, from the pack. */
+static void draw_data(view_app *a)
+{
+    noh_mesh mesh;
+    data_page page;
+    if (!view_data_mesh(a->model, &mesh) || data_page_open(&page, &mesh)) return;
+    if (a->data == VIEW_DATA_BASE) {
+        data_page_base(&page, &mesh);
+        view_screen_data(&a->screen, &page);
+    } else if (a->data_target < mesh.header->target_count) {
+        data_page_delta(&page, &mesh, a->data_target, a->layer_gain);
+        view_screen_data(&a->screen, &page);
+    }
+    data_page_close(&page);
+}
+
 /* Deltas of positions are in model units: at gain 1 the largest is white or black. */
 static void draw_layers(view_app *a)
 {
@@ -358,7 +393,12 @@ static void draw_layers(view_app *a)
     const float gain = a->layer_gain;
     const float gains[3] = { 0.5f * gain / m->delta_max, gain, gain };
     noh_stage_drawn drawn;
-    for (uint32_t i = 0; m->is_morphed && a->show_panels && a->show_layers; i++) {
+    if (!m->is_morphed || !a->show_panels || !a->show_layers) return;
+    if (a->data != VIEW_DATA_SUMS) {
+        draw_data(a);
+        return;
+    }
+    for (uint32_t i = 0;; i++) {
         if (noh_actor_on_gl(m->figure->stage, m->figure->actors[0], i, &drawn, NULL)) return;
         if (drawn.is_morphed) {
             view_screen_layers(&a->screen, &m->morph_plan, &drawn.morph, gains);

@@ -54,6 +54,8 @@ typedef struct view_path {
     uint32_t next, count;
 } view_path;
 
+typedef enum view_data { VIEW_DATA_SUMS, VIEW_DATA_BASE, VIEW_DATA_DELTA } view_data;
+
 typedef struct view_app {
     gpu gpu;
     view_screen screen;
@@ -79,6 +81,8 @@ typedef struct view_app {
     float scale;                       /* pixels in a point */
     int show_panels, show_layers, playing;
     float speed, layer_gain;
+    view_data data;       /* what the textures below the gain show */
+    uint32_t data_target; /* of VIEW_DATA_DELTA, of view_data_mesh; past the last: none is shown */
     view_times times;
     view_log log;
     char message[512]; /* the last error */
@@ -86,6 +90,13 @@ typedef struct view_app {
     view_model_desc wish; /* the panels ask for this one ... */
     int wants_reload;     /* ... to draw what is shown */
 } view_app;
+
+/* The mesh whose data textures are shown: the first that targets move. Returns 0 where there is none. */
+int view_data_mesh(const view_model *m, noh_mesh *mesh);
+
+/* Show data textures: "sums", "base", or the deltas of the target of that name. Prints an error and returns an exit
+ * code. */
+int view_show_data(view_app *a, const char *name);
 
 /* g: an open context, and the window's size. Prints an error and returns an exit code; 0 on success. */
 int view_app_open(view_app *a, const view_model_desc *desc);

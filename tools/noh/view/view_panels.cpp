@@ -325,6 +325,35 @@ void memory_section(view_app *a)
     }
 }
 
+// The accumulated layers, or what they are accumulated from.
+void data_combo(view_app *a)
+{
+    noh_mesh mesh;
+    if (!view_data_mesh(a->model, &mesh)) {
+        return;
+    }
+    const auto name_of = [&mesh](uint32_t i) { return noh_pack_string(mesh.pack, mesh.targets[i].name); };
+    const bool has_target = a->data_target < mesh.header->target_count;
+    const char *shown = a->data == VIEW_DATA_SUMS   ? "sums"
+                        : a->data == VIEW_DATA_BASE ? "base"
+                        : has_target                ? name_of(a->data_target)
+                                                    : "";
+    ImGui::SetNextItemWidth(-1.0f);
+    if (ImGui::BeginCombo("##data", shown)) {
+        if (ImGui::Selectable("sums", a->data == VIEW_DATA_SUMS)) a->data = VIEW_DATA_SUMS;
+        if (ImGui::Selectable("base", a->data == VIEW_DATA_BASE)) a->data = VIEW_DATA_BASE;
+        for (uint32_t i = 0; i < mesh.header->target_count; i++) {
+            ImGui::PushID(static_cast<int>(i));
+            if (ImGui::Selectable(name_of(i), a->data == VIEW_DATA_DELTA && i == a->data_target)) {
+                a->data = VIEW_DATA_DELTA;
+                a->data_target = i;
+            }
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+}
+
 void layers_section(view_app *a)
 {
     static const char *const names[] = { "position", "normal", "tangent" };
@@ -336,6 +365,7 @@ void layers_section(view_app *a)
         ImGui::TextDisabled("no accumulators");
         return;
     }
+    data_combo(a);
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::SliderFloat("##gain", &a->layer_gain, 0.1f, 20.0f, "gain %.2f", ImGuiSliderFlags_Logarithmic);
     const float width = (ImGui::GetContentRegionAvail().x - 8.0f) / 3.0f;

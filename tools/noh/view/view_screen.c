@@ -196,6 +196,22 @@ void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+void view_screen_data(view_screen *s, const data_page *page)
+{
+    const noh_gl_api *gl = &s->g->gl;
+    const size_t bytes = 4u * (size_t)page->width * page->height;
+    if (!bytes) return;
+    make_layers(s, page->width, page->height);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (uint32_t i = 0; i < DATA_LAYERS; i++) {
+        gl->BindTexture(GL_TEXTURE_2D, s->layers[i]);
+        gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)page->width, (GLsizei)page->height, GL_RGBA,
+                          GL_UNSIGNED_BYTE, page->rgba + i * bytes);
+    }
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+}
+
 /* ---- the panels ---- */
 
 void view_triangles_begin(view_screen *s, float width, float height)

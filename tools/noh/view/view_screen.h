@@ -3,11 +3,13 @@
  *   view_screen_open / view_screen_close
  *   view_screen_picture     the canvas into a rectangle of the window
  *   view_screen_layers      the accumulators' three layers into textures
+ *   view_screen_data        a page of data textures there instead
  *   view_triangles_begin, view_triangles_list, view_triangles_draw, view_triangles_end   triangles of the panels
  *   view_screen_read        the window's pixels */
 #ifndef NOH_NOH_VIEW_VIEW_SCREEN_H
 #define NOH_NOH_VIEW_VIEW_SCREEN_H
 
+#include "draw/data_page.h"
 #include "gpu/canvas.h"
 
 /* As Dear ImGui lays them out. */
@@ -40,6 +42,9 @@ void view_screen_picture(view_screen *s, canvas *c, int x, int y);
 /* gains[layer]: the share of the range from black to white for a delta of 1. */
 void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh_gl_morph_binding *binding,
                         const float gains[3]);
+
+/* In their place; none if no target moves the page's mesh. */
+void view_screen_data(view_screen *s, const data_page *page);
 
 /* width, height of the window in points. */
 void view_triangles_begin(view_screen *s, float width, float height);

@@ -292,6 +292,7 @@ static int show(view_window *w, const view_run *run)
     if (!status) status = view_panels_open();
     w->app.follow = !run->fixed_camera;
     if (!status && run->clip) status = start_clip(&w->app, run->clip);
+    if (!status && run->data) status = view_show_data(&w->app, run->data);
     if (!status) {
         listen(w);
         status = loop(w, run);

@@ -7,6 +7,7 @@
 typedef struct view_run {
     view_model_desc desc;   /* width, height: of the window */
     const char *clip;       /* to play from the start; NULL: none */
+    const char *data;       /* the data textures to show from the start (view_show_data); NULL: the sums */
     int fixed_camera;       /* the camera does not follow the figure */
     int native;             /* the context by GLX or WGL instead of EGL */
     uint32_t frames;        /* draw this many, each 1/60 s of the clips, and end; 0: until the window is closed */
