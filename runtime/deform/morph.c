@@ -26,7 +26,7 @@ static void target_fields(const noh_target *t, float weight, morph_field f[3])
 
 typedef void (*run_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
 
-static void run_simd(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     if (layers[2]) {
         noh_add_run(words, count, f, layers, 3);
@@ -38,8 +38,8 @@ static void run_simd(const uint32_t *words, size_t count, const morph_field f[3]
 /* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
  * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams.
  */
-static void accumulate_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
-                              const noh_morph_layers *layers, run_function run)
+NOH_ALWAYS_INLINE void accumulate_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
+                                         const noh_morph_layers *layers, run_function run)
 {
     const noh_rect *rect = mesh->rects + t->first_rect;
     const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
@@ -67,7 +67,8 @@ static int all_finite(const float *values, uint32_t count)
 }
 #endif
 
-static void accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers, run_function run)
+NOH_ALWAYS_INLINE void accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                                  run_function run)
 {
     NOH_ASSERT(mesh && weights && layers);
     NOH_ASSERT(layers->position || !mesh->header->touched_count);
