@@ -39,7 +39,9 @@ typedef struct noh_clip_info {
     uint32_t sample_rate_uhz;          /* frames per second, times 10^6 */
     uint64_t duration_ticks;           /* 1/48,000 s, of frame_count - 1 frames; the last frame is shown at the end */
     uint32_t flags;                    /* NOH_CLIP_FLAG_* */
-    double error_cm, shell_cm;         /* the bound that it was built for, on points this far from each joint */
+    double error_cm, shell_cm;         /* the bound that it was built for, and how far the points it bounds are from
+                                        * their joint in the bind pose: with NOH_CLIP_FLAG_SPHERE all such points,
+                                        * without it those on the joint's three axes */
     double max_error_cm, rms_error_cm; /* certificate: the errors measured, at frames and between them */
     uint32_t max_error_joint;
     double max_error_time_s;

@@ -11,7 +11,7 @@
  *
  * Header
  *   8        version, NOH_CLIP_VERSION
- *   4        flags, NOH_CLIP_FLAG_*
+ *   8        flags, NOH_CLIP_FLAG_*; the others are 0
  *   varint   joints
  *   varint   frames, at least 1
  *   1        1: varint sample rate in Hz;  0: 32 bits of sample rate in micro-Hz
@@ -56,12 +56,15 @@
 #ifndef NOH_CLIP_CLIP_FORMAT_H
 #define NOH_CLIP_CLIP_FORMAT_H
 
-#define NOH_CLIP_VERSION 2u /* raised for new tables too: clip_tables.c is part of the format */
+#define NOH_CLIP_VERSION 3u /* raised for new tables too: clip_tables.c is part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: some joint's lever is too long for 16 bits */
 #define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale is not its bind pose's */
 #define NOH_CLIP_FLAG_LOOP 4u  /* the last frame equals the first */
 #define NOH_CLIP_FLAG_OPEN 8u  /* coded in an open loop, each joint for itself: joints may be masked or replaced */
+/* the bound holds for all points at the shell's distance; without it, for the three on each joint's axes */
+#define NOH_CLIP_FLAG_SPHERE 16u
+#define NOH_CLIP_FLAGS_ALL 31u
 
 #define NOH_CLIP_JOINTS_MAX 4096u
 #define NOH_CLIP_FLOATS_MAX 4096u

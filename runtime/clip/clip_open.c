@@ -55,7 +55,9 @@ static noh_result read_counts(parser *p)
     if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION)
         return fail(p, NOH_ERR_VERSION, "the clip is of another format version: build its pack again",
                     NOH_CLIP_VERSION);
-    info->flags = noh_bits_get(b, 4u);
+    info->flags = noh_bits_get(b, 8u);
+    if (info->flags & ~NOH_CLIP_FLAGS_ALL)
+        return fail(p, NOH_ERR_DATA, "the clip has flags that do not exist", info->flags);
     info->joint_count = noh_bits_varint(b);
     info->frame_count = noh_bits_varint(b);
     if (info->joint_count > NOH_CLIP_JOINTS_MAX)

@@ -909,7 +909,7 @@ static void lies_are_told_with_the_clip(void **state)
     marker = (noh_clip_marker *)(void *)(copy + ((const uint8_t *)(const void *)m.markers - copy)) + 1;
     marker->tick = 1u << 30;
     expect_error(&desc, NOH_ERR_DATA, "marker tick past the duration");
-    copy[m.bytes - copy + 1] ^= 0x10u; /* the number of joints */
+    copy[m.bytes - copy + 1] ^= 0x80u; /* a flag that does not exist */
     assert_int_equal(noh_clip_bank_size(&desc, &error), 0);
     assert_int_not_equal(error.result, NOH_OK);
     assert_int_equal(error.where, 1);

@@ -340,7 +340,7 @@ static void errors_say_which_pack(void **state)
     expect_error(&desc, NOH_ERR_DATA, "event tick past the duration", IN_PACK(1, 1));
     event->tick = tick;
     codec = more.bytes + (clip.bytes - more.bytes);
-    codec[1] ^= 0x10u; /* the number of joints */
+    codec[1] ^= 0x80u; /* a flag that does not exist */
     expect_error(&desc, NOH_ERR_DATA, "", IN_PACK(1, 1));
     free(game.bytes);
     free(more.bytes);

@@ -88,7 +88,7 @@ static void put_means(writer *w, const int32_t mean[3], uint32_t last_before)
 static void put_header(writer *w, uint32_t flags, uint32_t joints, uint32_t frames, uint32_t segments, uint32_t floats)
 {
     put(w, NOH_CLIP_VERSION, 8);
-    put(w, flags, 4);
+    put(w, flags, 8);
     put_varint(w, joints);
     put_varint(w, frames);
     put(w, 1, 1);

@@ -143,16 +143,26 @@ static double point_radius(const encoder *e, uint32_t carrier, uint32_t joint)
     return radius;
 }
 
-/* Where a carried joint lies in its carrier's space. */
-static void point_offset(const encoder *e, uint32_t carrier, enc_point *point)
+/* Where a carried joint lies in its carrier's space. A joint whose own rotation or scale changes is a point there; of
+ * any other the linear part is known, too. */
+static void place_point(const encoder *e, uint32_t carrier, enc_point *point)
 {
+    const enc_joint *t = &e->joints[point->joint];
     uint32_t j = point->joint;
     double v[3] = { 0.0, 0.0, 0.0 };
+    point->still = t->modes[ROTATION] != NOH_CLIP_MODE_ANIMATED && t->modes[SCALE] != NOH_CLIP_MODE_ANIMATED;
+    memset(point->linear, 0, sizeof point->linear);
+    for (int i = 0; i < 3; i++) point->linear[4 * i] = 1.0;
     for (; j != carrier; j = e->joints[j].parent) {
         space_global g;
         space_turn(NULL, e->joints[j].rest.q, e->joints[j].rest.s, &g);
         space_apply(g.m, v, g.p);
         for (int i = 0; i < 3; i++) v[i] = g.p[i] + e->joints[j].rest.t[i];
+        if (point->still) {
+            double m[9];
+            space_product(g.m, point->linear, m);
+            memcpy(point->linear, m, sizeof m);
+        }
     }
     memcpy(point->offset, v, sizeof v);
 }
@@ -199,7 +209,7 @@ static int find_points(encoder *e, uint32_t carrier)
         }
         radii[at] = radius;
         t->points[at].joint = j;
-        point_offset(e, carrier, &t->points[at]);
+        place_point(e, carrier, &t->points[at]);
     }
     return 0;
 }

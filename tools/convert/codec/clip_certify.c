@@ -57,7 +57,7 @@ static void measure_joints(certifier *c, uint32_t frame, double fraction, uint32
         space_unit(l.q);
         space_compose(enc_parent(c->raw, parent), &raw, &c->raw[j]);
         space_compose(enc_parent(c->lossy, parent), &l, &c->lossy[j]);
-        d = space_error(&c->raw[j], &c->lossy[j], e->shell);
+        d = enc_error(e, j, &c->raw[j], &c->lossy[j]);
         c->square += d * d;
         c->samples++;
         if (!(d * e->tight / e->joints[j].bound <= c->worst_part)) c->worst_part = d * e->tight / e->joints[j].bound;

@@ -79,8 +79,11 @@ static int new_loop(encoder *e)
     l->errors = enc_alloc(e, (size_t)e->joint_count * (ENC_PARTS + 1), sizeof *l->errors);
     l->errors_before = enc_alloc(e, e->joint_count, sizeof *l->errors);
     l->errors_end = enc_alloc(e, e->joint_count, sizeof *l->errors);
-    return !l->errors || !l->errors_before || !l->errors_end || !l->end || !l->local || !l->global || !l->raw_between ||
-           !l->before || !l->scratch;
+    l->slack = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->slack);
+    l->floor = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->floor);
+    l->turns = enc_alloc(e, e->joint_count, sizeof *l->turns);
+    return !l->turns || !l->slack || !l->floor || !l->errors || !l->errors_before || !l->errors_end || !l->end ||
+           !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
 }
 
 static void free_segments(encoder *e)
@@ -109,6 +112,9 @@ static void free_encoder(encoder *e)
         free(e->loop->errors);
         free(e->loop->errors_before);
         free(e->loop->errors_end);
+        free(e->loop->turns);
+        free(e->loop->slack);
+        free(e->loop->floor);
         free(e->loop);
     }
     free(e->joints);

@@ -1,7 +1,8 @@
 /* clip_encode.h: from a raw clip to the bytes of runtime/clip/clip_format.h.
  *
- * The error is an object-space distance: three virtual points at `shell_cm` from each joint,
- * along its axes, carried by the whole chain of parents, against the raw clip; at every frame,
+ * The error is an object-space distance: any point at `shell_cm` from a joint (in the bind pose, in
+ * the world's centimetres, whatever scale its nodes have), carried by the whole chain of parents,
+ * against the raw clip; at every frame,
  * and between frames against the raw clip with translations and scales lerped and rotations
  * lerped and normalised (neighbouring raw quaternions taken in one hemisphere). It is at most
  * `error_cm` wherever it is measured: at frames and at the eighths between them, by the decoder's
@@ -19,10 +20,11 @@ extern "C" {
 
 typedef struct clip_options {
     double error_cm;              /* the bound; 0 = 0.01 */
-    double shell_cm;              /* distance of the virtual points; 0 = 3 */
+    double shell_cm;              /* distance of the points from their joint; 0 = 3 */
     double float_error;           /* bound of floats without a radius, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t segment_frames;      /* wanted length of a segment, 8..40; 0 = 24 */
+    int axes;                     /* bound only the three points on each joint's axes, as other libraries measure */
     int open_loop; /* joints do not correct their parents' errors, so that single joints can be masked out */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;

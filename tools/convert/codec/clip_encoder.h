@@ -22,10 +22,11 @@
 #define ENC_DROP 0.15   /* a track whose effect stays below this share of the bound is constant */
 #define ENC_NONE 0xffffffffu
 
-/* A point that a joint carries rigidly: a descendant's origin. */
+/* A descendant that a joint carries rigidly. */
 typedef struct enc_point {
     uint32_t joint;
-    double offset[3]; /* in the carrying joint's space */
+    int still; /* it has no rotation of its own: where its shell is, the carrying joint alone decides */
+    double offset[3], linear[9]; /* its place in the carrying joint's space; `linear` if it is still */
 } enc_point;
 
 typedef struct enc_joint {
@@ -39,6 +40,7 @@ typedef struct enc_joint {
     double lever;               /* units: distance of the farthest point that only its rotation places */
     double scale_lever;         /* units: the radius of all that its scale moves */
     double bound;               /* units */
+    double shell[3];            /* how far from it its error is measured, in its own unit along each of its axes */
     double depth;               /* 0 at the root of its longest chain of turning joints, 1 at the tip */
     enc_point *points;
     uint32_t point_count;
@@ -120,7 +122,9 @@ typedef struct enc_loop {
     space_global *scratch;     /* [joint] */
     double *errors; /* [ENC_PARTS + 1][joint] of one interval, as shares of the bound; row 0: the frame before */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
-    double slack;
+    double *turns;                      /* [joint] radians that it and its parents turn from one frame to the next */
+    double *slack;                      /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
+    double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation\'s parents take, however exact it is */
     double rho_scale;
     int all_raw;
 } enc_loop;
@@ -144,6 +148,13 @@ static inline space_global *enc_global(const encoder *e, uint32_t frame, uint32_
 static inline const space_global *enc_parent(const space_global *pose, uint32_t parent)
 {
     return parent == ENC_NONE ? NULL : &pose[parent];
+}
+
+/* How far the points about a joint are from the raw clip's, units. */
+static inline double enc_error(const encoder *e, uint32_t joint, const space_global *raw, const space_global *lossy)
+{
+    return e->options.axes ? space_error_axes(raw, lossy, e->joints[joint].shell)
+                           : space_error_sphere(raw, lossy, e->joints[joint].shell);
 }
 
 /* Each returns 0, or 1 with e->error filled. */

@@ -4,6 +4,8 @@
 
 #include "clip_encoder.h"
 
+#define SHELL_SCALE_MIN 1e-6
+
 int enc_fail(encoder *e, const char *what)
 {
     if (e->error) {
@@ -91,6 +93,28 @@ static void prepare_local(encoder *e, uint32_t f, uint32_t j)
     }
 }
 
+/* The shell is a distance in the bind pose's world: below a node of scale 0.01 it is a hundred of the joint's own
+ * units. A joint that the bind pose scales to nothing has no such distance; its own unit is taken. */
+static int prepare_shells(encoder *e)
+{
+    space_global *bind = enc_alloc(e, e->joint_count, sizeof *bind);
+    if (!bind) return 1;
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        enc_joint *t = &e->joints[j];
+        space_local l;
+        for (int i = 0; i < 4; i++) l.q[i] = (double)e->bind[j].rotation[i];
+        for (int i = 0; i < 3; i++) l.t[i] = (double)e->bind[j].translation[i];
+        for (int i = 0; i < 3; i++) l.s[i] = (double)e->bind[j].scale[i];
+        space_compose(enc_parent(bind, t->parent), &l, &bind[j]);
+        for (int k = 0; k < 3; k++) {
+            const double *m = bind[j].m, n = sqrt(m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
+            t->shell[k] = n > SHELL_SCALE_MIN && n < 1.0 / SHELL_SCALE_MIN ? e->shell / n : e->shell;
+        }
+    }
+    free(bind);
+    return 0;
+}
+
 static int prepare_joints(encoder *e)
 {
     const size_t samples = (size_t)e->frame_count * e->joint_count;
@@ -109,6 +133,7 @@ static int prepare_joints(encoder *e)
         if (!numbers(r->translation, 3) || !numbers(r->scale, 3))
             return enc_fail(e, "a bind pose that is not a number");
     }
+    if (prepare_shells(e)) return 1;
     for (uint32_t f = 0; f < e->frame_count; f++) {
         space_global *pose = enc_global(e, f, 0);
         for (uint32_t j = 0; j < e->joint_count; j++) {

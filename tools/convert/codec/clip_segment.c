@@ -9,7 +9,8 @@
  *
  * How exact a joint must be is not known in advance: the bound is on the object-space error of the whole chain, at
  * frames and between them. So the segment is fitted, measured as a whole, and fitted again with a smaller share of
- * the bound (`slack`) until it holds; four tunings are tried and the one of fewest bytes is kept. */
+ * the bound (`slack`) until it holds: first of the joints and frames that passed it, then, as another candidate, of
+ * all. Four tunings are tried so, and the result of fewest bytes is kept. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
@@ -30,6 +31,19 @@ static space_local *lossy(const encoder *e, uint32_t joint, uint32_t f)
 static space_global *placed(const encoder *e, uint32_t joint, uint32_t f)
 {
     return &e->loop->global[(size_t)joint * ENC_FRAMES_MAX + f];
+}
+
+static double *slack_of(const encoder *e, uint32_t joint)
+{
+    return &e->loop->slack[(size_t)joint * ENC_FRAMES_MAX];
+}
+
+/* Of a whole track. */
+static double least_slack(const encoder *e, uint32_t joint, uint32_t count)
+{
+    double least = 1.0;
+    for (uint32_t f = 0; f < count; f++) least = slack_of(e, joint)[f] < least ? slack_of(e, joint)[f] : least;
+    return least;
 }
 
 static const space_global *lossy_parent(const encoder *e, uint32_t joint, uint32_t f)
@@ -59,13 +73,19 @@ static double rotation_violation(const encoder *e, uint32_t joint, uint32_t fram
     const double rho = (e->tuning.rho_root +
                         (e->tuning.rho_tip - e->tuning.rho_root) * (t->depth < 1.0 ? t->depth : 1.0)) *
                        e->loop->rho_scale;
-    double v = space_error(raw, g, e->shell) / t->bound;
+    double v = enc_error(e, joint, raw, g) / t->bound;
     for (uint32_t i = 0; i < t->point_count; i++) {
         const enc_point *point = &t->points[i];
-        double p[3], d;
-        space_apply(g->m, point->offset, p);
-        for (int k = 0; k < 3; k++) p[k] += g->p[k];
-        d = space_distance(p, enc_global(e, frame, point->joint)->p) / (e->joints[point->joint].bound * rho);
+        space_global at;
+        double d;
+        space_apply(g->m, point->offset, at.p);
+        for (int k = 0; k < 3; k++) at.p[k] += g->p[k];
+        if (point->still) {
+            space_product(g->m, point->linear, at.m);
+            d = enc_error(e, point->joint, enc_global(e, frame, point->joint), &at) / e->joints[point->joint].bound;
+        } else {
+            d = space_distance(at.p, enc_global(e, frame, point->joint)->p) / (e->joints[point->joint].bound * rho);
+        }
         if (!(d <= v)) v = d;
     }
     return v;
@@ -127,7 +147,7 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
     double a[6] = { 0 }, b[3] = { 0 }, off[3], x[3], det, turn[4], turned[4];
     for (int i = 0; i < 3; i++) off[i] = position[i] - raw->p[i];
     for (int k = 0; k < 3; k++) {
-        const double u[3] = { e->shell * raw->m[k], e->shell * raw->m[3 + k], e->shell * raw->m[6 + k] };
+        const double s = t->shell[k], u[3] = { s * raw->m[k], s * raw->m[3 + k], s * raw->m[6 + k] };
         add_pull(a, b, u, off, e->tuning.shell_weight);
     }
     for (uint32_t i = 0; i < t->point_count; i++) {
@@ -205,8 +225,11 @@ static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
         space_global g = *placed(e, j->joint, f);
         double v;
         space_turn(lossy_parent(e, j->joint, f), q[f], lossy(e, j->joint, f)->s, &g);
-        v = rotation_violation(e, j->joint, j->segment->first + f, &g) + e->tuning.headroom * e->loop->slack;
-        j->limits[f] = v > e->loop->slack ? v : e->loop->slack;
+        const double slack = slack_of(e, j->joint)[f];
+        v = rotation_violation(e, j->joint, j->segment->first + f, &g);
+        e->loop->floor[(size_t)j->joint * ENC_FRAMES_MAX + f] = v;
+        v += e->tuning.headroom * slack;
+        j->limits[f] = v > slack ? v : slack;
     }
 }
 
@@ -349,7 +372,7 @@ static int fit_translation(encoder *e, uint32_t joint, const enc_segment *s, enc
         space_apply(inverse, d, targets[f]);
     }
     if (e->joints[joint].parent == ENC_NONE) scale = 1.0;
-    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack /
+    j.limit = e->tuning.linear_part * e->joints[joint].bound * least_slack(e, joint, s->count) /
               (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN);
     if (fit_linear(e, &j, track, piece, targets, values)) return 1;
     for (uint32_t f = 0; f < s->count; f++) memcpy(lossy(e, joint, f)->t, values[f], sizeof values[f]);
@@ -368,7 +391,7 @@ static int fit_scale(encoder *e, uint32_t joint, const enc_segment *s, enc_track
         if (n > scale) scale = n;
         memcpy(targets[f], enc_local(e, s->first + f, joint)->s, sizeof targets[f]);
     }
-    j.limit = e->tuning.linear_part * e->joints[joint].bound * e->loop->slack /
+    j.limit = e->tuning.linear_part * e->joints[joint].bound * least_slack(e, joint, s->count) /
               (e->joints[joint].scale_lever * (scale > TRANSLATION_SCALE_MIN ? scale : TRANSLATION_SCALE_MIN));
     if (fit_linear(e, &j, track, piece, targets, values)) return 1;
     for (uint32_t f = 0; f < s->count; f++) memcpy(lossy(e, joint, f)->s, values[f], sizeof values[f]);
@@ -445,13 +468,72 @@ static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *
         space_local l;
         space_between(before, lossy(e, j, f), (double)(part + 1u) / ENC_PARTS, &l);
         space_compose(enc_parent(e->loop->scratch, e->joints[j].parent), &l, &e->loop->scratch[j]);
-        errors[j] = space_error(&raw[j], &e->loop->scratch[j], e->shell) / e->joints[j].bound;
+        errors[j] = enc_error(e, j, &raw[j], &e->loop->scratch[j]) / e->joints[j].bound;
     }
 }
 
+/* How far each joint turns in the raw clip between frame f - 1 of the segment and frame f, its parents' turns added up,
+ * by the chord of half the angle: at most a tenth too much. */
+static void find_turns(const encoder *e, const enc_segment *s, uint32_t f)
+{
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        const uint32_t parent = e->joints[j].parent, frame = s->first + f;
+        const double dot = fabs(space_dot(enc_local(e, frame - 1u, j)->q, enc_local(e, frame, j)->q));
+        e->loop->turns[j] = (parent == ENC_NONE ? 0.0 : e->loop->turns[parent]) +
+                            2.2 * sqrt(2.0 * (dot < 1.0 ? 1.0 - dot : 0.0));
+    }
+}
+
+/* A wave that turns by `angle` from one point to the next is missed by at most angle^2 / 8 of its height between them,
+ * and by a parabola through three points by much less. Half of it has held for spins of any speed. */
+static double fast(double turn)
+{
+    const double angle = turn / ENC_PARTS;
+    return 1.0 + angle * angle / 16.0;
+}
+
+/* ---- who has to be more exact ---- */
+
+/* Whether aiming at less changes what a joint does at frame f: it moves, and its parents leave it less than that. */
+static int can_aim_lower(const encoder *e, uint32_t joint, uint32_t f)
+{
+    const enc_joint *t = &e->joints[joint];
+    const double *floor = &e->loop->floor[(size_t)joint * ENC_FRAMES_MAX];
+    if (t->tracks[TRANSLATION] != ENC_NONE || t->tracks[SCALE] != ENC_NONE) return 1;
+    return t->tracks[ROTATION] != ENC_NONE && floor[f] < slack_of(e, joint)[f];
+}
+
+/* The joint, or its nearest parent that can, aims at less. */
+static void lower_slack(const encoder *e, uint32_t joint, uint32_t f, double violation)
+{
+    double *slack;
+    while (!can_aim_lower(e, joint, f) && e->joints[joint].parent != ENC_NONE) joint = e->joints[joint].parent;
+    slack = &slack_of(e, joint)[f];
+    *slack *= violation > 2.0 ? 0.5 : 0.97 / violation;
+    if (!(*slack >= SLACK_MIN)) *slack = SLACK_MIN;
+}
+
+/* A joint is off between frame f - 1 and f: of it and its parents the one that turns most there. */
+static void blame_between(const encoder *e, const enc_segment *s, uint32_t joint, uint32_t f, double violation)
+{
+    uint32_t most = joint;
+    double least = 2.0;
+    if (violation <= SAFETY) return;
+    for (uint32_t j = joint; j != ENC_NONE; j = e->joints[j].parent) {
+        const uint32_t frame = s->first + f;
+        const double dot = fabs(space_dot(enc_local(e, frame - 1u, j)->q, enc_local(e, frame, j)->q));
+        if (can_aim_lower(e, j, f) && dot < least) {
+            least = dot;
+            most = j;
+        }
+    }
+    lower_slack(e, most, f, violation);
+    if (f) lower_slack(e, most, f - 1u, violation);
+}
+
 /* The largest error at frames and between, as a share of the joints' bounds. Between the points measured it is
- * interpolated by parabolas. */
-static double segment_error(const encoder *e, const enc_segment *s)
+ * interpolated by parabolas. blames: lower the slack of those who passed it. */
+static double segment_error(const encoder *e, const enc_segment *s, int blames)
 {
     double worst = 0.0, *rows[ENC_PARTS + 1];
     for (uint32_t i = 0; i <= ENC_PARTS; i++) rows[i] = e->loop->errors + (size_t)i * e->joint_count;
@@ -459,14 +541,18 @@ static double segment_error(const encoder *e, const enc_segment *s)
     for (uint32_t f = 0; f < s->count; f++) {
         for (uint32_t part = 0; part < BETWEEN && s->first + f > 0u; part++)
             errors_between(e, f, part, rows[part + 1u]);
+        if (s->first + f > 0u) find_turns(e, s, f);
         for (uint32_t j = 0; j < e->joint_count; j++) {
-            rows[ENC_PARTS][j] = space_error(enc_global(e, s->first + f, j), placed(e, j, f), e->shell) /
-                                 e->joints[j].bound;
+            rows[ENC_PARTS][j] = enc_error(e, j, enc_global(e, s->first + f, j), placed(e, j, f)) / e->joints[j].bound;
+            double between = 0.0;
             if (!(rows[ENC_PARTS][j] <= worst)) worst = rows[ENC_PARTS][j];
+            if (blames && rows[ENC_PARTS][j] > SAFETY) lower_slack(e, j, f, rows[ENC_PARTS][j]);
             for (uint32_t i = 1; i < ENC_PARTS && s->first + f > 0u; i++) {
-                const double v = peak(rows[i - 1u][j], rows[i][j], rows[i + 1u][j]);
-                if (!(v <= worst)) worst = v;
+                const double v = fast(e->loop->turns[j]) * peak(rows[i - 1u][j], rows[i][j], rows[i + 1u][j]);
+                if (!(v <= between)) between = v;
             }
+            if (!(between <= worst)) worst = between;
+            if (blames) blame_between(e, s, j, f, between);
             rows[0][j] = rows[ENC_PARTS][j];
         }
     }
@@ -506,19 +592,22 @@ void enc_free_pieces(const encoder *e, enc_piece *pieces)
     free(pieces);
 }
 
-/* With the current tuning: reduce the slack until the whole segment holds. */
-static int fit_tuned(encoder *e, const enc_segment *s, double *worst)
+/* With the current tuning: reduce the slack until the whole segment holds; of those to blame alone (`apart`), or of all
+ * joints in all frames. */
+static int fit_tuned(encoder *e, const enc_segment *s, int apart, double *worst)
 {
-    e->loop->slack = 1.0;
+    double slack = 1.0;
+    for (size_t i = 0; i < (size_t)e->joint_count * ENC_FRAMES_MAX; i++) e->loop->slack[i] = 1.0;
     e->loop->rho_scale = 1.0;
     for (int i = 0; i <= TRIES; i++) {
         e->loop->all_raw = (i == TRIES && e->level == 1) || e->level >= 2;
         if (fit_all(e, s)) return 1;
-        *worst = segment_error(e, s);
+        *worst = segment_error(e, s, apart);
         if (*worst <= SAFETY || e->loop->all_raw || i == TRIES) break;
-        e->loop->slack *= *worst > 2.0 ? 0.5 : *worst > 1.02 ? 0.995 / *worst : 0.97;
-        if (e->loop->slack < SLACK_MIN) e->loop->slack = SLACK_MIN;
-        if (i > 3) e->loop->rho_scale *= 0.85;
+        slack *= *worst > 2.0 ? 0.5 : *worst > 1.02 ? 0.995 / *worst : 0.97;
+        if (slack < SLACK_MIN) slack = SLACK_MIN;
+        for (size_t k = 0; k < (size_t)e->joint_count * ENC_FRAMES_MAX && !apart; k++) e->loop->slack[k] = slack;
+        if (i > (apart ? 12 : 3)) e->loop->rho_scale *= 0.85;
     }
     return 0;
 }
@@ -535,16 +624,17 @@ int enc_segment_fit(encoder *e, uint32_t index, double *worst)
     enc_segment *s = &e->segments[index];
     enc_piece *best = new_pieces(e, s->count);
     size_t least = SIZE_MAX;
+    double w = 2.0;
     int failed;
     s->pieces = new_pieces(e, s->count);
     failed = !best || !s->pieces;
     *worst = 2.0;
     if (!failed) raw_between(e, s);
-    for (uint32_t t = 0; t < e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
-        double w;
+    for (uint32_t t = 0; t < 2u * e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
         size_t bytes = 0;
-        e->tuning = e->tunings[t];
-        failed = fit_tuned(e, s, &w) || enc_segment_cost(e, s, &bytes);
+        if (t % 2u && w <= 1.0) continue; /* those to blame alone were enough */
+        e->tuning = e->tunings[t / 2u];
+        failed = fit_tuned(e, s, t % 2u == 0u, &w) || enc_segment_cost(e, s, &bytes);
         if (!failed && (t == 0u || (w <= 1.0 && (bytes < least || *worst > 1.0)))) {
             enc_piece *swap = s->pieces;
             s->pieces = best;

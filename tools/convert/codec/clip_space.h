@@ -83,6 +83,15 @@ static inline void space_apply(const double m[9], const double v[3], double o[3]
     o[2] = m[6] * x + m[7] * y + m[8] * z;
 }
 
+static inline void space_product(const double a[9], const double b[9], double o[9])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            o[3 * i + k] = a[3 * i] * b[k] + a[3 * i + 1] * b[3 + k] + a[3 * i + 2] * b[6 + k];
+        }
+    }
+}
+
 static inline double space_distance(const double a[3], const double b[3])
 {
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -114,12 +123,7 @@ static inline void space_turn(const space_global *parent, const double q[4], con
         return;
     }
     space_mul(parent->q, q, g->q);
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            g->m[3 * i + k] = parent->m[3 * i] * r[k] + parent->m[3 * i + 1] * r[3 + k] +
-                              parent->m[3 * i + 2] * r[6 + k];
-        }
-    }
+    space_product(parent->m, r, g->m);
 }
 
 static inline void space_compose(const space_global *parent, const space_local *l, space_global *g)
@@ -128,17 +132,73 @@ static inline void space_compose(const space_global *parent, const space_local *
     space_turn(parent, l->q, l->s, g);
 }
 
-/* The largest distance of the three points at the shell. */
-static inline double space_error(const space_global *a, const space_global *b, double shell)
+/* ---- how far points about a joint are from where they should be ----
+ *
+ * A point of the shell lies at `shell` (x) u from its joint, |u| = 1: `shell` is the distance in the joint's own unit
+ * along each of its axes. It should be at a.p + A u and is at b.p + B u; with x = a.p - b.p and D = A - B it is off by
+ * |x + D u|. */
+
+static inline void space_apart(const space_global *a, const space_global *b, const double shell[3], double x[3],
+                               double d[9])
 {
-    const double x = a->p[0] - b->p[0], y = a->p[1] - b->p[1], z = a->p[2] - b->p[2];
-    double worst = 0.0;
+    for (int i = 0; i < 3; i++) {
+        x[i] = a->p[i] - b->p[i];
+        for (int k = 0; k < 3; k++) d[3 * i + k] = shell[k] * (a->m[3 * i + k] - b->m[3 * i + k]);
+    }
+}
+
+/* The largest distance of the three points on the axes. */
+static inline double space_error_axes(const space_global *a, const space_global *b, const double shell[3])
+{
+    double x[3], d[9], worst = 0.0;
+    space_apart(a, b, shell, x, d);
     for (int k = 0; k < 3; k++) {
-        const double dx = shell * (a->m[k] - b->m[k]) + x, dy = shell * (a->m[3 + k] - b->m[3 + k]) + y,
-                     dz = shell * (a->m[6 + k] - b->m[6 + k]) + z, square = dx * dx + dy * dy + dz * dz;
+        const double dx = d[k] + x[0], dy = d[3 + k] + x[1], dz = d[6 + k] + x[2], square = dx * dx + dy * dy + dz * dz;
         if (!(square <= worst)) worst = square; /* also true for a NaN, which wins */
     }
     return sqrt(worst);
+}
+
+/* At least the largest eigenvalue of D^T D, and it up to rounding. The smallest one is the smallest root of
+ * l^3 - t l^2 + c l - e; Newton's method from 0 approaches it from below. The other two are then roots of a quadratic.
+ * Of a difference of two rotations the smallest is 0 and the others are equal: nothing is left to iterate. */
+static inline double space_stretch(const double d[9])
+{
+    double s[6], t, c, e, low = 0.0, half, square;
+    s[0] = d[0] * d[0] + d[3] * d[3] + d[6] * d[6];
+    s[1] = d[1] * d[1] + d[4] * d[4] + d[7] * d[7];
+    s[2] = d[2] * d[2] + d[5] * d[5] + d[8] * d[8];
+    s[3] = d[0] * d[1] + d[3] * d[4] + d[6] * d[7];
+    s[4] = d[0] * d[2] + d[3] * d[5] + d[6] * d[8];
+    s[5] = d[1] * d[2] + d[4] * d[5] + d[7] * d[8];
+    t = s[0] + s[1] + s[2];
+    c = s[0] * s[1] - s[3] * s[3] + s[0] * s[2] - s[4] * s[4] + s[1] * s[2] - s[5] * s[5];
+    e = d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) + d[2] * (d[3] * d[7] - d[4] * d[6]);
+    e *= e;
+    for (int i = 0; i < 8; i++) {
+        const double value = ((low - t) * low + c) * low - e, slope = (3.0 * low - 2.0 * t) * low + c;
+        if (!(value < -1e-14 * t * t * t) || !(slope > 1e-9 * t * t)) break;
+        low -= value / slope;
+    }
+    half = 0.5 * (t - low);
+    square = half * half - (c - low * (t - low));
+    return half + (square > 0.0 ? sqrt(square) : 0.0);
+}
+
+/* The largest distance of all points of the shell, or a little more.
+ *
+ * |x + D u|^2 = |x|^2 + 2 (D^T x) . u + u^T D^T D u is at most |x|^2 + 2 |D^T x| + s, where s is the largest eigenvalue
+ * of D^T D. Of two rotations D has no stretch along the axis of the turn between them and the same across it, and D^T x
+ * lies across it: then some u has all three at once, and the bound is the largest distance itself. The factor covers
+ * rounding. */
+static inline double space_error_sphere(const space_global *a, const space_global *b, const double shell[3])
+{
+    double x[3], d[9], g[3], square;
+    space_apart(a, b, shell, x, d);
+    for (int k = 0; k < 3; k++) g[k] = d[k] * x[0] + d[3 + k] * x[1] + d[6 + k] * x[2];
+    square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + 2.0 * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) +
+             space_stretch(d);
+    return sqrt(square) * (1.0 + 1e-7);
 }
 
 /* Between two frames: lerp, rotations normalised; signs as they are. */

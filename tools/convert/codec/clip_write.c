@@ -89,7 +89,7 @@ static uint32_t rounded(double v)
 static uint32_t flags_of(const encoder *e)
 {
     uint32_t flags = (e->wide ? NOH_CLIP_FLAG_WIDE : 0u) | (e->clip->loop ? NOH_CLIP_FLAG_LOOP : 0u) |
-                     (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u);
+                     (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u) | (e->options.axes ? 0u : NOH_CLIP_FLAG_SPHERE);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         if (e->joints[j].modes[2] != NOH_CLIP_MODE_BIND) flags |= NOH_CLIP_FLAG_SCALE;
     }
@@ -331,7 +331,7 @@ static void put_header(bit_writer *w, const encoder *e, double max_error, double
     const double bound_cm = e->options.error_cm;
     uint32_t width = 0;
     put(w, NOH_CLIP_VERSION, 8);
-    put(w, flags, 4);
+    put(w, flags, 8);
     put_varint(w, e->joint_count);
     put_varint(w, e->frame_count);
     put_rate(w, e->clip->sample_rate_hz);

@@ -19,7 +19,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain,
-        *textures;
+        *textures, *bound;
     int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
         terrain_points, texture_max;
@@ -51,10 +51,14 @@ static int set_clip(const build_args *a, convert_options *o)
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
     }
+    if (strcmp(a->bound, "sphere") != 0 && strcmp(a->bound, "axes") != 0) {
+        return tool_usage("--bound wants sphere or axes, not '%s'", a->bound);
+    }
     o->clip.sample_rate_hz = a->rate;
     o->clip.check_loops = a->loop;
     o->clip.clip.error_cm = a->error_cm;
     o->clip.clip.shell_cm = a->shell_cm;
+    o->clip.clip.axes = a->bound[0] == 'a';
     o->clip.clip.open_loop = a->mask;
     o->clip.clip_errors = (named_errors){ a->clip_errors.items, (uint32_t)a->clip_errors.count };
     o->clip.joint_errors = (named_errors){ a->joint_errors.items, (uint32_t)a->joint_errors.count };
@@ -476,6 +480,15 @@ static const option options[] = {
       .initial = "3",
       .what = "distance from a joint at which its error is measured, centimetres, over 0",
       .example = "6",
+      .excludes = "--only=mesh" },
+    { .name = "--bound",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, bound),
+      .value = "sphere|axes",
+      .initial = "sphere",
+      .what =
+          "which points at the shell are bounded: all of them, or the three on each joint's axes, as other libraries measure",
+      .example = "axes",
       .excludes = "--only=mesh" },
     { .name = "--clip-error",
       .kind = OPTION_LIST,

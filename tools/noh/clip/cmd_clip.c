@@ -89,9 +89,9 @@ static void print_clip(const pack_file *file, const opened *o)
            o->packed.header->clip_bytes, o->packed.header->raw_bytes,
            (double)o->packed.header->raw_bytes / (double)o->packed.header->clip_bytes);
     if (o->info.joint_count) {
-        printf("  certified at a %.3g cm shell: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n",
-               o->info.shell_cm, o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s,
-               o->info.rms_error_cm);
+        printf("  certified %s %.3g cm from each joint: largest error %.5f cm (joint %u, %.3f s), rms %.5f cm\n",
+               o->info.flags & NOH_CLIP_FLAG_SPHERE ? "all round," : "on the axes,", o->info.shell_cm,
+               o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
     }
     if (o->info.float_count) {
         printf("  weights certified to %.4g cm of what they move\n", o->info.error_cm);
@@ -116,6 +116,7 @@ static void json_one(json *j, const opened *o)
     json_number(j, "max_error_cm", o->info.max_error_cm);
     json_number(j, "rms_error_cm", o->info.rms_error_cm);
     json_number(j, "shell_cm", o->info.shell_cm);
+    json_text(j, "bound", o->info.flags & NOH_CLIP_FLAG_SPHERE ? "sphere" : "axes");
     json_integer(j, "events", o->packed.header->event_count);
     json_integer(j, "markers", o->packed.header->marker_count);
     json_integer(j, "cache_bytes", o->cache_bytes);
