@@ -31,7 +31,7 @@ noh build "$work/walk.bvh" -o "$work/walk.noh" --quiet
 expect 0 'a .bvh becomes a pack'
 noh clip "$work/walk.noh"
 expect 0 'clip'
-check 'and prints the certified error' grep -q 'certified at a 3 cm shell' "$work/out"
+check 'and prints the certified error' grep -q 'certified all round, 3 cm' "$work/out"
 noh clip "$work/walk.noh" --dump "$work/walk.rcl"
 expect 0 'the decoded frames as .rcl'
 noh build "$work/walk.rcl" -o "$work/again.noh" --quiet
