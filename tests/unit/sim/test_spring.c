@@ -226,15 +226,23 @@ static void sixty_hertz_is_the_reference(void **state)
     assert_true(off < 1e-5 && touched > 30.0);
 }
 
-/* After a leap of 100 mm: how far the end overshoots, and when it is within 2 mm for good. */
-static void settle(uint32_t hertz, double *overshoot_mm, double *settle_s)
+#define BEATS 45u /* fifteenths of a second, at which every rate has a frame */
+
+typedef struct settling {
+    double overshoot_mm;
+    double seconds;         /* until the end is within 2 mm for good, between the two frames around that */
+    double beats_mm[BEATS]; /* how far it is off then */
+} settling;
+
+/* After it was carried 100 mm aside within a fifteenth of a second. */
+static settling settle(uint32_t hertz)
 {
     const noh_spring_desc desc = hanging(1.0f, 0.4f, 0.0f);
     noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
     noh_spring *spring = made(&desc, &at);
-    *overshoot_mm = *settle_s = 0.0;
-    /* carried 100 mm aside within a fifteenth of a second, which every rate has as whole frames */
-    for (uint32_t n = 1; n <= 3u * hertz; n++) {
+    settling r = { 0.0, 0.0, { 0.0 } };
+    double before = 0.0;
+    for (uint32_t n = 1; n <= BEATS * hertz / 15u; n++) {
         const double seconds = (double)n / hertz, share = fmin(seconds * 15.0, 1.0);
         float ends[3 * JOINTS];
         double off;
@@ -242,26 +250,38 @@ static void settle(uint32_t hertz, double *overshoot_mm, double *settle_s)
         assert_int_equal(step_one(spring, &desc, &at, NULL, SECOND / hertz), 0);
         noh_spring_ends(spring, &desc, ends);
         off = 1000.0 * ((double)ends[3 * (JOINTS - 1u)] - (double)at.position[0]);
-        *overshoot_mm = fmax(*overshoot_mm, off);
-        if (fabs(off) > 2.0) *settle_s = seconds;
+        r.overshoot_mm = fmax(r.overshoot_mm, off);
+        if (fabs(before) > 2.0 && fabs(off) <= 2.0) {
+            r.seconds = seconds - (2.0 - fabs(off)) / (fabs(before) - fabs(off)) / hertz;
+        }
+        if (n % (hertz / 15u) == 0) r.beats_mm[n * 15u / hertz - 1u] = off;
+        before = off;
     }
+    assert_true(fabs(before) <= 2.0);
     free(spring);
+    return r;
 }
 
+/* Not only in the time that it takes: at the same moment the end is at the same place. */
 static void every_rate_settles_alike(void **state)
 {
     static const uint32_t rates[] = { 15, 30, 60, 120, 240 };
-    double at_60_mm, at_60_s;
+    const settling at_60 = settle(60);
+    double least = 1e9, most = 0.0;
     (void)state;
-    settle(60, &at_60_mm, &at_60_s);
-    assert_true(at_60_s > 0.2 && at_60_mm > 5.0);
+    assert_true(at_60.seconds > 0.2 && at_60.overshoot_mm > 5.0);
     for (size_t i = 0; i < TEST_COUNT(rates); i++) {
-        double mm, s;
-        settle(rates[i], &mm, &s);
-        print_message("# %u Hz: overshoots by %.1f mm, settles in %.3f s\n", rates[i], mm, s);
-        assert_true(fabs(s - at_60_s) <= 0.03 * at_60_s + 1.0 / rates[i]);
-        assert_true(rates[i] < 60 || fabs(mm - at_60_mm) <= 0.03 * at_60_mm);
+        const settling r = settle(rates[i]);
+        double off = 0.0;
+        for (uint32_t k = 0; k < BEATS; k++) off = fmax(off, fabs(r.beats_mm[k] - at_60.beats_mm[k]));
+        print_message("# %u Hz: overshoots by %.1f mm, settles in %.3f s, off 60 Hz by at most %.4f mm\n", rates[i],
+                      r.overshoot_mm, r.seconds, off);
+        least = fmin(least, r.seconds);
+        most = fmax(most, r.seconds);
+        assert_true(off < 0.01);
+        assert_true(rates[i] < 60 || fabs(r.overshoot_mm - at_60.overshoot_mm) <= 0.03 * at_60.overshoot_mm);
     }
+    assert_true(most <= 1.03 * least);
 }
 
 /* The reference, drag by the frame, settles in twice the time or more at 15 Hz than at 90. */
