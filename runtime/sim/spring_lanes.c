@@ -280,8 +280,8 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
         load_row(rows, p);
         const lane_joint j = load_joint(joint_rows);
         const lanes active = lanes_and(m->live, lanes_less(lanes_set((float)i), g->joints.v)), length = p[6];
-        const lane3 at_rest = lane4_rotate(j.rest, j.bone), pull = lane4_rotate(m->rotation, at_rest),
-                    now = lane3_of(p), kept = lane3_sub(now, m->moved);
+        const lane4 unswung = lane4_mul(m->rotation, j.rest);
+        const lane3 pull = lane4_rotate(unswung, j.bone), now = lane3_of(p), kept = lane3_sub(now, m->moved);
         const lanes pulled = lanes_mul(seconds, lanes_div(j.stiffness, length));
         lane3 tail = lane3_madd(kept, lanes_sub(one, j.drag), lane3_sub(now, lane3_of(p + 3)));
         tail = lane3_add(tail, lane3_madd(lane3_scale(j.gravity, seconds), pulled, pull));
@@ -300,8 +300,7 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
         NOH_UNROLL
         for (uint32_t c = 0; c < ROW; c++) p[c] = lanes_choose(active, next[c], p[c]);
         store_row(p, to);
-        const lanes size = lanes_mul(length, lanes_sqrt(lane3_dot(at_rest, at_rest)));
-        m->rotation = lane4_mul(between(pull, lane3_sub(tail, head), size), lane4_mul(m->rotation, j.rest));
+        m->rotation = lane4_mul(between(pull, lane3_sub(tail, head), lanes_mul(length, length)), unswung);
         head = tail;
     }
 }
@@ -414,14 +413,12 @@ static void show_group(const group *g)
         load_row(joint_rows, j);
         const lane3 tail = lane3_mix(lane3_add(lane3_of(p + 3), lane3_of(was)), lane3_of(p), left.v);
         const lane4 rest = lane4_normalize(lane4_of(j + 3));
-        const lane3 bone = lane3_sub(tail, head), at_rest = lane4_rotate(rest, lane3_of(j));
-        const lanes size = lanes_sqrt(lanes_mul(lane3_dot(at_rest, at_rest), lane3_dot(bone, bone)));
-        const lane4 swing = between(lane4_rotate(parent, at_rest), bone, size);
-        const lane4 world = lane4_mul(swing, lane4_mul(parent, rest));
-        const lane4 local = lane4_mul(lane4_conjugate(parent), world);
+        const lane3 bone = lane4_rotate(lane4_conjugate(parent), lane3_sub(tail, head));
+        const lanes size = lanes_mul(p[6], lanes_sqrt(lane3_dot(bone, bone)));
+        const lane4 local = lane4_mul(between(lane4_rotate(rest, lane3_of(j)), bone, size), rest);
         const lanes out[4] = { local.x, local.y, local.z, local.w };
         lanes_scatter(out, to, 0);
-        parent = world;
+        parent = lane4_mul(parent, local);
         head = tail;
     }
 }

@@ -272,7 +272,7 @@ static void a_soft_limb_slows(void **state)
 
 /* The book takes an arc cosine of (a^2 + b^2 - d^2) / 2 a b as it is: a target nearer than the bones' difference has a
  * cosine above 1. */
-static void errata_a_target_too_near_has_no_arc_cosine(void **state)
+static void errata_C11_3_a_target_too_near_has_no_arc_cosine(void **state)
 {
     const float a = 0.5f, b = 0.3f, d = 0.1f;
     const noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { 0.5f, 0.0f, 0.0f }, { 0.5f, 0.3f, 0.0f }, 0.0f, 0.0f, 0.0f };
@@ -288,7 +288,7 @@ static void errata_a_target_too_near_has_no_arc_cosine(void **state)
 
 /* The book turns about the hinge's axis by the difference of angles, whichever side the forearm lies on: from a bend of
  * the other side that widens what should narrow. */
-static void errata_a_hinge_bends_by_its_own_side(void **state)
+static void errata_C11_3_a_hinge_bends_by_its_own_side(void **state)
 {
     const noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { 0.3f, 0.0f, 0.0f }, { 0.3f, -0.28f, 0.0f }, 0.0f, 0.0f, 0.0f };
     const float hinge[3] = { 0.0f, 0.0f, -1.0f }, target[3] = { 0.2f, 0.1f, 0.0f };
@@ -340,7 +340,7 @@ static void a_look_stays_in_its_cone(void **state)
 }
 
 /* A target that is behind and moves from side to side does not swing the head about. */
-static void errata_a_target_behind_does_not_swing_the_head(void **state)
+static void errata_C11_2_a_target_behind_does_not_swing_the_head(void **state)
 {
     noh_ik_look look;
     double least = 360.0, most = -360.0;
@@ -396,7 +396,7 @@ static void a_look_does_not_depend_on_steps(void **state)
 
 /* The book takes acos(f . t) of float vectors of length 1: where both are the same vector the dot product is often
  * above 1, and then there is no angle. */
-static void errata_aligned_vectors_have_no_arc_cosine(void **state)
+static void errata_C11_2_aligned_vectors_have_no_arc_cosine(void **state)
 {
     test_random random = test_random_from(7);
     int bad = 0;
@@ -441,13 +441,13 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(nothing_makes_it_a_nan),
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(a_soft_limb_slows),
-        cmocka_unit_test(errata_a_target_too_near_has_no_arc_cosine),
-        cmocka_unit_test(errata_a_hinge_bends_by_its_own_side),
+        cmocka_unit_test(errata_C11_3_a_target_too_near_has_no_arc_cosine),
+        cmocka_unit_test(errata_C11_3_a_hinge_bends_by_its_own_side),
         cmocka_unit_test(a_look_stays_in_its_cone),
-        cmocka_unit_test(errata_a_target_behind_does_not_swing_the_head),
+        cmocka_unit_test(errata_C11_2_a_target_behind_does_not_swing_the_head),
         cmocka_unit_test(a_look_turns_no_faster_than_it_can),
         cmocka_unit_test(a_look_does_not_depend_on_steps),
-        cmocka_unit_test(errata_aligned_vectors_have_no_arc_cosine),
+        cmocka_unit_test(errata_C11_2_aligned_vectors_have_no_arc_cosine),
         cmocka_unit_test(shares_add_up),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);

@@ -11,7 +11,7 @@
 
 #define JOINTS 5u
 #define COLLIDERS 8u
-#define BUNDLE_CRC 0xb0e2712eu
+#define BUNDLE_CRC 0x069fe85cu
 #define SECOND 48000u
 
 static noh_spring_joint joints[JOINTS];
