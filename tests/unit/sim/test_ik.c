@@ -309,6 +309,66 @@ static void errata_C11_3_a_hinge_bends_by_its_own_side(void **state)
     assert_true(apart(r.end, target) < 10e-6);
 }
 
+/* A bone of no length leaves nothing to divide by. */
+static void errata_C11_3_a_bone_of_no_length_has_no_arc_cosine(void **state)
+{
+    const float lengths[2][2] = { { 0.0f, 0.3f }, { 0.3f, 0.0f } }, target[3] = { 0.0f, 0.3f, 0.0f };
+    (void)state;
+    for (int n = 0; n < 2; n++) {
+        const float a = lengths[n][0], b = lengths[n][1], d = 0.3f;
+        const noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { a, 0.0f, 0.0f }, { a + b, 0.0f, 0.0f }, 0.0f, 0.0f, 0.0f };
+        noh_ik_bend bend;
+        assert_true(isnan(acosf((a * a + b * b - d * d) / (2.0f * a * b))));
+        noh_ik_two_bone(&limb, target, NULL, 1.0f, &bend);
+        is_unit(bend.start);
+        is_unit(bend.middle);
+        const reached r = apply(&limb, &bend);
+        assert_true(apart(r.end, target) < 1e-3);
+    }
+}
+
+/* The book returns where the shoulder has no axis to turn about, after it has turned the elbow: the hand's matrix is
+ * still that of before. Here the elbow alone brings the hand onto the line to the target. */
+static void errata_C11_3_an_early_return_leaves_the_hand(void **state)
+{
+    const double a = 0.3, b = 0.28, d = 0.4, inner = acos((a * a + d * d - b * b) / (2.0 * a * d));
+    const float target[3] = { (float)d, 0.0f, 0.0f }, turn[3] = { 0.0f, 0.0f, 30.0f * (float)DEGREE };
+    noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, 0.0f, 0.0f, 0.0f };
+    float lower[3], q[4], solved[3];
+    noh_ik_bend bend;
+    (void)state;
+    limb.middle[0] = (float)(a * cos(inner));
+    limb.middle[1] = (float)(a * sin(inner));
+    for (int i = 0; i < 3; i++) lower[i] = target[i] - limb.middle[i];
+    noh_quat_from_rotation(turn, q);
+    noh_quat_rotate(q, lower, solved); /* 30 degrees off: what the elbow has to turn by */
+    for (int i = 0; i < 3; i++) limb.end[i] = limb.middle[i] + solved[i];
+    const float axis_z = (limb.middle[0] + lower[0]) * target[1] - (limb.middle[1] + lower[1]) * target[0];
+    assert_true(fabsf(axis_z) < 1e-7f);         /* the book returns here */
+    assert_true(apart(limb.end, target) > 0.1); /* and this is where its hand is drawn */
+    noh_ik_two_bone(&limb, target, NULL, 1.0f, &bend);
+    const reached r = apply(&limb, &bend);
+    assert_true(apart(r.end, target) < 10e-6);
+}
+
+/* The book takes its hinge through a matrix with scale and turns about what comes out, however long it is. */
+static void errata_C11_3_a_scaled_hinge_turns_too_far(void **state)
+{
+    const float scale = 2.0f, by = 0.5f, target[3] = { 0.7f, 0.3f, 0.1f };
+    const float hinge[3] = { 0.0f, 0.0f, -by * scale };
+    const noh_ik_limb limb = {
+        { 0.0f, 0.0f, 0.0f }, { 0.3f * scale, 0.0f, 0.0f }, { 0.3f * scale, -0.28f * scale, 0.0f }, 0.0f, 0.0f, 0.0f
+    };
+    noh_ik_bend bend;
+    float q[4];
+    (void)state;
+    noh_quat_from_rotation(hinge, q);
+    assert_true(fabs(2.0 * acos((double)q[3]) - (double)by) > 0.4);
+    noh_ik_two_bone(&limb, target, NULL, 1.0f, &bend);
+    const reached r = apply(&limb, &bend);
+    assert_true(apart(r.end, target) < 2.0 * 10e-6);
+}
+
 /* ---- looking ---- */
 
 static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
@@ -339,13 +399,19 @@ static void a_look_stays_in_its_cone(void **state)
     assert_true(fabs(look_angle(58.0f, &look, q) - 58.0) < 1e-3);
 }
 
-/* A target that is behind and moves from side to side does not swing the head about. */
+/* A target that is behind and moves from side to side swings the book's head about, from one limit to the other. */
 static void errata_C11_2_a_target_behind_does_not_swing_the_head(void **state)
 {
     noh_ik_look look;
     double least = 360.0, most = -360.0;
     float q[4];
     (void)state;
+    double book[2];
+    for (int n = 0; n < 2; n++) { /* about f x t, by no more than its 60 degrees */
+        const double at = (n ? 179.0 : -179.0) * DEGREE, axis_y = sin(at);
+        book[n] = fmin(acos(cos(at)), 60.0 * DEGREE) * axis_y / fabs(axis_y) / DEGREE;
+    }
+    assert_true(book[1] - book[0] > 119.0);
     noh_ik_look_init(&look, ahead);
     (void)look_angle(50.0f, &look, q);
     for (int n = 0; n < 100; n++) {
@@ -392,6 +458,24 @@ static void a_look_does_not_depend_on_steps(void **state)
     noh_ik_look_step(&one, &desc, ahead, target, 1.0f, q);
     for (int n = 0; n < 100; n++) noh_ik_look_step(&many, &desc, ahead, target, 0.01f, q);
     assert_true(apart(one.direction, many.direction) < 1e-4);
+}
+
+/* Vectors that are parallel have no product: the book makes its length 1. */
+static void errata_C11_2_parallel_vectors_have_no_axis(void **state)
+{
+    const float behind[3] = { 0.0f, 0.0f, -1.0f }, axis[3] = { 0.0f, 0.0f, 0.0f }; /* ahead x behind */
+    noh_ik_look look;
+    (void)state;
+    assert_true(isnan(axis[0] / sqrtf(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])));
+    for (int n = 0; n < 2; n++) {
+        const noh_ik_look_desc desc = { 3.14159265f, 3.14159265f, 1.0f };
+        float q[4], v[3];
+        noh_ik_look_init(&look, ahead);
+        noh_ik_look_step(&look, &desc, ahead, n ? behind : ahead, 10.0f, q);
+        is_unit(q);
+        noh_quat_rotate(q, ahead, v);
+        assert_true(n ? v[2] < -0.99f : v[2] > 0.9999f);
+    }
 }
 
 /* The book takes acos(f . t) of float vectors of length 1: where both are the same vector the dot product is often
@@ -443,6 +527,10 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(a_soft_limb_slows),
         cmocka_unit_test(errata_C11_3_a_target_too_near_has_no_arc_cosine),
         cmocka_unit_test(errata_C11_3_a_hinge_bends_by_its_own_side),
+        cmocka_unit_test(errata_C11_3_a_bone_of_no_length_has_no_arc_cosine),
+        cmocka_unit_test(errata_C11_3_an_early_return_leaves_the_hand),
+        cmocka_unit_test(errata_C11_3_a_scaled_hinge_turns_too_far),
+        cmocka_unit_test(errata_C11_2_parallel_vectors_have_no_axis),
         cmocka_unit_test(a_look_stays_in_its_cone),
         cmocka_unit_test(errata_C11_2_a_target_behind_does_not_swing_the_head),
         cmocka_unit_test(a_look_turns_no_faster_than_it_can),
