@@ -51,6 +51,7 @@ function beginFaces() {
     byId('looks-of-face').hidden = byId('living').hidden && byId('wrinkles-row').hidden;
     byId('wrinkles').value = query.get('wrinkles') || 1;
     smooth();
+    byId('emotion').length = 1; // none
     for (let i = 0; Module._web_emotion_name(i); i++) byId('emotion').add(new Option(text(Module._web_emotion_name(i)), i));
     byId('alive').checked = !matchMedia('(prefers-reduced-motion: reduce)').matches;
     setAlive();

@@ -2,7 +2,8 @@
 // levels are shown before the rest is there. ?pack=NAME: another one than page.nohz.
 'use strict';
 
-const asked = fetch(query.get('pack') || 'page.nohz');
+const ownPack = query.get('pack') || 'page.nohz';
+const asked = fetch(ownPack);
 const kilobytes = (bytes) => Math.round(bytes / 1000).toLocaleString('en');
 
 // What has arrived, in words and as a bar. Without a length that the server tells, only in words.
@@ -14,8 +15,8 @@ function showProgress(taken, all, shows) {
     byId('progress-text').textContent = `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
 }
 
-// Calls show(1) as soon as there is something to show and show(2) when all is there.
-async function load(show) {
+// Calls show(1) as soon as there is something to show and show(2) when all is there. asked: the answer to a fetch.
+async function load(asked, show) {
     const answer = await asked;
     if (!answer.ok) fail(`no pack: the server says ${answer.status}`);
     const reader = answer.body.getReader(), all = Number(answer.headers.get('Content-Length'));
@@ -63,3 +64,39 @@ async function loadPlain(head, next, show) {
     showProgress(file.length, file.length, 2);
     show(2);
 }
+
+// ---- a file of the visitor's own ----
+
+// Meanwhile nothing is drawn: what is shown lies where the file goes. If that cannot be shown, the page's own pack is
+// again.
+let opening = false;
+async function openFile(file) {
+    if (opening || lost || !window.noh.whole) return;
+    opening = true;
+    say('');
+    try {
+        if (!/\.nohz?$/i.test(file.name)) fail('neither .noh nor .nohz: noh build makes a pack of it');
+        const show = takeOver();
+        await load(new Response(file.stream(), { headers: { 'Content-Length': file.size } }), show);
+        byId('file-text').textContent = file.name;
+    } catch (error) {
+        window.noh.error = '';
+        if (!window.noh.whole) {
+            byId('file-text').textContent = 'or drop one here: .noh, .nohz';
+            await load(fetch(ownPack), takeOver()).catch(() => {});
+        }
+        say(`${file.name} cannot be shown: ${error.message || error}`);
+    }
+    opening = false;
+}
+
+byId('open-file').addEventListener('click', () => byId('file').click());
+byId('file').addEventListener('change', () => {
+    if (byId('file').files[0]) openFile(byId('file').files[0]);
+    byId('file').value = '';
+});
+document.addEventListener('dragover', (event) => event.preventDefault());
+document.addEventListener('drop', (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+});

@@ -52,7 +52,7 @@ static void close_stage(void)
 {
     web_light_close();
     web_hair_close();
-    noh_stage_delete(web.stage);
+    if (web.stage) noh_stage_delete(web.stage);
     web.stage = NULL;
 }
 
@@ -156,8 +156,9 @@ EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
     return (int)(result ? result : begin(&wants));
 }
 
-/* The whole pack is there in place of its coarsest levels: all begins anew with it. Nothing plays, nothing is held. */
-EMSCRIPTEN_KEEPALIVE int web_open_whole(void)
+/* Another pack is there, or the whole one in place of its coarsest levels: all begins anew with it. Nothing plays,
+ * nothing is held. After an error nothing is there, until this succeeds. */
+EMSCRIPTEN_KEEPALIVE int web_open_again(void)
 {
     const web_wants wants = web.cast.wants;
     noh_result result;

@@ -306,6 +306,7 @@ byId('speed').addEventListener('input', () => {
 });
 
 function listClips(select) {
+    select.length = 1; // none
     for (let i = 0; i < Module._web_clip_count(); i++) {
         if (Module._web_clip_seconds(i) >= 0) select.add(new Option(text(Module._web_clip_name(i)), i));
     }
@@ -378,10 +379,11 @@ function listTargets() {
     byId('faces').hidden = !sliders.length;
 }
 
-function showFirst() {
-    beginLight();
-    check(Module._web_open(Math.max(0, paths.indexOf(query.get('path') || 'auto')), Number(query.get('actors') || 1),
-        query.get('alive') === 'off' ? 0 : 1));
+// A pack as it begins. again: another one was shown before it.
+function showPack(again) {
+    if (!again) beginLight();
+    check(again ? Module._web_open_again() : Module._web_open(Math.max(0, paths.indexOf(query.get('path') || 'auto')),
+        Number(query.get('actors') || 1), query.get('alive') === 'off' ? 0 : 1));
     const box = floats(Module._web_measure(), 6);
     Module._web_set_spacing((box[3] - box[0]) * 1.1);
     listTargets();
@@ -389,7 +391,7 @@ function showFirst() {
     window.noh.path = text(Module._web_path());
     beginDetail();
     beginClips();
-    byId('message').textContent = '';
+    say('');
     beginTransfer();
     beginHair();
     beginFaces();
@@ -400,14 +402,13 @@ function showFirst() {
     draw();
     check(Module._web_check());
     showMemory();
-    new ResizeObserver(resize).observe(canvas);
 }
 
 // All levels in place of the coarsest: what was chosen and held meanwhile stays.
 function goOn() {
     const time = Module._web_time(), kept = sliders.filter((s) => s.label.classList.contains('held')).map((s) => [s.slider.dataset.target, Number(s.slider.value)]);
     const over = Number(byId('face').value);
-    check(Module._web_open_whole());
+    check(Module._web_open_again());
     listTargets();
     for (const [name, weight] of kept) hold(sliders.find((s) => s.slider.dataset.target === name), weight);
     beginDetail();
@@ -422,13 +423,22 @@ function goOn() {
     showMemory();
 }
 
+function showArrived(shows, again) {
+    if (window.noh.ready) goOn();
+    else showPack(again);
+    if (shows === 1) window.noh.coarse = window.noh.frames;
+    window.noh.whole = shows === 2;
+}
+
+// Of another pack than the one that is shown, which goes.
+function takeOver() {
+    Object.assign(window.noh, { ready: false, whole: false, error: '' });
+    return (shows) => showArrived(shows, true);
+}
+
 async function start() {
-    await load((shows) => {
-        if (window.noh.ready) goOn();
-        else showFirst();
-        if (shows === 1) window.noh.coarse = window.noh.frames;
-        window.noh.whole = shows === 2;
-    });
+    await load(asked, (shows) => showArrived(shows, false));
+    new ResizeObserver(resize).observe(canvas);
 }
 
 var Module = { onRuntimeInitialized: () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }) };

@@ -73,6 +73,46 @@ async function refused(browser) {
     }
 }
 
+// A visitor's own file, chosen and dropped; one that is none, is broken or too large leaves the page as it was.
+async function own(browser) {
+    const page = await open(browser, wide, 'clip=none&size=256&detail=0'), raw = path.join(folder, 'page.noh');
+    await keep(page, 'before_own.png');
+    const said = () => page.textContent('#message');
+    const give = async (name, buffer, words) => {
+        await page.setInputFiles('#file', { name, mimeType: 'application/octet-stream', buffer });
+        await page.waitForFunction((w) => window.noh.whole && !opening && document.getElementById('message').textContent.includes(w), words, minute);
+    };
+    const shown = async (what, picture) => {
+        await drawn(page, () => page.selectOption('#detail', '0'));
+        await drawn(page, () => page.click('#fit'));
+        await keep(page, picture);
+        check(`a file of one's own: ${what}`, same('before_own.png', picture), await said());
+    };
+    await give('face.noh', fs.readFileSync(raw), '');
+    check('a file of one\'s own: it is named', await page.textContent('#file-text') === 'face.noh');
+    await shown('a pack as it is', 'own_plain.png');
+    const clips = await page.locator('#clips option').count();
+    await page.evaluate(async () => {
+        const bytes = await (await fetch('page.nohz')).arrayBuffer(), data = new DataTransfer();
+        data.items.add(new File([bytes], 'dropped.nohz'));
+        document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+    });
+    await page.waitForFunction(() => document.getElementById('file-text').textContent === 'dropped.nohz', null, minute);
+    await shown('a wire form that is dropped', 'own_wire.png');
+    check('a file of one\'s own: clips are listed once', await page.locator('#clips option').count() === clips);
+    const bad = fs.readFileSync(raw);
+    bad[bad.length >> 1] ^= 16;
+    for (const [name, buffer, words] of [['a.glb', Buffer.from('glTF'), 'neither'], ['bad.noh', bad, 'cannot be shown'], ['short.noh', bad.subarray(0, 3), 'no pack'],
+        ['cut.nohz', sent.subarray(0, sent.length >> 1), 'cut short'], ['large.noh', Buffer.alloc(9e6), 'more than the page was built for']]) {
+        await give(name, buffer, words);
+        check(`a file of one's own, ${name}: it says what is wrong`, (await said()).startsWith(`${name} cannot be shown: `), await said());
+        await shown(`after ${name} the page's own is there`, 'own_again.png');
+    }
+    check('a file of one\'s own: and it is not named any more', (await page.textContent('#file-text')).startsWith('or drop'));
+    await page.screenshot({ path: path.join(out, 'own_page.png') });
+    await close(page, 'a file of one\'s own');
+}
+
 // By a slow network, in milliseconds since the page was asked for, and what had come by then.
 async function slow(browser) {
     const page = await browser.newPage(wide), client = await page.context().newCDPSession(page);
@@ -91,4 +131,4 @@ async function slow(browser) {
     await page.close();
 }
 
-run({ arrives, refused, slow }, [], { '/held': heldBack, '/cut': cut, '/flipped': flipped });
+run({ arrives, refused, own, slow }, [], { '/held': heldBack, '/cut': cut, '/flipped': flipped });
