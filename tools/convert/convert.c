@@ -554,11 +554,12 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     return options->only != CONVERT_CLIPS && surface_shapes_find(s->m, options->report, error);
 }
 
-static int join_all(const char *const *inputs, int count, int base, source *all, convert_failure *failure)
+static int join_all(const char *const *inputs, int count, int base, const convert_options *options, source *all,
+                    convert_failure *failure)
 {
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
-        if (i != base && source_join(&all[base], inputs[base], &all[i], inputs[i], &failure->error)) {
+        if (i != base && source_join(&all[base], inputs[base], &all[i], inputs[i], &options->joints, &failure->error)) {
             return 1;
         }
     }
@@ -588,7 +589,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     failed = read_all(inputs, input_count, options, all, failure);
     if (!failed) {
         base = base_of(all, input_count);
-        failed = join_all(inputs, input_count, base, all, failure) ||
+        failed = join_all(inputs, input_count, base, options, all, failure) ||
                  make_surfaces(options, &all[base], &failure->error) ||
                  apply_events(options, &all[base], &failure->error) ||
                  read_graphs(options, &all[base], &graphs, failure) ||

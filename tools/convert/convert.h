@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "convert/clips/joint_match.h"
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
 #include "pack/pack.h"
@@ -25,11 +26,12 @@ typedef struct convert_options {
     uint32_t two_stream_count;
     const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
     uint32_t surface_count;
-    const char *identity; /* a model of the same vertices whose targets make people; NULL: none */
-    const char *targets;  /* a folder of .obj files: the targets of the first .obj model; NULL: none */
-    int etc2;             /* 1: textures are compressed */
-    uint32_t texture_max; /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
-    int split_eyes;       /* 1: eyeballs of the model get joints */
+    const char *identity;       /* a model of the same vertices whose targets make people; NULL: none */
+    const char *targets;        /* a folder of .obj files: the targets of the first .obj model; NULL: none */
+    joint_match_options joints; /* how clips of other files find their joints */
+    int etc2;                   /* 1: textures are compressed */
+    uint32_t texture_max;       /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
+    int split_eyes;             /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;              /* a text file of callback keys; NULL: none */
     const char *graph;               /* a text file of animation graphs; NULL: none */

@@ -148,8 +148,10 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, const
                 base_path, here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
         }
     }
-    return model_fail(error, "", "its skeleton is not that of %.80s: it has %u joints here and %u there", base_path,
-                      other->joint_count, base->joint_count);
+    return model_fail(
+        error, "",
+        "its skeleton is not that of %.80s: it has %u joints here and %u there; --partial takes what both have",
+        base_path, other->joint_count, base->joint_count);
 }
 
 /* Find the base's set that has the same joints as `from`. */
@@ -291,10 +293,31 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
     return move_clip(clip, to, error);
 }
 
-int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error)
+/* Give a set the joints of the first of the base's skeletons that they can be matched with. */
+static int match_joints(source *base, raw_set *from, const char *path, const joint_match_options *options,
+                        model_error *error)
+{
+    joint_match match = JOINTS_DIFFER;
+    for (uint32_t i = 0; i < base->set_count; i++) {
+        if (raw_skeleton_hash(&base->sets[i]->skeleton) == raw_skeleton_hash(&from->skeleton)) return 0;
+    }
+    for (uint32_t i = 0; i < base->set_count && match == JOINTS_DIFFER; i++) {
+        char *report;
+        int failed;
+        match = joint_match_set(from, &base->sets[i]->skeleton, options, &report, error);
+        failed = report && match == JOINTS_MATCHED && model_warn(base->m, "%s: %s", path, report);
+        free(report);
+        if (failed) return out_of_memory(error);
+    }
+    return match == JOINTS_FAILED;
+}
+
+int source_join(source *base, const char *base_path, source *other, const char *other_path,
+                const joint_match_options *options, model_error *error)
 {
     uint32_t joined = 0;
     for (uint32_t i = 0; i < other->set_count; i++) {
+        if (match_joints(base, other->sets[i], other_path, options, error)) return 1;
         for (uint32_t c = 0; c < other->sets[i]->clip_count; c++) {
             if (join_clip(base, base_path, other->sets[i], &other->sets[i]->clips[c], other_path, &joined, error)) {
                 return 1;

@@ -1,11 +1,12 @@
 /* sources.h: the files that one pack is built from.
  *
  * One of them is the base: its model and its skeletons are the pack's. From the others only clips are added: clips of
- * joints if their skeleton has the same joints (names and parents) as one of the base's, morph weights if the base has
- * a node of the same name with as many targets. */
+ * joints if their skeleton has the same joints as one of the base's (names and parents; joint_match.h), morph weights
+ * if the base has a node of the same name with as many targets. */
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
 
+#include "convert/clips/joint_match.h"
 #include "convert/clips/model_clips.h"
 #include "convert/skin/skins.h"
 
@@ -35,8 +36,11 @@ void source_free(source *s);
 
 /* Move the clips of `other` to `base`. Translations are converted to the base's unit. A clip whose name the base
  * already has is renamed FILE/NAME, where FILE is the file's name without its ending. What is left out becomes a
- * warning of base. errors  1: no skeleton of base has these joints (the message names the first difference), or `other`
- * has no clips */
-int source_join(source *base, const char *base_path, source *other, const char *other_path, model_error *error);
+ * warning of base.
+ * options  how joints of other names, or only some of them, are taken
+ * errors   1: no skeleton of base has these joints (the message names the first difference), `other` has no clips, or
+ *          what is wrong with the file of names */
+int source_join(source *base, const char *base_path, source *other, const char *other_path,
+                const joint_match_options *options, model_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* test_sources.c: several files in one pack: whose clips are taken, and why not. */
 #include "support/support.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,8 @@
 #include "support/clip_bank_fixture.h"
 
 #define FRAMES 40u
+
+static const joint_match_options by_name = { NULL, 0 }, in_part = { NULL, 1 };
 
 static source source_of(const char *path)
 {
@@ -41,7 +44,7 @@ static source source_of_model(model *m)
 static void expect_refused(source *base, source *other, const char *what)
 {
     model_error error = { "", "" };
-    assert_int_equal(source_join(base, "base.glb", other, "other.bvh", &error), 1);
+    assert_int_equal(source_join(base, "base.glb", other, "other.bvh", &by_name, &error), 1);
     if (!strstr(error.what, what)) {
         fail_msg("'%s' does not say '%s'", error.what, what);
     }
@@ -64,7 +67,7 @@ static void clips_of_one_skeleton_are_joined(void **state)
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES + 3u));
     model_error error;
     (void)state;
-    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &error), 0);
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
     assert_int_equal(base.set_count, 1);
     assert_int_equal(base.sets[0]->clip_count, 2);
     assert_string_equal(base.sets[0]->clips[0].name, "walk");
@@ -79,7 +82,7 @@ static void a_name_that_is_taken_gets_that_of_the_file(void **state)
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES));
     model_error error;
     (void)state;
-    assert_int_equal(source_join(&base, "walk.bvh", &other, "dir/slow.v2.bvh", &error), 0);
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "dir/slow.v2.bvh", &by_name, &error), 0);
     assert_string_equal(base.sets[0]->clips[1].name, "slow.v2/walk");
     source_free(&base);
     source_free(&other);
@@ -92,7 +95,7 @@ static void a_name_that_is_taken_twice_is_refused(void **state)
            third = source_of(clip_bvh("walk", "abc", FRAMES));
     model_error error;
     (void)state;
-    assert_int_equal(source_join(&base, "walk.bvh", &other, "other.bvh", &error), 0);
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "other.bvh", &by_name, &error), 0);
     source_free(&other);
     expect_refused(&base, &third, "two clips would be called 'other/walk'");
 }
@@ -118,7 +121,7 @@ static void translations_come_to_the_unit_of_the_base(void **state)
     model_error error;
     (void)state;
     base.sets[0]->skeleton.unit_cm = 100.0;
-    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &error), 0);
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
     assert_true(before > 80.0f);
     assert_true(base.sets[0]->clips[1].translations[1] == (float)((double)before * 0.01));
     source_free(&base);
@@ -135,7 +138,7 @@ static void weights_go_to_nodes_of_the_same_name(void **state)
     from->clips[1].name = model_string("shake");
     base = source_of_model(to);
     other = source_of_model(from);
-    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &by_name, &error), 0);
     assert_int_equal(base.sets[0]->clip_count, 6);
     assert_string_equal(base.sets[0]->clips[3].name, "other/linear");
     assert_string_equal(base.sets[0]->clips[4].name, "shake");
@@ -152,7 +155,7 @@ static void weights_of_unknown_nodes_are_left_out(void **state)
     source base = source_of_model(clip_model(4)), other = source_of_model(clip_model(5));
     model_error error;
     (void)state;
-    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &by_name, &error), 0);
     assert_int_equal(base.sets[0]->clip_count, 4); /* of "linear" only the joint's track is taken */
     assert_int_equal(base.sets[0]->clips[3].float_count, 0);
     assert_int_equal(base.sets[0]->clips[3].joint_count, 1);
@@ -175,7 +178,7 @@ static void weights_come_to_a_model_without_clip(void **state)
     raw_clip_clear(&other.sets[0]->clips[0]); /* the one that moves a joint */
     memmove(other.sets[0]->clips, other.sets[0]->clips + 1, 2 * sizeof *other.sets[0]->clips);
     other.sets[0]->clip_count = 2;
-    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &error), 0);
+    assert_int_equal(source_join(&base, "base.glb", &other, "other.glb", &by_name, &error), 0);
     assert_int_equal(base.set_count, 1);
     assert_int_equal(base.sets[0]->clip_count, 2);
     still->clip_count = 3;
@@ -192,6 +195,140 @@ static void what_adds_nothing_is_refused(void **state)
     base = source_of_model(test_model(&still));
     other = source_of(clip_bvh("walk", "abc", FRAMES));
     expect_refused(&base, &other, "it animates a skeleton, and base.glb has none");
+}
+
+/* ---- joints of other names, or only some ---- */
+
+static void name_joint(source *s, uint32_t joint, const char *name)
+{
+    char **at = &s->sets[0]->skeleton.joints[joint].name;
+    free(*at);
+    *at = test_zeros(strlen(name) + 1);
+    strcpy(*at, name);
+}
+
+static void namespaces_are_no_part_of_a_name(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES)),
+           same = source_of(clip_bvh("run", "abc", FRAMES));
+    const raw_clip *clip;
+    model_error error;
+    (void)state;
+    name_joint(&base, 0, "mixamorig:a");
+    name_joint(&other, 0, "mixamorig7:a");
+    name_joint(&other, 1, "mixamorig7:b");
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
+    assert_true(has_warning(base.m, "run.bvh: 3 of its 3 joints were found by name"));
+    clip = &base.sets[0]->clips[1];
+    assert_memory_equal(clip->rotations, same.sets[0]->clips[0].rotations, FRAMES * 3u * 4u * sizeof(float));
+    assert_memory_equal(clip->translations, same.sets[0]->clips[0].translations, FRAMES * 3u * 3u * sizeof(float));
+    source_free(&base);
+    source_free(&other);
+    source_free(&same);
+}
+
+static const char *names_file(const char *text)
+{
+    const char *path = test_path("names.txt");
+    test_write_file(path, text, strlen(text));
+    return path;
+}
+
+static void names_are_read_from_a_file(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "xbz", FRAMES));
+    const char *path = names_file("# theirs ours\nx a\n\n\"z\" c # the tip\nnever b\n");
+    const joint_match_options options = { path, 0 };
+    model_error error = { "", "" };
+    (void)state;
+    if (source_join(&base, "walk.bvh", &other, "run.bvh", &options, &error)) fail_msg("%s", error.what);
+    assert_int_equal(base.sets[0]->clip_count, 2);
+    source_free(&base);
+    source_free(&other);
+}
+
+static void refuse_names(const char *text, const char *what)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "xbz", FRAMES));
+    const joint_match_options options = { names_file(text), 0 };
+    model_error error = { "", "" };
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &options, &error), 1);
+    if (!strstr(error.what, what)) fail_msg("'%s' does not say '%s'", error.what, what);
+    source_free(&base);
+    source_free(&other);
+}
+
+static void a_bad_file_of_names_is_refused_by_line(void **state)
+{
+    (void)state;
+    refuse_names("x a\nz nobody\n", "the pack has no joint 'nobody'");
+    refuse_names("x a\nz\n", "a line of names has two");
+    refuse_names("x a\n", "its skeleton is not that of walk.bvh");
+}
+
+/* Where a joint of a clip is in object space, below another joint. */
+static void place_below(const raw_set *set, const raw_clip *clip, uint32_t frame, uint32_t joint, double out[12])
+{
+    double poses[12 * 8];
+    raw_pose_object(&set->skeleton, clip, frame, poses);
+    memcpy(out, poses + 12u * joint, 12 * sizeof *out);
+}
+
+static void expect_same_place(const raw_set *a, uint32_t a_clip, uint32_t a_joint, const raw_set *b, uint32_t b_joint)
+{
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        double x[12], y[12];
+        place_below(a, &a->clips[a_clip], f, a_joint, x);
+        place_below(b, &b->clips[0], f, b_joint, y);
+        for (int i = 0; i < 12; i++) assert_true(fabs(x[i] - y[i]) < 1e-4);
+    }
+}
+
+/* A joint that only the file has, between two others: the one below it stays where it was. */
+static void a_joint_in_between_is_folded_into_the_next(void **state)
+{
+    source base = source_of(clip_bvh("walk", "ac", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES)),
+           same = source_of(clip_bvh("run", "abc", FRAMES));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &in_part, &error), 0);
+    assert_true(has_warning(base.m, "these were left out: 'b'"));
+    expect_same_place(base.sets[0], 1, 0, same.sets[0], 0);
+    expect_same_place(base.sets[0], 1, 1, same.sets[0], 2);
+    source_free(&base);
+    source_free(&other);
+    source_free(&same);
+}
+
+/* A joint that only the pack has keeps the bind pose, and what hangs from it is where the file has it. */
+static void a_joint_that_the_file_lacks_keeps_the_bind_pose(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "ac", FRAMES)),
+           same = source_of(clip_bvh("run", "ac", FRAMES)), again = source_of(clip_bvh("few", "ab", FRAMES)),
+           more = source_of(clip_bvh("walk", "abc", FRAMES));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &in_part, &error), 0);
+    assert_true(has_warning(base.m, "2 of its 2 joints were found by name; these keep the bind pose: 'b'"));
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        assert_memory_equal(base.sets[0]->clips[1].rotations + (f * 3u + 1u) * 4u,
+                            base.sets[0]->skeleton.joints[1].rotation, 4u * sizeof(float));
+    }
+    expect_same_place(base.sets[0], 1, 2, same.sets[0], 1);
+    source_free(&base);
+    source_free(&other);
+    source_free(&same);
+    expect_refused(&more, &again, "--partial takes what both have");
+}
+
+static void strangers_are_refused_in_part_too(void **state)
+{
+    source base = source_of(clip_bvh("walk", "abcde", FRAMES)), other = source_of(clip_bvh("run", "axyzw", FRAMES));
+    model_error error;
+    (void)state;
+    assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &in_part, &error), 1);
+    source_free(&base);
+    source_free(&other);
 }
 
 /* The clips of all, the same bytes in whatever order. */
@@ -233,6 +370,12 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_of_unknown_nodes_are_left_out),
     cmocka_unit_test(weights_come_to_a_model_without_clip),
     cmocka_unit_test(what_adds_nothing_is_refused),
+    cmocka_unit_test(namespaces_are_no_part_of_a_name),
+    cmocka_unit_test(names_are_read_from_a_file),
+    cmocka_unit_test(a_bad_file_of_names_is_refused_by_line),
+    cmocka_unit_test(a_joint_in_between_is_folded_into_the_next),
+    cmocka_unit_test(a_joint_that_the_file_lacks_keeps_the_bind_pose),
+    cmocka_unit_test(strangers_are_refused_in_part_too),
     cmocka_unit_test(the_pack_of_several_files),
 };
 

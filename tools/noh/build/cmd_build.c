@@ -19,8 +19,8 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain,
-        *textures, *bound;
-    int input_count, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
+        *textures, *bound, *rename;
+    int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
         terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines;
@@ -256,6 +256,8 @@ static int run(void *args)
     }
     o.identity = a->identity;
     o.targets = a->targets;
+    o.joints.names = a->rename;
+    o.joints.partial = a->partial;
     o.split_eyes = a->eyes;
     o.recipe = a->recipe;
     o.ragdoll = a->ragdoll;
@@ -622,6 +624,18 @@ static const option options[] = {
       .what =
           "targets whose names join those of others (jawOpen_smile), or add hundredths to one (jawOpen50), are targets like others, and not correctives that follow from them",
       .excludes = "--only=anim" },
+    { .name = "--rename",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, rename),
+      .value = "FILE",
+      .what =
+          "joints of other names in files of clips: lines of THEIRS OURS; a namespace as in mixamorig7:Hips needs none",
+      .example = "mixamo.txt" },
+    { .name = "--partial",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, partial),
+      .what =
+          "take clips of skeletons that have at least half of their joints, or half of the pack's, in common with it; the rest keeps the bind pose, or is left out" },
     { .name = "--unit-cm",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, unit_cm),
