@@ -31,6 +31,7 @@ awk -v code="$work/code" -v text="$work/text" '
     }' $(cat "$work/sources")
 for document in $(cat "$work/documents"); do sed "s|^|$document: |" "$document"; done >>"$work/text"
 
+cat tests/*.sh tests/*/*.sh tools/*.sh >>"$work/code" # scripts have names, too: what they take from the environment
 grep -oE '\b(noh|NOH)_[A-Za-z0-9_]+' "$work/code" | sort -u >"$work/names"
 check 'names were found' test "$(wc -l <"$work/names")" -gt 1000
 grep -oE '\b(noh|NOH)_[A-Za-z0-9_]+' "$work/text" | sort -u |
