@@ -254,11 +254,21 @@ static void move_held(noh_foot *f, const leg_now *n)
     f->moved[1] = f->held[1] - n->parts[f->part][2];
 }
 
-static void stand(const step *s, noh_foot *f, const leg_now *n)
+typedef enum keeping { AS_ITS_CLIP = 0, IS_KEPT, SWINGS } keeping;
+
+/* A foot that its place keeps still is where its clip has it. */
+static void let_go(noh_foot *f)
+{
+    f->is_held = 0;
+    f->moved[0] = f->moved[1] = 0.0f;
+}
+
+static void stand(const step *s, noh_foot *f, const leg_now *n, keeping keeps)
 {
     float speed[2];
     if (f->is_held) move_held(f, n);
     find_part(s, f, n);
+    if (keeps) let_go(f);
     speed_of(s, f, n, speed);
     const float fast = length2(speed[0], speed[1]) / s->leg, lift = (n->parts[f->part][1] - s->floor) / s->leg;
     if (f->is_held) {
@@ -268,7 +278,7 @@ static void stand(const step *s, noh_foot *f, const leg_now *n)
         const float keep = decay(s->seconds, DRIFT_HALF_LIFE);
         f->moved[0] *= keep;
         f->moved[1] *= keep;
-        f->is_held = f->has_ground && lift < STAND_LIFT && fast < STAND_SPEED;
+        f->is_held = f->has_ground && lift < STAND_LIFT && fast < STAND_SPEED && keeps != SWINGS;
         f->held[0] = n->parts[f->part][0] + f->moved[0];
         f->held[1] = n->parts[f->part][2] + f->moved[1];
     }
@@ -447,15 +457,17 @@ const char *noh_feet_check(const noh_feet *feet)
         }
         if (!(square == 0.0f || (square > 0.99f && square < 1.01f))) return "feet: a normal is not unit";
     }
-    return noh_is_finite(sum) && feet->begun <= 1u ? NULL : "feet: a number is not finite, or a flag is none";
+    return noh_is_finite(sum) && feet->begun <= 1u && feet->kept <= NOH_FEET_LEGS_MAX
+               ? NULL
+               : "feet: a number is not finite, or a flag is none";
 }
 
-static void step_foot(const step *s, noh_foot *f, leg_now *n)
+static void step_foot(const step *s, noh_foot *f, leg_now *n, keeping keeps)
 {
     if (s->cut) {
         begin_foot(s, f, n);
     } else if (s->seconds > 0.0f) {
-        stand(s, f, n);
+        stand(s, f, n, keeps);
     }
     raise(s, f, n);
     if (s->cut || s->seconds > 0.0f) memcpy(f->was, n->parts, sizeof f->was);
@@ -472,7 +484,7 @@ void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *
     feet->begun = 1;
     for (uint32_t i = 0; i < rig->leg_count; i++) {
         read_leg(&s, &rig->legs[i], &now[i]);
-        step_foot(&s, &feet->feet[i], &now[i]);
+        step_foot(&s, &feet->feet[i], &now[i], !feet->kept ? AS_ITS_CLIP : feet->kept == i + 1u ? IS_KEPT : SWINGS);
     }
     const float by = move_pelvis(&s, feet, now);
     move_top(&s, by);

@@ -90,7 +90,9 @@ typedef struct noh_foot {
 typedef struct noh_feet {
     noh_foot feet[NOH_FEET_LEGS_MAX];
     float pelvis, speed; /* its height above the floor of its clips, in the world */
-    uint32_t begun, unused;
+    uint32_t begun;
+    uint32_t kept; /* 1 + the leg that the place keeps still, where it does: no other stands, and no foot is moved
+                    * along the ground; 0: any leg stands whose clip holds it still */
 } noh_feet;
 
 void noh_feet_init(noh_feet *feet);

@@ -120,7 +120,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
                             noh_walkers **walkers, noh_error *error)
 {
     noh_arena arena;
-    noh_walkers w;
+    noh_walkers *w = memory;
     NOH_ASSERT(desc && stage && walkers && desc->walk);
     noh_result result = check(desc, error);
     if (result) return result;
@@ -130,20 +130,21 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
                         "walkers want a kind with root_told, a base layer with a track for each clip, and their part",
                         desc->kind, 0);
     }
-    memset(&w, 0, sizeof w);
-    result = measure_all(&w, desc, k, error);
-    if (!result) result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
+    result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
     if (result) return result;
-    w.bytes = (uint32_t)bytes_of(desc);
-    w.walker_max = desc->walker_max;
-    w.near_max = desc->near_max;
-    w.kind = desc->kind;
-    w.layer = desc->layer;
-    w.feet_part = desc->feet_part;
-    w.turn_speed = desc->turn_speed > 0.0f ? desc->turn_speed : TURN_SPEED;
-    memset(memory, 0, w.bytes);
-    *walkers = memory;
-    **walkers = w;
+    memset(memory, 0, bytes_of(desc));
+    result = measure_all(w, desc, k, error);
+    if (result) return result;
+    w->bytes = (uint32_t)bytes_of(desc);
+    w->walker_max = desc->walker_max;
+    w->near_max = desc->near_max;
+    w->kind = desc->kind;
+    w->layer = desc->layer;
+    w->feet_part = desc->feet_part;
+    w->turn_speed = desc->turn_speed > 0.0f ? desc->turn_speed : TURN_SPEED;
+    const noh_feet_rig *rig = desc->feet_part ? noh_walkers_rig(&k->parts[desc->feet_part - 1u]) : NULL;
+    if (rig && stage->phase == NOH_STAGE_IDLE) noh_walkers_measure_soles(w, stage, k, rig);
+    *walkers = w;
     return NOH_OK;
 }
 

@@ -13,11 +13,13 @@
  *   noh_walkers_near(walkers, stage, view.eye);
  *   noh_stage_frame_begin(stage, &view, 1, NULL);
  *
- * The crowd makes steps of 1/30 s, frames may have any rate: an actor is where its agent is shown
- * (noh_crowd_agent_at), and between two frames its clips go on by the way that it went, so that a foot of a clip that
- * stands, stands. An actor turns where it goes, at a limited speed. Slower than a quarter of its walk it takes
- * shorter steps, which are the walk blended with standing; faster than the walk it becomes a run: blended, where sync
- * markers tell that both clips are in step, else by a change.
+ * The crowd makes steps of 1/30 s, frames may have any rate: an actor goes where its agent is shown
+ * (noh_crowd_agent_at), on its feet. Its walk leads it, straight on, back or in place while it turns at a limited
+ * speed, and it turns about the foot that it stands on: so a foot of a clip that stands, stands, and the actor is a few
+ * centimetres from its agent, at most 0.4 m where that turns or is pushed faster than feet can follow: only then is an
+ * actor pulled. Slower than a quarter of its walk it takes shorter steps, which are the walk blended with standing;
+ * faster than the walk it becomes a run: blended, where sync markers tell that both clips are in step, else by a
+ * change. Where soles are is known from feet_part; without one actors turn about their middle.
  *
  * The kind's clips must not move the actor themselves: root_axes NOH_ROOT_X | NOH_ROOT_Z (what the heading of a root
  * does belongs to the pose), root_up 1, root_told 1. How far the root moves in a pass is measured by init; what it
@@ -53,7 +55,7 @@ typedef struct noh_walkers_desc {
 
 typedef struct noh_walkers noh_walkers;
 
-/* The exact bytes: 880, 64 a walker and 8 for each that may be near; rounded up to 16. 0 for an impossible desc. */
+/* The exact bytes: 8,016, 80 a walker and 8 for each that may be near; rounded up to 16. 0 for an impossible desc. */
 size_t noh_walkers_size(const noh_walkers_desc *desc);
 
 /* Nobody walks yet.

@@ -92,6 +92,18 @@ noh_stage_part noh_walkers_feet_part(const noh_kind_feet *feet)
     return part;
 }
 
+const noh_feet_rig *noh_walkers_rig(const noh_stage_part *part)
+{
+    return part->modify == modify ? &((const noh_kind_feet *)part->user)->rig : NULL;
+}
+
+void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *r)
+{
+    near_feet *n = r->is_near && w->leg_count ? noh_actor_part(stage, (noh_actor){ r->actor }, w->feet_part - 1u)
+                                              : NULL;
+    if (n) n->feet.kept = 1u + r->stands / WALKER_PARTS;
+}
+
 /* ---- who is near ---- */
 
 /* The nearest so far, by distance; of equal ones the first. */

@@ -7,6 +7,7 @@
 
 enum { WALKER_WALK, WALKER_IDLE, WALKER_RUN, WALKER_CLIPS };
 #define WALKER_SWAY 32u /* equal parts of a pass */
+#define WALKER_PARTS (NOH_FEET_POINTS / 2u)
 
 typedef struct walker_clip {
     uint32_t clip; /* NOH_NONE: none */
@@ -15,10 +16,20 @@ typedef struct walker_clip {
     float sway[WALKER_SWAY + 1][2]; /* of the root about that, x and z */
 } walker_clip;
 
+/* Of each foot heel, ball and toes, in model space: see noh_walkers_soles_at. */
+typedef struct walker_feet {
+    float at[NOH_FEET_LEGS_MAX][WALKER_PARTS][3];
+} walker_feet;
+
+typedef struct walker_soles {
+    float at[WALKER_SWAY + 1][NOH_FEET_LEGS_MAX][WALKER_PARTS][3];
+} walker_soles;
+
 typedef struct walker {
     uint32_t actor; /* 0: none */
     uint32_t agent;
     float at[2];         /* of the agent, in the last step */
+    float body[2];       /* where it is drawn */
     float height, climb; /* of the place, and its speed */
     float heading[2];    /* unit */
     float velocity[2];   /* smoothed, for the heading */
@@ -26,8 +37,10 @@ typedef struct walker {
     float goes, runs;    /* 0..1: how far it walks and does not stand, runs and does not walk */
     float even;          /* the speed ahead, smoothed less */
     uint16_t begun, is_near;
+    uint32_t stands;    /* leg * WALKER_PARTS + part */
+    uint32_t goes_back; /* 1 */
 } walker;
-NOH_STATIC_ASSERT(sizeof(walker) == 64, walker);
+NOH_STATIC_ASSERT(sizeof(walker) == 80, walker);
 
 typedef struct walker_near {
     float square; /* of the distance */
@@ -43,9 +56,28 @@ struct noh_walkers {
     uint32_t in_step; /* 1: markers tell that walk and run may be blended */
     uint32_t reserved;
     walker_clip clips[WALKER_CLIPS];
+    uint32_t leg_count; /* 0: nothing is known of feet */
+    float leg;          /* its length, model units */
+    walker_soles soles[WALKER_CLIPS];
     uint32_t unused;
 };
-NOH_STATIC_ASSERT(sizeof(noh_walkers) == 880, walkers);
+NOH_STATIC_ASSERT(sizeof(noh_walkers) == 8016, walkers);
+
+/* The rig of a part of noh_walkers_feet_part; NULL: the part is another one. */
+const noh_feet_rig *noh_walkers_rig(const noh_stage_part *part);
+
+/* Soles of all clips, into w. Not within a step or a frame: a job's scratch is used. */
+void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage_kind *k, const noh_feet_rig *rig);
+
+/* Soles in the blend of the clips, each at its share of a pass. */
+void noh_walkers_soles_at(const noh_walkers *w, const float shares[WALKER_CLIPS], const float weights[WALKER_CLIPS],
+                          walker_feet *feet);
+
+/* Feet of one who is near know which of them is kept still. */
+void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *r);
+
+/* leg * WALKER_PARTS + part of the lowest sole. */
+uint32_t noh_walkers_stand(const noh_walkers *w, const walker_feet *feet, uint32_t was);
 
 static inline walker *noh_walker_at(noh_walkers *w, uint32_t index)
 {

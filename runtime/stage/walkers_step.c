@@ -11,7 +11,12 @@
 #define GOES 0.12f             /* of the walk's speed: slower ones have no direction */
 #define LONG_STEPS 0.25f       /* of the walk's speed: from here on its steps are not shortened */
 #define BLEND_PER_S 4.0f       /* how fast the walk comes and goes */
-#define ABOUT_M 0.12f          /* of a foot from the axis that it turns about: turning is stepping */
+#define ABOUT_M 0.08f          /* of a foot from the axis that it turns about: turning is stepping */
+#define BACK 0.8f              /* of the walk's speed: who wants to go back faster turns */
+#define CATCH_PER_S 3.0f       /* of the way to its agent */
+#define SLACK_M 0.06f          /* of that way: it stands */
+#define LOOKING_M 0.2f         /* likewise, of one who looks somewhere: it turns there, not back */
+#define LAG_M 0.4f             /* no body is farther from its agent */
 #define RATE_MAX 2.5f          /* of the walk: faster than that is a stumble that does not end */
 #define CLIMB_RATE 14.0f       /* of the spring that follows the ground, 1/s */
 #define LEAP_M 1.0f            /* in a step: not a way that is walked */
@@ -57,15 +62,17 @@ static float turn(float heading[2], const float to[2], float most)
     return by < 0.0f ? -by : by;
 }
 
-/* Where it goes, or, standing, where it is asked to look. returns the angle that it turned by where it stands */
-static float find_heading(const step *s, walker *r, float walk)
+/* Where it wants to go, or, standing, where it is asked to look. wish[2]: model units a second.
+ * returns the angle that it turned by where it stands */
+static float find_heading(const step *s, walker *r, const float wish[2], float walk)
 {
-    const float square = dot2(r->velocity, r->velocity), least = GOES * walk;
+    const float square = dot2(wish, wish), least = GOES * walk, ahead = dot2(wish, r->heading);
     const float most = s->w->turn_speed * s->seconds;
+    r->goes_back = ahead < 0.0f && ahead * ahead > (r->goes_back ? 0.25f : 0.75f) * square &&
+                   square < BACK * BACK * walk * walk;
     if (square > least * least) {
-        const float per = 1.0f / noh_sqrt(square), to[2] = { r->velocity[0] * per, r->velocity[1] * per };
-        (void)turn(r->heading, to, most);
-        return 0.0f;
+        const float per = (r->goes_back ? -1.0f : 1.0f) / noh_sqrt(square), to[2] = { wish[0] * per, wish[1] * per };
+        return turn(r->heading, to, most);
     }
     return r->face[0] != 0.0f || r->face[1] != 0.0f ? turn(r->heading, r->face, most) : 0.0f;
 }
@@ -77,6 +84,13 @@ typedef struct gait {
     float walk, run; /* of the clips */
     float now, even; /* ahead in this step, and smoothed */
 } gait;
+
+/* What its clips show after the step: each at its share of a pass. */
+typedef struct played {
+    float before[WALKER_CLIPS], weights[WALKER_CLIPS], shares[WALKER_CLIPS];
+    float way;     /* that they lead on in the step */
+    float sway[2]; /* that the root sways about that, likewise: model units */
+} played;
 
 static float speed_of(const walker_clip *c)
 {
@@ -100,45 +114,58 @@ static void blend(const step *s, walker *r, const gait *g)
     r->runs = towards(r->runs, runs_of(s->w, r, g), most);
 }
 
-/* Passes in a second at which the blend of the clips leads as far as the agent goes. */
-static float pace(const noh_walkers *w, const walker *r, const gait *g)
+/* Passes in a second at which the blend of the clips leads as far as the agent goes; way: model units that they lead.
+ */
+static float pace(const step *s, const walker *r, const gait *g, float *way)
 {
-    const walker_clip *walk = &w->clips[WALKER_WALK], *run = &w->clips[WALKER_RUN];
+    const walker_clip *walk = &s->w->clips[WALKER_WALK], *run = &s->w->clips[WALKER_RUN];
     const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
     const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* of the run, too */
-    const float rate = stride > 1e-3f * walk->stride ? g->now / stride : 0.0f;
-    return rate > most ? most : rate;
+    const float rate = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
+    *way = rate * stride * s->seconds;
+    return rate;
 }
 
-/* Where the root is about its straight way at the end of the step, in model units. */
-static void add_sway(const walker_clip *c, const noh_track *track, int64_t speed, uint32_t ticks, float weight,
-                     float sway[2])
+/* The share of a pass at which a track is, and will be after the step. */
+static float share_of(const walker_clip *c, const noh_track *track, int64_t speed, uint32_t ticks)
 {
     const int64_t pass = noh_position_of(c->ticks);
-    int64_t at = (track->position + speed * (int64_t)ticks) % pass;
-    at = (at < 0 ? at + pass : at) * (int64_t)WALKER_SWAY;
-    const uint32_t i = (uint32_t)(at / pass);
-    const float part = (float)(at % pass) / (float)pass;
+    const int64_t at = pass ? (track->position + speed * (int64_t)ticks) % pass : 0;
+    return pass ? (float)(at < 0 ? at + pass : at) / (float)pass : 0.0f;
+}
+
+/* What a root sways about its straight way, in model units. */
+static void add_sway(const walker_clip *c, float share, float weight, float sway[2])
+{
+    const float at = share * (float)WALKER_SWAY;
+    const uint32_t i = at < (float)(WALKER_SWAY - 1u) ? (uint32_t)at : WALKER_SWAY - 1u;
+    const float part = at - (float)i;
     for (int k = 0; k < 2; k++) sway[k] += weight * (c->sway[i][k] + part * (c->sway[i + 1u][k] - c->sway[i][k]));
 }
 
 /* Weights and speeds of the tracks for this step. */
-static void play(const step *s, const walker *r, noh_controller *c, float passes, float sway[2])
+static void play(const step *s, const walker *r, noh_controller *c, float passes, played *p)
 {
     const float weights[WALKER_CLIPS] = { r->goes * (1.0f - r->runs), 1.0f - r->goes, r->goes * r->runs };
     uint32_t track = s->k->layers[s->w->layer].first_track;
-    sway[0] = sway[1] = 0.0f;
+    memset(p->sway, 0, sizeof p->sway);
+    memset(p->shares, 0, sizeof p->shares);
+    memcpy(p->weights, weights, sizeof weights);
     for (uint32_t i = 0; i < WALKER_CLIPS; i++) {
         const walker_clip *clip = &s->w->clips[i];
         int32_t speed = 65536;
         if (clip->clip == NOH_NONE) continue;
         if (i != WALKER_IDLE) {
             const float rate = passes * (float)clip->ticks * (65536.0f / (float)NOH_TICKS_PER_SECOND);
-            speed = (int32_t)(within(rate, 0.0f, (float)NOH_SPEED_MAX) + 0.5f);
+            speed = (int32_t)within(rate, -(float)NOH_SPEED_MAX, (float)NOH_SPEED_MAX);
         }
+        p->before[i] = noh_controller_track(c, track)->weight;
         (void)noh_controller_set_weight(c, track, weights[i]);
         (void)noh_controller_set_speed(c, track, speed);
-        if (clip->ticks) add_sway(clip, noh_controller_track(c, track), speed, s->ticks, weights[i], sway);
+        const float was = share_of(clip, noh_controller_track(c, track), 0, 0);
+        p->shares[i] = share_of(clip, noh_controller_track(c, track), speed, s->ticks);
+        add_sway(clip, was, -weights[i], p->sway);
+        add_sway(clip, p->shares[i], weights[i], p->sway);
         track++;
     }
 }
@@ -175,45 +202,95 @@ static void rotation_of(const noh_walkers *w, const float heading[2], float rota
     rotation[3] = noh_sqrt(within(0.5f + 0.5f * cosine, 0.0f, 1.0f));
 }
 
-static void put(const step *s, const walker *r, noh_stage_actor *a, const float sway[2])
+/* From model space, about the root. */
+static void turned_by(const float rotation[4], float scale, float x, float z, float out[2])
 {
-    noh_place place;
-    const float local[3] = { sway[0], 0.0f, sway[1] };
+    const float local[3] = { x, 0.0f, z };
     float turned[3];
-    (void)noh_actor_place(s->stage, (noh_actor){ r->actor }, &place, NULL);
-    rotation_of(s->w, r->heading, place.rotation);
-    noh_quat_rotate(place.rotation, local, turned);
-    place.position[0] = r->at[0] + a->place.scale * turned[0];
+    noh_quat_rotate(rotation, local, turned);
+    out[0] = scale * turned[0];
+    out[1] = scale * turned[2];
+}
+
+static void put(const step *s, const walker *r, const noh_place *was, const float rotation[4])
+{
+    noh_place place = *was;
+    memcpy(place.rotation, rotation, sizeof place.rotation);
+    place.position[0] = r->body[0];
     place.position[1] = r->height;
-    place.position[2] = r->at[1] + a->place.scale * turned[2];
+    place.position[2] = r->body[1];
     (void)noh_actor_set_place(s->stage, (noh_actor){ r->actor }, &place, NULL);
     if (!r->begun) (void)noh_actor_cut(s->stage, (noh_actor){ r->actor }, NULL);
 }
 
+/* It goes on as its clips do. The foot that it stands on stays where it is while clips come and go, and is what it
+ * turns about. */
+static void go_on(const step *s, walker *r, const noh_place *was, const float rotation[4], const played *p)
+{
+    const uint32_t leg = r->stands / WALKER_PARTS, part = r->stands % WALKER_PARTS;
+    walker_feet blended, feet;
+    float on[2], from[2], to[2];
+    noh_walkers_soles_at(s->w, p->shares, p->before, &blended);
+    noh_walkers_soles_at(s->w, p->shares, p->weights, &feet);
+    const float *b = blended.at[leg][part], *f = feet.at[leg][part];
+    turned_by(was->rotation, was->scale, s->w->forward[0] * p->way + p->sway[0], s->w->forward[1] * p->way + p->sway[1],
+              on);
+    turned_by(was->rotation, was->scale, b[0], b[2], from);
+    turned_by(rotation, was->scale, f[0], f[2], to);
+    for (int i = 0; i < 2 && r->begun; i++) r->body[i] += on[i] + from[i] - to[i];
+    r->stands = noh_walkers_stand(s->w, &feet, r->stands);
+}
+
 /* ---- a step ---- */
+
+/* How fast it wants to go: as its agent does, and to where that is. Model units a second. */
+static void find_wish(const walker *r, float scale, float wish[2])
+{
+    const float off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] }, length = noh_sqrt(dot2(off, off));
+    const float slack = r->face[0] != 0.0f || r->face[1] != 0.0f ? LOOKING_M : SLACK_M;
+    const float catch = length > slack ? CATCH_PER_S * (length - slack) / (length * scale) : 0.0f;
+    for (int i = 0; i < 2; i++) wish[i] = r->velocity[i] + catch * off[i];
+}
+
+/* No farther from its agent than that. */
+static void keep_near(walker *r)
+{
+    const float off[2] = { r->body[0] - r->at[0], r->body[1] - r->at[1] }, square = dot2(off, off);
+    const float by = square > LAG_M * LAG_M ? 1.0f - LAG_M / noh_sqrt(square) : 0.0f;
+    for (int i = 0; i < 2; i++) r->body[i] -= by * off[i];
+}
 
 static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[2])
 {
-    const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] };
-    const float per = 1.0f / (s->seconds * a->place.scale); /* model units a second */
+    const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] }, scale = a->place.scale;
+    const float per = 1.0f / (s->seconds * scale); /* model units a second */
     const float keep = noh_exp2(-s->seconds / TURN_HALF_LIFE_S);
     gait g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f };
-    float sway[2];
+    float wish[2], rotation[4];
+    played p;
+    noh_place was;
     if (dot2(way, way) > LEAP_M * LEAP_M) r->begun = 0;
     memcpy(r->at, to, sizeof r->at);
+    if (!r->begun) memcpy(r->body, to, sizeof r->body);
     for (int i = 0; i < 2 && r->begun; i++) {
         r->velocity[i] = per * way[i] + keep * (r->velocity[i] - per * way[i]);
     }
-    const float steps = ABOUT_M * find_heading(s, r, g.walk) * per;
-    const float ahead = per * dot2(way, r->heading), any = 0.6f * per * noh_sqrt(dot2(way, way));
-    g.now = !r->begun ? 0.0f : ahead > any ? ahead : any;
-    g.now = g.now > steps ? g.now : steps;
-    r->even = g.now + noh_exp2(-s->seconds / EVEN_HALF_LIFE_S) * (r->even - g.now);
+    find_wish(r, scale, wish);
+    const float steps = ABOUT_M * find_heading(s, r, wish, g.walk) * per, ahead = dot2(wish, r->heading);
+    g.now = !r->begun ? 0.0f : r->goes_back ? ahead : ahead > steps ? ahead : steps;
+    const float fast = g.now < 0.0f ? -g.now : g.now;
+    r->even = fast + noh_exp2(-s->seconds / EVEN_HALF_LIFE_S) * (r->even - fast);
     g.even = r->even;
     blend(s, r, &g);
-    play(s, r, noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a))), pace(s->w, r, &g), sway);
+    play(s, r, noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a))), pace(s, r, &g, &p.way),
+         &p);
     climb(s, r);
-    put(s, r, a, sway);
+    (void)noh_actor_place(s->stage, (noh_actor){ r->actor }, &was, NULL);
+    rotation_of(s->w, r->heading, rotation);
+    go_on(s, r, &was, rotation, &p);
+    keep_near(r);
+    noh_walkers_tell_leg(s->w, s->stage, r);
+    put(s, r, &was, rotation);
     r->begun = 1;
 }
 
