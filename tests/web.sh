@@ -40,7 +40,7 @@ describe() { # FLOATS still|alive
     [ -z "$(echo "$plan" | grep '^falls')" ] || falls='ragdolls 1'
     cat >"$out/page.txt" <<END
 kind page
-mesh $pack
+mesh $build/web/$name/page.nohz
 actor_count 1
 inertia 1
 held_float_count $1
@@ -97,7 +97,7 @@ check_pack() {
         timeout -k 5 500 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
         count $? "$out/speech.txt"
     fi
-    plan=$(node $fetch "$build/web-objects/plan.js" "$pack" 1)
+    plan=$(node $fetch "$build/web-objects/plan.js" "$build/web/$name/page.nohz" 1)
     floats=$(echo "$plan" | sed -n 's/^floats //p') eyes=$(echo "$plan" | sed -n 's/^eyes //p')
     while read -r _ _ path light life cpu_used gpu_used; do [ -z "$path" ] || budget_of "$path" "$light" "$life" "$cpu_used" "$gpu_used"; done <<END
 $(cat "$out/log.txt" "$out/figure.txt" | grep '^# budget ')

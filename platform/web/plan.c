@@ -78,12 +78,28 @@ static int plan_wire(const char *path, noh_error *error)
     return 0;
 }
 
+/* As it is, or out of its wire form, as the page has it. */
+static int open_pack(const char *path, noh_pack *pack, noh_error *error)
+{
+    static uint8_t state[NOH_WIRE_STATE_BYTES] __attribute__((aligned(16)));
+    noh_wire_desc desc = { NULL, 0 };
+    noh_wire_info info;
+    noh_wire *wire;
+    noh_file file;
+    if (noh_file_map(path, &file, error)) return 1;
+    if (noh_wire_info_read(file.data, file.bytes, &info, NULL))
+        return noh_pack_open(file.data, file.bytes, pack, error);
+    desc.block_bytes = (info.block_bytes + 63u) / 64u * 64u;
+    desc.block = aligned_alloc(64, desc.block_bytes); /* stays, as the pack lies in it */
+    return !desc.block || noh_wire_init(state, sizeof state, &desc, &wire, error) ||
+           noh_wire_push(wire, file.data, file.bytes, error) || noh_wire_pack(wire, pack, error);
+}
+
 int main(int argc, char **argv)
 {
     noh_error error = { NOH_OK, "give a pack and a number of actors", 0, 0 };
-    noh_file file;
     noh_pack pack;
-    if (argc < 3 || noh_file_map(argv[1], &file, &error) || noh_pack_open(file.data, file.bytes, &pack, &error) ||
+    if (argc < 3 || open_pack(argv[1], &pack, &error) ||
         plan_all(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error) || (argc > 3 && plan_wire(argv[3], &error))) {
         (void)fprintf(stderr, "plan: %s\n", error.what);
         return 1;
