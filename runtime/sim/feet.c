@@ -27,6 +27,8 @@
 #define HEIGHT_RATE 35.0f /* of springs, 1/s */
 #define PELVIS_RATE 12.0f
 #define PELVIS_ACCELERATION 20.0f
+#define PELVIS_MARGIN 0.01f
+#define STANDS 0.5f
 #define PELVIS_BRAKE 0.7f /* of that, so that what is left brakes in time */
 #define STRAIGHT 0.9995f
 
@@ -373,6 +375,10 @@ static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
         if (!feet->feet[i].has_ground) continue;
         goal = !known++ || now[i].soon < goal ? now[i].soon : goal;
     }
+    for (uint32_t i = 0; i < s->rig->leg_count; i++) { /* before a leg is straight: then it is pulled at once */
+        const float most = highest(&feet->feet[i], &now[i]) - PELVIS_MARGIN * s->leg;
+        if (feet->feet[i].has_ground && feet->feet[i].stands > STANDS && most < goal) goal = most;
+    }
     goal += s->floor;
     if (s->cut) {
         feet->pelvis = goal;
@@ -383,7 +389,7 @@ static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
     const float free = feet->pelvis;
     for (uint32_t i = 0; i < s->rig->leg_count; i++) {
         const float over = feet->pelvis - s->floor - highest(&feet->feet[i], &now[i]);
-        if (feet->feet[i].has_ground && feet->feet[i].stands > 0.5f && over > 0.0f) feet->pelvis -= over;
+        if (feet->feet[i].has_ground && feet->feet[i].stands > STANDS && over > 0.0f) feet->pelvis -= over;
     }
     const float pulled = s->seconds > 0.0f && !s->cut ? (feet->pelvis - was) / s->seconds : 0.0f;
     if (feet->pelvis < free) feet->speed = pulled < feet->speed ? pulled : feet->speed;
