@@ -11,6 +11,40 @@ uniform highp sampler2DArray noh_layers;
 #endif
 uniform highp ivec4 noh_morph; /* tile x, tile y, width log2, touched vertices */
 
+#ifdef NOH_STREAMS
+/* Deltas of up to four targets that come with the vertex, words as in common_delta.glsl, added in index order.
+ * noh_streams: weight times scale of positions, normals and tangents; the widths of the fields */
+uniform highp vec4 noh_streams[4];
+layout(location = 10) in highp uvec3 noh_a_stream_0;
+layout(location = 11) in highp uvec3 noh_a_stream_1;
+layout(location = 12) in highp uvec3 noh_a_stream_2;
+layout(location = 13) in highp uvec3 noh_a_stream_3;
+
+void noh_add_stream(uvec3 words, vec4 stream, inout vec3 position, inout vec3 normal, inout vec3 tangent)
+{
+    uint bits = uint(stream.w), p = bits & 255u, n = bits >> 8 & 255u, t = bits >> 16;
+    position += vec3(ivec3(words) >> (32u - p)) * stream.x;
+#ifndef NOH_DEPTH_ONLY
+    normal += vec3(ivec3(words << p) >> (32u - n)) * stream.y;
+    tangent += vec3(ivec3(words << (p + n)) >> (32u - t)) * stream.z;
+#endif
+}
+
+void noh_add_streams(inout vec3 position, inout vec3 normal, inout vec3 tangent)
+{
+    vec3 p = vec3(0.0), n = vec3(0.0), t = vec3(0.0);
+    noh_add_stream(noh_a_stream_0, noh_streams[0], p, n, t);
+    noh_add_stream(noh_a_stream_1, noh_streams[1], p, n, t);
+    noh_add_stream(noh_a_stream_2, noh_streams[2], p, n, t);
+    noh_add_stream(noh_a_stream_3, noh_streams[3], p, n, t);
+    position += p;
+    normal += n;
+#ifndef NOH_TWO_LAYERS
+    tangent += t;
+#endif
+}
+#endif
+
 /* Add a vertex's deltas from an instance's tile, given by the four numbers of noh_morph. Texel i of the tile belongs to
  * vertex i. The vertices that no target moves are the last ones of a mesh and have no texel: for them the result is
  * false, and noh_morph_frame is not needed. */
@@ -18,12 +52,16 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
 {
     bool touched = vertex < tile.w;
     if (touched) {
+#ifdef NOH_STREAMS
+        noh_add_streams(position, normal, tangent);
+#else
         ivec2 texel = tile.xy + ivec2(vertex & ((1 << tile.z) - 1), vertex >> tile.z);
         position += NOH_LAYER_FETCH(texel, 0);
 #ifndef NOH_DEPTH_ONLY
         normal += NOH_LAYER_FETCH(texel, 1);
 #ifndef NOH_TWO_LAYERS
         tangent += NOH_LAYER_FETCH(texel, 2);
+#endif
 #endif
 #endif
     }

@@ -118,6 +118,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
     r->gl->BindVertexArray(mesh->vertex_array);
+    if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
 }
 
 /* What is set for one instance. Those of a crowd have it in rows of their own instead. */
@@ -374,6 +375,7 @@ void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass)
 {
+    NOH_ASSERT(!morph || !morph->stream_buffer);
     const draw_job job = { r, mesh, NULL, morph, first, count, lod ? lod : &whole, pictures };
     draw_pass(&job, pass);
 }

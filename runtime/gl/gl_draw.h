@@ -41,6 +41,7 @@ extern "C" {
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
 #define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer's record; only with a transfer */
 #define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of it */
+/* NOH_ATTRIBUTE_STREAMS and three more (gl_morph.h): uvec3: delta texels; only on the path streams */
 
 typedef struct noh_gl_mesh {
     noh_mesh mesh; /* the finest LOD level that was uploaded */

@@ -43,8 +43,9 @@ static void label_objects(const noh_gl_morph *m)
 
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    noh_result result = create_layers(m, error);
-    if (!result && m->plan.path != NOH_MORPH_CPU) {
+    const int streams = m->plan.path == NOH_MORPH_STREAMS;
+    noh_result result = streams ? noh_gl_morph_init_streams(m, error) : create_layers(m, error);
+    if (!result && m->plan.path != NOH_MORPH_CPU && !streams) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->record_table, error);
         if (!result && m->plan.path == NOH_MORPH_GATHER) {
             result = noh_gl_morph_init_gather(m, log, log_bytes, error);
@@ -203,6 +204,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     NOH_ASSERT(morph && instance < morph->plan.instance_count);
     h = morph->meshes[morph->instance_mesh[instance]].mesh.header;
     noh_gl_morph_tile(morph, instance, &x, &y);
+    memset(&binding, 0, sizeof binding);
     binding.texture = morph->layers.name;
     binding.is_uint = morph->plan.layer_format == GL_RGBA32UI;
     binding.layer_count = (int)morph->plan.layer_count;
@@ -210,6 +212,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     binding.tile_y = (int32_t)y;
     binding.width_log2 = (int32_t)h->morph_width_log2;
     binding.touched = (int32_t)h->touched_count;
+    if (morph->plan.path == NOH_MORPH_STREAMS) noh_gl_morph_set_streams(morph, instance, &binding);
     return binding;
 }
 
@@ -308,6 +311,8 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
         noh_gl_morph_update_cpu(morph, s);
     } else if (morph->plan.path == NOH_MORPH_GATHER) {
         noh_gl_morph_update_gather(morph, s);
+    } else if (morph->plan.path == NOH_MORPH_STREAMS) {
+        noh_gl_morph_update_streams(morph, s);
     } else {
         noh_gl_morph_update_blend(morph, s);
     }

@@ -10,6 +10,8 @@
  *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
  *   noh_gl_morph_plan_of      the plan that it was built by
  *   noh_gl_morph_instance     the number of an instance of a mesh
+ *   noh_gl_morph_streamed     which targets the path streams adds
+ *   noh_gl_morph_bind_streams give them to a draw of your own
  *   noh_morph_path_name, noh_accumulate_name
  *
  * Deltas of position, normal and tangent are accumulated in the three layers of one texture array; in two of them where
@@ -26,6 +28,8 @@
  *   per-layer  ES 3.0, blending           three additive passes
  *   gather     ES 3.0                     no blending: each fragment sums the deltas of one vertex
  *   cpu        nothing                    SIMD on the CPU; the sums are uploaded
+ *   streams    ES 3.0                     nothing is accumulated: up to four targets as vertex streams, added by the
+ * draw
  *
  * Two policies choose among them: `auto` takes the cheapest on this GPU; `blend` takes layered draws where they are
  * supported and per-layer passes otherwise. Blending into the accumulation format needs an extension. Most phones lack
@@ -50,9 +54,15 @@ typedef enum noh_morph_path {
     NOH_MORPH_PER_LAYER,
     NOH_MORPH_GATHER,
     NOH_MORPH_CPU,
-    NOH_MORPH_BLEND /* a policy: additive blending, layered draws where supported, else per-layer passes */
+    NOH_MORPH_BLEND, /* a policy: additive blending, layered draws where supported, else per-layer passes */
+    /* Never chosen by itself. Of more than four active targets the four are drawn that move the mesh most. No crowds
+     * in one draw, no change of occlusion, no levels that come later, f32 only; what else reads sums, as marks and
+     * hair do, finds zeros */
+    NOH_MORPH_STREAMS
 } noh_morph_path;
-#define NOH_MORPH_PATH_COUNT 7
+#define NOH_MORPH_PATH_COUNT 8
+#define NOH_MORPH_STREAMS_MAX 4u
+#define NOH_ATTRIBUTE_STREAMS 10u /* the first of so many attributes: uvec3 */
 
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
@@ -60,7 +70,7 @@ typedef enum noh_accumulate {
     NOH_ACCUMULATE_F16 /* half the memory; positions are off by at most the mesh's f16_position_bound */
 } noh_accumulate;
 
-/* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend"; "auto", "f32", "f16". */
+/* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams"; "auto", "f32", "f16". */
 const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
@@ -85,7 +95,7 @@ typedef struct noh_gl_morph_plan {
     noh_morph_path path;                /* never AUTO or BLEND */
     noh_accumulate accumulate;          /* never AUTO */
     const char *reason;                 /* why this path, in words; a string constant */
-    GLenum layer_format;                /* RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    GLenum layer_format;                /* 0 (streams), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
     uint32_t layer_count;               /* 3; 2 without tangents */
     uint32_t occlusion;                 /* 1: a mesh has a transfer (light/transfer.h), and what targets change of its
                                          * occlusion is summed, too: the fourth component beside positions */
@@ -110,13 +120,20 @@ typedef struct noh_gl_morph_stats {
     uint32_t rects, texels, pairs; /* rectangles and texels that were drawn, pairs that were added */
 } noh_gl_morph_stats;
 
+#define NOH_LAYERS_STREAMS 2 /* of is_uint */
+
 /* Where an instance's accumulated deltas are. The last four numbers go into noh_morph of common_layers.glsl in
  * this order. */
 typedef struct noh_gl_morph_binding {
     GLuint texture;  /* GL_TEXTURE_2D_ARRAY */
-    int is_uint;     /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT */
+    int is_uint;     /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT;
+                      * NOH_LAYERS_STREAMS: there is no texture: build it with NOH_STREAMS */
     int layer_count; /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
+    /* With NOH_LAYERS_STREAMS, by the weights that the instance has now: noh_gl_morph_bind_streams */
+    GLuint stream_buffer;                           /* else 0 */
+    uint32_t stream_offsets[NOH_MORPH_STREAMS_MAX]; /* bytes */
+    float streams[NOH_MORPH_STREAMS_MAX][4]; /* weight x scale of position, normal, tangent; the widths of the fields */
 } noh_gl_morph_binding;
 
 /* Choose the path and measure it, without touching GL.
@@ -176,6 +193,17 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
 void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
+
+/* Which targets the path streams adds: those whose weight is not 0, of more than four the four with the largest
+ * |weight| x radius, in index order.
+ * shapes   weights[target_count]
+ * returns  their number */
+uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
+
+/* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the
+ * uniform noh_streams of `program`, which is in use. Does nothing on other paths. The vertex array keeps the buffer:
+ * delete the mesh when the accumulator is deleted. */
+void noh_gl_morph_bind_streams(const noh_gl_api *api, GLuint program, const noh_gl_morph_binding *binding);
 
 #ifdef __cplusplus
 }

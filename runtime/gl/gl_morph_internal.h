@@ -8,6 +8,8 @@
 #include "gl/gl_table_internal.h"
 
 #define NOH_GATHER_CHUNK 2048u /* entries that gather builds at once at load: 32 KiB */
+#define NOH_STREAM_STRIDE 12u  /* bytes of a vertex in a stream */
+#define NOH_STREAM_CHUNK 3072u /* bytes of streams that are sent at once at load */
 #define NOH_RECT_CHUNK 256u    /* rectangles that are sent at once at load */
 
 /* One mesh of the desc. Its instances' tiles fill a band of the atlas, row by row. */
@@ -46,7 +48,7 @@ struct noh_gl_morph {
     noh_gl_table deltas; /* delta texels by rectangle, or gather's entries */
     noh_gl_table rects;  /* rectangles, or gather's starts */
     noh_gl_table record_table;
-    noh_gl_buffer stream; /* rect records, or gather's tiles */
+    noh_gl_buffer stream; /* rect records, gather's tiles, or the streams */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
     GLint u_layer;
@@ -110,6 +112,10 @@ int noh_gl_morph_fill_gather(noh_gl_morph *m, const noh_mesh *from, uint32_t *at
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
+noh_result noh_gl_morph_init_streams(noh_gl_morph *m, noh_error *error);
+void noh_gl_morph_update_streams(const noh_gl_morph *m, noh_gl_morph_stats *stats);
+uint64_t noh_gl_morph_stream_bytes(const noh_mesh_header *header);
+void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
 
 /* A framebuffer over the layers. which: 0 to 2 for one layer, or one of these. */
 #define NOH_LAYERS_ALL 3     /* all as draw buffers */

@@ -9,8 +9,8 @@
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_quirks.h"
 
-static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",  "per-layer",
-                                                              "gather", "cpu",     "blend" };
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",   "per-layer",
+                                                              "gather", "cpu",     "blend", "streams" };
 
 const char *noh_morph_path_name(noh_morph_path path)
 {
@@ -30,6 +30,9 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     int half = accumulate == NOH_ACCUMULATE_F16;
     if (path == NOH_MORPH_CPU) {
         return NULL;
+    }
+    if (path == NOH_MORPH_STREAMS) {
+        return half ? "streams are summed in the vertex shader, in f32: there is nothing to keep in f16" : NULL;
     }
     if (path == NOH_MORPH_GATHER) {
         if (!caps->mrt3) {
@@ -99,6 +102,14 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
     return NOH_MORPH_PER_LAYER;
 }
 
+static uint32_t has_occlusion(const noh_gl_morph_desc *desc);
+
+static const char *missing_of_streams(const noh_gl_morph_desc *desc)
+{
+    if (desc->coarse) return "streams are not loaded later: give the accumulator all levels";
+    return has_occlusion(desc) ? "streams do not carry what targets change of a transfer's occlusion" : NULL;
+}
+
 static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                               noh_error *error)
 {
@@ -122,6 +133,7 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
         plan->path = blending_path(plan->accumulate, caps, &plan->reason);
     }
     lacking = missing(plan->path, plan->accumulate, caps);
+    if (!lacking && plan->path == NOH_MORPH_STREAMS) lacking = missing_of_streams(desc);
     if (lacking) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED, lacking, 0, 0);
     }
@@ -131,6 +143,7 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
 static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *caps)
 {
     int half = plan->accumulate == NOH_ACCUMULATE_F16;
+    if (plan->path == NOH_MORPH_STREAMS) return 0;
     if (plan->path == NOH_MORPH_CPU) {
         if (plan->occlusion) return half ? GL_RGBA16F : GL_RGBA32F;
         return half ? GL_RGB16F : GL_RGB32F; /* never rendered to, so three components are enough */
@@ -363,7 +376,9 @@ static size_t largest_touched(const noh_gl_morph_desc *desc)
 static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     size_t bytes = 0;
-    if (plan->path == NOH_MORPH_CPU) {
+    if (plan->path == NOH_MORPH_STREAMS) {
+        bytes = NOH_STREAM_CHUNK;
+    } else if (plan->path == NOH_MORPH_CPU) {
         for (uint32_t i = 0; i < desc->mesh_count; i++) {
             size_t layers = noh_morph_layers_size(&desc->meshes[i]) / 3u * plan->layer_count;
             if (plan->occlusion) layers = noh_morph_layers_size(&desc->meshes[i]) / 9u * (4u * plan->layer_count + 1u);
@@ -389,7 +404,7 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     memset(&dummy, 0, sizeof dummy);
     to->table_count = desc->mesh_count + (desc->coarse != NULL);
     to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * to->table_count, 16);
-    to->records = plan->path == NOH_MORPH_CPU
+    to->records = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_STREAMS
                       ? NULL
                       : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
     to->staging_bytes = staging_size(desc, plan);
@@ -407,8 +422,13 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
     layers.width = plan->atlas_width;
     layers.height = plan->atlas_height;
     layers.layers = plan->layer_count;
-    plan->layer_bytes = noh_gl_texture_bytes(&layers);
-    if (plan->path == NOH_MORPH_GATHER) {
+    plan->layer_bytes = plan->path == NOH_MORPH_STREAMS ? 0 : noh_gl_texture_bytes(&layers);
+    if (plan->path == NOH_MORPH_STREAMS) {
+        for (uint32_t i = 0; i < desc->mesh_count; i++) {
+            if (owner_of(desc, i) == i) plan->delta_bytes += noh_gl_morph_stream_bytes(desc->meshes[i].header);
+        }
+        plan->delta_bytes += plan->delta_bytes ? 0 : NOH_STREAM_STRIDE; /* GL has no empty buffers */
+    } else if (plan->path == NOH_MORPH_GATHER) {
         plan->delta_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->pair_count);
         plan->table_bytes = noh_gl_table_bytes(GL_R32UI, (uint32_t)place_tables(desc, NULL).starts);
         plan->stream_bytes = 16u * (uint64_t)plan->instance_count + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
@@ -438,6 +458,10 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     p.layer_format = layer_format(&p, caps);
     p.layer_count = desc->without_tangents ? 2u : 3u;
     set_gpu_bytes(desc, &p);
+    if (p.path == NOH_MORPH_STREAMS && p.delta_bytes > UINT32_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "the streams of all targets take more than 4 GiB", UINT32_MAX,
+                        p.delta_bytes);
+    }
     noh_arena_carve(&arena, sizeof(noh_gl_morph), 16);
     noh_gl_morph_carve(&arena, desc, &p, NULL);
     p.cpu_bytes = arena.used;

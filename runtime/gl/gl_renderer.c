@@ -119,8 +119,7 @@ static noh_result want_features(const wish *w, noh_gl_variant_key key)
 /* The variants of all passes. */
 static noh_result want(const wish *w, const noh_gl_skin_binding *skin, int crowd)
 {
-    const noh_gl_variant_key key = noh_gl_variant_key_of(w->mesh, skin, crowd, w->desc->layers_uint != 0,
-                                                         view_of(w->desc));
+    const noh_gl_variant_key key = noh_gl_variant_key_of(w->mesh, skin, crowd, w->desc->layers_uint, view_of(w->desc));
     noh_result result = NOH_OK;
     if (w->desc->passes != NOH_PASSES_DEPTH) {
         result = want_features(w, key);
@@ -236,7 +235,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     memset(out, 0, sizeof *out);
     out->gl = device->api;
     out->ledger = device->ledger;
-    out->layers_uint = desc->layers_uint != 0;
+    out->layers_uint = desc->layers_uint;
     out->without_tangents = desc->without_tangents != 0;
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;

@@ -34,7 +34,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
         key.texture = key.crowd = 1;
     }
     key.texels = (h->flags & NOH_MESH_TEXELS) != 0;
-    key.layers_uint = layers_uint != 0;
+    key.layers_uint = (uint8_t)layers_uint;
     key.view = (uint8_t)view;
     if (mesh->transfer) key.transfer = (uint8_t)(mesh->transfer->order | mesh->transfer->flags);
     return key;
@@ -109,7 +109,8 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.dual_quaternion, "#define NOH_DUAL_QUATERNION\n" },
                   { key.texels, "#define NOH_MORPH_TEXELS\n" },
                   { key.crowd, "#define NOH_CROWD\n" },
-                  { key.layers_uint, "#define NOH_LAYERS_UINT\n" },
+                  { key.layers_uint == 1u, "#define NOH_LAYERS_UINT\n" },
+                  { key.layers_uint == NOH_LAYERS_STREAMS, "#define NOH_STREAMS\n" },
                   { key.encode_srgb, "#define NOH_ENCODE_SRGB\n" },
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },

@@ -292,7 +292,7 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
 {
     noh_gl_renderer_desc d = renderer_desc(&s->desc, s->plan);
     for (uint32_t i = 0; i < gl->model_count; i++) {
-        if (gl->models[i].morph) d.layers_uint = noh_gl_morph_plan_of(gl->models[i].morph)->layer_format == GL_RGBA32UI;
+        if (gl->models[i].morph) d.layers_uint = noh_gl_morph_binding_of(gl->models[i].morph, 0).is_uint;
     }
     d.meshes = gl->meshes;
     d.mesh_count = gl->model_count;

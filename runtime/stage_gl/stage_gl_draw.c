@@ -89,6 +89,12 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
     draw_alone(d, mesh, place, shown->level_before, part, 1.0f);
 }
 
+/* Streams are of one instance: no other can be drawn with it. */
+static int has_streams(const noh_gl_item *item)
+{
+    return item->model->morph && noh_gl_morph_plan_of(item->model->morph)->path == NOH_MORPH_STREAMS;
+}
+
 /* Neighbours of a run that the view sees and that wear the same, in one call. */
 static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
 {
@@ -99,7 +105,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
     const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
     const noh_gl_skin_binding skin = skin_of(item, first, influences);
     noh_gl_morph_binding morph;
-    if (item->mirrored || !noh_gl_is_crowd(d->k)) {
+    if (item->mirrored || !noh_gl_is_crowd(d->k) || has_streams(item)) {
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
         return;
     }

@@ -107,7 +107,9 @@ static int check_pose(check *c, const char *pose, int with_normals, const char *
 
 static void set_all(check *c)
 {
-    for (uint32_t t = 0; t < c->stage->mesh->header->target_count; t++) {
+    const uint32_t targets = c->stage->mesh->header->target_count, most = c->method->most_targets;
+    const uint32_t step = most && most < targets ? (targets + most - 1u) / most : 1u;
+    for (uint32_t t = 0; t < targets; t += step) {
         c->weights[t] = 0.1f + 0.5f * (float)(t * 11u % 17u) / 16.0f;
     }
 }

@@ -140,6 +140,7 @@ typedef struct bench_method {
     int is_baseline;
     double slack; /* error allowed to this method on top of the common one, model units */
     double normal_slack;
+    uint32_t most_targets; /* that it morphs at once; 0: any number. It has rows of so few alone */
     int normals_of_one_only; /* normals agree with a linear sum only while one target is active at weight 1 */
     void *self;
     void (*prepare)(void *self, const float *weights); /* once a frame; NULL: nothing to do */

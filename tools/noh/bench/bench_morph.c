@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7
-#define METHODS_MAX 16 /* one floor, four baselines, ten paths and formats */
+#define METHODS_MAX 17 /* one floor, four baselines, eleven paths and formats, and one that is not here */
 #define FLOOR 0        /* methods[FLOOR] is the mesh that is not morphed */
 
 typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
@@ -25,6 +25,7 @@ typedef struct morph_job {
     bench_stage stage;
     bench_method methods[METHODS_MAX];
     int method_count;
+    uint32_t active; /* targets of the rows that are measured */
 } morph_job;
 
 static void run_frame(void *self, uint32_t frame)
@@ -58,8 +59,8 @@ static int take(morph_job *j, int status)
 
 static int open_methods(morph_job *j)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
-                                            NOH_MORPH_CPU };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
+                                            NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
     int status = take(j, bench_open_unmorphed(&j->methods[FLOOR], &j->stage));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 0));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
@@ -107,6 +108,7 @@ static void add_rows(morph_job *j, const measured *m, const char *prefix, int wi
 {
     for (int i = 1; i < j->method_count; i++) {
         char name[64];
+        if (j->methods[i].most_targets && j->methods[i].most_targets < j->active) continue;
         snprintf(name, sizeof name, "%s/%s", prefix, j->methods[i].name);
         for (int b = with_floor ? FLOOR : FLOOR + 1; b < j->method_count; b++) {
             if (b != i && j->methods[b].is_baseline) {
@@ -141,7 +143,8 @@ static int measure_all(morph_job *j)
         if (few && targets <= 4) {
             break;
         }
-        status = bench_weights_open(&weights, j->stage.mesh, few ? 4u : targets);
+        j->active = few ? 4u : targets;
+        status = bench_weights_open(&weights, j->stage.mesh, j->active);
         for (int kind = WORK_ONE_PASS; kind <= WORK_FRAME && !status; kind++) {
             status = measure_rows(j, &weights, (work_kind)kind, names[few][kind]);
         }

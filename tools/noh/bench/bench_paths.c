@@ -1,4 +1,4 @@
-/* bench_paths.c: our five paths, and the unmorphed mesh. */
+/* bench_paths.c: our six paths, and the unmorphed mesh. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,7 @@ typedef struct path_method {
     gpu_morph morph;
     noh_gl_morph_binding binding;
     GLint u_morph[BENCH_PASS_COUNT];
+    const GLuint *programs; /* [BENCH_PASS_COUNT] of the method */
 } path_method;
 
 static void prepare(void *self, const float *weights)
@@ -18,6 +19,7 @@ static void prepare(void *self, const float *weights)
     path_method *p = (path_method *)self;
     noh_gl_morph_set_weights(p->morph.morph, 0, weights, NULL);
     noh_gl_morph_update(p->morph.morph, NULL);
+    p->binding = noh_gl_morph_binding_of(p->morph.morph, 0);
 }
 
 static void bind(void *self, bench_pass pass)
@@ -28,6 +30,7 @@ static void bind(void *self, bench_pass pass)
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
     gl->Uniform4i(p->u_morph[pass], b->tile_x, b->tile_y, b->width_log2, b->touched);
+    noh_gl_morph_bind_streams(gl, p->programs[pass], b);
 }
 
 static void close_path(void *self)
@@ -48,6 +51,8 @@ static void set_slack(bench_method *m, const noh_mesh_header *h, noh_accumulate 
 
 int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate)
 {
+    static const char *const defines[] = { "#define BENCH_LAYERS\n", "#define BENCH_LAYERS\n#define NOH_LAYERS_UINT\n",
+                                           "#define BENCH_LAYERS\n#define NOH_STREAMS\n" };
     noh_gl_morph_desc desc;
     noh_gl_morph_plan plan;
     path_method *p;
@@ -68,6 +73,8 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     snprintf(m->name, sizeof m->name, "%s-%s", noh_morph_path_name(path), noh_accumulate_name(accumulate));
     p->stage = s;
     m->self = p;
+    p->programs = m->programs;
+    m->most_targets = path == NOH_MORPH_STREAMS ? NOH_MORPH_STREAMS_MAX : 0;
     m->mesh = &s->gl_mesh;
     m->prepare = prepare;
     m->bind = bind;
@@ -76,8 +83,7 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     status = gpu_morph_open(&p->morph, s->g, &desc, "bench");
     if (!status) {
         p->binding = noh_gl_morph_binding_of(p->morph.morph, 0);
-        status = bench_programs(
-            s, m, p->binding.is_uint ? "#define BENCH_LAYERS\n#define NOH_LAYERS_UINT\n" : "#define BENCH_LAYERS\n");
+        status = bench_programs(s, m, defines[p->binding.is_uint]);
     }
     for (int pass = 0; pass < BENCH_PASS_COUNT; pass++) {
         p->u_morph[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "noh_morph");

@@ -13,7 +13,9 @@ int parse_path(const char *text, noh_morph_path *path)
             return 0;
         }
     }
-    return text ? tool_usage("--path wants auto, blend, layered, mrt, per-layer, gather or cpu, not '%s'", text) : 0;
+    return text
+               ? tool_usage("--path wants auto, blend, layered, mrt, per-layer, gather, cpu or streams, not '%s'", text)
+               : 0;
 }
 
 int parse_accumulate(const char *text, noh_accumulate *accumulate)

@@ -40,6 +40,7 @@ static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, con
     }
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     gl->BindVertexArray(mesh->vertex_array);
+    if (morph) noh_gl_morph_bind_streams(gl, v->program, morph);
 }
 
 static void tear_down(gpu *g)
@@ -83,7 +84,7 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
     uint32_t count = crowd ? crowd : 1u, palettes = skin ? mesh->mesh.header->palette_count : 0, palette = 0;
     GLuint buffer;
     GLenum error;
-    noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph && morph->is_uint,
+    noh_gl_variant_key key = noh_gl_variant_key_of(&mesh->mesh, skin, crowd != 0, morph ? morph->is_uint : 0,
                                                    NOH_VIEW_LIT);
     int status, lost;
     key.two_layers = morph && morph->layer_count == 2;

@@ -12,7 +12,7 @@ typedef struct verify_row {
     const char *path, *accumulate, *reason;
     int available, exact; /* exact: equality is demanded */
     uint64_t values, differing, vertex_values, vertex_differing;
-    double max_error_um, bound_um; /* f16 against f32 */
+    double max_error_um, bound_um; /* f16 against f32; of streams, against the CPU */
     double max_normal_error;       /* of fetched normals: the GPU's reciprocal root is not exact */
     uint64_t cpu_predicted, cpu_used, gpu_predicted, gpu_used;
     const char *failure; /* which value is past its bound; NULL: none */
@@ -24,7 +24,7 @@ typedef struct verify_job {
     noh_mesh *meshes; /* [mesh_count of the pack] at the level that is asked for */
     gpu g;
     uint64_t state; /* of the random weights */
-    verify_row rows[16];
+    verify_row rows[24];
     int row_count, failed;
     double bound_scale;         /* of skinned vertices */
     int without_tangents;       /* accumulators of two layers */

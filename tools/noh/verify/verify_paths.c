@@ -30,6 +30,20 @@ static void random_weights(uint64_t *state, int round, float *weights, uint32_t 
     }
 }
 
+/* Leave the weights of those targets that streams add. */
+static void keep_streamed(const noh_mesh *mesh, float *weights)
+{
+    uint32_t targets[NOH_MORPH_STREAMS_MAX];
+    const uint32_t count = noh_gl_morph_streamed(mesh, weights, targets);
+    for (uint32_t t = 0, k = 0; t < mesh->header->target_count; t++) {
+        if (k < count && targets[k] == t) {
+            k++;
+        } else {
+            weights[t] = 0.0f;
+        }
+    }
+}
+
 /* The exact model of the accumulator of this path and format; 0 if the driver's rounding is unknown. */
 static int reference(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
                      const noh_morph_layers *layers)
@@ -120,6 +134,32 @@ static void buffers_close(verify_buffers *b)
     free(b->tangents);
 }
 
+/* Streams leave no sums to read: vertices are compared, and how far their positions are off. A GPU may fuse the
+ * shader's products and sums, so equal bits are not asked for. */
+static int verify_streams(verify_row *row, readback *r, const noh_gl_mesh *gl_mesh, const noh_gl_morph_binding *binding,
+                          const noh_morph_layers *expected, const verify_buffers *b)
+{
+    const noh_mesh *mesh = &gl_mesh->mesh;
+    const uint64_t differing = row->vertex_differing;
+    const int status = readback_vertices(r, gl_mesh, binding, b->positions, b->normals, b->tangents);
+    if (status) return status;
+    row->exact = 0;
+    compare_vertices(row, mesh, expected, b->positions, b->normals);
+    row->values += 3u * (uint64_t)mesh->header->vertex_count;
+    row->differing += row->vertex_differing - differing;
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        float want[3];
+        double square = 0.0;
+        noh_morph_position(mesh, expected, v, want);
+        for (int c = 0; c < 3; c++) {
+            const double d = (double)b->positions[3 * v + (uint32_t)c] - (double)want[c];
+            square += d * d;
+        }
+        row->max_error_um = fmax(row->max_error_um, 1e6 * (double)mesh->header->world_scale * sqrt(square));
+    }
+    return 0;
+}
+
 static void clear_layers(const verify_job *job, void *memory, size_t bytes, const noh_mesh *mesh,
                          noh_morph_layers *layers)
 {
@@ -143,10 +183,16 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
         random_weights(&job->state, round, b.weights, mesh->header->target_count);
         clear_layers(job, b.expected, bytes + 16, mesh, &expected);
         clear_layers(job, b.exact, bytes + 16, mesh, &exact);
+        if (plan->path == NOH_MORPH_STREAMS) keep_streamed(mesh, b.weights);
         row->exact &= reference(job, plan, mesh, b.weights, &expected);
         noh_morph_accumulate_scalar(mesh, b.weights, &exact);
         noh_gl_morph_set_weights(m->morph, instance, b.weights, NULL);
         noh_gl_morph_update(m->morph, NULL);
+        if (plan->path == NOH_MORPH_STREAMS) {
+            binding = noh_gl_morph_binding_of(m->morph, instance);
+            status = verify_streams(row, r, gl_mesh, &binding, &expected, &b);
+            continue;
+        }
         status = readback_layers(r, mesh, &binding, b.got);
         if (!status) {
             status = readback_vertices(r, gl_mesh, &binding, b.positions, b.normals, b.tangents);
@@ -159,6 +205,20 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
     }
     buffers_close(&b);
     return status;
+}
+
+#define STREAM_ULPS 16.0 /* of the largest coordinate: roundings of four products and sums, fused or not */
+
+static void set_stream_bound(const verify_job *job, verify_row *row)
+{
+    for (uint32_t i = 0; i < job->file.pack.mesh_count; i++) {
+        const noh_mesh_header *h = job->meshes[i].header;
+        double most = 0.0;
+        for (int c = 0; c < 3; c++) {
+            most = fmax(most, fmax(fabs((double)h->bounds_min[c]), fabs((double)h->bounds_max[c])));
+        }
+        row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * STREAM_ULPS * 1.1920929e-7 * most);
+    }
 }
 
 static void set_bound(verify_job *job, verify_row *row, int half)
@@ -219,6 +279,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     row->cpu_predicted = plan.cpu_bytes;
     row->gpu_predicted = plan.gpu_bytes;
     set_bound(job, row, accumulate == NOH_ACCUMULATE_F16);
+    if (path == NOH_MORPH_STREAMS) set_stream_bound(job, row);
     row->cpu_used = least_block(job, &desc, plan.cpu_bytes);
     before = noh_gl_ledger_bytes(&job->g.ledger);
     status = gpu_morph_open(&m, &job->g, &desc, job->file.path);
@@ -296,8 +357,8 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
 
 int verify_paths(verify_job *job)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
-                                            NOH_MORPH_CPU };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
+                                            NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
     uint32_t count = job->file.pack.mesh_count;
     noh_gl_mesh *gl_meshes = calloc(count + 1u, sizeof *gl_meshes);
     noh_error error = { NOH_OK, "", 0, 0 };
