@@ -28,8 +28,7 @@
  *   per-layer  ES 3.0, blending           three additive passes
  *   gather     ES 3.0                     no blending: each fragment sums the deltas of one vertex
  *   cpu        nothing                    SIMD on the CPU; the sums are uploaded
- *   streams    ES 3.0                     nothing is accumulated: up to four targets as vertex streams, added by the
- * draw
+ *   streams    ES 3.0                     nothing is accumulated: the draw adds up to four targets as vertex streams
  *
  * Two policies choose among them: `auto` takes the cheapest on this GPU; `blend` takes layered draws where they are
  * supported and per-layer passes otherwise. Blending into the accumulation format needs an extension. Most phones lack
@@ -61,7 +60,6 @@ typedef enum noh_morph_path {
     NOH_MORPH_STREAMS
 } noh_morph_path;
 #define NOH_MORPH_PATH_COUNT 8
-#define NOH_MORPH_STREAMS_MAX 4u
 #define NOH_ATTRIBUTE_STREAMS 10u /* the first of so many attributes: uvec3 */
 
 typedef enum noh_accumulate {

@@ -13,21 +13,21 @@
 
 /* ---- making ---- */
 
-/* A target's delta texel for an accumulation texel; zeros where no rectangle of it has any. */
+/* A target's delta texel for an accumulation texel; zeros if it has none. Rectangles of a target may overlap: a vertex
+ * that the target moves has its delta in one of them, and zeros in the others. */
 static void find_delta(const noh_mesh *mesh, const noh_target *target, uint32_t texel, uint32_t words[3])
 {
     const uint32_t x = texel & ((1u << mesh->header->morph_width_log2) - 1u);
     const uint32_t y = texel >> mesh->header->morph_width_log2;
     const uint32_t *of_rect = mesh->texels + 3u * (size_t)target->first_texel;
     const noh_rect *rect = mesh->rects + target->first_rect;
-    for (uint32_t r = 0; r < target->rect_count; r++, rect++) {
+    memset(words, 0, 12);
+    for (uint32_t r = 0; r < target->rect_count && !(words[0] | words[1] | words[2]); r++, rect++) {
         if (x - rect->x < rect->w && y - rect->y < rect->h) { /* unsigned: below the corner is far above */
             memcpy(words, of_rect + 3u * (size_t)((y - rect->y) * rect->w + (x - rect->x)), 12);
-            return;
         }
         of_rect += 3u * (size_t)rect->w * rect->h;
     }
-    memset(words, 0, 12);
 }
 
 static void upload_stream(noh_gl_morph *m, const noh_mesh *mesh, uint32_t target, uint64_t at)

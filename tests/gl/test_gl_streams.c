@@ -162,6 +162,44 @@ static void errata_D7_each_stream_has_its_own_stride(void **state)
     close_scene(&s);
 }
 
+/* Moves an earlier rectangle of a target onto a later one, with zeros. The number of the target; 9 if none has two. */
+static uint32_t overlap_rects(const noh_mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        const noh_target *target = &mesh->targets[t];
+        for (uint32_t r = 1; r < target->rect_count; r++) {
+            noh_rect *early = (noh_rect *)(uintptr_t)(mesh->rects + target->first_rect), *late = early + r;
+            const uint32_t area = (uint32_t)early->w * early->h;
+            if (area > late->w) continue;
+            early->x = late->x;
+            early->y = late->y;
+            early->w = (uint16_t)area;
+            early->h = 1;
+            memset((uint32_t *)(uintptr_t)(mesh->texels + 3u * (size_t)target->first_texel), 0, 12u * area);
+            return t;
+        }
+    }
+    return 9;
+}
+
+static void rectangles_of_a_target_may_overlap(void **state)
+{
+    float weights[9] = { 0.0f };
+    scene s;
+    uint32_t target;
+    (void)state;
+    open_scene(&s);
+    fixture_morph_close(&s.morph);
+    target = overlap_rects(&s.meshes[0]);
+    assert_true(target < 9);
+    fixture_morph_open(&s.morph, &s.desc, &fixture_gpu()->caps);
+    weights[target] = 0.75f;
+    fixture_set(&s.morph, 0, weights);
+    noh_gl_morph_update(s.morph.morph, NULL);
+    expect_vertices(&s, 0, 0, weights);
+    close_scene(&s);
+}
+
 static void what_streams_cannot_do_is_refused(void **state)
 {
     scene s;
@@ -189,6 +227,7 @@ int main(int argument_count, char **arguments)
                                         cmocka_unit_test(the_four_that_move_most_are_drawn),
                                         cmocka_unit_test(errata_C8_5_streams_hold_no_texture_coordinates),
                                         cmocka_unit_test(errata_D7_each_stream_has_its_own_stride),
+                                        cmocka_unit_test(rectangles_of_a_target_may_overlap),
                                         cmocka_unit_test(what_streams_cannot_do_is_refused) };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
