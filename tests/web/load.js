@@ -83,7 +83,7 @@ async function own(browser) {
         await page.waitForFunction((w) => window.noh.whole && !opening && document.getElementById('message').textContent.includes(w), words, minute);
     };
     const shown = async (what, picture) => {
-        await drawn(page, () => page.selectOption('#detail', '0'));
+        if (await page.isVisible('#detail')) await drawn(page, () => page.selectOption('#detail', '0'));
         await drawn(page, () => page.click('#fit'));
         await keep(page, picture);
         check(`a file of one's own: ${what}`, same('before_own.png', picture), await said());
