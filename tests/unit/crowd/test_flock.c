@@ -127,19 +127,39 @@ static void errata_C13_4_in_place_depends_on_order(void **state)
 
 static void errata_C13_5_sums_lose_their_size(void **state)
 {
-    const float weak[2] = { 0.1f, 0.0f }, strong[2] = { 9.0f, 0.0f }, none[2] = { 0.0f, 0.0f };
+    const float weak[2] = { 0.1f, 0.0f }, strong[2] = { 9.0f, 0.0f };
     float a[2] = { 0.0f, 2.0f }, b[2] = { 0.0f, 2.0f };
     (void)state;
     literal_turn(a, weak, 0.1f);
     literal_turn(b, strong, 0.1f);
     assert_memory_equal(a, b, sizeof a); /* a weak push is a strong one */
-    literal_turn(a, none, 0.1f);
-    assert_true(isnan(a[0]));
     float gentle[2] = { 0.0f, 0.05f }, hard[2] = { 0.0f, 0.05f };
     noh_flock_turn(gentle, weak, 2.0f, 3.0f, 0.1f);
     noh_flock_turn(hard, strong, 2.0f, 3.0f, 0.1f);
     assert_float_equal(gentle[0], 0.1f, 1e-6f);
     assert_true(hard[0] > 0.29f);
+}
+
+/* Pushes that cancel, or none at all: the source divides by the length of nothing, and its agent is lost for ever. */
+static void errata_C13_5_no_acceleration_is_no_number(void **state)
+{
+    const float none[2] = { 0.0f, 0.0f };
+    float literal[2] = { 0.0f, 2.0f }, ours[2] = { 0.0f, 2.0f };
+    (void)state;
+    literal_turn(literal, none, 0.1f);
+    assert_true(isnan(literal[0]) && isnan(literal[1]));
+    for (int i = 0; i < 100; i++) {
+        noh_flock_turn(ours, none, 2.0f, 3.0f, 0.1f);
+        assert_true(isfinite(ours[0]) && isfinite(ours[1]) && length_of(ours) <= 2.0f);
+    }
+    noh_flock_turn(ours, none, 2.0f, 3.0f, 0.1f); /* from rest, to rest */
+    assert_true(ours[0] == 0.0f && ours[1] == 0.0f);
+    const float both[2] = { 1.0f, 0.0f }, mirrored[2] = { -1.0f, 0.0f };
+    float force[2] = { 0.0f, 0.0f }, still[2] = { 0.0f, 0.0f };
+    noh_flock_repel(both, force);
+    noh_flock_repel(mirrored, force);
+    noh_flock_turn(still, force, 2.0f, 3.0f, 0.1f);
+    assert_true(still[0] == 0.0f && still[1] == 0.0f);
 }
 
 static void errata_C13_5_agents_never_stop(void **state)
@@ -169,6 +189,28 @@ static void errata_C13_5_turns_depend_on_the_step(void **state)
     assert_true(fabsf(literal[0][0] - literal[1][0]) > 0.02f);
     assert_float_equal(ours[0][0], ours[1][0], 1e-4f);
     assert_float_equal(ours[0][1], ours[1][1], 1e-4f);
+}
+
+/* d / r * 3 is (d / r) * 3, where d / (3 r) is meant. With the direction put right, an obstacle would pull from a third
+ * of its radius on, the more the further away, and let go at three radii. */
+static void errata_C13_7_precedence(void **state)
+{
+    (void)state;
+    for (float radius = 0.5f; radius < 4.0f; radius *= 2.0f) {
+        float literal_away = 0.0f, away = 0.0f;
+        for (int i = 1; i < 300; i++) {
+            const float to[2] = { 0.0f, 0.01f * radius * (float)i };
+            float literal[2] = { 0.0f, 0.0f }, ours[2] = { 0.0f, 0.0f };
+            literal_avoid(to, radius, literal);
+            noh_flock_avoid(to, radius, ours);
+            literal_away = literal[1]; /* it took the way to the obstacle for the way from it */
+            away = -ours[1];
+            assert_true(i < 33 ? literal_away > 0.0f : i < 34 || literal_away < 0.0f);
+            assert_true(away > 0.0f && away <= 10.0f);
+        }
+        assert_true(literal_away < -79.0f); /* pulled hardest where it ends */
+        assert_true(away < 0.05f);          /* fades out there */
+    }
 }
 
 static void errata_C13_7_obstacle_sign(void **state)
@@ -290,8 +332,10 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(errata_C13_4_coincident_agents_have_no_direction),
         cmocka_unit_test(errata_C13_4_in_place_depends_on_order),
         cmocka_unit_test(errata_C13_5_sums_lose_their_size),
+        cmocka_unit_test(errata_C13_5_no_acceleration_is_no_number),
         cmocka_unit_test(errata_C13_5_agents_never_stop),
         cmocka_unit_test(errata_C13_5_turns_depend_on_the_step),
+        cmocka_unit_test(errata_C13_7_precedence),
         cmocka_unit_test(errata_C13_7_obstacle_sign),
         cmocka_unit_test(a_flock_turns_one_way),
         cmocka_unit_test(flocks_have_the_same_bits_in_any_order),
