@@ -53,6 +53,8 @@ all() {
     cast 'one layer of one track' 'layer body tracks=1'
     rows demo/puppet_levels.noh 'a hundred' --actors 100
     rows demo/puppet_levels.noh 'twenty without GPU' --actors 20 --no-gpu
+    rows demo/puppet_levels.noh 'twenty, four fall' --actors 20 --ragdolls 4
+    rows demo/puppet_levels.noh 'a festival of six hundred' --actors 600 --place tools/demo_assets/festival/festival.place --ragdolls 16
 }
 
 all >"$work/now"

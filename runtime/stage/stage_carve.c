@@ -311,6 +311,16 @@ static NOH_NEVER_INLINE void measure_state(noh_arena *arena, const noh_stage_des
     carve_state(arena, &d, n, &kind, &b->pools[i]);
 }
 
+/* What of a kind's state is for ragdolls: the pool of those that fall at once, and what each actor remembers. */
+static void list_ragdolls(noh_stage_list *list, const noh_kind_desc *d, uint32_t i, size_t *from)
+{
+    const size_t pool = aligned(noh_stage_doll_bytes(d)), states = d->actor_count * sizeof(noh_stage_body);
+    if (!d->ragdoll) return;
+    noh_stage_add_part(list, "ragdoll pool", i, pool, 0);
+    noh_stage_add_part(list, "ragdoll states", i, states, 0);
+    *from += pool + states;
+}
+
 /* The first pass: the state, and what it takes to know how large the rest is. */
 static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
                                noh_stage_blocks *b, noh_stage_list *list, widest *most, noh_error *error)
@@ -332,6 +342,7 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
         }
         measure_state(arena, desc, i, &needs, b);
         widen(most, desc, i, &needs);
+        if (list) list_ragdolls(list, &desc->kinds[i], i, &from);
         add(list, "characters", i, arena, &from);
     }
     (void)noh_arena_carve(arena, 0, 16);

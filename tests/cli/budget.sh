@@ -78,6 +78,17 @@ noh budget "$build/demo/puppet.noh" --actors 1 --nominal
 expect 0 'a pack without levels'
 check 'has one' sh -c 'test "$(grep -c "^  [0-7]  " "$1")" = 1' - "$work/out"
 
+noh budget "$puppet" --actors 20 --nominal --ragdolls 4
+expect 0 '--ragdolls'
+check 'have a line for the pool and one for what actors remember: 1,488 bytes each' sh -c 'grep -q "^  ragdoll pool .* [1-9][0-9]* *0$" "$1" && grep -q "^  ragdoll states .* 29760 *0$" "$1"' - "$work/out"
+check 'and the parts add up' adds_up "$work/out"
+noh budget "$puppet" --actors 20 --nominal --place tools/demo_assets/festival/festival.place
+expect 0 '--place'
+check 'has lines of its own, and the parts add up' adds_up "$work/out"
+noh budget "$puppet" --actors 20 --nominal --place "$work/none.place"
+expect 1 'a place that is not there'
+says none.place
+
 # ---- a text ----
 
 mkdir "$work/cast"
@@ -202,7 +213,7 @@ for option in --near --middle --finest --bytes --cpu-bytes --gpu-bytes --pixels 
     expect 2 "$option alone"
     says "$option has no effect without"
 done
-for option in --f16 --no-gpu '--clips x.noh'; do
+for option in --f16 --no-gpu '--clips x.noh' '--place x.place' '--ragdolls 2'; do
     # shellcheck disable=SC2086
     noh budget "$puppet" $option
     expect 2 "$option alone"

@@ -91,6 +91,10 @@ check 'its dump has a line for each agent and step' awk -F, 'NR == 1 { head = $0
 noh crowd --place "$festival" --agents 150 --seconds 20 --json
 expect 0 'again'
 check 'comes to the same hash' sh -c 'grep hash "$1" >"$1.a"; grep hash "$2" | cmp -s - "$1.a"' - "$work/out" "$work/first"
+told=$(sed -n 's/.*"bytes": \([0-9]*\).*/\1/p' "$work/out")
+noh budget "$build/demo/puppet_levels.noh" --actors 150 --place "$festival" --no-gpu
+expect 0 'its budget'
+check 'has its agents, flow fields and smart objects, to the byte' awk -v told="$told" '/^  (crowd|flow fields|smart objects) / { sum += $(NF - 1); n++ } END { exit !(n == 3 && sum == told) }' "$work/out"
 noh crowd --place door --agents 40 --seconds 2 --json
 expect 0 'a word for a scene of --test'
 bound 'is that scene' 'value["agents"] == 40 && value["seconds"] == 2'
@@ -157,7 +161,10 @@ check 'the picture stays nearly the same' "$build/tests/gl/picture_diff" "$work/
 
 noh crowd "$puppets" --place "$festival" --agents 60 --time 3 -o "$work/place.png" --size 320x180 --light sky
 expect 0 'puppets at a festival'
+cp "$work/out" "$work/drawn"
 check 'of whom those who are near stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
+noh budget "$puppets" --actors 60 --place "$festival" --no-gpu
+check 'its walkers take what the budget says' awk '/^  walkers / { told = $(NF - 1) } /walkers [0-9]+;/ { sub(/.*walkers /, ""); took = $0 + 0 } END { exit !(told && told == took) }' "$work/out" "$work/drawn"
 noh crowd "$pack" --place "$festival" --agents 10 -o "$work/no.png"
 expect 1 'a mask does not walk'
 says 'a body that walks'

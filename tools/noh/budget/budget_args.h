@@ -6,7 +6,7 @@
 #include "draw/figure.h"
 
 /* Options that are whole numbers. */
-enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, COUNT_OPTIONS };
+enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, RAGDOLLS, COUNT_OPTIONS };
 
 typedef struct budget_args {
     const char *pack, *anim, *path, *accumulate, *driver;
@@ -14,7 +14,7 @@ typedef struct budget_args {
     int as_json, nominal;
     figure_desc figure;
     /* of a stage */
-    const char *desc;
+    const char *desc, *place;
     const char *texts[COUNT_OPTIONS]; /* NULL: not given */
     uint64_t counts[COUNT_OPTIONS];   /* 0: not given */
     const char *pixels_text;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "budget_args.h"
+#include "crowd/place_people.h"
 #include "stage_budget.h"
 #include "stage_desc_file.h"
 #include "cli/message.h"
@@ -25,6 +26,7 @@ static int check_counts(budget_args *a)
         { "--gpu-bytes", 1.0, BYTES_MAX },
         { "--height", 1.0, 65536.0 },
         { "--jobs", 1.0, NOH_STAGE_JOBS_MAX },
+        { "--ragdolls", 1.0, NOH_RAGDOLLS_MAX },
     };
     for (int i = 0; i < COUNT_OPTIONS; i++) {
         double value;
@@ -68,7 +70,26 @@ static void apply_options(const budget_args *a, noh_stage_desc *desc)
     desc->morph_path = (uint32_t)a->figure.path;
 }
 
-static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc)
+/* What lives in a place beside its stage: agents, where they are led, what they use, and who follows them. */
+static int add_place(stage_budget *b, const place_file *place, const place_people *people)
+{
+    noh_crowd_desc crowd;
+    noh_smart_desc smart;
+    place_crowd_desc(place, people->kind.actor_count, &crowd);
+    place_smart_desc(place, people->kind.actor_count, &smart);
+    const size_t whole = noh_crowd_size(&crowd);
+    crowd.field_count = 0;
+    const size_t agents = noh_crowd_size(&crowd);
+    if (!whole) return tool_fail(b->subject, "the place is too large for a crowd, or has too many obstacles");
+    int status = stage_budget_add(b, "crowd", agents, 0);
+    if (!status && whole != agents) status = stage_budget_add(b, "flow fields", whole - agents, 0);
+    if (!status && smart.object_count) status = stage_budget_add(b, "smart objects", noh_smart_size(&smart), 0);
+    return status ? status : stage_budget_add(b, "walkers", noh_walkers_size(&people->walkers), 0);
+}
+
+/* place NULL: none */
+static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc, const place_file *place,
+                           const place_people *people)
 {
     noh_gl_caps caps;
     stage_budget b;
@@ -76,14 +97,11 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     apply_options(a, desc);
     if (desc->gpu) status = budget_caps(a, 1, &caps);
     if (!status) status = stage_budget_make(&b, subject, desc, desc->gpu ? &caps : NULL);
-    if (!status) {
-        if (a->as_json) {
-            status = stage_budget_json(&b);
-        } else {
-            stage_budget_print(&b);
-        }
-        stage_budget_free(&b);
-    }
+    if (status) return status;
+    if (place) status = add_place(&b, place, people);
+    if (!status && a->as_json) status = stage_budget_json(&b);
+    if (!status && !a->as_json) stage_budget_print(&b);
+    stage_budget_free(&b);
     return status;
 }
 
@@ -92,21 +110,28 @@ int budget_of_desc(const budget_args *a)
     stage_desc_file *file;
     int status = stage_desc_file_read(a->desc, &file);
     if (!status) {
-        status = budget_of_stage(a, a->desc, &file->desc);
+        status = budget_of_stage(a, a->desc, &file->desc, NULL, NULL);
         stage_desc_file_free(file);
     }
     return status;
 }
 
-/* One kind: the pack's characters. */
+/* One kind: the pack's characters, who live in a place where there is one. */
 static int budget_of_kind(const budget_args *a, const pack_file *file, const noh_pack *const *clips)
 {
+    static place_people people;
+    const noh_kind_ragdoll ragdoll = { .count = (uint32_t)a->counts[RAGDOLLS] };
     noh_kind_desc kind;
     noh_stage_desc desc;
+    place_file *place = NULL;
     char *name = input_stem(a->pack);
-    int status;
+    int status = a->place ? place_read(a->place, &place) : 0;
     memset(&kind, 0, sizeof kind);
     memset(&desc, 0, sizeof desc);
+    if (!status && place) {
+        status = place_people_make(&people, file, place, (uint32_t)a->counts[ACTORS], ragdoll.count);
+        kind = people.kind;
+    }
     kind.name = name ? name : a->pack;
     kind.mesh = &file->pack;
     kind.clip_packs = a->clips.count ? clips : NULL;
@@ -115,9 +140,11 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
     kind.near_count = (uint32_t)a->counts[NEAR];
     kind.middle_count = (uint32_t)a->counts[MIDDLE];
     kind.finest_level = (uint32_t)a->counts[FINEST];
+    if (ragdoll.count && !place) kind.ragdoll = &ragdoll;
     desc.kinds = &kind;
     desc.kind_count = 1;
-    status = budget_of_stage(a, a->pack, &desc);
+    if (!status) status = budget_of_stage(a, a->pack, &desc, place, &people);
+    place_free(place);
     free(name);
     return status;
 }

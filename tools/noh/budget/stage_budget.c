@@ -38,6 +38,21 @@ static int list_parts(stage_budget *b)
         return tool_fail(b->subject, "out of memory");
     }
     (void)noh_stage_plan_parts(b->desc, b->caps, &b->plan, b->parts, b->part_count);
+    b->cpu_bytes = b->plan.cpu_bytes;
+    b->gpu_bytes = b->plan.gpu_bytes;
+    return 0;
+}
+
+int stage_budget_add(stage_budget *b, const char *what, uint64_t cpu_bytes, uint64_t gpu_bytes)
+{
+    noh_stage_bytes *more = realloc(b->parts, (b->part_count + 1u) * sizeof *more);
+    if (!more) return tool_fail(b->subject, "out of memory");
+    b->parts = more;
+    more[b->part_count++] = (noh_stage_bytes){
+        .what = what, .kind = NOH_NONE, .cpu_bytes = cpu_bytes, .gpu_bytes = gpu_bytes
+    };
+    b->cpu_bytes += cpu_bytes;
+    b->gpu_bytes += gpu_bytes;
     return 0;
 }
 
@@ -78,8 +93,8 @@ static void print_parts(const stage_budget *b)
         printf("  %-26s %-16s %12llu %12llu\n", p->what, kind_name(b, p->kind), (unsigned long long)p->cpu_bytes,
                (unsigned long long)p->gpu_bytes);
     }
-    printf("  %-26s %-16s %12llu %12llu\n", "sum", "", (unsigned long long)b->plan.cpu_bytes,
-           (unsigned long long)b->plan.gpu_bytes);
+    printf("  %-26s %-16s %12llu %12llu\n", "sum", "", (unsigned long long)b->cpu_bytes,
+           (unsigned long long)b->gpu_bytes);
     printf("  %-26s %-16s %12llu %12s  of the sum: a saved state\n", "state", "",
            (unsigned long long)b->plan.state_bytes, "");
     printf("  %-26s %-16s %12llu %12s  read where they lie\n", "the packs themselves", "",
@@ -220,8 +235,8 @@ static void json_concessions(json *j, const stage_budget *b)
 int stage_budget_json(const stage_budget *b)
 {
     json j = json_begin();
-    json_integer(&j, "cpu_bytes", b->plan.cpu_bytes);
-    json_integer(&j, "gpu_bytes", b->plan.gpu_bytes);
+    json_integer(&j, "cpu_bytes", b->cpu_bytes);
+    json_integer(&j, "gpu_bytes", b->gpu_bytes);
     json_integer(&j, "state_bytes", b->plan.state_bytes);
     json_integer(&j, "pack_bytes", b->plan.pack_bytes);
     json_integer(&j, "stack_bytes", NOH_STACK_BYTES);

@@ -10,12 +10,15 @@ typedef struct stage_budget {
     const noh_stage_desc *desc;
     const noh_gl_caps *caps; /* NULL: nothing is drawn */
     noh_stage_plan plan;
-    noh_stage_bytes *parts; /* [part_count] */
+    noh_stage_bytes *parts; /* [part_count] of the stage, then what was added */
     uint32_t part_count;
+    uint64_t cpu_bytes, gpu_bytes; /* of all parts */
 } stage_budget;
 
 /* Plan the stage. Prints an error and returns an exit code; 0 on success, and the budget is then to be freed. */
 int stage_budget_make(stage_budget *b, const char *subject, const noh_stage_desc *desc, const noh_gl_caps *caps);
+/* One part more, beside the stage. Returns an exit code. */
+int stage_budget_add(stage_budget *b, const char *what, uint64_t cpu_bytes, uint64_t gpu_bytes);
 void stage_budget_free(stage_budget *b);
 
 void stage_budget_print(const stage_budget *b);

@@ -14,9 +14,6 @@
 #define RADIAN 0.017453292519943295
 
 enum { PEOPLE, SCENERY, KINDS };
-enum { BODY, ACT, LAYERS };
-static const noh_layer_desc layers[LAYERS] = { { "body", NOH_LAYER_BASE, NULL, NULL, 3 },
-                                               { "act", NOH_LAYER_OVER, NULL, NULL, 2 } };
 
 typedef struct scene {
     const pack_file *file;
@@ -26,11 +23,7 @@ typedef struct scene {
     lighting light;
     pack_file scenery;
     noh_kind_desc kinds[KINDS];
-    noh_kind_feet feet;
-    noh_stage_part parts[1];
-    noh_world world;
-    noh_plane floor;
-    noh_obb boxes[PLACE_STEPS_MAX];
+    place_people people;
     noh_stage_desc desc;
     noh_stage_plan plan;
     noh_gl_ledger ledger;
@@ -44,59 +37,9 @@ typedef struct scene {
     uint32_t near_count;
 } scene;
 
-/* ---- what is there ---- */
-
-static void lay_ground(scene *s)
-{
-    s->floor.normal[1] = 1.0f;
-    s->world.planes = &s->floor;
-    s->world.plane_count = 1;
-    s->world.boxes = s->boxes;
-    for (uint32_t i = 0; i < s->place->step_count; i++) {
-        const place_step *step = &s->place->steps[i];
-        noh_obb *b = &s->boxes[s->world.box_count];
-        if (!(step->height > 0.0f)) continue;
-        for (int k = 0; k < 2; k++) {
-            b->centre[2 * k] = 0.5f * (step->area.low[k] + step->area.high[k]);
-            b->half[2 * k] = 0.5f * (step->area.high[k] - step->area.low[k]);
-        }
-        b->centre[1] = b->half[1] = 0.5f * step->height;
-        b->rotation[3] = 1.0f;
-        s->world.box_count++;
-    }
-}
-
-static int find_feet(scene *s)
-{
-    noh_ragdoll_source source;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    memset(&source, 0, sizeof source);
-    source.pack = &s->file->pack;
-    source.metres = 1.0f;
-    if (noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, &error) ||
-        noh_feet_rig_make(&source, &s->feet.rig, &error)) {
-        return tool_fail(s->file->path, "a place wants a body that walks: %s", error.what);
-    }
-    lay_ground(s);
-    s->feet.ground.world = &s->world;
-    s->parts[0] = noh_walkers_feet_part(&s->feet);
-    return 0;
-}
-
 static void fill_desc(scene *s)
 {
-    noh_kind_desc *k = &s->kinds[PEOPLE];
-    k->mesh = &s->file->pack;
-    k->actor_count = place_life_agents(s->life);
-    k->layers = layers;
-    k->layer_count = LAYERS;
-    k->held_float_count = 2;
-    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
-    k->root_up = 1;
-    k->root_told = 1;
-    k->unpickable = 1;
-    k->parts = s->parts;
-    k->part_count = 1;
+    s->kinds[PEOPLE] = s->people.kind;
     s->kinds[SCENERY].mesh = &s->scenery.pack;
     s->kinds[SCENERY].actor_count = 1;
     s->kinds[SCENERY].skeleton = NOH_NONE;
@@ -132,12 +75,7 @@ static int open_stage(scene *s, gpu *g)
 static int open_walkers(scene *s)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_walkers_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.walker_max = place_life_agents(s->life);
-    desc.near_max = desc.walker_max < PLACE_NEAR ? desc.walker_max : PLACE_NEAR;
-    desc.feet_part = 1;
-    desc.walk = "walk";
+    noh_walkers_desc desc = s->people.walkers;
     desc.idle = noh_stage_find(s->stage, PEOPLE, NOH_NAME_CLIP, "idle") == NOH_NONE ? NULL : "idle";
     desc.run = noh_stage_find(s->stage, PEOPLE, NOH_NAME_CLIP, "run") == NOH_NONE ? NULL : "run";
     s->walkers_bytes = noh_walkers_size(&desc);
@@ -212,7 +150,7 @@ static int open_scene(scene *s, gpu *g)
     if (!status) status = lighting_open(&s->light, &light);
     if (!status && o->scenery) status = pack_file_open(&s->scenery, o->scenery);
     if (!status) status = place_life_open(s->place, o->agents, o->seed, &s->life);
-    if (!status) status = find_feet(s);
+    if (!status) status = place_people_make(&s->people, s->file, s->place, o->agents, 0);
     if (!status) fill_desc(s);
     if (!status) status = open_stage(s, g);
     if (!status) status = open_walkers(s);
@@ -249,11 +187,12 @@ static void act(scene *s, uint32_t person)
         play.start_ticks = (int64_t)(480000.0f * share_of(person, 7));
         noh_walkers_face(s->walkers, person, slot->face);
         if (slot->use_clip) {
-            (void)noh_actor_play(s->stage, s->actors[person], ACT, s->place->clips[slot->use_clip - 1u], &play, NULL);
+            (void)noh_actor_play(s->stage, s->actors[person], PLACE_ACT, s->place->clips[slot->use_clip - 1u], &play,
+                                 NULL);
         }
     } else if (use.phase != NOH_SMART_USING) {
         noh_walkers_face(s->walkers, person, NULL);
-        (void)noh_actor_stop(s->stage, s->actors[person], ACT, 24000, NULL);
+        (void)noh_actor_stop(s->stage, s->actors[person], PLACE_ACT, 24000, NULL);
     }
     s->phases[person] = use.phase;
 }
@@ -262,7 +201,7 @@ static void step(scene *s)
 {
     place_life_step(s->life);
     for (uint32_t i = 0; i < place_life_agents(s->life); i++) act(s, i);
-    (void)noh_walkers_step(s->walkers, place_life_crowd(s->life), s->stage, &s->feet.ground, FRAME_TICKS, NULL);
+    (void)noh_walkers_step(s->walkers, place_life_crowd(s->life), s->stage, &s->people.feet.ground, FRAME_TICKS, NULL);
     (void)noh_stage_step(s->stage, FRAME_TICKS, NULL, NULL, NULL);
 }
 

@@ -7,11 +7,9 @@
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "place_life.h"
+#include "place_people.h"
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_gl.h"
-#include "stage/walkers.h"
-
-#define PLACE_NEAR 48u /* whose feet are put on the ground */
 
 typedef struct place_draw_options {
     uint32_t agents, seed;

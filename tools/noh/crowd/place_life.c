@@ -8,10 +8,9 @@
 
 #include "base/hash.h"
 #include "cli/message.h"
+#include "place_people.h"
 
 #define STEPS_PER_S 30u
-#define REACH_M 2.5f
-#define CELL_M 0.4f
 #define WANTS 0.6f     /* of a need: it goes and satisfies it */
 #define THERE_M 0.25f  /* from its slot: it is there */
 #define NEAR_M 2.0f    /* from its slot: it goes straight there */
@@ -37,7 +36,7 @@ struct place_life {
     inhabitant *people;
     crowd_meter meter;
     crowd_measures measures;
-    uint32_t agents, step;
+    uint32_t agents, fields, step;
     uint64_t random;
     double cpu_ns;
 };
@@ -51,36 +50,21 @@ static float chance(place_life *l)
 
 /* ---- opening ---- */
 
-/* One for each goal, then one for each object, as many as there may be. */
-static uint32_t field_count(const place_file *p)
-{
-    const uint32_t count = p->goal_count + p->smart.object_count;
-    return count < NOH_CROWD_FIELDS_MAX ? count : NOH_CROWD_FIELDS_MAX;
-}
-
 static int open_crowd(place_life *l)
 {
     const place_file *p = l->place;
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_crowd_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.agent_max = l->agents;
-    desc.reach = REACH_M;
-    for (int i = 0; i < 2; i++) {
-        desc.origin[i] = p->area.low[i];
-        desc.extent[i] = p->area.high[i] - p->area.low[i];
-    }
-    desc.obstacles = p->obstacles;
-    desc.obstacle_count = p->obstacle_count;
-    desc.field_count = field_count(p);
-    desc.field_cell = CELL_M;
-    desc.field_radius = p->radius > 0.5f * CELL_M ? p->radius : 0.5f * CELL_M;
+    place_crowd_desc(p, l->agents, &desc);
     const size_t bytes = noh_crowd_size(&desc);
     l->crowd_memory = malloc(bytes ? bytes : 1);
     if (!l->crowd_memory) return tool_fail("crowd", "out of memory");
     if (noh_crowd_init(l->crowd_memory, bytes, &desc, &l->crowd, &error)) return tool_fail("crowd", "%s", error.what);
     l->bytes += bytes;
-    for (uint32_t g = 0; g < p->goal_count; g++) noh_crowd_field_aim(l->crowd, g, p->goals[g].at);
+    l->fields = desc.field_count;
+    for (uint32_t g = 0; g < p->goal_count && g < desc.field_count; g++) {
+        noh_crowd_field_aim(l->crowd, g, p->goals[g].at);
+    }
     for (uint32_t i = p->goal_count; i < desc.field_count; i++) {
         noh_crowd_field_aim(l->crowd, i, p->slots[p->objects[i - p->goal_count].first_slot].at);
     }
@@ -91,9 +75,9 @@ static int open_crowd(place_life *l)
 static int open_smart(place_life *l)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_smart_desc desc = l->place->smart;
+    noh_smart_desc desc;
+    place_smart_desc(l->place, l->agents, &desc);
     if (!desc.object_count) return 0;
-    desc.agent_max = l->agents;
     const size_t bytes = noh_smart_size(&desc);
     l->smart_memory = malloc(bytes ? bytes : 1);
     if (!l->smart_memory) return tool_fail("crowd", "out of memory");
@@ -241,7 +225,7 @@ static void go_to_slot(place_life *l, uint32_t index, const noh_smart_use *use)
 {
     const float *at = noh_smart_slot_at(l->smart, use->slot)->at;
     const uint32_t field = l->place->goal_count + use->object;
-    const int is_near = distance(l->now[index].position, at) < NEAR_M || field >= field_count(l->place);
+    const int is_near = distance(l->now[index].position, at) < NEAR_M || field >= l->fields;
     noh_crowd_aim(l->crowd, index, at);
     noh_crowd_follow(l->crowd, index, is_near ? NOH_NONE : field);
     l->people[index].goal = is_near ? NOH_NONE : field;
