@@ -59,9 +59,11 @@ static vec2 way_through(const view *v, vec2 direction, float speed, float most)
     vec2 best = v2_scale(direction, most);
     float gain = most;
     for (uint32_t k = 0; k < 4u; k++) {
+        const float counts = k & 1u ? LEFT : 1.0f;
+        if (speed * cosine[k] * counts <= gain) continue; /* even if nobody were there */
         const vec2 try = v2(direction.x * cosine[k] - direction.z * sine[k],
                             direction.x * sine[k] + direction.z * cosine[k]);
-        const float go = speed_along(v, try, speed), more = go * cosine[k] * (k & 1u ? LEFT : 1.0f);
+        const float go = speed_along(v, try, speed), more = go * cosine[k] * counts;
         if (more > gain) {
             gain = more;
             best = v2_scale(try, go);
