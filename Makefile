@@ -41,7 +41,8 @@ ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 # Draco meshes in glTF are read where its library is.
 HAVE_DRACO := $(shell $(PKG) --exists draco && echo y)
-TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(if $(HAVE_DRACO),-ldraco) -ldl -lm
+HAVE_ASSIMP := $(shell $(PKG) --exists assimp && echo y)
+TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(if $(HAVE_DRACO),-ldraco) $(if $(HAVE_ASSIMP),-lassimp) -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
 Q        := $(if $(V),,@)
 say       = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
@@ -55,7 +56,7 @@ RUNTIME_C  := $(call sources,runtime,*.c)
 # template.c is for reading; the tests compile it.
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(call sources,tools/convert,*.c)
-CONVERT_CC := $(call sources,tools/convert,*.cpp)
+CONVERT_CC := $(filter-out $(if $(HAVE_ASSIMP),,tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%),$(call sources,tools/convert,*.cpp))
 VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
 VIEW_C     := $(filter-out $(VIEW_NOT_C),$(call sources,tools/noh/view,*.c))
 VIEW_CC    := $(call sources,tools/noh/view,*.cpp)
@@ -189,10 +190,16 @@ $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 $(BUILD)/tools/convert/gltf/gltf_draco.o: ALL_CXXFLAGS += $(if $(HAVE_DRACO),-DNOH_DRACO)
 $(BUILD)/tools/convert/gltf/gltf_draco.o: $(BUILD)/gen/with_draco
 
-# Changes when Draco comes or goes.
+$(BUILD)/tools/convert/fbx/%.o: ALL_CXXFLAGS += $(if $(HAVE_ASSIMP),-DNOH_ASSIMP)
+$(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tools/convert/fbx/*.cpp)): $(BUILD)/gen/with_assimp
+
+# Change when Draco or Assimp comes or goes.
 $(BUILD)/gen/with_draco: FORCE
 	@mkdir -p $(@D)
 	@echo '$(HAVE_DRACO)' | cmp -s - $@ || echo '$(HAVE_DRACO)' >$@
+$(BUILD)/gen/with_assimp: FORCE
+	@mkdir -p $(@D)
+	@echo '$(HAVE_ASSIMP)' | cmp -s - $@ || echo '$(HAVE_ASSIMP)' >$@
 
 # One file of the library, wherever it lies, for an instruction set, its entry renamed.
 kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))

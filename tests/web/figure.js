@@ -60,6 +60,7 @@ async function wig(page) {
 
 async function spots(browser) {
     const page = await open(browser, wide, `clip=none&size=${size}&light=room&shadow=blob`);
+    if (await page.isVisible('#hair')) await toggle(page, '#hair'); // it has a life of its own
     await keep(page, 'spots.png');
     await choose(page, '#shadow', 'no shadow');
     await keep(page, 'no_spots.png');

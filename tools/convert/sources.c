@@ -9,6 +9,7 @@
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 #include "convert/clips/resample.h"
+#include "convert/fbx/fbx_read.h"
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/two_stream.h"
@@ -70,6 +71,8 @@ static int read_clip_file(const char *path, const source_options *options, sourc
 static int read_model(const char *path, const source_options *options, model **out, model_error *error)
 {
     const obj_options obj = { options->unit_cm, options->targets };
+    const fbx_options fbx = { options->unit_cm };
+    if (has_ending(path, ".fbx")) return fbx_read(path, &fbx, out, error);
     return has_ending(path, ".obj") ? obj_read(path, &obj, out, error) : model_read_gltf(path, out, error);
 }
 

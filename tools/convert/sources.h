@@ -20,7 +20,7 @@ typedef struct source {
 
 typedef struct source_options {
     double sample_rate_hz; /* 0: as the file has it */
-    double unit_cm;        /* of .bvh and .obj; 0: 1 and 100 */
+    double unit_cm;        /* of .bvh, .obj and .fbx; 0: 1, 100 and the file's own */
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;

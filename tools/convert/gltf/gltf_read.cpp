@@ -71,9 +71,8 @@ static bool looks_like_json(const bytes &data)
     return i < data.size() && data[i] == '{';
 }
 
-static void read_container(file &f)
+static void read_container(file &f, const bytes &data)
 {
-    bytes data = read_whole_file(f.path, "");
     f.input_bytes = data.size();
     if (data.size() >= 4 && memcmp(&data[0], "glTF", 4) == 0)
         read_glb(f, data);
@@ -83,11 +82,11 @@ static void read_container(file &f)
         fail("byte 0", "this is not a glTF file: it starts neither with 'glTF' (.glb) nor with a JSON object (.gltf)");
 }
 
-static void read_model(file &f)
+static void read_model(file &f, const bytes &data)
 {
     size_t slash = f.path.find_last_of('/');
     f.directory = slash == std::string::npos ? "" : f.path.substr(0, slash + 1);
-    read_container(f);
+    read_container(f, data);
     load_buffers(f);
     decode_draco(f);
     read_materials(f);
@@ -115,28 +114,40 @@ static int refuse(model_error *error, const std::string &where, const std::strin
     return model_fail(error, where.c_str(), "%s", what.c_str());
 }
 
-} // namespace gltf
-
-extern "C" int model_read_gltf(const char *path, model **out, model_error *error)
+/* `given`: the file's bytes; null: they are read from the path. */
+static int read(const char *path, const bytes *given, model **out, model_error *error)
 {
     *out = nullptr;
     try {
-        std::unique_ptr<model, gltf::model_deleter> building(model_new());
+        std::unique_ptr<model, model_deleter> building(model_new());
         if (!building) throw std::bad_alloc();
         {
-            gltf::file f;
+            file f;
             f.path = path;
             f.out = building.get();
-            gltf::read_model(f);
+            read_model(f, given ? *given : read_whole_file(f.path, ""));
         }
         if (model_complete(building.get(), error)) return 1;
         *out = building.release();
         return 0;
-    } catch (const gltf::failure &reason) {
-        return gltf::refuse(error, reason.where, reason.what);
+    } catch (const failure &reason) {
+        return refuse(error, reason.where, reason.what);
     } catch (const std::bad_alloc &) {
-        return gltf::refuse(error, "", "there is not enough memory to read this file");
+        return refuse(error, "", "there is not enough memory to read this file");
     } catch (const std::exception &reason) {
-        return gltf::refuse(error, "glTF JSON", gltf::text("the file could not be read: %s", reason.what()));
+        return refuse(error, "glTF JSON", text("the file could not be read: %s", reason.what()));
     }
+}
+
+} // namespace gltf
+
+extern "C" int model_read_gltf(const char *path, model **out, model_error *error)
+{
+    return gltf::read(path, nullptr, out, error);
+}
+
+extern "C" int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error)
+{
+    const gltf::bytes data(bytes, bytes + size);
+    return gltf::read(path, &data, out, error);
 }

@@ -197,6 +197,10 @@ typedef struct model {
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
 
+/* The same of a .glb in memory. `path` names the file that it was made from: images lie beside it, and a clip without a
+ * name takes its. */
+int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error);
+
 /* World units per unit of a mesh: the largest scale, in the rest pose, of the nodes that draw it or of the joints that
  * move it; 1 if nothing draws it. */
 float model_mesh_scale(const model *m, uint32_t mesh);

@@ -641,14 +641,14 @@ static const option options[] = {
       .at = offsetof(build_args, unit_cm),
       .value = "auto|CM",
       .initial = "auto",
-      .what = "centimetres per unit of .bvh and .obj files, over 0; auto: 1 for .bvh, 100 for .obj",
+      .what = "centimetres per unit of .bvh, .obj and .fbx files, over 0; auto: 1 for .bvh, 100 for .obj, what an .fbx says",
       .example = "2.54" },
 };
 
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .obj, .bvh and .rcl files to one pack: the first model, the clips of all",
+    .what = "convert .gltf, .glb, .fbx, .obj, .bvh and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1\n--terrain hill.png -o hill.noh --terrain-size 64 --terrain-height 8",
     .options = options,

@@ -14,7 +14,7 @@
 
 static int is_model(const char *path)
 {
-    static const char *const endings[] = { ".gltf", ".glb", ".vrm", ".obj", ".bvh", ".rcl" };
+    static const char *const endings[] = { ".gltf", ".glb", ".vrm", ".fbx", ".obj", ".bvh", ".rcl" };
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++) {
         if (strcmp(dot, endings[i]) == 0) {
