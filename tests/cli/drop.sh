@@ -41,9 +41,10 @@ expect 0 'a ragdoll of its own'
 noh drop "$work/own.noh" --dolls 4 --seconds 1 --json
 expect 0 'drop that'
 check 'it has those bodies' grep -q '"bodies": 4' "$work/out"
+bones=$build/demo/get_up.glb # its skeleton is the puppet's, and it is read in no time
 bad() { # ROW MESSAGE
     printf 'hips\n%s\n' "$1" >"$work/bad.ragdoll"
-    noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+    noh build "$bones" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
     expect 1 "refused: $1"
     check "line and cause of: $1" grep -q "bad.ragdoll:2: .*$2" "$work/err"
     check 'and no pack is left' test ! -e "$work/bad.noh"
@@ -58,11 +59,11 @@ bad 'hips' 'this joint has a row already, in line 1'
 bad 'tail' "no skeleton has the joint 'tail'"
 bad '"spine' 'a quote is not closed'
 printf '# nothing\n' >"$work/bad.ragdoll"
-noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+noh build "$bones" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
 expect 1 'an empty table'
 says 'the ragdoll has no body'
 printf 'thigh.L\nhead\n' >"$work/bad.ragdoll"
-noh build "$build/demo/puppet.glb" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
+noh build "$bones" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
 expect 1 'bodies that do not hang together'
 says 'not below the first'
 

@@ -309,7 +309,8 @@ static void levels_come_and_go(void **state)
 {
     uint32_t made = 0;
     (void)state;
-    for (uint32_t w = 0; w < FIXTURE_WAYS; w++) levels_come_and_go_on(fixture_ways[w], &made);
+    for (uint32_t w = 0; w < FIXTURE_WAYS; w += test_is_sanitized() ? 4 : 1)
+        levels_come_and_go_on(fixture_ways[w], &made);
     assert_true(made >= 2);
     fixture_expect_no_errors();
 }

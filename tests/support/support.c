@@ -33,6 +33,12 @@ uint8_t *test_aligned(const void *bytes, size_t count)
     return p;
 }
 
+int test_is_sanitized(void)
+{
+    const char *san = getenv("NOH_SAN");
+    return san && *san;
+}
+
 const char *test_asset(const char *name)
 {
     static char path[4096];

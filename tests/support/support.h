@@ -46,6 +46,10 @@
         if (getenv("NOH_EMULATED")) test_skip("%s: too slow on an emulated processor", what); \
     } while (0)
 
+/* Whether steps take several times as long: a sanitizer watches (tests/run.sh sets NOH_SAN). Long runs are shorter
+ * then. */
+int test_is_sanitized(void);
+
 #define TEST_COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- memory, files ---- */
