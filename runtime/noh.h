@@ -47,6 +47,7 @@
 #include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
 #include "stage/walkers.h"          /* actors that go where agents of a crowd go */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
+#include "stage/fall.h"             /* pushing them, and when they get up */
 #include "stage/blob.h"             /* where actors darken the ground */
 #include "stage/decal.h"            /* marks on actors */
 #include "stage/springs.h"          /* chains of joints that swing */

@@ -82,26 +82,14 @@ static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *erro
 }
 
 /* On a floor at a height of 0, as `noh render --push` has it. */
-static void add_fall(web_cast *cast, const noh_pack *pack)
+static void add_fall(web_cast *cast)
 {
     static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
     static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
     static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
     static noh_ragdoll_rig rig;
-    static noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
-    noh_ragdoll_source source = { .pack = pack, .skeleton = cast->kinds[0].skeleton };
-    const noh_skeleton_header *header;
-    noh_error *why = &cast->cannot_fall;
-    uint32_t count;
-    if (source.skeleton == NOH_NONE) {
-        (void)noh_fail(why, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
-    } else if (!noh_pack_skeleton_at(pack, source.skeleton, &source.joints, &header, why)) {
-        source.metres = header->unit_cm / 100.0f;
-        if (!noh_ragdoll_find_rows(&source, rows, &count, why)) {
-            (void)noh_ragdoll_rig_make(&source, rows, count, &rig, why);
-        }
-    }
-    if (!why->result) cast->kinds[0].ragdoll = &ragdoll;
+    (void)noh_kind_can_fall(&cast->kinds[0], &rig, &cast->cannot_fall);
+    if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = &ragdoll;
 }
 
 static uint32_t most_skin_joints(const noh_pack *pack)
@@ -187,7 +175,7 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     result = list_kinds(cast, pack, error);
     describe(cast);
     if (!result) result = add_hair(cast, pack, error);
-    if (!result) add_fall(cast, pack);
+    if (!result) add_fall(cast);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
     for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the floats are counted by now */

@@ -4,7 +4,7 @@
 #define NOH_PLATFORM_WEB_CAST_H
 
 #include "noh_gl.h"
-#include "stage/stage_ragdoll.h"
+#include "stage/fall.h"
 #include "stage_gl/stage_hair.h"
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };

@@ -139,7 +139,6 @@ static noh_result begin(const web_wants *wants)
     web.speed = SPEED_ONE;
     if (!result) {
         (void)web_measure();
-        web.height = web.bounds[4] - web.bounds[1];
         web_light_find_floor();
     }
     return result;
@@ -452,10 +451,10 @@ EMSCRIPTEN_KEEPALIVE float *web_view(void)
 /* Move time on. In a lost context it goes on, too. */
 EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 {
-    const noh_result result = web_rise(seconds);
+    const uint32_t ticks = noh_frame_clock_advance(&web.clock, seconds);
+    const noh_result result = web_rise(ticks);
     web_hair_shake(seconds);
-    if (result) return (int)result;
-    return (int)noh_stage_step(web.stage, noh_frame_clock_advance(&web.clock, seconds), NULL, NULL, &web.error);
+    return (int)(result ? result : noh_stage_step(web.stage, ticks, NULL, NULL, &web.error));
 }
 
 static void begin_frame(uint32_t width, uint32_t height)

@@ -65,8 +65,7 @@ struct web {
     noh_stage_hit hit;
     web_light light;
     web_hair hair;
-    double falls_s[WEB_ACTORS_MAX], lies_s[WEB_ACTORS_MAX]; /* for how long a figure has */
-    float height;                                           /* of the figures at rest */
+    noh_fall falls[WEB_ACTORS_MAX];
     float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
     int32_t speed;                     /* 1/65,536, of what plays */
     uint8_t smoothed;                  /* noh_look.smoothed of all */
@@ -105,7 +104,7 @@ noh_result web_hair_draw(void); /* with all that is drawn beside it */
 void web_hair_shake(double seconds);
 
 /* Who fell and lies gets up; so many seconds have passed. */
-noh_result web_rise(double seconds);
+noh_result web_rise(uint32_t ticks);
 
 /* What main.c and touch.c tell the page, too. */
 float *web_measure(void);

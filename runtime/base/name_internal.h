@@ -12,6 +12,15 @@ static inline int noh_names_equal(const char *a, const char *b)
     return *a == *b;
 }
 
+static inline int noh_name_begins(const char *name, const char *start)
+{
+    while (*start && *name == *start) {
+        name++;
+        start++;
+    }
+    return !*start;
+}
+
 /* Does a name, as letters alone in any case, have a word of lower case? 'upper_arm.L' has "upperarm". */
 static inline int noh_name_has(const char *name, const char *word)
 {

@@ -7,6 +7,7 @@
 #include "base/assert.h"
 #include "base/math_internal.h"
 #include "sim/ragdoll_internal.h"
+#include "stage/fall.h"
 #include "stage/stage_internal.h"
 
 /* ---- made ---- */
@@ -32,23 +33,35 @@ size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d)
     return d->ragdoll ? NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u : 0;
 }
 
+noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, noh_error *error)
+{
+    noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
+    const noh_skeleton_header *header;
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t count;
+    noh_result result;
+    if (source.skeleton == NOH_NONE || !source.pack->skeleton_count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+    }
+    result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
+    if (result != NOH_OK) return result;
+    source.metres = header->unit_cm / 100.0f;
+    source.mass = kind->ragdoll ? kind->ragdoll->mass : 0.0f;
+    result = noh_ragdoll_find_rows(&source, rows, &count, error);
+    return result == NOH_OK ? noh_ragdoll_rig_make(&source, rows, count, rig, error) : result;
+}
+
 noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error)
 {
     noh_stage_ragdoll_kind *r = k->ragdoll;
-    noh_ragdoll_source source = { .pack = k->desc->mesh, .skeleton = k->desc->skeleton };
     const noh_skeleton_header *header;
-    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_skeleton joints;
     noh_ragdolls_desc desc;
-    uint32_t count;
-    noh_result result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
+    noh_result result = noh_kind_can_fall(k->desc, &r->rig, error);
     if (result != NOH_OK) return result;
-    source.metres = header->unit_cm / 100.0f;
-    source.mass = k->desc->ragdoll->mass;
-    result = noh_ragdoll_find_rows(&source, rows, &count, error);
-    if (result == NOH_OK) result = noh_ragdoll_rig_make(&source, rows, count, &r->rig, error);
-    if (result != NOH_OK) return result;
-    noh_ragdoll_fit_make(&r->rig, &k->skeleton, source.metres, &r->fit);
-    r->metres = source.metres;
+    (void)noh_pack_skeleton_at(k->desc->mesh, k->desc->skeleton, &joints, &header, NULL);
+    r->metres = header->unit_cm / 100.0f;
+    noh_ragdoll_fit_make(&r->rig, &k->skeleton, r->metres, &r->fit);
     r->world = k->desc->ragdoll->world;
     desc.rig = &r->rig;
     desc.count = k->desc->ragdoll->count;

@@ -286,6 +286,9 @@ else
     skip 'drop' 'no X11 headers to compile a source of drops with'
 fi
 
+xdotool key p
+figure
+check 'a push of what cannot fall says why' grep -q '^noh: .*: it cannot fall: ' "$work/err"
 close_viewer 'Escape ends it'
 
 # ---- light ----
@@ -582,6 +585,38 @@ click 942 352 # the trigger
 state
 check 'a trigger plays a bow once' tells '^graph moves, .* bows: bowing'
 check 'it shows' moves
+close_viewer 'Escape ends it'
+
+# ---- pushes ----
+
+becomes() { # STATE: within some time its body does
+    tried=0
+    while state; ! tells "^body $1" && [ $tried -lt 60 ]; do tried=$((tried + 1)); done
+    tells "^body $1"
+}
+rm -f "$work"/noh-*.png
+shots=0
+open_viewer 1280x800 "$build/demo/puppet_falls.noh" --clip walk
+figure
+state
+check 'a figure stands' tells '^body stands'
+standing=$shot
+xdotool mousemove 615 300 keydown Alt_L click 1 keyup Alt_L
+check 'a click with Alt pushes it: it falls' becomes falls
+check 'and picks nothing' sh -c '! grep -q "^picked" "$1"' - "$work/state"
+figure
+check 'which shows' differ "$standing" "$shot"
+check 'it gets up' becomes 'gets up'
+check 'by a clip for that' tells '^track . body get_up_'
+check 'and stands' becomes stands
+check 'it goes on with its clip' tells '^track . body walk '
+xdotool mousemove 330 60 keydown Alt_L click 1 keyup Alt_L
+state
+check 'a push beside it is none' tells '^body stands'
+xdotool key space key p
+check 'P pushes it, and time goes on' becomes falls
+lose
+check 'a lost context does not end the fall' becomes 'gets up'
 close_viewer 'Escape ends it'
 
 # ---- twice as many pixels in a point ----

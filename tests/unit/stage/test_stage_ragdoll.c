@@ -2,7 +2,10 @@
  * many may fall, who is dead; states saved, put back and tampered with; the same bits for any number of jobs. */
 #include "support/stage_fixture.h"
 
+#include "stage/fall.h"
+
 #include <math.h>
+#include <string.h>
 
 static noh_error said;
 
@@ -280,6 +283,52 @@ static void who_falls_gets_up_at_speed(void **state)
     close_cast(&c);
 }
 
+/* Pushed away from an eye it falls away from it; having lain for a fifth of a second it gets up by a clip whose name
+ * says so, and until that has ended it is not over. */
+static void a_push_is_over_when_it_stands_again(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    const float eye[3] = { 0.0f, 3.0f, 4.0f }, above[3] = { 0.0f, 9.0f, 0.0f };
+    float impulse[3], lay_z = 0.0f;
+    uint32_t still = 0, rising = 0, frames = 0;
+    noh_fall fall = { 0, 0, 0 };
+    noh_place place;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &ragdoll, 1);
+    cast_make(&c, NULL);
+    actor = enter(&c, 0.0f);
+    run(&c, 10);
+    assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
+    noh_push_away(above, (const float[3]){ 0.0f, 1.0f, 0.0f }, 90.0f, impulse);
+    assert_true(impulse[0] == 0.0f && impulse[1] == 0.0f && impulse[2] == 0.0f);
+    noh_push_away(eye, place.position, 90.0f, impulse);
+    assert_true(impulse[1] == 0.0f && impulse[2] < -89.0f);
+    assert_false(noh_fall_lasts(&fall, c.stage, actor));
+    assert_int_equal(noh_actor_push(c.stage, actor, NULL, impulse, &said), NOH_OK);
+    assert_true(noh_fall_lasts(&fall, c.stage, actor));
+    for (; frames < 900 && noh_fall_lasts(&fall, c.stage, actor); frames++) {
+        const noh_body_state body = noh_actor_body(c.stage, actor);
+        float hips[3];
+        still += body == NOH_BODY_LIES;
+        rising += body != NOH_BODY_FALLS && body != NOH_BODY_LIES;
+        joint_at(&c, actor, "hips", hips);
+        if (body == NOH_BODY_LIES) lay_z = hips[2];
+        assert_int_equal(noh_fall_step(&fall, c.stage, actor, 0, CAST_STEP, &said), NOH_OK);
+        run(&c, 1);
+    }
+    print_message("lay for %u frames at %.2f m, got up in %u of %u\n", still, (double)lay_z, rising, frames);
+    assert_true(lay_z < place.position[2] - 0.3f);
+    assert_in_range(still, 12, 13);
+    assert_in_range(rising, 60, 240); /* longer than what the ragdoll leaves takes to decay: the whole clip */
+    assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_STANDS);
+    assert_int_equal(strncmp(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, noh_actor_track(c.stage, actor, 0)->clip),
+                             NOH_RISE_CLIPS, strlen(NOH_RISE_CLIPS)),
+                     0);
+    close_cast(&c);
+}
+
 /* Without a clip it goes back to what plays, where it lies. */
 static void without_a_clip_it_goes_on(void **state)
 {
@@ -534,6 +583,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_hit_pushes),
     cmocka_unit_test(what_cannot_fall_is_told),
     cmocka_unit_test(who_lies_gets_up),
+    cmocka_unit_test(a_push_is_over_when_it_stands_again),
     cmocka_unit_test(who_falls_gets_up_at_speed),
     cmocka_unit_test(without_a_clip_it_goes_on),
     cmocka_unit_test(an_arm_falls_alone),

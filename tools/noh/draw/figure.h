@@ -198,6 +198,8 @@ int figure_update_hair(figure *f);
 
 /* --push X,Y,Z, newton seconds. */
 int figure_read_push(const char *text, float impulse[3]);
+/* Whether a pack's first skeleton can fall, or why not. */
+int figure_can_fall(const noh_pack *pack, noh_error *why);
 /* Called while its kinds are made. */
 void figure_want_fall(figure *f);
 /* Time moves on: half a second in it is pushed at its chest and falls, and once it lies it gets up by its clips whose

@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "session.h"
-
-#define RISES_MAX 16u
+#include "stage/fall.h"
 
 const session_form session_forms[SESSION_WHATS] = {
     { "spawn", 0, 3 },     { "despawn", 0, 0 }, { "play", 1, 3 },   { "stop", 0, 2 }, { "graph", 1, 2 },
@@ -46,16 +45,6 @@ static noh_result feel(session_stage *s, const session_input *in, noh_error *err
                           whole(n[3], 1e7f), error);
 }
 
-static noh_result rise(session_stage *s, noh_actor actor, noh_error *error)
-{
-    const char *clips[RISES_MAX], *name;
-    noh_get_up how = { .clips = clips };
-    for (uint32_t i = 0; (name = noh_stage_name(s->stage, 0, NOH_NAME_CLIP, i)) != NULL; i++) {
-        if (strncmp(name, "get_up", 6) == 0 && how.clip_count < RISES_MAX) clips[how.clip_count++] = name;
-    }
-    return noh_actor_get_up(s->stage, actor, &how, NULL, error);
-}
-
 static noh_result apply(session_stage *s, const session_input *in, noh_error *error)
 {
     const noh_actor actor = s->actors[in->actor];
@@ -75,7 +64,7 @@ static noh_result apply(session_stage *s, const session_input *in, noh_error *er
     case SESSION_LOOK: return noh_actor_look_at(s->stage, actor, n, error);
     case SESSION_FEEL: return feel(s, in, error);
     case SESSION_HIT: return noh_actor_hit(s->stage, actor, n, n + 3, error);
-    case SESSION_RISE: return rise(s, actor, error);
+    case SESSION_RISE: return noh_actor_rise(s->stage, actor, 0, NULL, error);
     case SESSION_KILL: return noh_actor_kill(s->stage, actor, error);
     case SESSION_REVIVE: return noh_actor_revive(s->stage, actor, error);
     case SESSION_VIEW: memcpy(s->view, n, sizeof s->view); return NOH_OK;

@@ -104,6 +104,7 @@ int view_app_show(view_app *a, const char *path)
     memset(&a->log, 0, sizeof a->log);
     memset(&a->pad, 0, sizeof a->pad);
     memset(&a->pick, 0, sizeof a->pick);
+    memset(&a->fall, 0, sizeof a->fall);
     memset(&a->walked, 0, sizeof a->walked);
     a->part[0] = 0;
     a->cut = 1;
@@ -132,13 +133,14 @@ void view_frame_all(view_app *a)
     view_model_anchor(a->model, a->anchor);
 }
 
-/* A clip that walks takes the camera along, and back where it begins again. */
+/* A clip that walks takes the camera along, and back where it begins again; who falls does not. */
 static void follow(view_app *a)
 {
+    const int goes = a->follow && !view_fall_lasts(&a->fall, a->model);
     double anchor[3];
     view_model_anchor(a->model, anchor);
     for (int c = 0; c < 3; c++) {
-        a->orbit.center[c] += a->follow ? anchor[c] - a->anchor[c] : 0.0;
+        a->orbit.center[c] += goes ? anchor[c] - a->anchor[c] : 0.0;
         a->anchor[c] = anchor[c];
     }
 }
@@ -268,6 +270,32 @@ void view_pick_window(view_app *a, float x, float y)
     }
 }
 
+/* ---- pushing ---- */
+
+static void push(view_app *a, const view_pick *pick)
+{
+    noh_gl_camera camera;
+    int status;
+    orbit_camera(&a->orbit, &camera);
+    status = view_fall_push(a->model, pick, camera.eye);
+    keep_failure(a, status);
+    a->playing |= !status; /* while clips are paused time stands still */
+}
+
+void view_push_window(view_app *a, float x, float y)
+{
+    view_pick pick;
+    float box[4];
+    view_app_stage(a, box);
+    view_pick_at(&pick, a->model, &a->orbit, (x - box[0]) * a->scale, (y - box[1]) * a->scale);
+    if (pick.is_on) push(a, &pick);
+}
+
+void view_push(view_app *a)
+{
+    push(a, NULL);
+}
+
 /* ---- walking ---- */
 
 void view_walk(view_app *a, int root_motion)
@@ -323,8 +351,11 @@ static int animate(view_app *a, double seconds)
     noh_gl_camera camera;
     int status;
     if (!stands) {
-        view_step(a->model, noh_frame_clock_advance(&a->model->clock, seconds * (double)(a->playing ? a->speed : 1.0f)),
-                  log_event, &a->log);
+        const double passed = seconds * (double)(a->playing ? a->speed : 1.0f);
+        const uint32_t ticks = noh_frame_clock_advance(&a->model->clock, passed);
+        status = view_fall_step(&a->fall, a->model, &a->pad, ticks);
+        if (status) keep_failure(a, status);
+        view_step(a->model, ticks, log_event, &a->log);
     } else if (a->model->touched) {
         view_step(a->model, 1, log_event, &a->log);
     }
@@ -479,7 +510,8 @@ int view_app_frame(view_app *a, float scale, double seconds)
 
 int view_app_moves(const view_app *a)
 {
-    return a->lod.fading || a->model->figure->faces_found || (a->playing && view_plays(a->model));
+    return a->lod.fading || a->model->figure->faces_found || (a->playing && view_plays(a->model)) ||
+           view_fall_lasts(&a->fall, a->model);
 }
 
 void view_app_after(view_app *a)
@@ -498,6 +530,7 @@ void view_app_after(view_app *a)
     }
     a->desc = a->wish;
     a->cut = 1;
+    memset(&a->fall, 0, sizeof a->fall);
     if (!a->desc.root_motion) view_walk_home(a);
 }
 

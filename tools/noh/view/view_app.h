@@ -9,6 +9,7 @@
  *   view_turn, view_pan, view_zoom, view_frame_all   the camera
  *   view_play            a clip
  *   view_pick_window     what is under a point of the window
+ *   view_push_window, view_push   push what is under a point, or the figure at its chest
  *   view_walk            root motion on and off; view_walk_home back to the origin
  *   view_toggle_play     play and pause; starts the first clip where none is on
  *   view_print           the state, as lines of text
@@ -17,10 +18,9 @@
 #define NOH_NOH_VIEW_VIEW_APP_H
 
 #include "gl/gl_timer.h"
+#include "view/view_fall.h"
 #include "view/view_lod.h"
 #include "view/view_marks.h"
-#include "view/view_pad.h"
-#include "view/view_pick.h"
 #include "view/view_screen.h"
 
 #define VIEW_LINES 64
@@ -69,6 +69,7 @@ typedef struct view_app {
     view_how how; /* the next clip */
     view_pad pad;
     view_pick pick;
+    view_fall fall;
     float pointer[2]; /* pixels of the canvas that faces look at */
     int has_pointer;
     view_marks marks;
@@ -138,6 +139,9 @@ void view_point_window(view_app *a, float x, float y, int inside);
 
 /* Pick, or let go where nothing is: prints what was picked. */
 void view_pick_window(view_app *a, float x, float y);
+/* Away from the camera; it falls, and gets up. Nothing there: nothing is pushed. */
+void view_push_window(view_app *a, float x, float y);
+void view_push(view_app *a);
 /* Takes effect with view_app_after. */
 void view_walk(view_app *a, int root_motion);
 void view_walk_home(view_app *a);

@@ -221,6 +221,7 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.alive = desc->alive && !s->show_bones;
     d.without_springs = desc->without_springs;
     d.hair = !s->show_bones;
+    d.falls = !m->cannot_fall.result;
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
     d.path = desc->morph_path;
     d.accumulate = desc->accumulate;
@@ -294,6 +295,7 @@ static int open_model(view_model *m, gpu *g, const view_model_desc *desc)
 {
     setting s;
     int status = figure_open_clips(&m->anim_file, desc->anim, &m->file, &m->clips_of);
+    (void)figure_can_fall(&m->file.pack, &m->cannot_fall);
     if (!status) status = open_setting(m, g, desc, &s);
     if (status) {
         return status;

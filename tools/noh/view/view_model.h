@@ -71,6 +71,7 @@ typedef struct view_model {
     int root_motion;
     int has_graphs;                    /* actors may play those of clips_of, of a figure with one kind */
     noh_frame_clock clock;             /* what is left over of the seconds of frames */
+    noh_error cannot_fall;             /* OK: the first skeleton can */
     int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
     bones *bones[NOH_STAGE_KINDS_MAX]; /* where bones are drawn: of each kind with joints */
     int show_bones;

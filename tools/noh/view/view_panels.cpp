@@ -415,7 +415,7 @@ void events_panel(view_app *a)
         ImGui::TextColored(amber, "%s", text);
     } else {
         ImGui::TextDisabled(
-            "space play  click pick  drag turn  wheel zoom  F fit  L detail  [ ] light  Tab hide  F12 save");
+            "space play  click pick  Alt-click or P push  drag turn  wheel zoom  F fit  L detail  [ ] light  Tab hide  F12 save");
     }
     ImGui::Separator();
     ImGui::BeginChild("lines");

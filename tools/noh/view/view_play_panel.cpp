@@ -214,5 +214,9 @@ void floor_section(view_app *a)
     if (ImGui::Button("back to the start", ImVec2(-1.0f, 0.0f))) {
         view_walk_home(a);
     }
+    if (ImGui::Button("push")) {
+        view_push(a);
+    }
+    ImGui::SameLine();
     ImGui::Text("at %.3f %.3f", static_cast<double>(place.position[0]), static_cast<double>(place.position[2]));
 }

@@ -50,6 +50,18 @@ static void print_graph(const view_model *m)
     printf("\n");
 }
 
+/* None of what cannot fall. */
+static void print_body(const view_app *a)
+{
+    static const char *const states[] = { "stands", "falls", "lies", "gets up" };
+    const view_model *m = a->model;
+    const noh_body_state body = noh_actor_body(m->figure->stage, m->figure->actors[0]);
+    if (m->cannot_fall.result) {
+        return;
+    }
+    printf("body %s\n", states[body == NOH_BODY_STANDS && view_fall_lasts(&a->fall, m) ? NOH_BODY_GETS_UP : body]);
+}
+
 void view_print(const view_app *a)
 {
     const view_model *m = a->model;
@@ -64,6 +76,7 @@ void view_print(const view_app *a)
     }
     if (a->pad.count) print_pad(a);
     print_graph(m);
+    print_body(a);
     printf("place %.4f %.4f %.4f\n", (double)place.position[0], (double)place.position[1], (double)place.position[2]);
     printf("center %.4f %.4f %.4f\n", a->orbit.center[0], a->orbit.center[1], a->orbit.center[2]);
     if (a->desc.light) printf("light turned %.1f\n", a->desc.light->degrees);

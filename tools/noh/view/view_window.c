@@ -22,6 +22,7 @@ typedef struct view_window {
     uint8_t pressed[3], keys_pressed[512]; /* since the last frame: a click may be shorter than one */
     float pressed_at[2];
     int drag;       /* GLFW's button + 1 that drags the camera, 0: none */
+    int pushes;     /* with Alt: a click pushes */
     double dragged; /* so far, points: a press that hardly moves is a click */
     double mouse[2];
     int awake;
@@ -49,7 +50,6 @@ static int on_stage(const view_window *w)
 static void on_button(GLFWwindow *window, int button, int action, int mods)
 {
     view_window *w = of(window);
-    (void)mods;
     if (button > GLFW_MOUSE_BUTTON_MIDDLE) {
         return;
     }
@@ -61,9 +61,10 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     if (action == GLFW_PRESS && !w->drag && on_stage(w) && !view_panels_hold_mouse()) {
         w->drag = button + 1;
         w->dragged = 0.0;
+        w->pushes = (mods & GLFW_MOD_ALT) != 0;
     } else if (action == GLFW_RELEASE && w->drag == button + 1) {
         if (button == GLFW_MOUSE_BUTTON_LEFT && w->dragged < CLICK_POINTS) {
-            view_pick_window(&w->app, w->input.mouse[0], w->input.mouse[1]);
+            (w->pushes ? view_push_window : view_pick_window)(&w->app, w->input.mouse[0], w->input.mouse[1]);
         }
         w->drag = 0;
     }
@@ -112,6 +113,7 @@ static void on_command(view_window *w, int key)
     switch (key) {
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
+    case GLFW_KEY_P: view_push(a); break;
     case GLFW_KEY_L: view_lod_next(&a->lod, a->model); break;
     case GLFW_KEY_LEFT_BRACKET: view_turn_light(a, -VIEW_LIGHT_STEP); break;
     case GLFW_KEY_RIGHT_BRACKET: view_turn_light(a, VIEW_LIGHT_STEP); break;
