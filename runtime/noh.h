@@ -128,6 +128,7 @@
 #include "sim/shape.h"        /* boxes, rays */
 #include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
 #include "sim/terrain.h"      /* the height field of a pack */
+#include "sim/terrain_lod.h"  /* its levels, as a picture needs them */
 #include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
 
 /* ---- many of them, on the ground ---- */

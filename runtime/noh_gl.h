@@ -31,18 +31,19 @@
 
 /* ---- what a game calls first ---- */
 
-#include "stage_gl/stage_gl.h"    /* a stage, drawn */
-#include "stage_gl/backdrop.h"    /* what is behind it, where it is lit */
-#include "stage_gl/stage_blob.h"  /* soft spots under them, where there is no shadow map */
-#include "stage_gl/stage_decal.h" /* marks on them */
-#include "stage_gl/stage_hair.h"  /* hair of its actors */
-#include "gl/gl_api.h"            /* the functions that noh calls */
-#include "gl/gl_caps.h"           /* what this GPU can do, found by trying it */
-#include "gl/gl_morph.h"          /* morph targets of many instances, accumulated on the GPU */
-#include "gl/gl_skin.h"           /* joint palettes of many instances on the GPU */
-#include "gl/gl_light.h"          /* light for it: an environment, a shadow map */
-#include "gl/gl_draw.h"           /* meshes on the GPU, and a plain renderer */
-#include "gl/gl_shader_text.h"    /* the library's GLSL, for your own shaders */
+#include "stage_gl/stage_gl.h"      /* a stage, drawn */
+#include "stage_gl/backdrop.h"      /* what is behind it, where it is lit */
+#include "stage_gl/stage_blob.h"    /* soft spots under them, where there is no shadow map */
+#include "stage_gl/stage_decal.h"   /* marks on them */
+#include "stage_gl/stage_hair.h"    /* hair of its actors */
+#include "stage_gl/stage_terrain.h" /* a height field as their ground */
+#include "gl/gl_api.h"              /* the functions that noh calls */
+#include "gl/gl_caps.h"             /* what this GPU can do, found by trying it */
+#include "gl/gl_morph.h"            /* morph targets of many instances, accumulated on the GPU */
+#include "gl/gl_skin.h"             /* joint palettes of many instances on the GPU */
+#include "gl/gl_light.h"            /* light for it: an environment, a shadow map */
+#include "gl/gl_draw.h"             /* meshes on the GPU, and a plain renderer */
+#include "gl/gl_shader_text.h"      /* the library's GLSL, for your own shaders */
 
 /* ---- when a context is lost, a frame is slow, or a driver is odd ---- */
 

@@ -191,6 +191,7 @@ noh_result noh_walkers_put(noh_walkers *walkers, uint32_t index, noh_stage *stag
     memset(r, 0, sizeof *r);
     r->actor = actor.id;
     r->agent = agent;
+    r->height = a->place.position[1];
     r->heading[0] = heading ? heading[0] : 0.0f;
     r->heading[1] = heading ? heading[1] : 1.0f;
     return NOH_OK;

@@ -66,8 +66,9 @@ size_t noh_walkers_size(const noh_walkers_desc *desc);
 noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *desc, noh_stage *stage,
                             noh_walkers **walkers, noh_error *error);
 
-/* From now on an actor, of the desc's kind, goes where an agent goes. It leaps there, and begins to
- * stand, at a phase of its clips that its index chooses, so that many do not breathe and step as one.
+/* From now on an actor, of the desc's kind, goes where an agent goes. It leaps there, on the ground that is at most 2 m
+ * above its place, and begins to stand, at a phase of its clips that its index chooses, so that many do not breathe and
+ * step as one.
  * index   below walker_max; whoever was there is let go
  * heading [2] unit vector x, z that it faces at first; NULL: +z
  * errors  NOT_FOUND the actor is gone; ARG the index, or another kind's actor */

@@ -45,6 +45,37 @@ check 'a pack without has none' grep -q '"terrain": null' "$work/out"
 head -c 200 "$work/hill.noh" >"$work/cut.noh"
 noh info "$work/cut.noh"
 expect 1 'a pack that is cut'
+
+# ---- a place on it ----
+
+printf 'area -3.5 -1.5 3.5 1.5\nspawn -3 -1 3 1\ngoal -2 0\ngoal 2 0\n' >"$work/hill.place"
+noh crowd --place "$work/hill.place" --agents 4 --seconds 4 --ground "$work/hill.noh" --json
+expect 0 'agents on a slope'
+cp "$work/out" "$work/slope"
+noh crowd --place "$work/hill.place" --agents 4 --seconds 4 --json
+check 'go otherwise than on level ground' sh -c '! cmp -s "$1" "$2"' - "$work/out" "$work/slope"
+noh crowd --place "$work/hill.place" --agents 4 --seconds 4 --ground "$png" --json
+expect 0 'on a picture'
+noh crowd --place "$work/hill.place" --ground "$build/mask.noh"
+expect 1 'on a pack without a terrain'
+says 'no terrain'
+noh crowd --place door --ground "$work/hill.noh"
+expect 2 'a scene lies on none'
+noh budget "$build/demo/puppet_levels.noh" --nominal --actors 4 --place "$work/hill.place" --ground "$work/hill.noh"
+expect 0 'the budget of all of it'
+check 'has the terrain' grep -q '^  terrain  *65  *30$' "$work/out"
+noh crowd "$build/demo/puppet_levels.noh" --place "$work/hill.place" --agents 4 --time 1 --ground "$work/hill.noh" --size 96x64 -o "$work/hill.png"
+if grep -q 'no GL context' "$work/err"; then
+    skip 'a terrain drawn' 'no GL context here'
+else
+    expect 0 'the same drawn'
+    check 'in as many bytes' grep -q '^terrain: CPU 65 bytes, GPU 30; [1-9][0-9]* triangles in 1 block' "$work/out"
+    noh crowd "$build/demo/puppet_levels.noh" --place "$work/hill.place" --agents 4 --time 1 --size 96x64 -o "$work/level.png"
+    check 'and is another picture' sh -c '! cmp -s "$1" "$2"' - "$work/hill.png" "$work/level.png"
+    noh render "$build/demo/puppet_levels.noh" -o "$work/stands.png" --size 96x96 --clip walk --ground "$work/hill.noh"
+    expect 0 'a figure stands on it'
+fi
+
 if [ -f "$assets/khronos/RobotExpressive.glb" ]; then
     noh build "$assets/khronos/RobotExpressive.glb" -o "$work/robot.noh" --only mesh --terrain "$png" --quiet
     expect 0 'a model on its ground'

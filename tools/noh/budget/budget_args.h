@@ -14,7 +14,7 @@ typedef struct budget_args {
     int as_json, nominal;
     figure_desc figure;
     /* of a stage */
-    const char *desc, *place;
+    const char *desc, *place, *ground;
     const char *texts[COUNT_OPTIONS]; /* NULL: not given */
     uint64_t counts[COUNT_OPTIONS];   /* 0: not given */
     const char *pixels_text;

@@ -4,6 +4,7 @@
 
 #include "budget_args.h"
 #include "crowd/place_people.h"
+#include "file/ground_file.h"
 #include "stage_budget.h"
 #include "stage_desc_file.h"
 #include "cli/message.h"
@@ -84,7 +85,10 @@ static int add_place(stage_budget *b, const place_file *place, const place_peopl
     int status = stage_budget_add(b, "crowd", agents, 0);
     if (!status && whole != agents) status = stage_budget_add(b, "flow fields", whole - agents, 0);
     if (!status && smart.object_count) status = stage_budget_add(b, "smart objects", noh_smart_size(&smart), 0);
-    return status ? status : stage_budget_add(b, "walkers", noh_walkers_size(&people->walkers), 0);
+    if (!status) status = stage_budget_add(b, "walkers", noh_walkers_size(&people->walkers), 0);
+    if (status || !place->ground || !b->caps) return status;
+    return stage_budget_add(b, "terrain", noh_stage_terrain_size(place->ground),
+                            noh_stage_terrain_bytes(place->ground));
 }
 
 /* place NULL: none */
@@ -124,11 +128,15 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
     noh_kind_desc kind;
     noh_stage_desc desc;
     place_file *place = NULL;
+    ground_file ground;
     char *name = input_stem(a->pack);
     int status = a->place ? place_read(a->place, &place) : 0;
+    memset(&ground, 0, sizeof ground);
     memset(&kind, 0, sizeof kind);
     memset(&desc, 0, sizeof desc);
+    if (!status && a->ground) status = ground_file_open(&ground, a->ground);
     if (!status && place) {
+        place->ground = a->ground ? &ground.field : NULL;
         status = place_people_make(&people, file, place, (uint32_t)a->counts[ACTORS], ragdoll.count);
         kind = people.kind;
     }
@@ -144,6 +152,7 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
     desc.kinds = &kind;
     desc.kind_count = 1;
     if (!status) status = budget_of_stage(a, a->pack, &desc, place, &people);
+    ground_file_close(&ground);
     place_free(place);
     free(name);
     return status;

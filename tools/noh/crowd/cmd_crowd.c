@@ -9,6 +9,7 @@
 #include "gpu/canvas.h"
 #include "gpu/gpu_args.h"
 #include "cli/message.h"
+#include "file/ground_file.h"
 #include "file/png_file.h"
 #include "cli/options.h"
 #include "cli/report_stream.h"
@@ -17,7 +18,7 @@
 #define FRAME_TICKS 800u /* 60 frames a second */
 
 typedef struct crowd_args {
-    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera;
+    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera, *ground;
     light_options light;
     double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
@@ -148,14 +149,16 @@ static const char *scene_of(const char *place)
     return NULL;
 }
 
-static int test(const crowd_args *a)
+static int test(const crowd_args *a, const noh_field *ground)
 {
     const char *scene = a->test ? a->test : scene_of(a->place);
     const crowd_scene_options options = {
         scene ? scene : a->place, (uint32_t)a->agents, a->seconds, (uint32_t)a->seed, 1, a->orca ? NOH_CROWD_ORCA : 0u
     };
     if (!scene && a->orca) return tool_usage("--orca compares scenes of --test, not places");
-    return scene ? crowd_test_run(&options, a->dump, a->as_json) : crowd_place_run(&options, a->dump, a->as_json);
+    if (!scene) return crowd_place_run(&options, ground, a->dump, a->as_json);
+    return a->ground ? tool_usage("--ground wants a place of a file, not a scene of --test")
+                     : crowd_test_run(&options, a->dump, a->as_json);
 }
 
 /* ---- a place drawn ---- */
@@ -168,6 +171,9 @@ static void print_place(const place_drawn *d, const crowd_args *a)
     fprintf(out, "; feet of %u on the ground\nstage: CPU %llu bytes, GPU %llu; walkers %llu; crowd %llu\n",
             d->near_count, (unsigned long long)d->cpu_bytes, (unsigned long long)d->gpu_bytes,
             (unsigned long long)d->walkers_bytes, (unsigned long long)d->crowd_bytes);
+    if (!d->terrain_bytes) return;
+    fprintf(out, "terrain: CPU %llu bytes, GPU %llu; %u triangles in %u blocks\n", (unsigned long long)d->terrain_bytes,
+            (unsigned long long)d->terrain_gpu_bytes, d->terrain_triangles, d->terrain_blocks);
 }
 
 static int draw_place_of(const pack_file *file, const place_file *place, const crowd_args *a)
@@ -188,12 +194,13 @@ static int draw_place_of(const pack_file *file, const place_file *place, const c
     return status;
 }
 
-static int draw_place(const crowd_args *a)
+static int draw_place(const crowd_args *a, const noh_field *ground)
 {
     place_file *place = NULL;
     pack_file file;
     int status = scene_of(a->place) ? tool_usage("--place %s is drawn by no -o: it wants a file", a->place) : 0;
     if (!status) status = place_read(a->place, &place);
+    if (!status) place->ground = ground;
     if (!status) status = pack_file_open(&file, a->pack);
     if (!status) {
         status = draw_place_of(&file, place, a);
@@ -203,26 +210,36 @@ static int draw_place(const crowd_args *a)
     return status;
 }
 
-static int run(void *args)
+static int run_on(crowd_args *a, const noh_field *ground)
 {
-    crowd_args *a = args;
     pack_file file;
-    int status = check_agents(a);
-    if (status) return status;
+    int status;
     if (!a->output && (a->scenery || a->camera)) return tool_usage("--scenery and --camera have no effect without -o");
     if (a->test || (a->place && !a->output)) {
         return a->pack ? tool_usage("agents are measured without a pack; one is drawn with --place FILE -o OUT.png")
-                       : test(a);
+                       : test(a, ground);
     }
     if (!a->output) return tool_usage("noh crowd wants -o OUT.png, --test SCENE or --place PLACE");
     if (!a->pack) return tool_usage("noh crowd -o OUT.png wants a PACK: whose bodies are drawn");
     status = check_args(a);
-    if (!status && a->place) return draw_place(a);
+    if (!status && a->place) return draw_place(a, ground);
     if (!status) status = pack_file_open(&file, a->pack);
     if (!status) {
         status = draw_pack(&file, a);
         pack_file_close(&file);
     }
+    return status;
+}
+
+static int run(void *args)
+{
+    crowd_args *a = args;
+    ground_file ground;
+    int status = check_agents(a);
+    memset(&ground, 0, sizeof ground);
+    if (!status && a->ground) status = ground_file_open(&ground, a->ground);
+    if (!status) status = run_on(a, a->ground ? &ground.field : NULL);
+    ground_file_close(&ground);
     return status;
 }
 
@@ -295,6 +312,14 @@ static const option options[] = {
       .value = "AZ,EL,DIST[,X,Z]",
       .what = "with --place FILE -o: degrees, and metres from the middle of the place or from X, Z",
       .example = "30,12,14,0,4",
+      .needs = "--place" },
+    { .name = "--ground",
+      .kind = OPTION_INPUT,
+      .at = offsetof(crowd_args, ground),
+      .value = "FILE",
+      .what =
+          "with --place FILE: the place lies on a height field, drawn with -o, at LOD levels: a pack with a terrain (noh build --terrain), or a .png or .glb as that takes",
+      .example = "hill.noh",
       .needs = "--place" },
     OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
     { .name = "--agents",

@@ -136,10 +136,11 @@ static int run_place(const crowd_scene_options *options, const place_file *place
     return status;
 }
 
-int crowd_place_run(const crowd_scene_options *options, const char *dump, int as_json)
+int crowd_place_run(const crowd_scene_options *options, const noh_field *ground, const char *dump, int as_json)
 {
     place_file *place = NULL;
     int status = place_read(options->name, &place);
+    if (!status) place->ground = ground;
     if (!status) status = run_place(options, place, dump, as_json);
     place_free(place);
     return status;

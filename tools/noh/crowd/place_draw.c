@@ -31,6 +31,8 @@ typedef struct scene {
     noh_walkers *walkers;
     void *memory, *walkers_memory;
     noh_backdrop backdrop;
+    noh_stage_terrain terrain; /* drawn where the place has a ground */
+    void *terrain_memory;
     noh_actor *actors;
     noh_smart_phase *phases; /* as they are shown */
     size_t walkers_bytes;
@@ -54,6 +56,19 @@ static void fill_desc(scene *s)
 
 /* ---- opening ---- */
 
+static int open_terrain(scene *s, const noh_gl_device *device)
+{
+    const noh_stage_terrain_desc desc = { .lit = 1 };
+    const size_t bytes = noh_stage_terrain_size(s->place->ground);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    s->terrain_memory = malloc(bytes);
+    if (!s->terrain_memory) return tool_fail("terrain", "out of memory");
+    if (noh_stage_terrain_create(device, s->place->ground, &desc, s->terrain_memory, bytes, &s->terrain, &error)) {
+        return tool_fail_error("terrain", &error);
+    }
+    return 0;
+}
+
 static int open_stage(scene *s, gpu *g)
 {
     char log[4096] = "";
@@ -69,7 +84,7 @@ static int open_stage(scene *s, gpu *g)
     }
     noh_stage_set_lighting(s->stage, &s->light.told);
     if (noh_backdrop_create(&device, 0, &s->backdrop, &error)) return tool_fail_error("backdrop", &error);
-    return 0;
+    return s->place->ground ? open_terrain(s, &device) : 0;
 }
 
 static int open_walkers(scene *s)
@@ -109,16 +124,27 @@ static noh_look look_of(uint32_t person)
     return look;
 }
 
+/* Of the ground; 0 without one. */
+static float height_at(const place_file *place, const float at[2])
+{
+    float height = 0.0f;
+    if (place->ground) (void)noh_field_height(place->ground, at[0], at[1], &height, NULL);
+    return height;
+}
+
 static int enter(scene *s, uint32_t person)
 {
     static const char *const faces[] = { "smile", "surprise", "frown", "anger" };
     const noh_look look = look_of(person);
+    const float *at = place_life_agent(s->life, person)->position;
+    noh_place place = { .rotation = { 0.0f, 0.0f, 0.0f, 1.0f }, .scale = 1.0f };
     const float turn = 6.2831853f * share_of(person, 2), heading[2] = { sinf(turn), cosf(turn) };
     const uint32_t face = share_of(person, 3) < 0.7f ? 0u : (uint32_t)(4.0f * share_of(person, 4));
     const uint32_t shown = noh_stage_find(s->stage, PEOPLE, NOH_NAME_FLOAT, faces[face]);
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_actor *a = &s->actors[person];
-    if (noh_stage_spawn(s->stage, PEOPLE, NULL, a, &error) || noh_actor_set_look(s->stage, *a, &look, &error) ||
+    place.position[1] = height_at(s->place, at);
+    if (noh_stage_spawn(s->stage, PEOPLE, &place, a, &error) || noh_actor_set_look(s->stage, *a, &look, &error) ||
         noh_walkers_put(s->walkers, person, s->stage, *a, person, heading, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
@@ -160,6 +186,8 @@ static int open_scene(scene *s, gpu *g)
 static void close_scene(scene *s)
 {
     if (s->backdrop.gl) noh_backdrop_delete(&s->backdrop);
+    if (s->terrain.gl) noh_stage_terrain_delete(&s->terrain);
+    free(s->terrain_memory);
     if (s->stage) noh_stage_delete(s->stage);
     if (s->life) place_life_close(s->life);
     if (s->scenery.path) pack_file_close(&s->scenery);
@@ -223,7 +251,7 @@ static int camera_of(const scene *s, noh_stage_view *view)
         !(elevation >= -89.0 && elevation <= 89.0) || !(distance > 0.0 && distance < 1e5)) {
         return tool_usage("--camera wants EL from -89 to 89, DIST above 0 and a place that is not far away");
     }
-    const float target[3] = { (float)x, 1.0f, (float)z };
+    const float at[2] = { (float)x, (float)z }, target[3] = { at[0], 1.0f + height_at(s->place, at), at[1] };
     noh_view_orbit(view, target, (float)(azimuth * RADIAN), (float)(elevation * RADIAN), (float)distance,
                    s->options->width, s->options->height);
     return 0;
@@ -260,12 +288,15 @@ static int paint(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
     if (s->light.has_shadow && noh_stage_draw_shadow(s->stage, 1, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
+    if (s->terrain.gl) noh_stage_terrain_choose(&s->terrain, &views[0], s->options->pixels);
+    if (s->terrain.gl && s->light.has_shadow) noh_stage_terrain_draw_shadow(&s->terrain, s->stage, &views[1]);
     status = canvas_open(&target, g, s->options->width, s->options->height);
     if (status) return status;
     canvas_begin(&target);
     noh_backdrop_draw(&s->backdrop,
                       s->light.background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
                       noh_stage_light_of(s->stage), &s->light.told, &views[0]);
+    if (s->terrain.gl) noh_stage_terrain_draw(&s->terrain, s->stage, &views[0]);
     if (noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, &error)) status = tool_fail_error(s->file->path, &error);
     if (!status) status = canvas_read(&target, rgba);
     canvas_close(&target);
@@ -282,6 +313,26 @@ static void take_drawn(const scene *s, place_drawn *d)
     d->gpu_bytes = s->plan.gpu_bytes;
     d->walkers_bytes = s->walkers_bytes;
     d->crowd_bytes = place_life_bytes(s->life);
+    if (!s->terrain.gl) return;
+    d->terrain_bytes = noh_stage_terrain_size(s->place->ground);
+    d->terrain_gpu_bytes = noh_stage_terrain_bytes(s->place->ground);
+    d->terrain_blocks = s->terrain.draws;
+    d->terrain_triangles = s->terrain.triangles;
+}
+
+/* Where something casts a shadow: up to 3 m above the ground. */
+static bounds box_of(const place_file *place)
+{
+    const place_area *a = &place->area;
+    const noh_field *f = place->ground;
+    double low = f ? 1e9 : 0.0, high = f ? -1e9 : 0.0;
+    for (uint32_t i = 0; f && i < f->width * f->depth; i++) {
+        const double y = (double)f->origin[1] + (double)f->scale * (double)f->heights[i];
+        low = y < low ? y : low;
+        high = y > high ? y : high;
+    }
+    return (bounds){ { (double)a->low[0], low, (double)a->low[1] },
+                     { (double)a->high[0], high + 3.0, (double)a->high[1] } };
 }
 
 int place_draw(gpu *g, const pack_file *file, const place_file *place, const place_draw_options *o, uint8_t *rgba,
@@ -297,9 +348,7 @@ int place_draw(gpu *g, const pack_file *file, const place_file *place, const pla
     status = camera_of(&s, &views[0]);
     if (!status) status = open_scene(&s, g);
     if (!status) {
-        const place_area *a = &place->area;
-        const bounds box = { { (double)a->low[0], 0.0, (double)a->low[1] },
-                             { (double)a->high[0], 3.0, (double)a->high[1] } };
+        const bounds box = box_of(place);
         memcpy(views[0].light, s.light.told.key_direction, sizeof views[0].light);
         views[1] = lighting_shadow_view(&s.light, &box);
         status = run(&s, views);

@@ -9,6 +9,7 @@
 #include "place_life.h"
 #include "place_people.h"
 #include "stage_gl/backdrop.h"
+#include "stage_gl/stage_terrain.h"
 #include "stage_gl/stage_gl.h"
 
 typedef struct place_draw_options {
@@ -26,6 +27,8 @@ typedef struct place_drawn {
     noh_stage_stats stats;
     uint32_t agents, level_count, near_count;
     uint64_t cpu_bytes, gpu_bytes, walkers_bytes, crowd_bytes;
+    uint64_t terrain_bytes, terrain_gpu_bytes;  /* 0: there is none */
+    uint32_t terrain_blocks, terrain_triangles; /* as drawn */
 } place_drawn;
 
 /* Into rgba[height][width][4]. Prints an error and returns an exit code; 0 on success. */

@@ -32,7 +32,8 @@ typedef struct place_file {
     place_area spawns[PLACE_SPAWNS_MAX];
     place_goal goals[PLACE_GOALS_MAX];
     place_step steps[PLACE_STEPS_MAX];
-    float radius, speed[2]; /* of agents: the slowest and the fastest */
+    float radius, speed[2];  /* of agents: the slowest and the fastest */
+    const noh_field *ground; /* that all of it stands on; not of the text, borrowed. NULL: y = 0 */
     uint32_t obstacle_count;
     noh_crowd_obstacle *obstacles;
     noh_smart_desc smart; /* agent_max 0; object_count 0: nobody needs anything. Points to: */

@@ -16,7 +16,8 @@ static void lay_ground(place_people *p, const place_file *place)
 {
     p->floor.normal[1] = 1.0f;
     p->world.planes = &p->floor;
-    p->world.plane_count = 1;
+    p->world.plane_count = place->ground ? 0u : 1u;
+    p->world.field = place->ground;
     p->world.boxes = p->boxes;
     p->world.friction = 0.6f;
     for (uint32_t i = 0; i < place->step_count; i++) {
@@ -99,6 +100,7 @@ void place_crowd_desc(const place_file *place, uint32_t agents, noh_crowd_desc *
     desc->obstacle_count = place->obstacle_count;
     desc->field_count = fields < NOH_CROWD_FIELDS_MAX ? fields : NOH_CROWD_FIELDS_MAX;
     desc->field_cell = CELL_M;
+    desc->ground = place->ground;
     desc->field_radius = place->radius > 0.5f * CELL_M ? place->radius : 0.5f * CELL_M;
 }
 

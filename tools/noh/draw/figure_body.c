@@ -42,13 +42,10 @@ static int parse_point(const char *text, float point[3])
 /* A file has a dot or a folder in its name. */
 static int read_land(const char *path, figure_body *b)
 {
-    const terrain_options options = { 0.0, 0.0, 0 };
-    model_error error = { "", "" };
     if (!strchr(path, '.') && !strchr(path, '/')) {
-        return tool_usage("--ground wants stairs, slope or a file (.png, .glb), not '%s'", path);
+        return tool_usage("--ground wants stairs, slope or a file (.noh, .png, .glb), not '%s'", path);
     }
-    if (!terrain_read(path, &options, &b->land, &error)) return 0;
-    return tool_fail(path, *error.where ? "%s (%s)" : "%s", error.what, error.where);
+    return ground_file_open(&b->land, path);
 }
 
 int figure_body_parse(const body_options *o, figure_body *b, int *wanted)
@@ -67,7 +64,7 @@ int figure_body_parse(const body_options *o, figure_body *b, int *wanted)
 
 void figure_body_free(figure_body *b)
 {
-    terrain_free(&b->land);
+    ground_file_close(&b->land);
 }
 
 /* ---- the world ---- */
@@ -89,7 +86,7 @@ static void lay_stairs(figure_body *b)
 
 static void lay_land(figure_body *b)
 {
-    b->field = terrain_field(&b->land);
+    b->field = b->land.field;
     for (int i = 0; i < 3; i++) b->field.origin[i] *= b->metre;
     b->field.spacing *= b->metre;
     b->field.scale *= b->metre;
@@ -98,7 +95,7 @@ static void lay_land(figure_body *b)
 
 static void lay_ground(figure_body *b)
 {
-    if (b->land.heights) {
+    if (b->land.field.heights) {
         lay_land(b);
         return;
     }

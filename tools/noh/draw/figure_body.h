@@ -6,7 +6,7 @@
 #include "gpu/gpu.h"
 #include "noh_gl.h"
 
-#include "convert/terrain/terrain_read.h"
+#include "file/ground_file.h"
 
 #define FIGURE_STEPS 14u
 
@@ -23,7 +23,7 @@ typedef struct figure_body {
     noh_world world;
     noh_plane planes[1];
     noh_obb boxes[FIGURE_STEPS];
-    terrain land; /* of a file; without heights: none */
+    ground_file land; /* without heights: none */
     noh_field field;
     float metre; /* in the pack's unit */
     /* of each kind */
