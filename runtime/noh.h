@@ -159,7 +159,7 @@
  *   delta texel          a stored difference of one vertex in one target: position, normal, tangent
  *   accumulation texel   the sum of a vertex's weighted delta texels, in an accumulator
  *   environment          light from all around
- *   surface              what a material is made of, which decides how it is lit: plain, skin, eye, teeth
+ *   surface              what a material is made of, which decides how it is lit: plain, skin, eye, teeth, toon
  *   scatter              what skin does with light: it comes out beside where it went in
  *   transfer, lobe       how a mesh answers to such light; the answer of one vertex, round about an axis
  *   occlusion            the share of the light on a matte surface that the mesh itself lets through: 1 is open

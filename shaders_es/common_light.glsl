@@ -4,6 +4,18 @@
  *   NOH_LIT   defined: by the light of common_environment.glsl. Else one key light with a wrapped edge and a highlight,
  *             a fill from sky and ground, and a soft rim */
 #ifndef NOH_DEPTH_ONLY
+#ifdef NOH_TOON
+uniform vec4 noh_surface_values; /* noh_material.surface_values */
+uniform vec3 noh_surface_more[2];
+
+/* The colour of a toon over that of the material: two tones and the edge between them, as VRMC_materials_mtoon 1.0 of
+ * the VRM Consortium has it. lit: 0 where no light comes */
+vec3 noh_toon(vec3 normal, float lit)
+{
+    float hard = noh_surface_more[0].x, reach = dot(normal, noh_key) + noh_surface_values.w + 1.0 - hard;
+    return mix(noh_surface_values.rgb, vec3(1.0), clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit);
+}
+#endif
 #ifdef NOH_LIT
 /* The isotropic GGX distribution times Smith's visibility, correlated in height (Heitz: Understanding the
  * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), over 4 nl nv. */
@@ -104,6 +116,15 @@ float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 #endif
 }
 
+#ifdef NOH_TOON
+/* The light from all around is one for the whole figure: form is drawn by the edge alone. */
+vec3 noh_light(noh_surface s)
+{
+    vec3 around = 0.5 * (noh_ambient(vec3(0.0, 1.0, 0.0)) + noh_ambient(vec3(0.0, -1.0, 0.0)));
+    vec3 tone = noh_toon(s.normal, noh_key_shadow(s.position, s.geometric));
+    return noh_expose(s.albedo * (around + noh_key_color * tone) + s.emissive);
+}
+#else
 vec3 noh_light(noh_surface s)
 {
     vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
@@ -136,6 +157,7 @@ vec3 noh_light(noh_surface s)
 #endif
     return noh_expose(color + s.emissive);
 }
+#endif
 #else
 /* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007),
  * times the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half
@@ -181,6 +203,13 @@ vec3 noh_key_matte(noh_surface s)
 #endif
 }
 
+#ifdef NOH_TOON
+/* In light it is of its own colour. */
+vec3 noh_light(noh_surface s)
+{
+    return s.albedo * (0.8 * noh_toon(s.normal, 1.0) + 0.2) + s.emissive;
+}
+#else
 vec3 noh_light(noh_surface s)
 {
     vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
@@ -211,5 +240,6 @@ vec3 noh_light(noh_surface s)
 #endif
     return color + s.emissive;
 }
+#endif
 #endif
 #endif

@@ -173,7 +173,7 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
-/* What skin, eyes and teeth are told. Skin of no unit is of metres. */
+/* What skin, eyes, teeth and toons are told. Skin of no unit is of metres. */
 static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
 {
     const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;

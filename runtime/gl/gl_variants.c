@@ -56,6 +56,7 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
     if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
+    if (m->surface == NOH_SURFACE_TOON) features |= NOH_FEATURE_TOON;
     return (uint8_t)features;
 }
 
@@ -124,6 +125,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_SKIN, "#define NOH_SKIN\n" },
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
+                  { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);

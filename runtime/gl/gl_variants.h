@@ -61,6 +61,7 @@ typedef struct noh_gl_variant_key {
 #define NOH_FEATURE_EYE 16u
 #define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps */
 #define NOH_FEATURE_TEETH 64u
+#define NOH_FEATURE_TOON 128u
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;

@@ -125,7 +125,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->flags & ~15u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
-    if (!result && m->surface > NOH_SURFACE_TEETH) {
+    if (!result && m->surface > NOH_SURFACE_TOON) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
     if (!result && (m->wrinkle_models > 7u || !m->wrinkle_models != (m->wrinkle_texture == NOH_NONE))) {
@@ -135,6 +135,10 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->surface == NOH_SURFACE_SKIN && m->surface_values[0] < 0.0f) {
         result = noh_check_fail(check, "skin has less than 0 millimetres in a unit",
                                 at + offsetof(noh_material, surface_values));
+    }
+    if (!result && m->surface == NOH_SURFACE_TOON && !(m->surface_more[0] >= 0.0f && m->surface_more[0] <= 1.0f)) {
+        result = noh_check_fail(check, "the hardness of a toon surface's edge is not within 0 to 1",
+                                at + offsetof(noh_material, surface_more));
     }
     for (uint32_t i = 0; !result && i < 2u; i++) {
         if (m->reserved[i]) {

@@ -275,11 +275,14 @@ typedef struct noh_node {
  *          where the eye looks, they are at the height x + y a + z a^2. Zeros: not known
  *   teeth  what is open to the light, from 0 to 1: the place in the bind pose times xyz, plus w; zeros: not known.
  *          Then x: how much of that is added for each unit that the place has moved; zeros
+ *   toon   xyz its colour in shade over that in light; w, from -1 to 1, how far light reaches over the edge. Then x, from
+ *          0 to 1: how hard that edge is; zeros
  * In a plain one they are zeros. */
 #define NOH_SURFACE_PLAIN 0u
 #define NOH_SURFACE_SKIN 1u
 #define NOH_SURFACE_EYE 2u
 #define NOH_SURFACE_TEETH 3u /* and gums and tongue: what light reaches through the lips only */
+#define NOH_SURFACE_TOON 4u  /* two tones and the edge between them, no gloss */
 
 /* What shows a wrinkle map: the surface's change of area in the pose; twelve regions, weighted by the expression; the
  * first weight map's red always, its green and blue as regions 3 and 6. */

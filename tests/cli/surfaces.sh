@@ -37,7 +37,7 @@ check 'extras outdo a name' grep -q "material 'leather': skin" "$work/out"
 gltf skin '{"surface":"wood","unitMm":-1}'
 noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras that say nothing'
-check 'are named' grep -q "the extra 'surface' is none of plain, skin, eye and teeth" "$work/out"
+check 'are named' grep -q "the extra 'surface' is none of plain, skin, eye, teeth and toon" "$work/out"
 check 'each of them' grep -q "the extra 'unitMm' is no number" "$work/out"
 noh info "$work/extras.noh"
 check 'and the name counts' grep -q "material 'skin': skin" "$work/out"

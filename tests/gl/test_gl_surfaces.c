@@ -1,5 +1,5 @@
-/* test_gl_surfaces.c: skin, eyes and teeth against closed forms and our own integrals: scatter, through its function
- * and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; teeth behind lips. */
+/* test_gl_surfaces.c: skin, eyes, teeth and toons against closed forms and our own integrals: scatter, through its
+ * function and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; teeth behind lips. */
 #include "support/light_scene.h"
 
 #include <math.h>
@@ -337,6 +337,39 @@ static void errata_A15_a_highlight_is_seen_from_its_point(void **state)
     scene_close(&s);
 }
 
+/* A ball lit from the right: in shade it has one tone, in light another, and between them the edge is as hard and as
+ * far as the material says. */
+static void a_toon_has_two_tones(void **state)
+{
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, right[3] = { 1.0f, 0.0f, 0.0f };
+    model_material toon = scene_material(values);
+    noh_lighting lighting;
+    double worst = 0.0;
+    uint8_t *rgba;
+    scene s;
+    (void)state;
+    toon.surface = NOH_SURFACE_TOON;
+    toon.surface_values[0] = 0.5f;
+    toon.surface_values[1] = 0.25f;
+    toon.surface_values[2] = 0.75f;
+    toon.surface_values[3] = 0.2f;
+    toon.surface_more[0] = 0.6f;
+    scene_open(&s, &toon, &scene_black, 0, NULL);
+    key_alone(right, &lighting);
+    rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
+    for (uint32_t x = SIDE / 10; x < SIDE - SIDE / 10; x++) {
+        const double lit = fmin(fmax((pixel_at(x) + 0.2 + 0.4) / 0.8, 0.0), 1.0);
+        for (int c = 0; c < 3; c++) {
+            const double dark = (double)toon.surface_values[c], should = 0.9 * (dark + (1.0 - dark) * lit);
+            worst = fmax(worst, fabs(decoded(rgba[4 * ((size_t)(SIDE / 2) * SIDE + x) + (size_t)c]) - should));
+        }
+    }
+    print_message("off by %.4f at most\n", worst);
+    assert_true(worst < 0.02);
+    free(rgba);
+    scene_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -348,6 +381,7 @@ int main(void)
         cmocka_unit_test(the_iris_lies_behind_the_cornea),
         cmocka_unit_test(lids_darken_the_ball),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
+        cmocka_unit_test(a_toon_has_two_tones),
         cmocka_unit_test(errata_A15_a_highlight_is_seen_from_its_point),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

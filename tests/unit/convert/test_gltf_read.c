@@ -18,6 +18,7 @@
 #include <meshoptimizer.h>
 
 #include "convert/model/model.h"
+#include "pack/format.h"
 
 enum { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
 
@@ -1267,6 +1268,49 @@ static void damaged_vrm_is_ignored(void **state)
     }
 }
 
+/* Two tones and the edge between them; the unlit material beside it is for readers that know no MToon. */
+static void mtoon_is_a_toon(void **state)
+{
+    static const char materials[] =
+        ",\"materials\":[{\"name\":\"skin\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0,1]},\"extensions\":{"
+        "\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{\"shadeColorFactor\":[0.25,0.75,0.5],"
+        "\"shadingShiftFactor\":-0.25,\"shadingToonyFactor\":0.75}}},"
+        "{\"name\":\"hair\",\"extensions\":{\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{\"shadeColorFactor\":7}}},"
+        "{\"name\":\"hat\",\"extensions\":{\"KHR_materials_unlit\":{}}}]";
+    scene *s = vrm_scene("\"VRMC_vrm\":{}");
+    (void)state;
+    APPEND(s->rest, "%s", materials);
+    model *m = load(s);
+    const model_material *skin = &m->materials[0], *hair = &m->materials[1];
+    assert_int_equal(skin->surface, NOH_SURFACE_TOON);
+    assert_false(skin->unlit);
+    assert_true(skin->surface_values[0] == 0.5f && skin->surface_values[1] == 0.75f && skin->surface_values[2] == 1.0f);
+    assert_true(skin->surface_values[3] == -0.25f && skin->surface_more[0] == 0.75f);
+    assert_int_equal(hair->surface, NOH_SURFACE_TOON);
+    assert_true(hair->surface_values[0] == 0.0f && hair->surface_more[0] == 0.9f);
+    assert_true(m->materials[2].unlit && m->materials[2].surface == NOH_SURFACE_PLAIN);
+    assert_true(has_warning(m, "of its MToon shading the two tones were taken"));
+    model_free(m);
+}
+
+/* Before 1.0 materials have a list beside them, the tones begin and end at cosines. */
+static void old_mtoon_is_a_toon(void **state)
+{
+    scene *s = vrm_scene(
+        "\"VRM\":{\"materialProperties\":[{\"shader\":\"VRM/MToon\",\"floatProperties\":{\"_ShadeShift\":-0.5,"
+        "\"_ShadeToony\":0.5},\"vectorProperties\":{\"_ShadeColor\":[1,0,1,1]}},{\"shader\":\"VRM_USE_GLTFSHADER\"},4]}");
+    (void)state;
+    APPEND(s->rest, "%s", ",\"materials\":[{\"name\":\"a\"},{\"name\":\"b\"},{\"name\":\"c\"}]");
+    model *m = load(s);
+    const model_material *a = &m->materials[0]; /* from -0.5 to 0.25 */
+    assert_int_equal(a->surface, NOH_SURFACE_TOON);
+    assert_true(a->surface_values[0] == 1.0f && a->surface_values[1] == 0.0f && a->surface_values[3] == 0.125f);
+    assert_true(a->surface_more[0] == 0.625f);
+    assert_int_equal(m->materials[1].surface, NOH_SURFACE_PLAIN);
+    assert_int_equal(m->materials[2].surface, NOH_SURFACE_PLAIN);
+    model_free(m);
+}
+
 /* --- animations --- */
 
 /* A morphing triangle with two keys of weights: accessors 2 (times) and 3 (values). */
@@ -2067,6 +2111,8 @@ int main(void)
         cmocka_unit_test(vrm_expressions_are_recipes),
         cmocka_unit_test(old_vrm_turns_round),
         cmocka_unit_test(damaged_vrm_is_ignored),
+        cmocka_unit_test(mtoon_is_a_toon),
+        cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

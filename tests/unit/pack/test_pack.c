@@ -408,12 +408,14 @@ static float nan_value(void)
     X(material_normal_missing, DATA, "texture", f->materials[0].normal_texture = 1)                                  \
     X(material_normal_colors, DATA, "of colours for data", f->materials[0].normal_texture = 0)                       \
     X(material_weights_missing, DATA, "texture", f->materials[0].wrinkle_weights[2] = 1)                             \
-    X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_TEETH + 1)                    \
+    X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_TOON + 1)                     \
     X(material_f0_nan, DATA, "not finite", f->materials[0].f0[2] = nan_value())                                      \
     X(material_values_nan, DATA, "not finite", f->materials[1].surface_values[3] = nan_value())                      \
     X(material_more_nan, DATA, "not finite", f->materials[1].surface_more[5] = nan_value())                          \
     X(material_skin, DATA, "less than 0 millimetres",                                                                \
       (f->materials[0].surface = NOH_SURFACE_SKIN, f->materials[0].surface_values[0] = -1.0f))                       \
+    X(material_toon, DATA, "hardness of a toon",                                                                     \
+      (f->materials[0].surface = NOH_SURFACE_TOON, f->materials[0].surface_more[0] = 1.5f))                          \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
     X(material_wrinkles, DATA, "unknown models of wrinkles", f->materials[0].wrinkle_models = 1)                     \

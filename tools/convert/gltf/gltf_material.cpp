@@ -483,18 +483,22 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 /* --- materials --- */
 
 /* By "extras": {"surface": "skin", "unitMm": 10}, else by name. */
-static void read_surface(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+static void read_surface(file &f, size_t index, model_material &out, const std::string &where)
 {
+    const tinygltf::Material &m = f.json.materials[index];
     uint32_t kind = surface_kind_of_name(m.name.c_str());
     if (m.extras.IsObject() && m.extras.Has("surface")) {
         const tinygltf::Value &word = m.extras.Get("surface");
         const uint32_t named = word.IsString() ? surface_kind_named(word.Get<std::string>().c_str()) : MODEL_NONE;
         if (named == MODEL_NONE)
-            leave_out(f, where, ": the extra 'surface' is none of plain, skin, eye and teeth, and was ignored");
+            leave_out(f, where, ": the extra 'surface' is none of plain, skin, eye, teeth and toon, and was ignored");
         else
             kind = named;
     }
-    surface_kind_set(&out, kind);
+    const bool toon = read_toon(f, index, out);
+    if (toon)
+        leave_out(f, where, ": of its MToon shading the two tones were taken; outline, rim and matcap were left out");
+    surface_kind_set(&out, toon && !m.extras.Has("surface") ? NOH_SURFACE_TOON : kind);
     if (out.surface != NOH_SURFACE_SKIN || !m.extras.IsObject() || !m.extras.Has("unitMm")) return;
     const double mm = number_in(&m.extras, "unitMm", 0.0);
     if (mm >= 1e-6 && mm <= 1e9)
@@ -541,7 +545,7 @@ static void read_material(file &f, size_t index, model_material &out)
     read_emissive(m, out, where);
     read_f0(f, m, out, where);
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
-    read_surface(f, m, out, where);
+    read_surface(f, index, out, where);
     read_maps(f, m, out, where);
 }
 

@@ -1,10 +1,11 @@
 /* gltf_vrm.cpp: what a VRM file says about its figure: which nodes are the bones of a person, what its expressions are,
- * and, before VRM 1.0, that it faces -z.
+ * which materials are toons (MToon), and, before VRM 1.0, that it faces -z.
  *
  * The bones take VRM's names for them, which are the same in every file: hips, leftUpperArm. Expressions become lines
  * of a face's recipe (base/recipe_read.h). Sources: VRMC_vrm-1.0 and VRM 0.0 of the VRM Consortium's specifications. */
 #include "gltf_internal.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <set>
 
@@ -204,6 +205,63 @@ static void store_recipes(file &f, const recipes &r)
         mesh.recipe = copy_string(entry.second);
     }
 }
+
+/* --- MToon --- */
+
+static double number_member(const value *object, const char *key, double otherwise)
+{
+    const value *found = object ? member(*object, key) : nullptr;
+    return found && found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
+}
+
+static double between(double value, double low, double high)
+{
+    return value >= low ? (value <= high ? value : high) : low; /* low where it is no number */
+}
+
+/* The tone in shade is a share of that in light: the pack has one picture for both. */
+static void set_tones(const value *shade, double gamma, model_material &out)
+{
+    for (int i = 0; i < 3; ++i) {
+        const bool given = shade && shade->IsArray() && static_cast<int>(shade->ArrayLen()) > i &&
+                           shade->Get(i).IsNumber();
+        const double lit = static_cast<double>(out.base_color[i]);
+        const double dark = std::pow(between(given ? shade->Get(i).GetNumberAsDouble() : 0.0, 0.0, 1.0), gamma);
+        out.surface_values[i] = static_cast<float>(between(lit > 1e-4 ? dark / lit : 1.0, 0.0, 1.0));
+    }
+}
+
+/* VRM 0.0 has them apart from the materials, in their order; its colours are as a screen shows them. Its tones begin
+ * and end at cosines of the light, 1.0's at a middle and half a width (UniVRM converts them in the same way). */
+static bool read_old_toon(const value &vrm, size_t index, model_material &out)
+{
+    const value *all = array_member(vrm, "materialProperties");
+    if (!all || index >= all->ArrayLen()) return false;
+    const value &m = all->Get(static_cast<int>(index));
+    const value *floats = member(m, "floatProperties"), *vectors = member(m, "vectorProperties");
+    if (text_member(m, "shader") != "VRM/MToon") return false;
+    const double begin = between(number_member(floats, "_ShadeShift", 0.0), -1.0, 1.0);
+    const double hard = between(number_member(floats, "_ShadeToony", 0.9), 0.0, 1.0), end = 1.0 + (begin - 1.0) * hard;
+    set_tones(vectors ? member(*vectors, "_ShadeColor") : nullptr, 2.2, out);
+    out.surface_values[3] = static_cast<float>(-0.5 * (begin + end));
+    out.surface_more[0] = static_cast<float>(between(1.0 - 0.5 * (end - begin), 1e-3, 1.0));
+    return true;
+}
+
+bool read_toon(const file &f, size_t index, model_material &out)
+{
+    const tinygltf::ExtensionMap &extensions = f.json.materials[index].extensions;
+    const auto found = extensions.find("VRMC_materials_mtoon");
+    const value *old = extension(f, "VRM");
+    if (found == extensions.end() || !found->second.IsObject()) return old && read_old_toon(*old, index, out);
+    const value &m = found->second;
+    set_tones(member(m, "shadeColorFactor"), 1.0, out);
+    out.surface_values[3] = static_cast<float>(between(number_member(&m, "shadingShiftFactor", 0.0), -1.0, 1.0));
+    out.surface_more[0] = static_cast<float>(between(number_member(&m, "shadingToonyFactor", 0.9), 1e-3, 1.0));
+    return true;
+}
+
+/* --- all of it --- */
 
 void read_vrm(file &f)
 {

@@ -4,7 +4,7 @@
 
 #include "pack/format.h"
 
-static const char *const names[] = { "plain", "skin", "eye", "teeth" }; /* in the order of NOH_SURFACE_* */
+static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
 
 uint32_t surface_kind_named(const char *word)
 {
@@ -121,9 +121,15 @@ uint32_t surface_kind_of_name(const char *name)
 
 void surface_kind_set(model_material *m, uint32_t kind)
 {
-    static const float straight[] = { 0.04f, 0.028f, 0.025f, 0.04f };
+    static const float straight[] = { 0.04f, 0.028f, 0.025f, 0.04f, 0.04f };
+    static const float shade[] = { 0.68f, 0.62f, 0.72f };
     const float before = straight[m->surface];
+    if (kind == NOH_SURFACE_TOON) m->unlit = 0; /* exporters write both, for readers that know no toons */
     m->surface = m->unlit ? NOH_SURFACE_PLAIN : kind;
+    if (m->surface == NOH_SURFACE_TOON && m->surface_more[0] <= 0.0f) {
+        memcpy(m->surface_values, shade, sizeof shade);
+        m->surface_more[0] = 0.9f; /* MToon's own */
+    }
     for (int i = 0; i < 3; i++) {
         if (m->f0[i] > before - 1e-4f && m->f0[i] < before + 1e-4f) m->f0[i] = straight[m->surface];
     }

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* The NOH_SURFACE_* called "plain", "skin", "eye" or "teeth"; MODEL_NONE for any other word. */
+/* The NOH_SURFACE_* called "plain", "skin", "eye", "teeth" or "toon"; MODEL_NONE for any other word. */
 uint32_t surface_kind_named(const char *word);
 
 /* By the words of a material's name in English, German, French, Spanish, Portuguese, Italian, Dutch, Polish, Russian,

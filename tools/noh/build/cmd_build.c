@@ -446,9 +446,9 @@ static const option options[] = {
     { .name = "--surface",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, surfaces),
-      .value = "MATERIAL=skin|eye|teeth|plain",
+      .value = "MATERIAL=skin|eye|teeth|toon|plain",
       .what =
-          "draw a material as skin, as an eye, as teeth, gums and tongue, or as none of them; may repeat; default: what its extras say (\"surface\"), else the words of its name",
+          "draw a material as skin, as an eye, as teeth, gums and tongue, in the two tones of a toon, or as none of them; may repeat; default: what its extras say (\"surface\") or VRM's MToon, else the words of its name",
       .example = "face=skin",
       .excludes = "--only=anim" },
     { .name = "--identity",

@@ -32,7 +32,7 @@ static const char *alpha_of(const noh_material *m)
 
 static const char *surface_of(const noh_material *m)
 {
-    static const char *const names[] = { "plain", "skin", "eye", "teeth" };
+    static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" };
     return names[m->surface];
 }
 
