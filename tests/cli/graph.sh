@@ -35,7 +35,7 @@ noh dump "$work/a.noh" --graph puppet --clip walk -o "$work/x.graph"
 expect 2 'a graph has no clip to pose'
 
 refused() { # LINE MESSAGE : what is in $work/bad.graph is refused so
-    noh build "$puppet" -o "$work/bad.noh" --graph "$work/bad.graph" --quiet
+    noh build "$puppet" -o "$work/bad.noh" --only anim --graph "$work/bad.graph" --quiet
     expect 1 "refused: $2"
     says "bad.graph:$1: $2"
     check 'and nothing is written' test ! -e "$work/bad.noh"
@@ -47,10 +47,10 @@ refused 3 "no input has a joint 'nek'; did you mean 'neck'?"
 printf 'graph a\nclip walk sped=2\n' >"$work/bad.graph"
 refused 2 "'clip' has no option 'sped', or has it twice; did you mean 'speed'?"
 printf 'graph a\nclip walk loop=once sync=feet\n' >"$work/bad.graph"
-noh build "$puppet" -o "$work/bad.noh" --graph "$work/bad.graph" --quiet
+noh build "$puppet" -o "$work/bad.noh" --only anim --graph "$work/bad.graph" --quiet
 expect 1 'what the runtime would refuse is refused when it is built'
 says "graph 'a', node 'walk'"
-noh build "$puppet" -o "$work/bad.noh" --graph "$work/none.graph" --quiet
+noh build "$puppet" -o "$work/bad.noh" --only anim --graph "$work/none.graph" --quiet
 expect 1 'a file that is not there'
 says none.graph
 noh build "$puppet" -o "$work/bad.noh" --graph $text --only mesh --quiet
