@@ -104,6 +104,19 @@ static inline raw_set *fixture_swing(uint32_t joints, uint32_t frames, uint32_t 
     return set;
 }
 
+/* Every n-th frame. */
+static inline void fixture_decimate(raw_clip *c, uint32_t n)
+{
+    const uint32_t count = (c->frame_count - 1u) / n + 1u;
+    for (uint32_t f = 1; f < count; f++) {
+        memmove(fixture_rotation(c, f, 0), fixture_rotation(c, f * n, 0), c->joint_count * 4u * sizeof(float));
+        memmove(fixture_translation(c, f, 0), fixture_translation(c, f * n, 0), c->joint_count * 3u * sizeof(float));
+        memmove(fixture_scale(c, f, 0), fixture_scale(c, f * n, 0), c->joint_count * 3u * sizeof(float));
+    }
+    c->frame_count = count;
+    c->sample_rate_hz /= n;
+}
+
 /* ---- encoded and opened ---- */
 
 /* Open fixture->blob with its bind pose. NULL on success, else what failed. */

@@ -844,18 +844,6 @@ static void clips_may_be_cut_anywhere(void **state)
 
 /* ---- real clip ---- */
 
-static void decimate(raw_clip *c, uint32_t n)
-{
-    const uint32_t count = (c->frame_count - 1u) / n + 1u;
-    for (uint32_t f = 1; f < count; f++) {
-        memmove(fixture_rotation(c, f, 0), fixture_rotation(c, f * n, 0), c->joint_count * 4u * sizeof(float));
-        memmove(fixture_translation(c, f, 0), fixture_translation(c, f * n, 0), c->joint_count * 3u * sizeof(float));
-        memmove(fixture_scale(c, f, 0), fixture_scale(c, f * n, 0), c->joint_count * 3u * sizeof(float));
-    }
-    c->frame_count = count;
-    c->sample_rate_hz /= n;
-}
-
 static const char *const real_clips[] = { "CesiumMan", "Fox__Run", "Fox__Survey", "Knight__1H_Melee_Attack_Chop",
                                           "Knight__2H_Melee_Attack_Spin", "Knight__Death_B", "Knight__Idle",
                                           "Knight__Lie_StandUp", "RobotExpressive__Dance", "RobotExpressive__Wave",
@@ -882,7 +870,7 @@ static void real_clip_holds(const char *name, int whole)
             print_message("SKIP: %s is not there (set NOH_ASSETS to the assets' folder)\n", path);
             skip();
         }
-        if (set->clips[0].sample_rate_hz > 60.0 && !whole) decimate(&set->clips[0], 4);
+        if (set->clips[0].sample_rate_hz > 60.0 && !whole) fixture_decimate(&set->clips[0], 4);
         memset(&o, 0, sizeof o);
         o.error_cm = loose ? 0.1 : 0.01;
         o.shell_cm = loose ? 10.0 : 3.0;

@@ -82,8 +82,9 @@ static int new_loop(encoder *e)
     l->slack = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->slack);
     l->floor = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->floor);
     l->turns = enc_alloc(e, e->joint_count, sizeof *l->turns);
-    return !l->turns || !l->slack || !l->floor || !l->errors || !l->errors_before || !l->errors_end || !l->end ||
-           !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
+    l->raw = enc_alloc(e, e->joint_count, sizeof *l->raw);
+    return !l->turns || !l->raw || !l->slack || !l->floor || !l->errors || !l->errors_before || !l->errors_end ||
+           !l->end || !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
 }
 
 static void free_segments(encoder *e)
@@ -115,6 +116,7 @@ static void free_encoder(encoder *e)
         free(e->loop->turns);
         free(e->loop->slack);
         free(e->loop->floor);
+        free(e->loop->raw);
         free(e->loop);
     }
     free(e->joints);

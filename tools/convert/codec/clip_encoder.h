@@ -126,7 +126,9 @@ typedef struct enc_loop {
     double *slack;                      /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
     double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation\'s parents take, however exact it is */
     double rho_scale;
+    uint8_t *raw; /* [joint] its tracks are stored raw */
     int all_raw;
+    int gives_up; /* whoever is to blame is stored raw */
 } enc_loop;
 
 /* Symbol counts, to train the tables. */

@@ -21,6 +21,11 @@
 #define BETWEEN (ENC_PARTS - 1)
 #define SPIN_W (-0.7) /* beyond this the components of a rotation grow without bound: it is stored raw */
 #define TRANSLATION_SCALE_MIN 1e-9
+#define RAW_TRIES 6  /* of TRIES, the last: what is to blame is stored raw, track by track */
+#define TURN_MAX 4.0 /* of a correction, in what turns a whole shell by the bound */
+/* A parent that has shrunk to less than this share of its size in the segment shows little of a translation, and what
+ * would make up for its own error grows without bound. */
+#define SHRUNK 0.25
 
 enum { ROTATION, TRANSLATION, SCALE };
 
@@ -36,6 +41,11 @@ static space_global *placed(const encoder *e, uint32_t joint, uint32_t f)
 static double *slack_of(const encoder *e, uint32_t joint)
 {
     return &e->loop->slack[(size_t)joint * ENC_FRAMES_MAX];
+}
+
+static int is_raw(const encoder *e, uint32_t joint)
+{
+    return e->loop->all_raw || e->loop->raw[joint];
 }
 
 /* Of a whole track. */
@@ -144,7 +154,7 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
 {
     const enc_joint *t = &e->joints[joint];
     const space_global *raw = enc_global(e, frame, joint);
-    double a[6] = { 0 }, b[3] = { 0 }, off[3], x[3], det, turn[4], turned[4];
+    double a[6] = { 0 }, b[3] = { 0 }, off[3], x[3], det, most, size, turn[4], turned[4];
     for (int i = 0; i < 3; i++) off[i] = position[i] - raw->p[i];
     for (int k = 0; k < 3; k++) {
         const double s = t->shell[k], u[3] = { s * raw->m[k], s * raw->m[3 + k], s * raw->m[6 + k] };
@@ -166,7 +176,9 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
     x[2] = ((a[3] * a[5] - a[1] * a[4]) * b[0] + (a[3] * a[4] - a[0] * a[5]) * b[1] +
             (a[0] * a[1] - a[3] * a[3]) * b[2]) /
            det;
-    for (int i = 0; i < 3; i++) turn[i] = x[i] / 2.0 * e->tuning.correction;
+    most = TURN_MAX * t->bound / e->shell; /* points that lie close, as on what has shrunk, would ask for any turn */
+    size = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    for (int i = 0; i < 3; i++) turn[i] = x[i] * (size > most ? most / size : 1.0) / 2.0 * e->tuning.correction;
     turn[3] = 1.0;
     space_unit(turn);
     space_mul(turn, q, turned);
@@ -267,7 +279,7 @@ static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_tr
     }
     rotation_limits(e, &j, q);
     piece->raw = 0;
-    if (spins || e->loop->all_raw || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j))
+    if (spins || is_raw(e, joint) || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j))
         return raw_rotation(e, &j, piece, q);
     return 0;
 }
@@ -324,7 +336,8 @@ static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece,
     for (uint32_t f = 0; f < count; f++) {
         for (int c = 0; c < 3; c++) relative[f][c] = targets[f][c] - (double)track->track.reference[c];
     }
-    if (!e->loop->all_raw && !enc_fit(e, track, piece, count, track->track.reference, relative, check, j)) {
+    if (!(track->track.kind == NOH_CLIP_FLOATS ? e->loop->all_raw : is_raw(e, j->joint)) &&
+        !enc_fit(e, track, piece, count, track->track.reference, relative, check, j)) {
         const noh_clip_basis *basis = &e->bases[count];
         float components[ENC_FRAMES_MAX][4];
         uint8_t frames[ENC_FRAMES_MAX * 16u];
@@ -345,31 +358,55 @@ static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece,
     return 0;
 }
 
+static double column(const double m[9], int k)
+{
+    return sqrt(m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
+}
+
 static double largest_column(const double m[9])
 {
     double worst = 0.0;
     for (int k = 0; k < 3; k++) {
-        const double n = sqrt(m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
+        const double n = column(m, k);
         if (n > worst) worst = n;
     }
     return worst;
 }
 
+/* The translation that puts a joint where it belongs, seen from its decoded parent. `most`: the parent's scales, at
+ * their largest in the segment; where it has shrunk far below them the raw translation is taken, by and by. */
+static void translation_target(const encoder *e, uint32_t joint, uint32_t frame, const space_global *parent,
+                               const double most[3], double target[3])
+{
+    const double *local = enc_local(e, frame, joint)->t;
+    double inverse[9], d[3];
+    if (!space_inverse(parent->m, inverse)) return;
+    for (int i = 0; i < 3; i++) d[i] = enc_global(e, frame, joint)->p[i] - parent->p[i];
+    space_apply(inverse, d, target);
+    for (int k = 0; k < 3; k++) {
+        const double part = column(parent->m, k) / (SHRUNK * most[k]);
+        if (part < 1.0) target[k] = local[k] + (target[k] - local[k]) * part * part;
+    }
+}
+
 static int fit_translation(encoder *e, uint32_t joint, const enc_segment *s, enc_track *track, enc_piece *piece)
 {
-    double targets[ENC_FRAMES_MAX][3], values[ENC_FRAMES_MAX][3], scale = 0.0;
+    const int open = e->options.open_loop || (e->loop->all_raw && e->level >= 2);
+    double targets[ENC_FRAMES_MAX][3], values[ENC_FRAMES_MAX][3], most[3] = { 0.0, 0.0, 0.0 }, scale = 0.0;
     judged j;
     j.segment = s;
     j.joint = joint;
+    for (uint32_t f = 0; f < s->count && e->joints[joint].parent != ENC_NONE; f++) {
+        for (int k = 0; k < 3; k++) {
+            const double n = column(lossy_parent(e, joint, f)->m, k);
+            if (n > most[k]) most[k] = n;
+            if (n > scale) scale = n;
+        }
+    }
     for (uint32_t f = 0; f < s->count; f++) {
-        const space_global *parent = lossy_parent(e, joint, f), *raw = enc_global(e, s->first + f, joint);
-        double inverse[9], d[3];
+        const space_global *parent = lossy_parent(e, joint, f);
         memcpy(targets[f], enc_local(e, s->first + f, joint)->t, sizeof targets[f]);
-        if (!parent) continue;
-        if (largest_column(parent->m) > scale) scale = largest_column(parent->m);
-        if (e->options.open_loop || (e->loop->all_raw && e->level >= 2) || !space_inverse(parent->m, inverse)) continue;
-        for (int i = 0; i < 3; i++) d[i] = raw->p[i] - parent->p[i];
-        space_apply(inverse, d, targets[f]);
+        if (parent && !open) translation_target(e, joint, s->first + f, parent, most, targets[f]);
     }
     if (e->joints[joint].parent == ENC_NONE) scale = 1.0;
     j.limit = e->tuning.linear_part * e->joints[joint].bound * least_slack(e, joint, s->count) /
@@ -503,11 +540,14 @@ static int can_aim_lower(const encoder *e, uint32_t joint, uint32_t f)
     return t->tracks[ROTATION] != ENC_NONE && floor[f] < slack_of(e, joint)[f];
 }
 
-/* The joint, or its nearest parent that can, aims at less. */
+/* The joint, or its nearest parent that can, aims at less; late, it is stored raw, or if it is, the next one above. */
 static void lower_slack(const encoder *e, uint32_t joint, uint32_t f, double violation)
 {
     double *slack;
     while (!can_aim_lower(e, joint, f) && e->joints[joint].parent != ENC_NONE) joint = e->joints[joint].parent;
+    while (e->loop->gives_up && is_raw(e, joint) && e->joints[joint].parent != ENC_NONE)
+        joint = e->joints[joint].parent;
+    if (e->loop->gives_up) e->loop->raw[joint] = 1;
     slack = &slack_of(e, joint)[f];
     *slack *= violation > 2.0 ? 0.5 : 0.97 / violation;
     if (!(*slack >= SLACK_MIN)) *slack = SLACK_MIN;
@@ -592,15 +632,21 @@ void enc_free_pieces(const encoder *e, enc_piece *pieces)
     free(pieces);
 }
 
-/* With the current tuning: reduce the slack until the whole segment holds; of those to blame alone (`apart`), or of all
- * joints in all frames. */
-static int fit_tuned(encoder *e, const enc_segment *s, int apart, double *worst)
+/* How a segment's slack is reduced until it holds: of those to blame alone, of all joints in all frames, or of those to
+ * blame, who are stored raw in the last tries. Each way is tried where those before it did not do. */
+enum { APART, TOGETHER, GIVING_UP, WAYS };
+
+/* With the current tuning. */
+static int fit_tuned(encoder *e, const enc_segment *s, int way, double *worst)
 {
+    const int apart = way != TOGETHER;
     double slack = 1.0;
     for (size_t i = 0; i < (size_t)e->joint_count * ENC_FRAMES_MAX; i++) e->loop->slack[i] = 1.0;
+    memset(e->loop->raw, 0, e->joint_count);
     e->loop->rho_scale = 1.0;
     for (int i = 0; i <= TRIES; i++) {
         e->loop->all_raw = (i == TRIES && e->level == 1) || e->level >= 2;
+        e->loop->gives_up = way == GIVING_UP && i >= TRIES - RAW_TRIES;
         if (fit_all(e, s)) return 1;
         *worst = segment_error(e, s, apart);
         if (*worst <= SAFETY || e->loop->all_raw || i == TRIES) break;
@@ -630,11 +676,12 @@ int enc_segment_fit(encoder *e, uint32_t index, double *worst)
     failed = !best || !s->pieces;
     *worst = 2.0;
     if (!failed) raw_between(e, s);
-    for (uint32_t t = 0; t < 2u * e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
+    for (uint32_t t = 0; t < WAYS * e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
+        const int way = (int)(t % WAYS);
         size_t bytes = 0;
-        if (t % 2u && w <= 1.0) continue; /* those to blame alone were enough */
-        e->tuning = e->tunings[t / 2u];
-        failed = fit_tuned(e, s, t % 2u == 0u, &w) || enc_segment_cost(e, s, &bytes);
+        if ((way == TOGETHER && w <= 1.0) || (way == GIVING_UP && *worst <= 1.0)) continue;
+        e->tuning = e->tunings[t / WAYS];
+        failed = fit_tuned(e, s, way, &w) || enc_segment_cost(e, s, &bytes);
         if (!failed && (t == 0u || (w <= 1.0 && (bytes < least || *worst > 1.0)))) {
             enc_piece *swap = s->pieces;
             s->pieces = best;
