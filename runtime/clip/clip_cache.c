@@ -8,6 +8,7 @@
 typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u
+#define GLIMPSE_FRAMES 16u      /* segments up to this are decoded whole, always */
 #define SEGMENTS_MAX (1u << 28) /* of all clips of a cache: their table is within 32 bits of bytes */
 
 /* ---- sizes ---- */
@@ -32,6 +33,7 @@ static uint32_t entry_bytes(const noh_clip_info *info)
 void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info)
 {
     const uint32_t bytes = entry_bytes(info), size = size_class(bytes);
+    const uint8_t basis = (uint8_t)(1u << noh_clip_basis_of(info));
     NOH_ASSERT(size < NOH_CLIP_CACHE_SIZES);
     needs->clip_count++;
     if (info->segment_count == 0 || info->segment_count > SEGMENTS_MAX - needs->segment_count) {
@@ -41,8 +43,8 @@ void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *
     needs->segment_count += info->segment_count;
     needs->size_segments[size] += info->segment_count;
     if (bytes > needs->size_bytes[size]) needs->size_bytes[size] = bytes;
-    needs->lengths[info->segment_frames_max] = 1; /* segments of a clip have one or two lengths */
-    needs->lengths[info->frame_count / info->segment_count] = 1;
+    needs->lengths[info->segment_frames_max] |= basis; /* segments of a clip have one or two lengths */
+    needs->lengths[info->frame_count / info->segment_count] |= basis;
 }
 
 /* How many of `left` entries a class gets; the classes are asked from the largest down. */
@@ -99,18 +101,17 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
 
 /* ---- memory ---- */
 
-/* The cosines of each segment length that occurs, once for all clips. */
-static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_basis *bases)
+/* The transforms of each segment length that occurs, once for all clips. */
+static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_cache *cache, int build)
 {
-    for (uint32_t n = 1; n <= NOH_CLIP_SEGMENT_FRAMES_MAX; n++) {
+    for (uint32_t i = 0; i < NOH_CLIP_BASES * NOH_CLIP_SEGMENT_FRAMES_MAX; i++) {
+        const uint32_t n = i / NOH_CLIP_BASES + 1u, basis = i % NOH_CLIP_BASES;
         float *rows;
-        if (!needs->lengths[n]) continue;
+        if (!(needs->lengths[n] >> basis & 1u)) continue;
         rows = noh_arena_carve(arena, noh_clip_basis_count(n) * sizeof *rows, 16u);
-        if (rows && bases) {
-            noh_clip_basis_build(n, rows);
-            bases[n].frames = n;
-            bases[n].half = noh_clip_basis_half(n);
-            bases[n].rows = rows;
+        if (rows && build) {
+            noh_clip_basis_build(n, basis, rows);
+            cache->rows[basis][n] = rows;
         }
     }
 }
@@ -153,7 +154,7 @@ static void carve(noh_arena *arena, const noh_clip_cache_needs *needs, uint32_t 
 {
     cache->clip_count = needs->clip_count;
     cache->cached_count = capacity_of(needs, cached_segment_count);
-    carve_bases(arena, needs, build ? cache->bases : NULL);
+    carve_bases(arena, needs, cache, build);
     cache->clips = noh_arena_carve(arena, cache->clip_count * sizeof *cache->clips, 8u);
     cache->cached = noh_arena_carve(arena, cache->cached_count * sizeof *cache->cached, 8u);
     cache->sizes = noh_arena_carve(arena, count_sizes(needs, cache->cached_count) * sizeof *cache->sizes, 4u);
@@ -322,7 +323,7 @@ static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segm
     t->used = 1;
     t->clip = clip;
     t->cursor = noh_clip_cursor_at(e->clip, segment);
-    t->wanted = 0;
+    t->wanted = t->glimpsed = 0;
     t->stamp = cache->stamp - 1u; /* so that touch() moves it, even if it was evicted in the frame that touched it */
     cache->cached_of[e->first + segment] = (uint16_t)s;
 }
@@ -333,11 +334,50 @@ static uint32_t decode_cached(noh_clip_cache *cache, uint32_t s, uint32_t track_
     return noh_clip_decode_up_to(cache, cache->clips[t->clip].clip, &t->cursor, track_end, t->frames);
 }
 
-/* The entry of a segment with at least `tracks` decoded, whatever it takes. A clip's second segment always finds room
- * beside its first (`keep`): a size class with a single entry either has a single segment, or is the last class that
- * got any, and then a larger entry exists, because a cache of several segments has at least two. */
-static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks, uint32_t keep)
+/* Whether a clip's segment is decoded whole, up to a track. */
+static int is_whole(const noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
+    const noh_cached_clip *e = &cache->clips[clip];
+    const uint32_t s = segment < e->clip->info.segment_count ? cache->cached_of[e->first + segment]
+                                                             : NOH_CLIP_NOT_CACHED;
+    return s != NOH_CLIP_NOT_CACHED && cache->cached[s].cursor.track >= tracks;
+}
+
+/* Decode an entry up to a track, whole or at the frames of `quads` (bits as noh_clip_quad_bit gives them) alone.
+ *
+ * A jump needs two frames, and the next sample may be elsewhere; so of a segment whose neighbours are not there, and
+ * which nobody wanted, only the frames about these are summed up. Its bits have to be read all the same, and again when
+ * the rest is needed: whoever plays on from a jump decodes that segment twice. */
+static void decode_late(noh_clip_cache *cache, uint32_t s, uint32_t tracks, uint32_t quads)
+{
+    cached *t = &cache->cached[s];
+    const noh_clip *clip = cache->clips[t->clip].clip;
+    const uint32_t segment = t->cursor.segment;
+    noh_clip_basis basis = noh_clip_cache_basis(cache, clip, segment, ~quads);
+    uint32_t spent;
+    if (t->glimpsed || t->wanted || basis.frames <= GLIMPSE_FRAMES || is_whole(cache, t->clip, segment - 1u, tracks) ||
+        is_whole(cache, t->clip, segment + 1u, tracks)) {
+        spent = decode_cached(cache, s, tracks);
+    } else {
+        noh_clip_cursor cursor = t->cursor;
+        noh_clip_decode(clip, &basis, &cursor, tracks, t->frames);
+        t->glimpsed = tracks;
+        t->skipped = ~quads;
+        spent = tracks * 2u;
+    }
+    cache->stats.misses++;
+    cache->stats.decoded += spent;
+    cache->stats.decoded_late += spent;
+}
+
+/* The entry of a segment with at least `tracks` decoded at the frames of `quads`, whatever it takes. A clip's second
+ * segment always finds room beside its first (`keep`): a size class with a single entry either has a single segment, or
+ * is the last class that got any, and then a larger entry exists, because a cache of several segments has at least two.
+ */
+static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks, uint32_t quads,
+                      uint32_t keep)
+{
+    const cached *t;
     uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
     if (s == NOH_CLIP_NOT_CACHED) {
         s = find_room(cache, clip, keep, 1);
@@ -345,12 +385,8 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
         take(cache, s, clip, segment);
     }
     touch(cache, s);
-    if (cache->cached[s].cursor.track < tracks) {
-        const uint32_t spent = decode_cached(cache, s, tracks);
-        cache->stats.misses++;
-        cache->stats.decoded += spent;
-        cache->stats.decoded_late += spent;
-    }
+    t = &cache->cached[s];
+    if (t->cursor.track < tracks && (t->glimpsed < tracks || t->skipped & quads)) decode_late(cache, s, tracks, quads);
     return s;
 }
 
@@ -461,13 +497,22 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
     return spent;
 }
 
+/* The frames that a sample needs of the segment it begins in, as noh_clip_quad_bit. Of a next one it is the first. */
+static uint32_t quads_of(const noh_clip_place *p)
+{
+    const uint32_t frames = noh_clip_segment_first(p->clip, p->segment + 1u) -
+                            noh_clip_segment_first(p->clip, p->segment);
+    const uint32_t here = noh_clip_quad_bit(p->frame, frames);
+    return p->crosses || p->fraction == 0.0f ? here : here | noh_clip_quad_bit(p->frame + 1u, frames);
+}
+
 void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
                      float *floats)
 {
     const noh_clip_place p = noh_clip_place_of(noh_clip_cache_clip(cache, clip), ticks, joint_count);
     NOH_ASSERT(out || p.joints == 0u);
-    const uint32_t s = ready(cache, clip, p.segment, p.tracks, NOH_CLIP_NOT_CACHED);
-    const uint8_t *next = p.crosses ? cache->cached[ready(cache, clip, p.segment + 1u, p.tracks, s)].frames : NULL;
+    const uint32_t s = ready(cache, clip, p.segment, p.tracks, quads_of(&p), NOH_CLIP_NOT_CACHED);
+    const uint8_t *next = p.crosses ? cache->cached[ready(cache, clip, p.segment + 1u, p.tracks, 1u, s)].frames : NULL;
     cache->stats.samples++;
     noh_clip_blend_place(&p, cache->cached[s].frames, next, out, floats);
 }

@@ -46,7 +46,8 @@ typedef struct noh_clip_cache_desc {
 
 typedef struct noh_clip_cache noh_clip_cache;
 
-/* Counts since init: what to size the cache by next time. */
+/* Counts since init: what to size the cache by next time. A sample that jumps to a segment whose neighbours are not
+ * cached decodes two frames of it, and counts two for each track. */
 typedef struct noh_clip_cache_stats {
     uint64_t samples;
     uint64_t misses; /* segments that a sample had to decode, in part or whole */
@@ -70,7 +71,7 @@ typedef struct noh_clip_cache_needs {
     uint32_t clip_count, segment_count;
     uint32_t size_segments[NOH_CLIP_CACHE_SIZES];      /* segments in each size class */
     uint32_t size_bytes[NOH_CLIP_CACHE_SIZES];         /* bytes of the largest segment of each */
-    uint8_t lengths[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u]; /* 1: some segment has so many frames */
+    uint8_t lengths[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u]; /* bit b: some segment of transform b has so many frames */
 } noh_clip_cache_needs;
 
 void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info);

@@ -21,6 +21,8 @@ typedef struct noh_cached_segment {
     uint32_t clip;
     uint32_t stamp;         /* the frame of the game in which it was last touched */
     uint32_t wanted;        /* decode up to this track */
+    uint32_t glimpsed;      /* tracks that are decoded at the frames that `skipped` leaves, beside the cursor's ... */
+    uint32_t skipped;       /* ... as noh_clip_basis.skip */
     uint16_t older, newer;  /* in its size's list */
     uint16_t before, after; /* in the list of wants, while it is in it */
     uint8_t size;           /* index of its noh_clip_size_class */
@@ -44,8 +46,8 @@ struct noh_clip_cache {
     uint32_t stamp;
     uint16_t first_want, last_want;
     noh_clip_cache_stats stats;
-    /* by frames of a segment; only the lengths that the clips have */
-    noh_clip_basis bases[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
+    /* by transform and by frames of a segment; only those that the clips have */
+    const float *rows[NOH_CLIP_BASES][NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
 };
 
 /* Where a sample lies in its clip. */
@@ -79,17 +81,25 @@ static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *
     noh_clip_blend_frames(p->clip, a, b, p->fraction, p->joints, out, floats);
 }
 
+static inline noh_clip_basis noh_clip_cache_basis(const noh_clip_cache *cache, const noh_clip *clip, uint32_t segment,
+                                                  uint32_t skip)
+{
+    const uint32_t frames = noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
+    const noh_clip_basis basis = { frames, noh_clip_basis_half(frames),
+                                   cache->rows[noh_clip_basis_of(&clip->info)][frames], skip };
+    return basis;
+}
+
 /* Decode a segment from where its cursor stands up to a track. Returns how many track-frames that was. */
 static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor,
                                              uint32_t track_end, uint8_t *out)
 {
-    const uint32_t frames = noh_clip_segment_first(clip, cursor->segment + 1u) -
-                            noh_clip_segment_first(clip, cursor->segment);
+    const noh_clip_basis basis = noh_clip_cache_basis(cache, clip, cursor->segment, 0);
     const uint32_t before = cursor->track;
     if (track_end > before) {
-        noh_clip_decode(clip, &cache->bases[frames], cursor, track_end, out);
+        noh_clip_decode(clip, &basis, cursor, track_end, out);
     }
-    return (cursor->track - before) * frames;
+    return (cursor->track - before) * basis.frames;
 }
 
 #endif

@@ -49,14 +49,16 @@
  *   last     symbol: number of frequencies, 0..frames of the segment
  *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs_internal.h
  *   dc       frequency 0: per component a category symbol, then bits and sign
- * Values are the orthonormal DCT-II of each component; a rotation's components are the modified Rodrigues vector
+ * Values are the orthonormal DCT-II of each component, or with PARABOLA the transform whose rows are the constant, x
+ * and x^2 and then the DCT-II's from its second on, made orthonormal in that order among those of the same symmetry; a
+ * rotation's components are the modified Rodrigues vector
  * u = 4 xyz / (1 + w) relative to the reference, a linear track's are differences from it.
  *
  * Threads: constants. */
 #ifndef NOH_CLIP_CLIP_FORMAT_H
 #define NOH_CLIP_CLIP_FORMAT_H
 
-#define NOH_CLIP_VERSION 3u /* raised for new tables too: clip_tables.c is part of the format */
+#define NOH_CLIP_VERSION 4u /* raised for new tables too: clip_tables.c is part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: some joint's lever is too long for 16 bits */
 #define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale is not its bind pose's */
@@ -64,7 +66,8 @@
 #define NOH_CLIP_FLAG_OPEN 8u  /* coded in an open loop, each joint for itself: joints may be masked or replaced */
 /* the bound holds for all points at the shell's distance; without it, for the three on each joint's axes */
 #define NOH_CLIP_FLAG_SPHERE 16u
-#define NOH_CLIP_FLAGS_ALL 31u
+#define NOH_CLIP_FLAG_PARABOLA 32u /* the transform begins with a parabola: see above */
+#define NOH_CLIP_FLAGS_ALL 63u
 
 #define NOH_CLIP_JOINTS_MAX 4096u
 #define NOH_CLIP_FLOATS_MAX 4096u

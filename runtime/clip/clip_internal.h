@@ -62,6 +62,12 @@ noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc);
 /* Read the next group; returns 0 after the last one. */
 int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group);
 
+/* Which of the NOH_CLIP_BASES a clip is coded in. */
+static inline uint32_t noh_clip_basis_of(const noh_clip_info *info)
+{
+    return (info->flags & NOH_CLIP_FLAG_PARABOLA) != 0u;
+}
+
 static inline uint32_t noh_clip_segment_first(const noh_clip *clip, uint32_t segment)
 {
     return clip->segment_firsts[segment];

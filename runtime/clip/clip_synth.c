@@ -34,11 +34,76 @@ static double basis_cosine(uint32_t m, uint32_t n)
     return m <= n ? quarter_cosine(m, n) : -quarter_cosine(2u * n - m, n);
 }
 
-void noh_clip_basis_build(uint32_t frames, float *rows)
+/* The root of a number within the range of floats, by Newton's method from the float's. */
+static double root(double x)
 {
-    const uint32_t half = noh_clip_basis_half(frames);
+    double r = (double)noh_sqrt((float)x);
+    r = 0.5 * (r + x / r);
+    return 0.5 * (r + x / r);
+}
+
+/* The sum over all frames of a product of two rows of the same symmetry, of which the first halves are given. */
+static double product_of(const double *a, const double *b, uint32_t frames)
+{
+    double sum = 0.0;
+    for (uint32_t f = 0; f < frames / 2u; f++) {
+        sum += 2.0 * a[f] * b[f];
+    }
+    return frames % 2u ? sum + a[frames / 2u] * b[frames / 2u] : sum;
+}
+
+/* The even or the odd rows of the transform that begins with a parabola. Motion does not stop where a segment ends: the
+ * DCT takes it for mirrored there, and the kink in its slope keeps coefficients large to the highest frequencies. What
+ * x and x^2 leave of a smooth motion has no slope at either end.
+ *
+ * Gram and Schmidt's method in a closed form: `rest` is what is left of the power (x or x^2) after the cosines so far,
+ * which are orthogonal to each other already; so of all rows before it a cosine has to be made orthogonal to `rest`
+ * alone. */
+static void build_parabola(uint32_t frames, uint32_t odd, float *rows)
+{
+    const uint32_t half = noh_clip_basis_half(frames), middle = (frames + 1u) / 2u;
+    const double scale = root(2.0 / (double)frames);
+    double rest[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u], cosine[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u], size, mean;
+    for (uint32_t f = 0; f < middle; f++) {
+        const double x = (double)frames - 1.0 - 2.0 * (double)f;
+        rest[f] = odd ? x : x * x;
+        cosine[f] = 1.0 / (double)frames;
+    }
+    mean = odd ? 0.0 : product_of(rest, cosine, frames);
+    for (uint32_t f = 0; f < middle; f++) {
+        rest[f] -= mean;
+    }
+    for (uint32_t k = odd ? 1u : 2u; k < frames; k += 2u) {
+        const uint32_t frequency = k - 2u; /* wraps where k is 1: the power itself, as where k is 2 */
+        const double square = product_of(rest, rest, frames);
+        if (k <= 2u) {
+            size = 1.0 / root(square);
+            for (uint32_t f = 0; f < middle; f++) {
+                rows[k * half + f] = (float)(size * rest[f]);
+            }
+            continue;
+        }
+        for (uint32_t f = 0; f < middle; f++) {
+            cosine[f] = scale * basis_cosine((2u * f + 1u) * frequency, frames);
+        }
+        mean = product_of(cosine, rest, frames);
+        size = 1.0 / root(1.0 - mean * mean / square);
+        for (uint32_t f = 0; f < middle; f++) {
+            rows[k * half + f] = (float)(size * (cosine[f] - mean / square * rest[f]));
+            rest[f] -= mean * cosine[f];
+        }
+    }
+}
+
+void noh_clip_basis_build(uint32_t frames, uint32_t parabola, float *rows)
+{
+    const uint32_t half = noh_clip_basis_half(frames), cosines = parabola ? 1u : frames;
     memset(rows, 0, (size_t)noh_clip_basis_count(frames) * sizeof *rows);
-    for (uint32_t k = 0; k < frames; k++) {
+    if (parabola) {
+        build_parabola(frames, 0, rows);
+        build_parabola(frames, 1, rows);
+    }
+    for (uint32_t k = 0; k < cosines; k++) {
         const float scale = noh_sqrt((k ? 2.0f : 1.0f) / (float)frames);
         for (uint32_t f = 0; f < (frames + 1u) / 2u; f++) {
             rows[k * half + f] = scale * (float)basis_cosine((2u * f + 1u) * k, frames);
@@ -211,6 +276,7 @@ static inline void synth_rotation(const noh_clip_basis *basis, const float (*coe
     for (uint32_t f = 0; f < middle; f += 4u) {
         const uint32_t lanes = middle - f < 4u ? middle - f : 4u;
         quad u;
+        if (basis->skip >> f / 4u & 1u) continue;
         transform_quad(basis, coefs, last, f, &u);
         rotate_quad(u.front, r, front);
         rotate_quad(u.back, r, back);
@@ -240,6 +306,7 @@ void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4],
         float front[4][4], back[4][4];
         noh_v4 v[4];
         quad u;
+        if (basis->skip >> f / 4u & 1u) continue;
         transform_quad(basis, coefs, last, f, &u);
         for (int side = 0; side < 2; side++) {
             for (int c = 0; c < 3; c++) {

@@ -2,7 +2,7 @@
  *
  * The encoder calls these very functions, so that its closed loop sees the decoder's bits.
  *
- *   noh_clip_basis_build    the DCT-II rows of a segment length
+ *   noh_clip_basis_build    the rows of a segment length
  *   noh_clip_step           a step id's size
  *   noh_clip_quat_expand    three small components to a unit quaternion
  *   noh_clip_mix_matrix     a quaternion's matrix
@@ -16,13 +16,21 @@
 
 #include "clip/clip_format.h"
 
-/* The orthonormal DCT-II of one length, first halves of its rows: row k is even about the middle for even k, odd for
+/* The orthonormal transform of one length, first halves of its rows: row k is even about the middle for even k, odd for
  * odd k. */
 typedef struct noh_clip_basis {
     uint32_t frames;
     uint32_t half;     /* (frames + 1) / 2, up to a multiple of 4 */
     const float *rows; /* [frames][half], zeros past the middle */
+    uint32_t skip;     /* bit i: frames 4 i to 4 i + 3 and their mirrors are not wanted and stay as they are */
 } noh_clip_basis;
+
+/* The bit of `skip` that a frame lies under. */
+static inline uint32_t noh_clip_quad_bit(uint32_t frame, uint32_t frames)
+{
+    const uint32_t mirror = frames - 1u - frame;
+    return 1u << (frame < mirror ? frame : mirror) / 4u;
+}
 
 /* How many floats half a row has, and a whole basis. */
 static inline uint32_t noh_clip_basis_half(uint32_t frames)
@@ -34,8 +42,11 @@ static inline uint32_t noh_clip_basis_count(uint32_t frames)
     return frames * noh_clip_basis_half(frames);
 }
 
-/* Fill rows[noh_clip_basis_count(frames)]; frames 1..NOH_CLIP_SEGMENT_FRAMES_MAX. */
-void noh_clip_basis_build(uint32_t frames, float *rows);
+/* The two transforms: the DCT-II, and the one that begins with a parabola (NOH_CLIP_FLAG_PARABOLA). */
+#define NOH_CLIP_BASES 2u
+
+/* Fill rows[noh_clip_basis_count(frames)]; frames 1..NOH_CLIP_SEGMENT_FRAMES_MAX; parabola 0 or 1. */
+void noh_clip_basis_build(uint32_t frames, uint32_t parabola, float *rows);
 
 /* 2^(NOH_CLIP_STEP_TOP - id / 4); id below NOH_CLIP_STEP_IDS. */
 float noh_clip_step(uint32_t id);

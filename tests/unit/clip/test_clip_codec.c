@@ -635,6 +635,39 @@ static void a_prefix_of_joints_is_decoded_alone(void **state)
     fixture_free(&y);
 }
 
+/* A jump sums up the frames that it needs; who plays on has the segment whole, with the bits of one that was wanted. */
+static void a_jump_decodes_what_it_needs(void **state)
+{
+    fixture x, y;
+    noh_clip_info info;
+    uint8_t jumped[SAMPLE_BYTES], played[SAMPLE_BYTES];
+    (void)state;
+    assert_null(fixture_build(&x, with_floats(POSE, 400, 34), NULL, 2));
+    assert_null(fixture_build(&y, with_floats(POSE, 400, 34), NULL, 16));
+    noh_clip_info_of(x.clip, &info);
+    for (int i = 0; i < 12; i++) {
+        const int64_t t = (int64_t)i * 200003 % 639000; /* five segments on, or eleven back */
+        const uint64_t before = noh_clip_cache_stats_of(x.cache).decoded;
+        uint64_t jump, whole;
+        noh_clip_cache_begin_frame(x.cache);
+        sample_into(x.cache, t, POSE, jumped);
+        jump = noh_clip_cache_stats_of(x.cache).decoded - before;
+        assert_true(jump <= 4u * info.track_count); /* two frames of one segment or of two */
+        sample_into(x.cache, t + (t < 500000 ? 9600 : -9600), POSE, played);
+        whole = noh_clip_cache_stats_of(x.cache).decoded - before - jump;
+        assert_true(whole >= 20u * info.track_count || whole <= 4u * info.track_count);
+        noh_clip_cache_want(y.cache, 0, t, POSE);
+        noh_clip_cache_want(y.cache, 0, t + 24 * 1600, POSE);
+        noh_clip_cache_work(y.cache, UINT32_MAX);
+        sample_into(y.cache, t, POSE, played);
+        assert_memory_equal(jumped, played, sizeof played);
+        sample_into(x.cache, t, POSE, jumped);
+        assert_memory_equal(jumped, played, sizeof played);
+    }
+    fixture_free(&x);
+    fixture_free(&y);
+}
+
 static void decoding_ahead_leaves_no_misses(void **state)
 {
     fixture x;
@@ -914,6 +947,7 @@ int main(void)
         cmocka_unit_test(encoding_is_deterministic),
         cmocka_unit_test(any_order_gives_the_same_bits),
         cmocka_unit_test(a_prefix_of_joints_is_decoded_alone),
+        cmocka_unit_test(a_jump_decodes_what_it_needs),
         cmocka_unit_test(decoding_ahead_leaves_no_misses),
         cmocka_unit_test(a_block_too_small_says_what_works),
         cmocka_unit_test(other_skeletons_and_versions_are_refused),

@@ -9,6 +9,7 @@
 
 #include "clip/clip_cache.h"
 #include "clip/clip_coefs_internal.h"
+#include "clip/clip_synth_internal.h"
 
 #define BYTES_MAX 2048u
 #define SEGMENTS_MAX 40u
@@ -325,6 +326,72 @@ static void wild_references_have_a_sign(void **state)
     close_player(&p);
 }
 
+/* ---- transforms ---- */
+
+/* Frame f of row k: even rows are mirrored, odd ones also negated. */
+static double row_at(const float *rows, uint32_t frames, uint32_t k, uint32_t f)
+{
+    const uint32_t half = noh_clip_basis_half(frames), mirror = frames - 1u - f;
+    const double v = (double)rows[k * half + (f < mirror ? f : mirror)];
+    return f > mirror && k % 2u ? -v : v;
+}
+
+/* So errors of coefficients and of frames have one size, and the second transform spends three coefficients on a
+ * constant, a slope and a bend. */
+static void transforms_are_orthonormal(void **state)
+{
+    static float rows[NOH_CLIP_SEGMENT_FRAMES_MAX * NOH_CLIP_SEGMENT_FRAMES_MAX];
+    (void)state;
+    for (uint32_t i = 0; i < NOH_CLIP_BASES * NOH_CLIP_SEGMENT_FRAMES_MAX; i++) {
+        const uint32_t frames = i / NOH_CLIP_BASES + 1u, parabola = i % NOH_CLIP_BASES;
+        noh_clip_basis_build(frames, parabola, rows);
+        for (uint32_t a = 0; a < frames; a++) {
+            double square = 0.0;
+            for (uint32_t b = 0; b < frames; b++) {
+                double sum = 0.0;
+                for (uint32_t f = 0; f < frames; f++) sum += row_at(rows, frames, a, f) * row_at(rows, frames, b, f);
+                assert_true(fabs(sum - (a == b ? 1.0 : 0.0)) < 1e-6);
+            }
+            for (uint32_t f = 0; f < frames; f++) {
+                const double x = (double)f / (double)frames;
+                square += row_at(rows, frames, a, f) * (0.3 + 2.0 * x - 1.5 * x * x);
+            }
+            if (parabola && a > 2u) assert_true(fabs(square) < 1e-6);
+        }
+    }
+}
+
+/* What is skipped stays as it was, and the rest is what it is without skipping. */
+static void skipped_frames_stay(void **state)
+{
+    float rows[40 * 20], coefs[40][4], reference[4] = { 0.0f, 0.6f, 0.0f, 0.8f };
+    uint8_t whole[40 * 16], part[sizeof whole];
+    noh_clip_basis basis = { 37, noh_clip_basis_half(37), rows, 0 };
+    (void)state;
+    noh_clip_basis_build(37, 1, rows);
+    for (uint32_t k = 0; k < 160u; k++) coefs[k / 4u][k % 4u] = 0.3f / (float)(1u + k % 7u);
+    for (int kind = 0; kind < 3; kind++) {
+        memset(whole, 0, sizeof whole);
+        memset(part, 0x55, sizeof part);
+        for (int skips = 0; skips < 2; skips++) {
+            uint8_t *out = skips ? part : whole;
+            basis.skip = skips ? ~4u : 0u; /* but frames 8 to 11, and 25 to 28 */
+            if (kind < 2) {
+                noh_clip_synth_rotation(&basis, (const float(*)[4])coefs, 9, reference, kind, out, 16);
+            } else {
+                noh_clip_synth_linear(&basis, (const float(*)[4])coefs, 9, reference, out, 16);
+            }
+        }
+        for (uint32_t f = 0; f < 37u; f++) {
+            const size_t bytes = kind == 0 ? 8u : kind == 1 ? 16u : 12u;
+            const int wanted = (f >= 8u && f < 12u) || (f >= 25u && f < 29u);
+            assert_int_equal(noh_clip_quad_bit(f, 37) == 4u, wanted);
+            if (wanted) assert_memory_equal(part + 16u * f, whole + 16u * f, bytes);
+            for (size_t i = 0; i < 16u && !wanted; i++) assert_int_equal(part[16u * f + i], 0x55);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -332,6 +399,8 @@ int main(void)
         cmocka_unit_test(steps_of_one_segment_follow_each_other),
         cmocka_unit_test(raw_values_that_are_not_finite_are_zero),
         cmocka_unit_test(wild_references_have_a_sign),
+        cmocka_unit_test(transforms_are_orthonormal),
+        cmocka_unit_test(skipped_frames_stay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,8 +160,8 @@ static void frames_are_the_scalar_twins(void **state)
     uint32_t seed = 5;
     (void)state;
     for (uint32_t frames = 1; frames <= NOH_CLIP_SEGMENT_FRAMES_MAX; frames++) {
-        const noh_clip_basis basis = { frames, noh_clip_basis_half(frames), rows };
-        basis_build_scalar(frames, rows);
+        const noh_clip_basis basis = { frames, noh_clip_basis_half(frames), rows, frames % 3u ? 0u : 2u };
+        basis_build_scalar(frames, frames % 2u, rows);
         for (uint32_t i = 0; i < 12u; i++) {
             float coefs[NOH_CLIP_SEGMENT_FRAMES_MAX][4], reference[4];
             uint8_t here[NOH_CLIP_SEGMENT_FRAMES_MAX * STRIDE], there[sizeof here];

@@ -4,10 +4,11 @@
  *
  *   prepare   double precision, quaternions in one hemisphere, object-space transforms of every frame
  *   analyse   which tracks are constant, what each joint's rotation carries, the reference and axes of each track
- *   segments  for each run of about 24 frames, parents first: a DCT along time, quantised by the largest step whose
- *             decoded result keeps the object-space error within the bound (clip_segment.c, clip_fit.c)
- *   write     the coefficients, in prefix codes whose tables were trained on other clips (tools/clip_tables)
- *   certify   the bytes are decoded by the runtime's own code and measured; only then are they returned
+ *   basis     the transform that promises fewer bits for this clip
+ *   segments  for each run of about 24 frames, parents first: a transform along time, quantised by the largest step
+ * whose decoded result keeps the object-space error within the bound (clip_segment.c, clip_fit.c) write     the
+ * coefficients, in prefix codes whose tables were trained on other clips (tools/clip_tables) certify   the bytes are
+ * decoded by the runtime's own code and measured; only then are they returned
  *
  * The certificate therefore does not depend on the encoder's reasoning: a mistake shows there, and the clip is encoded
  * again at a more careful level: level 0  everything that saves bytes level 1  rotations cached as floats, and almost
@@ -29,7 +30,6 @@
 #define DEFAULT_ERROR_CM 0.01
 #define DEFAULT_SHELL_CM 3.0
 #define DEFAULT_FLOAT_ERROR 0.001
-#define DEFAULT_SEGMENT_FRAMES 24u
 #define SEGMENT_FRAMES_MIN 8u
 #define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
 #define RAW_JOINT_BYTES 40u
@@ -50,11 +50,10 @@ static int set_options(encoder *e, const clip_options *given)
     if (o->error_cm == 0.0) o->error_cm = DEFAULT_ERROR_CM;
     if (o->shell_cm == 0.0) o->shell_cm = DEFAULT_SHELL_CM;
     if (o->float_error == 0.0) o->float_error = DEFAULT_FLOAT_ERROR;
-    if (o->segment_frames == 0u) o->segment_frames = DEFAULT_SEGMENT_FRAMES;
     if (!(o->error_cm >= 1e-6 && o->error_cm <= 400.0)) return enc_fail(e, "error_cm: 0.000001 to 400");
     if (!(o->shell_cm >= 1e-3 && o->shell_cm <= 1e5)) return enc_fail(e, "shell_cm: 0.001 to 100000");
     if (!(o->float_error > 0.0)) return enc_fail(e, "float_error: above 0");
-    if (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX)
+    if (o->segment_frames && (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX))
         return enc_fail(e, "segment_frames: 8 to 40");
     if (!(e->skeleton->unit_cm > 0.0)) return enc_fail(e, "unit_cm: above 0");
     e->unit_cm = e->skeleton->unit_cm;
@@ -99,10 +98,7 @@ static void free_encoder(encoder *e)
 {
     free_segments(e);
     for (uint32_t j = 0; e->joints && j < e->joint_count; j++) free(e->joints[j].points);
-    for (uint32_t n = 0; n <= ENC_FRAMES_MAX; n++) {
-        free((void *)(uintptr_t)e->bases[n].rows);
-        free(e->transforms[n]);
-    }
+    enc_free_bases(e);
     if (e->loop) {
         free(e->loop->local);
         free(e->loop->global);
@@ -162,7 +158,7 @@ static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *de
     e->drop = drops[e->level];
     *worst_part = 0.0;
     *decoded = 0;
-    if (enc_prepare(e) || enc_analyse(e) || new_loop(e)) return 1;
+    if (enc_prepare(e) || enc_analyse(e) || enc_choose_basis(e) || new_loop(e)) return 1;
     for (uint32_t s = 0; s < e->segment_count; s++) {
         double worst;
         if (enc_segment_fit(e, s, &worst)) return 1;

@@ -2,6 +2,7 @@
  *
  * clip_prepare.c  raw clip to double, in one hemisphere; object space
  * clip_analyse.c  what is animated, levers, references, mixes
+ * clip_basis.c    which transform
  * clip_fit.c      one track of one segment: the largest step that holds the bound
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
@@ -106,6 +107,7 @@ typedef struct encoder {
     uint32_t track_count, rotation_count;
     enc_segment *segments;
     uint32_t segment_count;
+    uint32_t parabola; /* which of the NOH_CLIP_BASES */
     noh_clip_basis bases[ENC_FRAMES_MAX + 1];
     double *transforms[ENC_FRAMES_MAX + 1]; /* [frames][frames], from the bases */
     struct enc_loop *loop;                  /* clip_segment.c */
@@ -162,6 +164,8 @@ static inline double enc_error(const encoder *e, uint32_t joint, const space_glo
 /* Each returns 0, or 1 with e->error filled. */
 int enc_prepare(encoder *e);
 int enc_analyse(encoder *e);
+int enc_choose_basis(encoder *e);
+void enc_free_bases(encoder *e);
 int enc_segment_fit(encoder *e, uint32_t index, double *worst);
 void enc_free_pieces(const encoder *e, enc_piece *pieces);
 int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes);

@@ -5,6 +5,9 @@
 #include "clip_encoder.h"
 
 #define SHELL_SCALE_MIN 1e-6
+#define SEGMENT_FRAMES 24u      /* of a segment, and ... */
+#define SEGMENT_FRAMES_FAST 32u /* ... where a third of a second has more: so many, at most these */
+#define SEGMENT_S (1.0 / 3.0)
 
 int enc_fail(encoder *e, const char *what)
 {
@@ -144,34 +147,20 @@ static int prepare_joints(encoder *e)
     return 0;
 }
 
-static int prepare_bases(encoder *e)
+/* Frames that follow each other faster are more alike: what a segment costs whatever its length is shared by more. (40
+ * are 2 % smaller than 32 on captured motion at 120 Hz, and take a quarter more memory in a cache; floats alone, which
+ * are few bytes in a file and many in a cache, stay with 24.) */
+static uint32_t segment_frames(const encoder *e)
 {
-    for (uint32_t s = 0; s < e->segment_count; s++) {
-        const uint32_t n = e->segments[s].count, half = noh_clip_basis_half(n);
-        float *rows;
-        if (e->transforms[n]) continue;
-        rows = enc_alloc(e, noh_clip_basis_count(n), sizeof *rows);
-        if (!rows) return 1;
-        e->bases[n].frames = n;
-        e->bases[n].half = half;
-        e->bases[n].rows = rows;
-        noh_clip_basis_build(n, rows);
-        e->transforms[n] = enc_alloc(e, (size_t)n * n, sizeof **e->transforms);
-        if (!e->transforms[n]) return 1;
-        for (uint32_t k = 0; k < n; k++) {
-            for (uint32_t f = 0; f < n; f++) {
-                const uint32_t mirrored = f < (n + 1u) / 2u ? f : n - 1u - f;
-                const double v = (double)rows[k * half + mirrored];
-                e->transforms[n][k * n + f] = mirrored != f && k % 2u ? -v : v;
-            }
-        }
-    }
-    return 0;
+    const double frames = e->clip->joint_count ? e->clip->sample_rate_hz * SEGMENT_S : 0.0;
+    if (e->options.segment_frames) return e->options.segment_frames;
+    if (frames > SEGMENT_FRAMES_FAST) return SEGMENT_FRAMES_FAST;
+    return frames > SEGMENT_FRAMES ? (uint32_t)frames : SEGMENT_FRAMES;
 }
 
 static int prepare_segments(encoder *e)
 {
-    const uint32_t wanted = e->options.segment_frames;
+    const uint32_t wanted = segment_frames(e);
     uint32_t count = (e->frame_count + wanted / 2u) / wanted;
     if (count == 0u) count = 1;
     while ((e->frame_count + count - 1u) / count > ENC_FRAMES_MAX) count++;
@@ -198,5 +187,5 @@ int enc_prepare(encoder *e)
             return enc_fail(e, "more floats than the format holds (4096)");
         e->float_count += e->clip->floats[g].width;
     }
-    return check(e) || prepare_segments(e) || prepare_floats(e) || prepare_joints(e) || prepare_bases(e);
+    return check(e) || prepare_segments(e) || prepare_floats(e) || prepare_joints(e);
 }

@@ -89,7 +89,8 @@ static uint32_t rounded(double v)
 static uint32_t flags_of(const encoder *e)
 {
     uint32_t flags = (e->wide ? NOH_CLIP_FLAG_WIDE : 0u) | (e->clip->loop ? NOH_CLIP_FLAG_LOOP : 0u) |
-                     (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u) | (e->options.axes ? 0u : NOH_CLIP_FLAG_SPHERE);
+                     (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u) | (e->options.axes ? 0u : NOH_CLIP_FLAG_SPHERE) |
+                     (e->parabola ? NOH_CLIP_FLAG_PARABOLA : 0u);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         if (e->joints[j].modes[2] != NOH_CLIP_MODE_BIND) flags |= NOH_CLIP_FLAG_SCALE;
     }
