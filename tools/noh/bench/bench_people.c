@@ -177,14 +177,21 @@ static void measure(people *p, const char *scene)
     add_row(p, scene, "walkers", p->parts[WALKERS], steps);
 }
 
+/* A clip "walk", and a body with the feet for it. */
 static int has_people(const noh_pack *pack)
 {
+    noh_ragdoll_source source;
+    noh_feet_rig rig;
     int walks = 0;
+    memset(&source, 0, sizeof source);
+    source.pack = pack;
+    source.metres = 1.0f;
     for (uint32_t i = 0; i < pack->clip_count; i++) {
         noh_pack_clip clip;
         walks |= noh_pack_clip_at(pack, i, &clip, NULL) == NOH_OK && strcmp(clip.name, "walk") == 0;
     }
-    return walks && pack->skeleton_count;
+    return walks && noh_pack_skeleton_at(pack, 0, &source.joints, NULL, NULL) == NOH_OK &&
+           noh_feet_rig_make(&source, &rig, NULL) == NOH_OK;
 }
 
 static int bench_scene(bench_job *job, gpu *g, const char *scene)
