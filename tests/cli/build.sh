@@ -53,4 +53,20 @@ if [ -f "$assets/hero/head.glb" ] && [ -f "$assets/hero/head_sparse.glb" ]; then
 else
     skip 'dense and sparse targets give the same pack' 'no hero/head.glb in NOH_ASSETS'
 fi
+
+# ---- a head and a body ----
+
+noh build "$mask" --seam maybe -o "$work/x.noh"
+expect 2 '--seam wants check, mend or off'
+noh build "$mask" --attach "$work/nobody.glb" -o "$work/x.noh"
+expect 1 'what is attached must be there'
+check 'and is named' grep -q nobody.glb "$work/err"
+noh build "$build/demo/arm.glb" --attach "$build/demo/puppet.glb" -o "$work/x.noh"
+expect 1 'joints of other names'
+check 'are told' grep -q 'none of its joints has the name' "$work/err"
+noh build "$build/demo/arm.glb" --attach "$build/demo/arm.glb" --only mesh -o "$work/two.noh"
+expect 0 'what is attached shares the joints'
+noh build "$mask" --seam mend --only mesh -o "$work/x.noh"
+expect 0 'nothing to mend'
+check 'is a warning' grep -q 'no seam was closed' "$work/out" "$work/err"
 finish

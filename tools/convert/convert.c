@@ -528,7 +528,10 @@ static int read_all(const char *const *inputs, int count, const convert_options 
                                options->identity,
                                options->split_eyes,
                                options->lips,
-                               options->targets };
+                               options->targets,
+                               options->attached,
+                               options->attached_count,
+                               options->seam };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
@@ -540,6 +543,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
             reading.split_eyes = 0;
             reading.lips = 0;
             reading.targets = NULL;
+            reading.attached_count = 0;
         }
     }
     return 0;

@@ -10,6 +10,7 @@
 #include "pack/pack.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
+#include "convert/skin/seam.h"
 #include "convert/skin/skins.h"
 #include "convert/wrinkle/wrinkle_make.h"
 
@@ -26,8 +27,11 @@ typedef struct convert_options {
     uint32_t two_stream_count;
     const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
     uint32_t surface_count;
-    const char *identity;       /* a model of the same vertices whose targets make people; NULL: none */
-    const char *targets;        /* a folder of .obj files: the targets of the first .obj model; NULL: none */
+    const char *identity;        /* a model of the same vertices whose targets make people; NULL: none */
+    const char *targets;         /* a folder of .obj files: the targets of the first .obj model; NULL: none */
+    const char *const *attached; /* [attached_count] models whose meshes are added to the first's */
+    uint32_t attached_count;
+    seam_mode seam;             /* of skinned meshes that go on as each other */
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */
     uint32_t texture_max;       /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */

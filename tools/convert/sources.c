@@ -12,6 +12,7 @@
 #include "convert/fbx/fbx_read.h"
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
+#include "convert/model/model_attach.h"
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
 #include "convert/skin/eye_split.h"
@@ -76,10 +77,24 @@ static int read_model(const char *path, const source_options *options, model **o
     return has_ending(path, ".obj") ? obj_read(path, &obj, out, error) : model_read_gltf(path, out, error);
 }
 
+/* Add the meshes of other files to a model that has meshes. */
+static int attach_all(const source_options *options, model *m, model_error *error)
+{
+    for (uint32_t i = 0; i < options->attached_count && m->mesh_count; i++) {
+        model *other = NULL;
+        model_error own = { "", "" };
+        int failed = read_model(options->attached[i], options, &other, &own) ||
+                     model_attach(m, other, options->attached[i], &own);
+        model_free(other);
+        if (failed) return model_fail(error, options->attached[i], "%s", own.what);
+    }
+    return 0;
+}
+
 static int read_model_file(const char *path, const source_options *options, source *s, model_error *error)
 {
     sample_options sampling = { options->sample_rate_hz };
-    if (read_model(path, options, &s->m, error)) {
+    if (read_model(path, options, &s->m, error) || attach_all(options, s->m, error)) {
         return 1;
     }
     for (uint32_t i = 0; i < options->two_stream_count; i++) {
@@ -94,6 +109,9 @@ static int read_model_file(const char *path, const source_options *options, sour
         return 1;
     }
     if (options->lips && s->m->mesh_count && lip_target_add(s->m, options->skin.report, error)) {
+        return 1;
+    }
+    if (seams_close(s->m, options->seam, options->skin.report, error)) {
         return 1;
     }
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {

@@ -8,6 +8,7 @@
 
 #include "convert/clips/joint_match.h"
 #include "convert/clips/model_clips.h"
+#include "convert/skin/seam.h"
 #include "convert/skin/skins.h"
 
 typedef struct source {
@@ -24,10 +25,13 @@ typedef struct source_options {
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
-    const char *identity; /* a file of targets that make people, see identity_join.h; NULL: none */
-    int split_eyes;       /* 1: eyeballs get joints, see eye_split.h */
-    int lips;             /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
-    const char *targets;  /* of .obj: a folder of targets, see obj_read.h; NULL: none */
+    const char *identity;        /* a file of targets that make people, see identity_join.h; NULL: none */
+    int split_eyes;              /* 1: eyeballs get joints, see eye_split.h */
+    int lips;                    /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
+    const char *targets;         /* of .obj: a folder of targets, see obj_read.h; NULL: none */
+    const char *const *attached; /* [attached_count] models whose meshes are added to the first, see model_attach.h */
+    uint32_t attached_count;
+    seam_mode seam;
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

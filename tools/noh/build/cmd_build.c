@@ -19,11 +19,11 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain,
-        *textures, *bound, *rename;
+        *textures, *bound, *rename, *seam;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
         terrain_points, texture_max;
-    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines;
+    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines, attached;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -79,6 +79,12 @@ static int set_skin(const build_args *a, convert_options *o)
     o->skin.influences = (uint32_t)a->influences;
     o->skin.palette = (uint32_t)a->palette;
     o->skin.keep_parts = a->keep_parts;
+    o->seam = strcmp(a->seam, "mend") == 0 ? SEAM_MEND : strcmp(a->seam, "off") == 0 ? SEAM_OFF : SEAM_CHECK;
+    if (o->seam == SEAM_CHECK && strcmp(a->seam, "check") != 0) {
+        return tool_usage("--seam wants check, mend or off, not '%s'", a->seam);
+    }
+    o->attached = a->attached.items;
+    o->attached_count = (uint32_t)a->attached.count;
     o->two_streams = a->two_streams.items;
     o->two_stream_count = (uint32_t)a->two_streams.count;
     o->surfaces = a->surfaces.items;
@@ -435,6 +441,23 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, keep_parts),
       .what = "keep rigid meshes below joints separate instead of joining them into one skinned mesh",
+      .excludes = "--only=anim" },
+    { .name = "--attach",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, attached),
+      .value = "FILE",
+      .what =
+          "add the meshes of this model to the first one, a head to a body: joints of the same name become one; may repeat",
+      .example = "head.glb",
+      .excludes = "--only=anim" },
+    { .name = "--seam",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, seam),
+      .value = "check|mend|off",
+      .initial = "check",
+      .what =
+          "where one skinned mesh goes on as another, a head on a body: warn where places, normals, weights or targets differ, or make them equal",
+      .example = "mend",
       .excludes = "--only=anim" },
     { .name = "--two-stream",
       .kind = OPTION_LIST,

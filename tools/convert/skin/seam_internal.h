@@ -1,0 +1,30 @@
+/* seam_internal.h: what measuring a seam and mending it share. */
+#ifndef NOH_CONVERT_SKIN_SEAM_INTERNAL_H
+#define NOH_CONVERT_SKIN_SEAM_INTERNAL_H
+
+#include "seam.h"
+#include "seam_pair.h"
+
+/* What moves a vertex, by node: so that skins can be compared. */
+typedef struct node_weight {
+    uint32_t node;
+    double weight;
+} node_weight;
+
+/* Returns how many. */
+uint32_t node_weights_of(const model *m, const border *b, uint32_t vertex, node_weight out[MODEL_INFLUENCES_MAX]);
+
+/* At rest, in the world: the matrix of a vertex, and its unit normal in a target's pose (delta NULL: without). */
+void seam_matrix(const model *m, const border *b, uint32_t vertex, double out[16]);
+void seam_normal(const model *m, const border *b, uint32_t vertex, const float *delta, double out[3]);
+
+/* The target of another mesh that has the same name; MODEL_NONE: there is none. */
+uint32_t seam_namesake(const model_mesh *of, const char *name);
+
+/* A delta of a vertex, in the world. */
+void seam_delta(const model *m, const border *b, uint32_t vertex, const float *delta, double out[3]);
+
+/* Give both sides of a seam the same of everything. The weld is that of both sides' meshes. 1 when out of memory. */
+int seam_mend(model *m, const seam_pair *seam, uint32_t *const weld[2]);
+
+#endif
