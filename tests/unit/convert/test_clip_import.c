@@ -675,6 +675,25 @@ static void rates_rise_where_playing_strays(void **state)
     loaded_free(&l);
 }
 
+/* What holds still is no curve, whatever its interpolation is called, and fast turns between linear keys, played a
+ * little nearer to a line than spherical ones go, are frames beside any curve. Exporters write both. */
+static void held_steps_and_fast_turns_keep_the_rate(void **state)
+{
+    const float times[2] = { 0, 1.0f / 30.0f }, still[6] = { 1, 2, 3, 1, 2, 3 }, jump[6] = { 1, 2, 3, 2, 2, 3 };
+    loaded l;
+    scene *s = turning(40, 30.0, 50.0, 0.0);
+    (void)state;
+    add_move(s, 0, "STEP", times, 2, still, 6);
+    l = load(s, 0.0);
+    assert_true(only_clip(&l)->sample_rate_hz == 30.0 && !has_warning(l.m, "--rate"));
+    loaded_free(&l);
+    s = turning(40, 30.0, 50.0, 0.0);
+    add_move(s, 0, "STEP", times, 2, jump, 6);
+    l = load(s, 0.0);
+    assert_true(only_clip(&l)->sample_rate_hz > 30.0 && has_warning(l.m, "--rate 30 keeps the keys alone"));
+    loaded_free(&l);
+}
+
 static void keys_off_any_grid(void **state)
 {
     (void)state;
@@ -1031,6 +1050,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(key_rates_are_found),
     cmocka_unit_test(keys_are_taken_as_they_are),
     cmocka_unit_test(rates_rise_where_playing_strays),
+    cmocka_unit_test(held_steps_and_fast_turns_keep_the_rate),
     cmocka_unit_test(keys_off_any_grid),
     cmocka_unit_test(asked_rates_keep_the_length),
     cmocka_unit_test(impossible_rates_are_refused),

@@ -45,6 +45,7 @@ struct timing {
     double near_s;   /* a key at most this far from a frame counts as on it, so that a rounded time does not cost its
                         exact value */
     double error_cm; /* the largest distance between the played frames and the curves, each track judged alone */
+    double keys_hz;  /* of the grid that all keys lie on; 0: there is none */
 };
 double frame_time_s(const timing &t, uint32_t frame);
 /* sample_rate_hz 0: choose one. Throws failure if more than frames_max would be needed. */

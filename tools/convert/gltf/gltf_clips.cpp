@@ -235,6 +235,16 @@ static void warn_of_error(const set_job &job, const raw_clip &clip, double toler
                                 where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
 }
 
+/* More frames than keys are more bytes: whoever can do without the curves should know. */
+static void warn_of_rate(const set_job &job, const timing &when, const std::string &where)
+{
+    if (when.keys_hz > 0.0 && when.sample_rate_hz > 1.5 * when.keys_hz && when.keys_hz >= 15.0)
+        check_memory(model_warn(job.m,
+                                "%s: its keys are %g a second, and curves between them need %g frames; "
+                                "--rate %g keeps the keys alone",
+                                where.c_str(), when.keys_hz, when.sample_rate_hz, when.keys_hz));
+}
+
 static void make_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks,
                       double sample_rate_hz, uint64_t &bytes_left)
 {
@@ -255,6 +265,7 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     for (const track &t : tracks)
         if (t.joint == MODEL_NONE) fill_weights(job, t, when, clip, where);
     warn_of_error(job, clip, tolerance_cm, where);
+    if (!(sample_rate_hz > 0.0)) warn_of_rate(job, when, where);
 }
 
 static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &used, uint64_t &bytes_left)

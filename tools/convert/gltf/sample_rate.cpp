@@ -37,7 +37,7 @@ static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frame
     double exact_hz = steps / duration_s;
     /* the last key's time is a rounded float */
     bool whole = std::fabs(exact_hz - sample_rate_hz) <= 1e-6 * sample_rate_hz;
-    return { whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0 };
+    return { whole ? sample_rate_hz : exact_hz, static_cast<uint32_t>(steps) + 1, 0.0, 0.0, 0.0 };
 }
 
 /* --- the sample rate of the keys --- */
@@ -66,12 +66,24 @@ static bool worth_its_frames(const std::vector<double> &times, double sample_rat
            static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
 }
 
-/* Linear keys at a usual sample rate already are frames: played, they give what the curves give. */
-static bool are_frames(const std::vector<track> &tracks, double grid_hz)
+static bool changes(const model_channel &c)
 {
+    const float *first = channel_key(&c, 0);
+    if (c.interpolation == MODEL_CUBICSPLINE) return c.key_count > 1;
+    for (uint32_t key = 1; key < c.key_count; ++key)
+        if (!std::equal(first, first + c.width, channel_key(&c, key))) return true;
+    return false;
+}
+
+/* The tracks that may need more frames than the keys have. Linear keys at a usual sample rate already are frames:
+ * played, they give what the curves give. What holds still needs none, whatever its interpolation is called. */
+static std::vector<track> curves_of(const std::vector<track> &tracks, double grid_hz)
+{
+    std::vector<track> curves;
     for (const track &t : tracks)
-        if (t.channel->interpolation != MODEL_LINEAR && t.channel->key_count > 1) return false;
-    return grid_hz >= dense_rate_min_hz;
+        if (changes(*t.channel) && (t.channel->interpolation != MODEL_LINEAR || grid_hz < dense_rate_min_hz))
+            curves.push_back(t);
+    return curves;
 }
 
 /* The coarsest grid on which all keys lie: whole numbers of Hz are tried first, then television's rates, then any. 0 if
@@ -96,13 +108,11 @@ static double median_rate(const std::vector<double> &times)
     return 1.0 / steps[steps.size() / 2];
 }
 
-static std::vector<double> rates_to_try(const std::vector<track> &tracks, const std::vector<double> &times)
+static std::vector<double> rates_to_try(const std::vector<double> &times, double grid)
 {
     std::vector<double> rates;
-    double grid = grid_rate(times);
     if (grid > 0.0) {
         rates.push_back(grid);
-        if (are_frames(tracks, grid)) return rates;
         for (double factor : { 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 24.0, 30.0, 40.0, 60.0, 120.0 })
             if (grid * factor <= rate_max_hz * 1.001) rates.push_back(grid * factor);
         return rates;
@@ -185,18 +195,20 @@ timing choose_timing(const std::vector<track> &tracks, double duration_s, double
                      uint64_t frames_max, const std::string &where)
 {
     const double no_limit = std::numeric_limits<double>::infinity();
-    if (!(duration_s > 0.0)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0 };
+    if (!(duration_s > 0.0)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0, 0.0 };
     std::vector<double> times = key_times(tracks);
+    const double grid = grid_rate(times);
+    const std::vector<track> curves = curves_of(tracks, grid);
     std::vector<double> rates = sample_rate_hz > 0.0 ? std::vector<double>{ sample_rate_hz }
-                                                     : rates_to_try(tracks, times);
-    timing t = { 0.0, 0, 0.0, 0.0 };
-    for (size_t i = 0; i < rates.size(); ++i) {
-        bool last = i + 1 == rates.size();
-        t = timing_at(duration_s, rates[i], frames_max, where);
+                                                     : rates_to_try(times, grid);
+    timing t = { 0.0, 0, 0.0, 0.0, grid };
+    for (double rate : rates) {
+        t = timing_at(duration_s, rate, frames_max, where);
+        t.keys_hz = grid;
         t.near_s = on_grid(times, t.sample_rate_hz) ? 2.5e-3 / t.sample_rate_hz : rounding_s;
-        t.error_cm = error_of(tracks, t, last ? no_limit : tolerance_cm, where);
-        if (t.error_cm <= tolerance_cm) break;
+        if (error_of(curves, t, tolerance_cm, where) <= tolerance_cm) break;
     }
+    t.error_cm = error_of(tracks, t, no_limit, where);
     return t;
 }
 
