@@ -78,6 +78,7 @@
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
 #define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s in one call; what is left of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */
+#define NOH_RISE_CLIPS_MAX 16u       /* of which one is chosen to get up by; those after are not tried */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */

@@ -221,6 +221,15 @@ static float within(float x, float low, float high)
     return x >= low ? x <= high ? x : high : low; /* NaN: low */
 }
 
+void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
+{
+    NOH_ASSERT(crowd && position && index < crowd->agent_max && !crowd->to_do);
+    vec2 *at = CROWD_ARRAY(vec2, crowd, position) + index;
+    const vec2 to = v2(within(position[0], -FAR, FAR), within(position[1], -FAR, FAR));
+    *at = noh_crowd_keep_out(crowd, *at, to, CROWD_CONST(crowd_wish, crowd, wish)[index].radius);
+    CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(0.0f, 0.0f);
+}
+
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);

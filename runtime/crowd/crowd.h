@@ -2,7 +2,7 @@
  *
  *   noh_crowd_size, noh_crowd_init   a crowd in one block
  *   noh_crowd_put, noh_crowd_remove  an agent enters, leaves
- *   noh_crowd_aim, noh_crowd_pace    where it wants to go, how fast
+ *   noh_crowd_aim, noh_crowd_pace    where it wants to go, how fast; noh_crowd_move: where it is
  *   noh_crowd_field_aim, noh_crowd_follow   a goal that many share, behind any walls; who goes there
  *   noh_crowd_step                   time moves on
  *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
@@ -108,6 +108,9 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
 noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error);
 void noh_crowd_remove(noh_crowd *crowd, uint32_t index);
 
+/* An agent stands somewhere else from now on, as far on the way there as walls let it: one that was carried there, or
+ * fell. What it wants stays. position[2] finite */
+void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2]);
 /* goal[2] finite */
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
 /* speed 0..15 radii per second: what is outside is clamped */

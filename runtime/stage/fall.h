@@ -20,9 +20,8 @@
 extern "C" {
 #endif
 
-#define NOH_RISE_CLIPS "get_up"                         /* how names of clips to get up by begin */
-#define NOH_RISE_CLIPS_MAX 16u                          /* of which one is chosen; those after it are not tried */
-#define NOH_FALL_STAY_TICKS (NOH_TICKS_PER_SECOND / 5u) /* for which it lies still */
+#define NOH_RISE_CLIPS "get_up"                                   /* how names of clips to get up by begin */
+#define NOH_FALL_STAY_TICKS (NOH_TICKS_PER_SECOND / 5u)           /* for which it lies still */
 #define NOH_FALL_WAIT_TICKS (4u * (uint32_t)NOH_TICKS_PER_SECOND) /* for one that does not come to rest */
 
 typedef struct noh_fall {

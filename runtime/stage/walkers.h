@@ -6,7 +6,10 @@
  *   noh_walkers_step                     places and clips follow the agents
  *   noh_walkers_feet_part                feet on the ground, for the nearest
  *   noh_walkers_near                     who these are
+ *   noh_walkers_push                     who is near a point falls, out of a pool of ragdolls
+ *   noh_walkers_tend                     agents of those who have fallen; they get up, and go on
  *
+ *   noh_walkers_tend(walkers, crowd, stage, ACTS, ticks, NULL);
  *   noh_crowd_step(crowd, ticks);
  *   noh_walkers_step(walkers, crowd, stage, &ground, ticks, NULL);
  *   noh_stage_step(stage, ticks, ...);
@@ -36,6 +39,7 @@
 
 #include "crowd/crowd.h"
 #include "stage/stage_feet.h"
+#include "stage/stage_ragdoll.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -55,7 +59,7 @@ typedef struct noh_walkers_desc {
 
 typedef struct noh_walkers noh_walkers;
 
-/* The exact bytes: 8,016, 80 a walker and 8 for each that may be near; rounded up to 16. 0 for an impossible desc. */
+/* The exact bytes: 8,016, 96 a walker and 8 for each that may be near; rounded up to 16. 0 for an impossible desc. */
 size_t noh_walkers_size(const noh_walkers_desc *desc);
 
 /* Nobody walks yet.
@@ -99,6 +103,27 @@ noh_stage_part noh_walkers_feet_part(const noh_kind_feet *feet);
  * take turns. Not within a step or a frame: nothing happens then.
  * returns  how many they are */
 uint32_t noh_walkers_near(noh_walkers *walkers, noh_stage *stage, const float eye[3]);
+
+/* ---- falling ---- */
+
+/* Walkers who stand within a radius of a point, on the ground of x and z, are pushed away from it and fall, the nearest
+ * first, as long as their kind has a ragdoll left (noh_kind_ragdoll.count): the others stay on their feet.
+ * shapes   point[3] in the stage's unit: y is the height at which they are hit
+ * impulse  newton seconds on each, away from the point; who is right there falls the way that it faces
+ * returns  how many fell; 0 in a kind without ragdolls, and within a step or a frame */
+uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float point[3], float radius, float impulse);
+
+/* Before noh_crowd_step by as many ticks: agents of those who fall stay under them, so that others go around; they get
+ * up (stage/fall.h), which gives their ragdoll back, and then go on at the pace that they had. One that is dead
+ * (noh_actor_kill) is left to lie. Also of who fell by noh_actor_fall or noh_actor_hit.
+ * layer    on which the clip plays by which one gets up; not that of the walkers, whose tracks are theirs
+ * returns  how many are not on their feet
+ * errors   those of noh_fall_step: who it is of tries again; ARG the layer, or within a step or a frame */
+uint32_t noh_walkers_tend(noh_walkers *walkers, noh_crowd *crowd, noh_stage *stage, uint32_t layer, uint32_t ticks,
+                          noh_error *error);
+
+/* Whether one has fallen and does not stand yet: what it wants is not done now. */
+int noh_walkers_is_down(const noh_walkers *walkers, uint32_t index);
 
 #ifdef __cplusplus
 }

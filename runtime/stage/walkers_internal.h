@@ -2,6 +2,7 @@
 #ifndef NOH_STAGE_WALKERS_INTERNAL_H
 #define NOH_STAGE_WALKERS_INTERNAL_H
 
+#include "stage/fall.h"
 #include "stage/stage_internal.h"
 #include "stage/walkers.h"
 
@@ -38,9 +39,15 @@ typedef struct walker {
     float even;          /* the speed ahead, smoothed less */
     uint16_t begun, is_near;
     uint32_t stands;    /* leg * WALKER_PARTS + part */
-    uint32_t goes_back; /* 1 */
+    uint16_t goes_back; /* 1 */
+    uint16_t fallen;    /* 1: it falls, lies or gets up */
+    float pace;         /* then: that of its agent before */
+    noh_fall fall;
 } walker;
-NOH_STATIC_ASSERT(sizeof(walker) == 80, walker);
+NOH_STATIC_ASSERT(sizeof(walker) == 96, walker);
+
+/* walker.begun: 0 it leaps to its agent, 1 it goes on, or it begins anew where it is. */
+#define WALKER_STANDS_UP 2u
 
 typedef struct walker_near {
     float square; /* of the distance */

@@ -237,7 +237,7 @@ static void go_on(const step *s, walker *r, const noh_place *was, const float ro
               on);
     turned_by(was->rotation, was->scale, b[0], b[2], from);
     turned_by(rotation, was->scale, f[0], f[2], to);
-    for (int i = 0; i < 2 && r->begun; i++) r->body[i] += on[i] + from[i] - to[i];
+    for (int i = 0; i < 2 && r->begun == 1u; i++) r->body[i] += on[i] + from[i] - to[i];
     r->stands = noh_walkers_stand(s->w, &feet, r->stands);
 }
 

@@ -174,6 +174,18 @@ noh crowd "$puppets" --place "$festival" --agents 60 --time 3 -o "$work/place.pn
 expect 0 'puppets at a festival'
 cp "$work/out" "$work/drawn"
 check 'of whom those who are near stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
+noh crowd "$puppets" --place "$festival" --agents 60 --time 4 --hit 3,0,3,6 -o "$work/hit.png" --size 320x180 --light sky
+expect 0 'a push'
+check 'those who are near fall' awk '/^hit: / { found = $2 > 0 && $2 <= 16 && $(NF - 4) == $2 } END { exit !found }' "$work/out"
+noh crowd "$puppets" --place "$festival" --agents 60 --time 12 --hit 3,0,3,6 -o "$work/hit.png" --size 32x18 --light sky
+check 'and get up' grep -q '^hit: [1-9][0-9]* of a pool of 16 fell, 0 not on their feet' "$work/out"
+for refused in '--hit 1,2' '--hit 1,2,x' '--hit 1,2,3,4,5,6' '--hit -1,0,0'; do
+    # shellcheck disable=SC2086 # words
+    noh crowd "$puppets" --place "$festival" -o "$work/no.png" $refused
+    expect 2 "crowd $refused"
+done
+noh crowd --place "$festival" --hit 1,2,3
+expect 2 'a push in what is not drawn'
 noh budget "$puppets" --actors 60 --place "$festival" --no-gpu
 check 'its walkers take what the budget says' awk '/^  walkers / { told = $(NF - 1) } /walkers [0-9]+;/ { sub(/.*walkers /, ""); took = $0 + 0 } END { exit !(told && told == took) }' "$work/out" "$work/drawn"
 noh crowd "$pack" --place "$festival" --agents 10 -o "$work/no.png"

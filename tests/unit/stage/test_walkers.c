@@ -19,7 +19,9 @@ typedef struct street {
     void *crowd_memory, *walkers_memory;
     size_t crowd_bytes;
     uint32_t count, ticks;
-    int own_speed; /* 1: clips play at their own, as the source has them */
+    int own_speed;  /* 1: clips play at their own, as the source has them */
+    uint32_t dolls; /* who may fall at once; 0: nobody does */
+    noh_kind_ragdoll ragdoll;
 } street;
 
 /* ---- a street ---- */
@@ -33,7 +35,7 @@ static void map_pack(street *s)
         if (noh_file_map(other, &s->cast.files[0], &said) != NOH_OK) fail_msg("%s: %s", other, said.what);
         s->cast.packs[0] = test_open(s->cast.files[0].data, s->cast.files[0].bytes);
     } else {
-        cast_map(&s->cast, PUPPETS, "demo/puppet_levels.noh");
+        cast_map(&s->cast, PUPPETS, s->dolls ? "demo/puppet_falls.noh" : "demo/puppet_levels.noh");
     }
     memset(&source, 0, sizeof source);
     source.pack = &s->cast.packs[0];
@@ -68,15 +70,18 @@ static noh_walkers_desc walkers_desc(const street *s, uint32_t near_max)
     return desc;
 }
 
-static void open_street(street *s, uint32_t count, uint32_t near_max, uint32_t jobs)
+static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_t jobs, uint32_t dolls)
 {
-    static const noh_layer_desc layers[] = { { "body", NOH_LAYER_BASE, NULL, NULL, 3 } };
+    static const noh_layer_desc layers[] = { { "body", NOH_LAYER_BASE, NULL, NULL, 3 },
+                                             { "act", NOH_LAYER_OVER, NULL, NULL, 2 } };
     noh_error said;
     memset(s, 0, sizeof *s);
+    s->dolls = dolls;
     map_pack(s);
     s->floor.normal[1] = 1.0f;
     s->world.planes = &s->floor;
     s->world.plane_count = 1;
+    s->world.friction = 0.6f;
     s->feet.ground.world = &s->world;
     s->part = noh_walkers_feet_part(&s->feet);
     s->count = count;
@@ -84,7 +89,11 @@ static void open_street(street *s, uint32_t count, uint32_t near_max, uint32_t j
     k->mesh = &s->cast.packs[0];
     k->actor_count = count;
     k->layers = layers;
-    k->layer_count = 1;
+    k->layer_count = dolls ? 2u : 1u;
+    s->ragdoll.count = dolls;
+    s->ragdoll.world = &s->world;
+    k->ragdoll = dolls ? &s->ragdoll : NULL;
+    k->inertia = dolls != 0;
     k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     k->root_up = 1;
     k->root_told = 1;
@@ -101,6 +110,11 @@ static void open_street(street *s, uint32_t count, uint32_t near_max, uint32_t j
     if (noh_walkers_init(s->walkers_memory, noh_walkers_size(&desc), &desc, s->cast.stage, &s->walkers, &said)) {
         fail_msg("walkers: %s", said.what);
     }
+}
+
+static void open_street(street *s, uint32_t count, uint32_t near_max, uint32_t jobs)
+{
+    open_street_of(s, count, near_max, jobs, 0);
 }
 
 static void close_street(street *s)
@@ -493,7 +507,7 @@ static void what_walkers_cannot_use_is_refused(void **state)
     open_street(&s, 3, 2, 1);
     noh_walkers_desc desc = walkers_desc(&s, 2);
     const size_t bytes = noh_walkers_size(&desc);
-    assert_int_equal(bytes, (8016u + 3u * 80u + 2u * 8u + 15u) / 16u * 16u);
+    assert_int_equal(bytes, (8016u + 3u * 96u + 2u * 8u + 15u) / 16u * 16u);
     assert_int_equal(noh_walkers_init(s.walkers_memory, bytes - 1u, &desc, s.cast.stage, &w, &said), NOH_ERR_MEMORY);
     assert_int_equal(said.need, bytes);
     desc.walk = "stride";
@@ -537,6 +551,194 @@ static void who_stands_turns(void **state)
     close_street(&s);
 }
 
+/* While it walks, with U-turns, no body turns faster than it was asked to. */
+static void nobody_turns_faster_than_asked(void **state)
+{
+    static const float speeds[] = { 1.0f, 2.5f };
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    for (int k = 0; k < 2; k++) {
+        noh_actor actors[COUNT];
+        float was[COUNT][2], most = 0.0f;
+        uint32_t seed = 9;
+        street s;
+        open_street(&s, COUNT, 0, 1);
+        noh_walkers_desc desc = walkers_desc(&s, 0);
+        desc.turn_speed = speeds[k];
+        assert_int_equal(
+            noh_walkers_init(s.walkers_memory, noh_walkers_size(&desc), &desc, s.cast.stage, &s.walkers, NULL), NOH_OK);
+        fill(&s, 0, actors);
+        for (uint32_t f = 0; f < 600; f++) {
+            aim_again(&s, 0, &seed);
+            frame(&s, CAST_STEP);
+            for (uint32_t i = 0; i < COUNT; i++) {
+                float h[2];
+                assert_true(noh_walkers_heading(s.walkers, i, h));
+                const float turned = fabsf(
+                    atan2f(was[i][0] * h[1] - was[i][1] * h[0], was[i][0] * h[0] + was[i][1] * h[1]));
+                if (f) most = fmaxf(most, turned * 48000.0f / (float)CAST_STEP);
+                memcpy(was[i], h, sizeof h);
+            }
+        }
+        assert_true(most <= 1.001f * speeds[k] && most > 0.9f * speeds[k]);
+        close_street(&s);
+    }
+}
+
+/* ---- who falls ---- */
+
+#define DOLLS 3u
+
+static uint32_t tend(street *s)
+{
+    noh_error said = { NOH_OK, "", 0, 0 };
+    const uint32_t down = noh_walkers_tend(s->walkers, s->crowd, s->cast.stage, 1, CAST_STEP, &said);
+    if (said.result) fail_msg("%s", said.what);
+    return down;
+}
+
+/* How far a walker's joints move in a frame at most, and how far its agent is from it. */
+static float distance_of(const street *s, noh_actor actor, uint32_t agent)
+{
+    noh_crowd_agent a;
+    noh_place place;
+    assert_true(noh_crowd_agent_stepped(s->crowd, agent, &a));
+    assert_int_equal(noh_actor_place(s->cast.stage, actor, &place, NULL), NOH_OK);
+    return hypotf(place.position[0] - a.position[0], place.position[2] - a.position[1]);
+}
+
+/* A push in a crowd: as many fall as the pool has ragdolls, the nearest of all; their agents lie under them, others
+ * walk around them; they get up, go on at their pace, and the pool is free for the next. */
+static void who_is_pushed_falls_and_goes_on(void **state)
+{
+    noh_actor actors[COUNT];
+    uint32_t seed = 9;
+    street s;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street_of(&s, COUNT, 0, 1, DOLLS);
+    fill(&s, 0, actors);
+    for (uint32_t f = 0; f < 240; f++) {
+        aim_again(&s, 0, &seed);
+        assert_int_equal(tend(&s), 0);
+        frame(&s, CAST_STEP);
+    }
+    for (int round = 0; round < 2; round++) {
+        const float point[3] = { 5.0f, 1.2f, 5.0f };
+        float pace[COUNT], far[COUNT];
+        uint32_t fell = 0, up = 0, frames = 0;
+        for (uint32_t i = 0; i < COUNT; i++) {
+            noh_crowd_agent a;
+            noh_place place;
+            assert_true(noh_crowd_agent_stepped(s.crowd, i, &a));
+            assert_int_equal(noh_actor_place(s.cast.stage, actors[i], &place, NULL), NOH_OK);
+            pace[i] = a.speed;
+            far[i] = hypotf(place.position[0] - point[0], place.position[2] - point[2]);
+        }
+        assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, point, 100.0f, 90.0f), DOLLS);
+        assert_int_equal(tend(&s), DOLLS);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            uint32_t nearer = 0;
+            for (uint32_t k = 0; k < COUNT; k++) nearer += far[k] < far[i];
+            assert_int_equal(noh_walkers_is_down(s.walkers, i), nearer < DOLLS);
+            fell += noh_actor_body(s.cast.stage, actors[i]) == NOH_BODY_FALLS;
+        }
+        assert_int_equal(fell, DOLLS);
+        while (up < 60 && ++frames < 1500) { /* a second on their feet */
+            aim_again(&s, 0, &seed);
+            up = tend(&s) ? 0 : up + 1u;
+            frame(&s, CAST_STEP);
+            for (uint32_t i = 0; i < COUNT; i++) {
+                if (noh_walkers_is_down(s.walkers, i)) assert_true(distance_of(&s, actors[i], i) < 0.2f);
+            }
+        }
+        assert_true(frames > 60 && frames < 1500);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            noh_crowd_agent a;
+            assert_true(noh_crowd_agent_stepped(s.crowd, i, &a));
+            assert_true(a.speed == pace[i]);
+            assert_true(distance_of(&s, actors[i], i) <= 0.401f);
+            assert_int_equal(noh_actor_body(s.cast.stage, actors[i]), NOH_BODY_STANDS);
+        }
+        printf("  %u of %u pushed, all walk again after %.1f s\n", DOLLS, COUNT, (double)frames / 60.0);
+    }
+    close_street(&s);
+}
+
+/* From its clips to the ground and back to its clips: no joint leaps, but for what it falls and gets up by. */
+static void it_gets_up_where_it_lies(void **state)
+{
+    static const float at[2] = { 0.0f, -3.0f }, goal[2] = { 0.0f, 30.0f };
+    static const float point[3] = { 0.2f, 1.2f, -1.5f };
+    float was[3] = { 0.0f, 0.0f, 0.0f }, most = 0.0f, before = 0.0f, after = 0.0f;
+    street s;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street_of(&s, 1, 0, 1, 1);
+    const noh_actor actor = enter(&s, 0, at, goal, 0.7f);
+    for (uint32_t f = 0; f < 900; f++) {
+        float m[12], move = 0.0f;
+        noh_crowd_agent a;
+        (void)tend(&s);
+        frame(&s, CAST_STEP);
+        assert_true(noh_crowd_agent_stepped(s.crowd, 0, &a));
+        if (f == 120) {
+            before = a.position[1];
+            assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, point, 3.0f, 80.0f), 1);
+            assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, point, 3.0f, 80.0f), 0); /* the pool is empty */
+        }
+        assert_int_equal(noh_actor_joint(s.cast.stage, actor, 1, m, NULL), NOH_OK);
+        for (int i = 0; i < 3; i++) {
+            move += (m[4 * i + 3] - was[i]) * (m[4 * i + 3] - was[i]);
+            was[i] = m[4 * i + 3];
+        }
+        if (f) most = fmaxf(most, sqrtf(move));
+        after = a.position[1];
+    }
+    printf("  its first joint moves at most %.0f mm in a frame; its way: to %.2f m, pushed, to %.2f m\n",
+           1e3 * (double)most, (double)before, (double)after);
+    assert_true(most < 0.12f); /* 7 m/s: it falls */
+    assert_true(after > before + 2.0f);
+    assert_false(noh_walkers_is_down(s.walkers, 0));
+    close_street(&s);
+}
+
+/* Nobody falls of a kind without ragdolls; who is dead stays, and is gone around. */
+static void who_is_dead_lies(void **state)
+{
+    static const float at[2] = { 0.0f, 0.0f }, goal[2] = { 0.0f, 9.0f }, point[3] = { 0.0f, 1.2f, 0.0f };
+    noh_crowd_agent a;
+    street s;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street(&s, 1, 0, 1);
+    (void)enter(&s, 0, at, goal, 0.7f);
+    assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, point, 9.0f, 90.0f), 0);
+    assert_int_equal(noh_walkers_tend(s.walkers, s.crowd, s.cast.stage, 1, CAST_STEP, NULL), 0);
+    close_street(&s);
+    open_street_of(&s, 1, 0, 1, 1);
+    const noh_actor actor = enter(&s, 0, at, goal, 0.7f);
+    noh_error said = { NOH_OK, "", 0, 0 };
+    assert_int_equal(noh_walkers_tend(s.walkers, s.crowd, s.cast.stage, 0, CAST_STEP, &said), 0);
+    assert_int_equal(said.result, NOH_ERR_ARG); /* the walkers' own layer */
+    for (uint32_t f = 0; f < 30; f++) frame(&s, CAST_STEP);
+    assert_int_equal(noh_actor_kill(s.cast.stage, actor, NULL), NOH_OK);
+    for (uint32_t f = 0; f < 600; f++) {
+        assert_int_equal(tend(&s), 1);
+        frame(&s, CAST_STEP);
+    }
+    assert_true(noh_crowd_agent_stepped(s.crowd, 0, &a));
+    assert_true(a.speed == 0.0f && distance_of(&s, actor, 0) < 0.1f);
+    assert_int_equal(noh_actor_revive(s.cast.stage, actor, NULL), NOH_OK);
+    for (uint32_t f = 0; f < 420; f++) {
+        (void)tend(&s);
+        frame(&s, CAST_STEP);
+    }
+    assert_true(noh_crowd_agent_stepped(s.crowd, 0, &a));
+    assert_true(a.speed == 0.7f && !noh_walkers_is_down(s.walkers, 0));
+    close_street(&s);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -547,6 +749,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_nearest_have_their_feet_on_the_ground),
         cmocka_unit_test(what_walkers_cannot_use_is_refused),
         cmocka_unit_test(who_stands_turns),
+        cmocka_unit_test(nobody_turns_faster_than_asked),
+        cmocka_unit_test(who_is_pushed_falls_and_goes_on),
+        cmocka_unit_test(it_gets_up_where_it_lies),
+        cmocka_unit_test(who_is_dead_lies),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -25,7 +25,7 @@ static const char town[] = "# a town\n"
                            "slot -2 -3 180 15 sit\n"
                            "slot 0 -3 90\n"
                            "object \"the drum\" fun 0.5 20\n"
-                           "slot 8 5 -90 2.5 dance\n";
+                           "slot 8 5 -90 2.5 dance bow 1.5 - 0.25\n";
 
 static place_file *read_text(const char *text)
 {
@@ -58,6 +58,10 @@ static void each_line_arrives_in_its_field(void **state)
     assert_int_equal(p->slots[0].use_ticks, 720000);
     assert_string_equal(p->clips[p->slots[2].use_clip - 1u], "dance");
     assert_int_equal(p->slots[1].use_clip, 0);
+    assert_string_equal(p->clips[p->slots[2].enter_clip - 1u], "bow");
+    assert_int_equal(p->slots[2].enter_ticks, 72000);
+    assert_int_equal(p->slots[2].leave_clip, 0);
+    assert_int_equal(p->slots[2].leave_ticks, 12000);
     assert_true(p->slots[1].face[0] > 0.999f && p->slots[2].face[0] < -0.999f);
     place_free(p);
 }
@@ -81,6 +85,8 @@ static void mistakes_are_named_with_their_line(void **state)
         { "need rest 0.1\nobject bench rst 1 10\n", "did you mean 'rest'?", 2 },
         { "need rest 0.1\nneed rest 0.2\n", "given twice", 2 },
         { "slot 0 0 0\n", "below its object", 1 },
+        { "need rest 0.1\nobject bench rest 1 10\nslot 0 0 0 1 sit bow\n", "ENTER_S is missing", 3 },
+        { "need rest 0.1\nobject bench rest 1 10\nslot 0 0 0 1 sit bow 1\n", "CLIP is missing", 3 },
         { "area 0 0 9 9\nspawn 0 0 1 1\nneed rest 0.1\nobject bench rest 1 10\n", "no slot", 4 },
         { "area 0 0 9 9\nspawn 0 0 10 1\ngoal 1 1\n", "1. spawn is not within", 0 },
         { "area 0 0 9 9\nspawn 0 0 1 1\ngoal 1 1\ngoal 1 10\n", "2. goal is not within", 0 },

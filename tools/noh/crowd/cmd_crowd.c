@@ -1,4 +1,5 @@
 /* cmd_crowd.c: draw a crowd, and say what it took; or run agents through a scene, and measure them. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,12 +19,13 @@
 #define FRAME_TICKS 800u /* 60 frames a second */
 
 typedef struct crowd_args {
-    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera, *ground;
+    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera, *ground, *hit;
     light_options light;
     double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
     int plain, as_json, orca;
     crowd_options options;
+    place_hit push; /* of `hit` */
 } crowd_args;
 
 static int check_args(crowd_args *a)
@@ -171,6 +173,7 @@ static void print_place(const place_drawn *d, const crowd_args *a)
     fprintf(out, "; feet of %u on the ground\nstage: CPU %llu bytes, GPU %llu; walkers %llu; crowd %llu\n",
             d->near_count, (unsigned long long)d->cpu_bytes, (unsigned long long)d->gpu_bytes,
             (unsigned long long)d->walkers_bytes, (unsigned long long)d->crowd_bytes);
+    if (a->hit) fprintf(out, "hit: %u of a pool of %u fell, %u not on their feet\n", d->fell, PLACE_RAGDOLLS, d->down);
     if (!d->terrain_bytes) return;
     fprintf(out, "terrain: CPU %llu bytes, GPU %llu; %u triangles in %u blocks\n", (unsigned long long)d->terrain_bytes,
             (unsigned long long)d->terrain_gpu_bytes, d->terrain_triangles, d->terrain_blocks);
@@ -178,8 +181,10 @@ static void print_place(const place_drawn *d, const crowd_args *a)
 
 static int draw_place_of(const pack_file *file, const place_file *place, const crowd_args *a)
 {
-    const place_draw_options options = { (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels, a->time_s, a->camera,
-                                         a->scenery,          a->light,          a->size[0],       a->size[1] };
+    const place_draw_options options = {
+        (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels, a->time_s,  a->camera,
+        a->scenery,          a->light,          a->size[0],       a->size[1], a->push
+    };
     place_drawn d;
     gpu g;
     uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
@@ -210,11 +215,31 @@ static int draw_place(const crowd_args *a, const noh_field *ground)
     return status;
 }
 
+static int parse_hit(crowd_args *a)
+{
+    place_hit *h = &a->push;
+    char end;
+    const int count = sscanf(a->hit, "%f,%f,%f,%f,%f%c", &h->time_s, &h->at[0], &h->at[1], &h->radius, &h->impulse,
+                             &end);
+    if (count < 4) h->radius = 2.0f;
+    if (count < 5) h->impulse = 90.0f;
+    h->is_given = 1;
+    return count >= 3 && count <= 5 && h->time_s >= 0.0f && h->time_s <= 3600.0f && fabsf(h->at[0]) <= 1e5f &&
+                   fabsf(h->at[1]) <= 1e5f && h->radius >= 0.0f && h->radius <= 1e5f && h->impulse >= 0.0f &&
+                   h->impulse <= 1e4f
+               ? 0
+               : tool_usage("--hit wants S,X,Z[,RADIUS[,NS]]: seconds, metres, newton seconds, not '%s'", a->hit);
+}
+
 static int run_on(crowd_args *a, const noh_field *ground)
 {
     pack_file file;
     int status;
-    if (!a->output && (a->scenery || a->camera)) return tool_usage("--scenery and --camera have no effect without -o");
+    if (!a->output && (a->scenery || a->camera || a->hit)) {
+        return tool_usage("--scenery, --camera and --hit have no effect without -o");
+    }
+    status = a->hit ? parse_hit(a) : 0;
+    if (status) return status;
     if (a->test || (a->place && !a->output)) {
         return a->pack ? tool_usage("agents are measured without a pack; one is drawn with --place FILE -o OUT.png")
                        : test(a, ground);
@@ -320,6 +345,14 @@ static const option options[] = {
       .what =
           "with --place FILE: the place lies on a height field, drawn with -o, at LOD levels: a pack with a terrain (noh build --terrain), or a .png or .glb as that takes",
       .example = "hill.noh",
+      .needs = "--place" },
+    { .name = "--hit",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, hit),
+      .value = "S,X,Z[,RADIUS[,NS]]",
+      .what =
+          "with --place FILE -o: after S seconds those within RADIUS (2) metres of X, Z are pushed away from there by NS (90) newton seconds, the nearest first, at most 16: they fall, and get up by clips whose names begin with get_up",
+      .example = "10,0,4,3",
       .needs = "--place" },
     OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
     { .name = "--agents",

@@ -10,7 +10,8 @@
 #include "stage/view.h"
 
 #define FRAME_TICKS NOH_CROWD_STEP_TICKS
-#define SHOWN_FRAMES 24u /* before the picture, so that feet and levels have settled */
+#define SHOWN_FRAMES 24u  /* before the picture, so that feet and levels have settled */
+#define HIT_HEIGHT_M 1.2f /* above the ground */
 #define RADIAN 0.017453292519943295
 
 enum { PEOPLE, SCENERY, KINDS };
@@ -36,7 +37,7 @@ typedef struct scene {
     noh_actor *actors;
     noh_smart_phase *phases; /* as they are shown */
     size_t walkers_bytes;
-    uint32_t near_count;
+    uint32_t near_count, step, fell, down;
 } scene;
 
 static void fill_desc(scene *s)
@@ -176,7 +177,8 @@ static int open_scene(scene *s, gpu *g)
     if (!status) status = lighting_open(&s->light, &light);
     if (!status && o->scenery) status = pack_file_open(&s->scenery, o->scenery);
     if (!status) status = place_life_open(s->place, o->agents, o->seed, &s->life);
-    if (!status) status = place_people_make(&s->people, s->file, s->place, o->agents, 0);
+    if (!status)
+        status = place_people_make(&s->people, s->file, s->place, o->agents, o->hit.is_given ? PLACE_RAGDOLLS : 0u);
     if (!status) fill_desc(s);
     if (!status) status = open_stage(s, g);
     if (!status) status = open_walkers(s);
@@ -200,37 +202,70 @@ static void close_scene(scene *s)
 
 /* ---- frames ---- */
 
-/* What a slot lets its holder do: play its clip, facing its way. */
+/* A clip of the place; 0: none. Loops begin anywhere, so that neighbours are not in step. */
+static void play_clip(const scene *s, uint32_t person, uint32_t clip, noh_loop loop)
+{
+    noh_play play;
+    if (!clip) return;
+    memset(&play, 0, sizeof play);
+    play.fade_ticks = 24000;
+    play.loop = loop;
+    if (loop == NOH_LOOP_REPEAT) {
+        play.speed = (int32_t)(65536.0f * (0.8f + 0.4f * share_of(person, 6)));
+        play.start_ticks = (int64_t)(480000.0f * share_of(person, 7));
+    }
+    (void)noh_actor_play(s->stage, s->actors[person], PLACE_ACT, s->place->clips[clip - 1u], &play, NULL);
+}
+
+/* What a slot lets its holder do: enter it, facing its way, use it and leave it, by its clips. */
 static void act(scene *s, uint32_t person)
 {
     const noh_smart_use use = place_life_use(s->life, person);
     if (use.phase == s->phases[person]) return;
-    if (use.phase == NOH_SMART_ENTERING || (use.phase == NOH_SMART_USING && s->phases[person] != NOH_SMART_ENTERING)) {
-        const noh_smart_slot *slot = place_life_slot(s->life, use.slot);
-        noh_play play;
-        memset(&play, 0, sizeof play);
-        play.fade_ticks = 24000;
-        play.loop = NOH_LOOP_REPEAT;
-        play.speed = (int32_t)(65536.0f * (0.8f + 0.4f * share_of(person, 6)));
-        play.start_ticks = (int64_t)(480000.0f * share_of(person, 7));
+    const noh_smart_slot *slot = use.phase >= NOH_SMART_GOING ? place_life_slot(s->life, use.slot) : NULL;
+    const uint32_t leaves = use.phase == NOH_SMART_LEAVING ? slot->leave_clip : 0u;
+    if (use.phase == NOH_SMART_ENTERING) {
         noh_walkers_face(s->walkers, person, slot->face);
-        if (slot->use_clip) {
-            (void)noh_actor_play(s->stage, s->actors[person], PLACE_ACT, s->place->clips[slot->use_clip - 1u], &play,
-                                 NULL);
-        }
-    } else if (use.phase != NOH_SMART_USING) {
+        play_clip(s, person, slot->enter_clip, NOH_LOOP_ONCE);
+    } else if (use.phase == NOH_SMART_USING) {
+        noh_walkers_face(s->walkers, person, slot->face);
+        play_clip(s, person, slot->use_clip, NOH_LOOP_REPEAT);
+    } else if (leaves) {
+        play_clip(s, person, leaves, NOH_LOOP_ONCE);
+    } else {
         noh_walkers_face(s->walkers, person, NULL);
         (void)noh_actor_stop(s->stage, s->actors[person], PLACE_ACT, 24000, NULL);
     }
     s->phases[person] = use.phase;
 }
 
+/* Who falls is let alone until it stands. */
+static void fall(scene *s)
+{
+    const place_hit *hit = &s->options->hit;
+    if (!hit->is_given) return;
+    if (s->step == (uint32_t)(hit->time_s * 30.0f + 0.5f)) {
+        const float point[3] = { hit->at[0], height_at(s->place, hit->at) + HIT_HEIGHT_M, hit->at[1] };
+        s->fell = noh_walkers_push(s->walkers, s->stage, point, hit->radius, hit->impulse);
+    }
+    s->down = noh_walkers_tend(s->walkers, place_life_crowd(s->life), s->stage, PLACE_ACT, FRAME_TICKS, NULL);
+    for (uint32_t i = 0; i < place_life_agents(s->life); i++) {
+        const int is_down = noh_walkers_is_down(s->walkers, i);
+        place_life_set_down(s->life, i, is_down);
+        if (is_down) s->phases[i] = NOH_SMART_AWAY; /* what it did is over */
+    }
+}
+
 static void step(scene *s)
 {
+    fall(s);
     place_life_step(s->life);
-    for (uint32_t i = 0; i < place_life_agents(s->life); i++) act(s, i);
+    for (uint32_t i = 0; i < place_life_agents(s->life); i++) {
+        if (!noh_walkers_is_down(s->walkers, i)) act(s, i);
+    }
     (void)noh_walkers_step(s->walkers, place_life_crowd(s->life), s->stage, &s->people.feet.ground, FRAME_TICKS, NULL);
     (void)noh_stage_step(s->stage, FRAME_TICKS, NULL, NULL, NULL);
+    s->step++;
 }
 
 static int camera_of(const scene *s, noh_stage_view *view)
@@ -309,6 +344,8 @@ static void take_drawn(const scene *s, place_drawn *d)
     d->agents = place_life_agents(s->life);
     d->level_count = s->plan.kinds[PEOPLE].level_count;
     d->near_count = s->near_count;
+    d->fell = s->fell;
+    d->down = s->down;
     d->cpu_bytes = s->plan.cpu_bytes;
     d->gpu_bytes = s->plan.gpu_bytes;
     d->walkers_bytes = s->walkers_bytes;

@@ -12,6 +12,12 @@
 #include "stage_gl/stage_terrain.h"
 #include "stage_gl/stage_gl.h"
 
+/* A push: who is within `radius` metres of x, z then falls, away from there. */
+typedef struct place_hit {
+    int is_given;
+    float time_s, at[2], radius, impulse; /* newton seconds */
+} place_hit;
+
 typedef struct place_draw_options {
     uint32_t agents, seed;
     float pixels;        /* the largest error of LOD levels */
@@ -20,12 +26,13 @@ typedef struct place_draw_options {
     const char *scenery; /* a pack drawn where it is; NULL: none */
     light_options light;
     uint32_t width, height;
+    place_hit hit;
 } place_draw_options;
 
 /* What was drawn. */
 typedef struct place_drawn {
     noh_stage_stats stats;
-    uint32_t agents, level_count, near_count;
+    uint32_t agents, level_count, near_count, fell, down; /* by the hit; still at the end */
     uint64_t cpu_bytes, gpu_bytes, walkers_bytes, crowd_bytes;
     uint64_t terrain_bytes, terrain_gpu_bytes;  /* 0: there is none */
     uint32_t terrain_blocks, terrain_triangles; /* as drawn */

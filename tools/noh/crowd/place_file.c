@@ -216,6 +216,10 @@ static int take_clip(reader *r, uint32_t *clip)
     place_file *p = r->place;
     char *wanted = NULL;
     if (name(r, "CLIP", &wanted) || !wanted) return 1;
+    if (strcmp(wanted, "-") == 0) { /* none */
+        free(wanted);
+        return 0;
+    }
     for (*clip = 0; *clip < p->clip_count && strcmp(p->clips[*clip], wanted) != 0; ++*clip) {}
     if (*clip < p->clip_count) {
         free(wanted);
@@ -245,7 +249,11 @@ static int read_slot(reader *r)
     slot->use_ticks = (uint32_t)(20.0 * TICKS_PER_S);
     if (is_over(r)) return 0;
     if (seconds(r, "USE_S", 0.1, &slot->use_ticks)) return 1;
-    return is_over(r) ? 0 : take_clip(r, &slot->use_clip);
+    if (is_over(r)) return 0;
+    if (take_clip(r, &slot->use_clip)) return 1;
+    if (is_over(r)) return 0;
+    return take_clip(r, &slot->enter_clip) || seconds(r, "ENTER_S", 0.0, &slot->enter_ticks) ||
+           take_clip(r, &slot->leave_clip) || seconds(r, "LEAVE_S", 0.0, &slot->leave_ticks);
 }
 
 static const struct {
@@ -261,7 +269,7 @@ static const struct {
     { "agents", "a line is `agents RADIUS SLOWEST FASTEST`", read_agents },
     { "need", "a line is `need NAME GROWTH`", read_need },
     { "object", "a line is `object NAME NEED RATE GOING_S`", read_object },
-    { "slot", "a line is `slot X Z FACING [USE_S [CLIP]]`", read_slot },
+    { "slot", "a line is `slot X Z FACING [USE_S [CLIP [ENTER ENTER_S LEAVE LEAVE_S]]]`", read_slot },
 };
 #define LINES (sizeof lines / sizeof lines[0])
 

@@ -38,7 +38,7 @@ typedef struct place_file {
     noh_crowd_obstacle *obstacles;
     noh_smart_desc smart; /* agent_max 0; object_count 0: nobody needs anything. Points to: */
     noh_smart_object *objects;
-    noh_smart_slot *slots; /* their use_clip: 1 + an index of clips, 0 none */
+    noh_smart_slot *slots; /* their clips: 1 + an index of clips, 0 none */
     char *need_names[NOH_SMART_NEEDS_MAX];
     char *clips[PLACE_CLIPS_MAX];
 } place_file;

@@ -21,7 +21,7 @@ typedef struct inhabitant {
     float speed;
     uint32_t goal;  /* the field that it follows; NOH_NONE: none */
     uint32_t since; /* step at which it began to go there */
-    uint32_t was_anywhere;
+    uint32_t was_anywhere, is_down;
     noh_smart_phase phase; /* that it has acted on */
 } inhabitant;
 
@@ -320,10 +320,22 @@ void place_life_step(place_life *l)
     for (uint32_t i = 0; i < l->agents; i++) (void)noh_crowd_agent_stepped(l->crowd, i, &l->now[i]);
     crowd_meter_add(&l->meter, l->before, l->now, (const float(*)[2])l->ahead, &l->measures);
     for (uint32_t i = 0; i < l->agents; i++) {
+        if (l->people[i].is_down) continue;
         if (l->smart) use(l, i);
         walk(l, i);
     }
     count_arrived(l);
+}
+
+void place_life_set_down(place_life *l, uint32_t index, int is_down)
+{
+    inhabitant *h = &l->people[index];
+    if (is_down && !h->is_down && l->smart) (void)noh_smart_release(l->smart, index);
+    if (!is_down && h->is_down) {
+        noh_crowd_pace(l->crowd, index, h->speed);
+        choose_goal(l, index);
+    }
+    h->is_down = is_down != 0;
 }
 
 /* ---- what is ---- */

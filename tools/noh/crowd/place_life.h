@@ -15,6 +15,9 @@ void place_life_close(place_life *l);
 /* One step of 1/30 s, and what all of them decide then. */
 void place_life_step(place_life *l);
 
+/* Somebody has fallen, or is on their feet again: who is down wants nothing, and gives a slot back. */
+void place_life_set_down(place_life *l, uint32_t index, int is_down);
+
 /* So far. `done` is when each had been at a first goal, or at a slot. */
 const crowd_measures *place_life_measures(const place_life *l);
 uint32_t place_life_agents(const place_life *l);

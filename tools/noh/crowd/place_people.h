@@ -9,7 +9,8 @@
 #include "stage/stage_ragdoll.h"
 #include "stage/walkers.h"
 
-#define PLACE_NEAR 48u /* whose feet are put on the ground */
+#define PLACE_NEAR 48u     /* whose feet are put on the ground */
+#define PLACE_RAGDOLLS 16u /* who falls at once, where something makes them */
 
 /* Of a stage with one kind of them. Do not move it: kind and feet point into it. */
 typedef struct place_people {
