@@ -635,9 +635,12 @@ void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t 
 const char *noh_stage_check_face(const noh_stage_face *face);
 /* Over the pose and the floats of the work. */
 void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
-/* Between the halves of an update of a character for a tick of the stage's clock. */
-void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
-                         int64_t clock, noh_character_scratch *scratch);
+/* What parts are given, between the halves of an update of a character for a tick of the stage's clock; then the kind's
+ * own parts, and the springs of its pack. */
+void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                           int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
+void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
+void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
 
 void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);

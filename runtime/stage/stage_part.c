@@ -173,43 +173,42 @@ static noh_place place_in_world(const noh_stage *s, const noh_stage_actor *a)
     return on ? on->place : a->place;
 }
 
-void noh_stage_run_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
-                         int64_t clock, noh_character_scratch *scratch)
+void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                           int64_t clock, noh_character_scratch *scratch, noh_part_work *w)
 {
     const noh_character *ch = noh_stage_character(k, index);
-    uint8_t *states = states_of(k, index);
-    noh_part_work w;
-    memset(&w, 0, sizeof w);
-    w.actor = noh_stage_actor_at(s, k->first_actor + index);
-    w.skeleton = &k->skeleton;
-    w.local = scratch->local;
-    w.joint_count = scratch->joint_count;
-    w.level = ch->lod.mesh;
-    w.pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
-                             ? NOH_PART_FULL_DETAIL
-                             : ch->lod.pixels_per_metre;
-    w.place = place_in_world(s, &k->actors[index]);
-    w.kind = k;
-    w.floats = scratch->floats;
-    w.model = scratch->model;
-    w.scratch = job->part_scratch;
-    set_time(&w, (noh_stage_part_head *)(void *)states, clock, s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
-    states += sizeof(noh_stage_part_head);
-    if (k->face) {
-        noh_stage_run_face(s, k, (noh_stage_face *)(void *)states, &w);
-        states += sizeof(noh_stage_face);
-    }
-    if (k->ragdoll) states += sizeof(noh_stage_body);
+    memset(w, 0, sizeof *w);
+    w->actor = noh_stage_actor_at(s, k->first_actor + index);
+    w->skeleton = &k->skeleton;
+    w->local = scratch->local;
+    w->joint_count = scratch->joint_count;
+    w->level = ch->lod.mesh;
+    w->pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
+                              ? NOH_PART_FULL_DETAIL
+                              : ch->lod.pixels_per_metre;
+    w->place = place_in_world(s, &k->actors[index]);
+    w->kind = k;
+    w->floats = scratch->floats;
+    w->model = scratch->model;
+    w->scratch = job->part_scratch;
+    set_time(w, (noh_stage_part_head *)(void *)states_of(k, index), clock,
+             s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
+}
+
+void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
+{
+    uint8_t *states = states_of(k, index) + state_offset(k, 0);
     for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        w.state = states;
-        w.user = k->parts[i].user;
-        k->parts[i].modify(&w);
+        w->state = states;
+        w->user = k->parts[i].user;
+        k->parts[i].modify(w);
         states += aligned(k->parts[i].state_bytes);
     }
-    if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, index), &w);
-    if (k->springs.modify) {
-        w.state = states;
-        w.user = k->springs.user;
-        k->springs.modify(&w);
-    }
+}
+
+void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
+{
+    w->state = states_of(k, index) + state_offset(k, k->desc->part_count);
+    w->user = k->springs.user;
+    k->springs.modify(w);
 }

@@ -61,25 +61,6 @@ static void take_weights(noh_stage *s, const noh_stage_kind *k, noh_stage_actor 
     }
 }
 
-static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint32_t index)
-{
-    const uint32_t i = index - k->first_actor;
-    noh_character *ch = noh_stage_character(k, i);
-    float *floats = k->floats + (size_t)i * k->float_count;
-    float error_pixels;
-    if (!ch->time.posed) {
-        return; /* over budget: not shown yet */
-    }
-    take_floats(k, ch, floats);
-    hold(k, i, floats);
-    if (k->corrective_count) noh_stage_correct(k, i, floats);
-    take_weights(s, k, &s->actors[index], ch, floats, k->weights + (size_t)i * k->weight_count);
-    s->shown[index].frame = s->frame;
-    if (s->gpu && s->shown[index].views) s->desc.gpu->pose(s, k, i, job->matrices);
-    error_pixels = noh_lod_error_pixels(&ch->lod);
-    if (error_pixels > job->error_pixels && !s->actors[index].look.posed) job->error_pixels = error_pixels;
-}
-
 static uint64_t late_of(const noh_stage *s, const noh_stage_job_part *job)
 {
     uint64_t late = 0;
@@ -105,19 +86,51 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
     (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &p->scratch, NULL);
 }
 
-static void update(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
+/* ---- the order of a frame ----
+ *
+ * Before these, for all actors: noh_stage_step (time, callback keys, root motion, ragdolls' bodies), the game's places
+ * (crowd/, walkers.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
+ * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
+
+/* The pose: joints and the floats that go with them. */
+static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
 {
     noh_stage_kind *k = p->k;
     noh_character *ch = noh_stage_character(k, i);
     const int64_t clock = noh_character_pose_clock(ch);
-    if (k->graph_count) {
-        noh_stage_pose_graph(s, job, k, i, clock - noh_character_clock(ch), 0, &p->sampler);
-    }
-    noh_character_update_begin(ch, &p->set, &p->scratch);
+    const int64_t ahead = clock - noh_character_clock(ch);
+    if (k->graph_count) noh_stage_pose_graph(s, job, k, i, ahead, 0, &p->sampler);
+    noh_character_update_begin(ch, &p->set, &p->scratch); /* local poses of clips and graphs, blended */
     if (noh_stage_has_parts(k->desc)) {
-        noh_stage_run_parts(s, job, k, i, clock, &p->scratch);
+        noh_part_work w;
+        noh_stage_begin_parts(s, job, k, i, clock, &p->scratch, &w);
+        if (k->face) noh_stage_run_face(s, k, noh_stage_face_of(k, i), &w); /* eyes, blinks, breath, speech */
+        noh_stage_run_parts(k, i, &w); /* the kind's own order: look-at, feet, hands, hair */
+        if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, i), &w); /* over them, who falls */
+        if (k->springs.modify) noh_stage_run_springs(k, i, &w);
     }
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
+}
+
+/* What of the pose is shown, mixed of two where updates are seldom: weights of targets, and palettes. */
+static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint32_t i)
+{
+    noh_character *ch = noh_stage_character(k, i);
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    noh_stage_actor *a = &s->actors[k->first_actor + i];
+    float *floats = k->floats + (size_t)i * k->float_count;
+    float error_pixels;
+    if (!ch->time.posed) {
+        return; /* over budget: not shown yet */
+    }
+    take_floats(k, ch, floats);
+    hold(k, i, floats); /* the game's word is over clips, faces and parts */
+    if (k->corrective_count) noh_stage_correct(k, i, floats);
+    take_weights(s, k, a, ch, floats, k->weights + (size_t)i * k->weight_count);
+    shown->frame = s->frame;
+    if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes */
+    error_pixels = noh_lod_error_pixels(&ch->lod);
+    if (error_pixels > job->error_pixels && !a->look.posed) job->error_pixels = error_pixels;
 }
 
 void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)
@@ -134,10 +147,10 @@ void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t
             open_poser(s, job, of, &p);
         }
         if (s->shown[s->todo[t]].updates) {
-            update(s, job, &p, s->todo[t] - of->first_actor);
+            pose(s, job, &p, s->todo[t] - of->first_actor);
             job->updated++;
         }
-        show(s, job, of, s->todo[t]);
+        show(s, job, of, s->todo[t] - of->first_actor);
     }
     job->decoded_late = late_of(s, job) - late;
 }

@@ -403,6 +403,41 @@ static void inertia_takes_over_without_a_leap(void **state)
 }
 
 /* Clips beside each other play on; their weights are those of the tracks; a layer without a free track refuses. */
+/* How far joints leap when a clip of another name begins. */
+static float leap_at_a_change(const noh_play *play)
+{
+    const noh_look look = { .posed = 1 };
+    float before[64 * 12], after[64 * 12], most = 0.0f;
+    noh_actor actor;
+    cast k;
+    cast_open(&k);
+    k.kinds[PUPPETS].root_axes = 0;
+    cast_make(&k, NULL);
+    assert_int_equal(noh_stage_spawn(k.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(k.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(k.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(k.stage, 30 * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    take_joints(&k, actor, before);
+    assert_int_equal(noh_actor_play(k.stage, actor, 0, "bow", play, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(k.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    take_joints(&k, actor, after);
+    for (uint32_t j = 0; j < k.plan.kinds[PUPPETS].joint_count; j++) {
+        for (uint32_t r = 3; r < 12; r += 4) most = fmaxf(most, fabsf(after[12 * j + r] - before[12 * j + r]));
+    }
+    cast_close(&k);
+    return most;
+}
+
+/* The source sets another clip on the track that plays: the pose leaps. Ours fades, if the game asks for nothing. */
+static void errata_C16_2_another_clip_does_not_leap(void **state)
+{
+    const noh_play at_once = { .fade_ticks = 1 };
+    (void)state;
+    const float faded = leap_at_a_change(NULL), leapt = leap_at_a_change(&at_once);
+    assert_true(leapt > 0.02f);
+    assert_true(faded < 0.25f * leapt);
+}
+
 static void clips_play_beside_each_other(void **state)
 {
     static const char *const clips[] = { "walk", "dance", "bow" };
@@ -1078,6 +1113,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_face_is_played_over_a_body),
         cmocka_unit_test(a_walk_takes_the_actor_along),
         cmocka_unit_test(inertia_takes_over_without_a_leap),
+        cmocka_unit_test(errata_C16_2_another_clip_does_not_leap),
         cmocka_unit_test(clips_play_beside_each_other),
         cmocka_unit_test(keys_are_told_with_their_names),
         cmocka_unit_test(frames_and_steps_do_not_mix),
