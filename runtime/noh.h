@@ -52,6 +52,7 @@
 #include "stage/decal.h"            /* marks on actors */
 #include "stage/springs.h"          /* chains of joints that swing */
 #include "stage/wig.h"              /* hair of actors */
+#include "stage/wigs.h"             /* hair of crowds */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */

@@ -36,6 +36,7 @@
 #include "stage_gl/stage_blob.h"    /* soft spots under them, where there is no shadow map */
 #include "stage_gl/stage_decal.h"   /* marks on them */
 #include "stage_gl/stage_hair.h"    /* hair of its actors */
+#include "stage_gl/stage_hairs.h"   /* hair of a crowd */
 #include "stage_gl/stage_terrain.h" /* a height field as their ground */
 #include "gl/gl_api.h"              /* the functions that noh calls */
 #include "gl/gl_caps.h"             /* what this GPU can do, found by trying it */

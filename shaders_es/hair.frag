@@ -11,6 +11,7 @@ in vec3 v_tangent;
 in vec3 v_normal;
 in vec2 v_at;
 flat in float v_strip;
+flat in float v_fade; /* 0: what is painted on the head shows in its place */
 
 out vec4 o_color;
 
@@ -36,7 +37,7 @@ void main()
     float end = mix(0.92, 0.72 + 0.28 * own.y, fine);
     float begin = mix(0.012, 0.004 + 0.03 * own.x, fine); /* a hairline is no edge: strands begin one by one */
     float alpha = min(1.0, 1.6 * edge) * smoothstep(0.0, begin, v_at.y) * (1.0 - smoothstep(end - 0.12, end, v_at.y));
-    if (alpha < u_alpha.x || alpha >= u_alpha.y) {
+    if (alpha < u_alpha.x || alpha >= u_alpha.y || noh_fade_noise(gl_FragCoord.xy) >= v_fade) {
         discard;
     }
 #ifndef NOH_DEPTH_ONLY

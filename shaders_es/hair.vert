@@ -3,12 +3,14 @@
 precision highp float;
 precision highp int;
 
-uniform highp sampler2D u_points; /* rows of control hairs, then two texels a patch: its corners */
-uniform vec4 u_counts;            /* points of a hair, hairs, patches, segments of a strip */
+uniform highp sampler2D u_points; /* rows of control hairs, then two texels a patch: its corners; then five a body */
+uniform vec4 u_counts;            /* points of a hair, rows of hairs, patches, segments of a strip */
 uniform vec4 u_widths;            /* half of a strip's at root and tip, how far strips stray, gloss */
-uniform vec4 u_curl;              /* radius, turns */
+uniform vec4 u_curl;              /* radius, turns, how much of a body fades in, hairs in a row of texels (0: 1) */
+uniform vec4 u_crowd;             /* strips drawn of each body, the first body, the row of bodies, all strips of one; zeros:
+                                   * one body, at u_world */
 uniform vec4 u_middle;            /* of the skull, head space */
-uniform vec4 u_world[3];          /* from head space */
+uniform vec4 u_world[3];          /* of one body: from head space */
 uniform mat4 u_view_projection;
 uniform vec4 u_eye;               /* world; w 0: the view is parallel */
 uniform vec4 u_light;             /* unit, towards the light */
@@ -18,6 +20,7 @@ out vec3 v_tangent;
 out vec3 v_normal;
 out vec2 v_at;           /* across, -1 to 1; along, 0 to 1 */
 flat out float v_strip;  /* a number of the strip's own, 0 to 1 */
+flat out float v_fade;
 
 float share_of(uint bits)
 {
@@ -31,30 +34,73 @@ uint mixed(uint x)
     return x ^ (x >> 16);
 }
 
-vec3 fetch(int point, float hair)
+vec3 fetch(int x, int y)
 {
-    return texelFetch(u_points, ivec2(point, int(hair)), 0).xyz;
+    return texelFetch(u_points, ivec2(x, y), 0).xyz;
 }
 
-void add_hair(float hair, ivec4 at, vec4 place, vec4 slope, float share, inout vec3 position, inout vec3 tangent)
+int hairs_in_row()
 {
-    vec3 a = fetch(at.x, hair), b = fetch(at.y, hair), c = fetch(at.z, hair), d = fetch(at.w, hair);
+    return max(int(u_curl.w), 1);
+}
+
+/* The n-th texel from a row on. */
+vec3 fetch_from(int row, int n)
+{
+    int width = int(u_counts.x) * hairs_in_row();
+    return fetch(n % width, row + n / width);
+}
+
+void add_hair(int hair, ivec4 at, vec4 place, vec4 slope, float share, inout vec3 position, inout vec3 tangent)
+{
+    int row = hair / hairs_in_row(), x = (hair - row * hairs_in_row()) * int(u_counts.x);
+    vec3 a = fetch(x + at.x, row), b = fetch(x + at.y, row), c = fetch(x + at.z, row), d = fetch(x + at.w, row);
     position += share * (a * place.x + b * place.y + c * place.z + d * place.w);
     tangent += share * (a * slope.x + b * slope.y + c * slope.z + d * slope.w);
 }
 
-vec3 to_world(vec3 p, float w)
+/* What is drawn of the head that an instance belongs to. */
+struct head {
+    vec4 x, y, z; /* rows from head space */
+    uint strip;
+    int first; /* of its control hairs */
+    float fade, widen;
+    bool is_drawn;
+};
+
+head head_of(uint instance)
+{
+    head h = head(u_world[0], u_world[1], u_world[2], instance, 0, u_curl.z, 1.0, true);
+    if (u_crowd.x > 0.5) {
+        uint each = uint(u_crowd.x), body = instance / each;
+        int at = (int(u_crowd.y) + int(body)) * 5, row = int(u_crowd.z);
+        vec3 a = fetch_from(row, at), b = fetch_from(row, at + 1), c = fetch_from(row, at + 2);
+        vec3 d = fetch_from(row, at + 3), own = fetch_from(row, at + 4);
+        h.x = vec4(a, b.x);
+        h.y = vec4(b.yz, c.xy);
+        h.z = vec4(c.z, d);
+        h.strip = instance - body * each;
+        h.first = int(own.x);
+        h.fade = own.y;
+        h.widen = u_crowd.w / max(own.z, 1.0);
+        h.is_drawn = float(h.strip) < own.z;
+    }
+    return h;
+}
+
+vec3 to_world(head h, vec3 p, float w)
 {
     vec4 q = vec4(p, w);
-    return vec3(dot(u_world[0], q), dot(u_world[1], q), dot(u_world[2], q));
+    return vec3(dot(h.x, q), dot(h.y, q), dot(h.z, q));
 }
 
 void main()
 {
-    uint strip = uint(gl_InstanceID), patches = uint(u_counts.z), index = strip % patches, turn = strip / patches;
+    head h = head_of(uint(gl_InstanceID));
+    uint strip = h.strip, patches = uint(u_counts.z), index = strip % patches, turn = strip / patches;
     int count = int(u_counts.x), texel = int(index) * 2;
-    vec2 near = texelFetch(u_points, ivec2(texel % count, int(u_counts.y) + texel / count), 0).xy;
-    vec2 far = texelFetch(u_points, ivec2((texel + 1) % count, int(u_counts.y) + (texel + 1) / count), 0).xy;
+    ivec2 near = ivec2(fetch_from(int(u_counts.y), texel).xy) + h.first;
+    ivec2 far = ivec2(fetch_from(int(u_counts.y), texel + 1).xy) + h.first;
     float u = share_of(turn * 0xc13fa9a9u + 0x80000000u), v = share_of(turn * 0x91e10da6u + 0x80000000u);
     float along = float(gl_VertexID >> 1) / u_counts.w;
     float x = along * (0.8 + 0.2 * share_of(mixed(strip * 3u))) * float(count - 1);
@@ -77,16 +123,17 @@ void main()
     p += (u_widths.z * along * (2.0 * b - 1.0) + u_curl.x * along * sin(angle)) * across;
     vec3 away = p - u_middle.xyz;
     away.y = max(away.y, 0.0); /* below the skull's middle hair faces away from a line */
-    float scale = length(vec3(u_world[0].x, u_world[1].x, u_world[2].x));
-    v_position = to_world(p, 1.0);
-    v_tangent = normalize(to_world(t, 0.0));
+    float scale = length(vec3(h.x.x, h.y.x, h.z.x));
+    v_position = to_world(h, p, 1.0);
+    v_tangent = normalize(to_world(h, t, 0.0));
     vec3 view = u_eye.w > 0.5 ? u_eye.xyz - v_position : u_light.xyz;
     vec3 wide = cross(v_tangent, view);
-    wide = dot(wide, wide) > 1e-12 * dot(view, view) ? normalize(wide) : normalize(to_world(side, 0.0));
+    wide = dot(wide, wide) > 1e-12 * dot(view, view) ? normalize(wide) : normalize(to_world(h, side, 0.0));
     v_at = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, along);
-    v_position += v_at.x * scale * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.02, 0.025, along) * wide;
-    vec3 normal = to_world(away - dot(away, t) * t, 0.0);
+    v_position += v_at.x * h.widen * scale * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.02, 0.025, along) * wide;
+    vec3 normal = to_world(h, away - dot(away, t) * t, 0.0);
     v_normal = dot(normal, normal) > 1e-20 ? normalize(normal) : wide;
     v_strip = b;
-    gl_Position = u_view_projection * vec4(v_position, 1.0);
+    v_fade = h.fade;
+    gl_Position = h.is_drawn ? u_view_projection * vec4(v_position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -39,6 +39,12 @@ uint32_t noh_haircut_strips(const noh_haircut *cut, float pixels_per_metre)
     return strips ? strips : 1u;
 }
 
+float noh_haircut_fade(float pixels_per_metre)
+{
+    const float fade = pixels_per_metre / PIXELS_NONE - 1.0f;
+    return !(fade > 0.0f) ? 0.0f : fade < 1.0f ? fade : 1.0f;
+}
+
 float noh_haircut_widen(const noh_haircut *cut, uint32_t strips)
 {
     return strips ? (float)cut->header->strip_count / (float)strips : 1.0f;

@@ -2,6 +2,7 @@
  *
  *   noh_haircut_open     the haircut of a pack
  *   noh_haircut_strips   how many strips are drawn, by how many pixels a metre has
+ *   noh_haircut_fade     how much of them, where paint takes over
  *   noh_haircut_widen    how much wider fewer strips are
  *   noh_haircut_vertex   a vertex of a strip, as the vertex shader has it
  *
@@ -35,6 +36,9 @@ noh_result noh_haircut_open(const noh_pack *pack, noh_haircut *out, noh_error *e
 /* Strips to draw of hair of which a metre is so many pixels: all from 500 pixels on, fewer in proportion below, none
  * from 25 down, where hair is a few pixels and what is painted on the head shows it. */
 uint32_t noh_haircut_strips(const noh_haircut *cut, float pixels_per_metre);
+
+/* How much of that hair covers what is painted on the head: 1 from 50 pixels a metre on, 0 at 25. */
+float noh_haircut_fade(float pixels_per_metre);
 
 /* The factor by which `strips` strips are wider than all would be: they cover as much. 1 for 0. */
 float noh_haircut_widen(const noh_haircut *cut, uint32_t strips);

@@ -4,6 +4,7 @@
 #include "base/assert.h"
 #include "base/name_internal.h"
 #include "clip/pack_clip.h"
+#include "pose/local_to_model.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
@@ -106,4 +107,33 @@ void noh_wig_points(const noh_wig *wig, const void *state, float *points)
     } else {
         memcpy(points, d->rest, (size_t)d->hair_count * d->point_count * 3u * sizeof(float));
     }
+}
+
+int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
+                 uint32_t *views)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    NOH_ASSERT(wig && world && pixels_per_metre && views);
+    if (!a || stage->shown[a - stage->actors].frame != stage->frame) return 0;
+    const noh_stage_shown *shown = &stage->shown[a - stage->actors];
+    const float units = 1.0f / wig->cut->header->metres;
+    float to_joint[12] = { units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f };
+    float joint[12], rotation[4], at[3];
+    memcpy(joint, shown->world, sizeof joint);
+    if (wig->joint < k->skeleton.joint_count && noh_actor_joint(stage, actor, wig->joint, joint, NULL) == NOH_OK) {
+        noh_stage_joint_at(k, k->skeleton.bind_pose, wig->joint, rotation, at);
+        noh_quat_conjugate(rotation, rotation);
+        for (int i = 0; i < 3; i++) {
+            float axis[3] = { i == 0 ? units : 0.0f, i == 1 ? units : 0.0f, i == 2 ? units : 0.0f };
+            noh_quat_rotate(rotation, axis, axis);
+            for (int r = 0; r < 3; r++) to_joint[4 * r + i] = axis[r];
+        }
+        noh_quat_rotate(rotation, at, at);
+        for (int r = 0; r < 3; r++) to_joint[4 * r + 3] = -at[r];
+    }
+    noh_matrix_multiply(joint, to_joint, world);
+    *pixels_per_metre = shown->scale / wig->cut->header->metres * a->place.scale;
+    *views = shown->views;
+    return 1;
 }

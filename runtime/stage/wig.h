@@ -3,6 +3,7 @@
  *   noh_wig_make    a haircut and the joint that carries it
  *   noh_wig_part    the part that moves it, for noh_kind_desc.parts
  *   noh_wig_points  where its control hairs are
+ *   noh_wig_seen    where its head is, as it was shown
  *
  * Control hairs (sim/hair.h) are state of the stage like all that parts have (part.h): planned, saved, forked and
  * hashed, with the same bits for any number of jobs. stage_gl/stage_hair.h draws them.
@@ -34,6 +35,12 @@ noh_stage_part noh_wig_part(const noh_wig *wig);
 
 /* shapes  state: of noh_actor_part; points[hair_count][point_count][3], head space; at rest where none was posed */
 void noh_wig_points(const noh_wig *wig, const void *state, float *points);
+
+/* Where the head of an actor is, as the last frame showed it. Returns 0 and leaves all as it was where it was not
+ * shown. shapes  world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each that sees
+ * it */
+int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
+                 uint32_t *views);
 
 #ifdef __cplusplus
 }

@@ -3,17 +3,17 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "base/quat.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
 #include "gl/gl_program.h"
 #include "gl/gl_shader_text.h"
-#include "pose/local_to_model.h"
 #include "shaders.gen.h"
 #include "stage_gl/stage_gl_internal.h"
+#include "stage_gl/stage_hair_internal.h"
 
 #define PIECES_MAX 8u
-#define VERTICES_OF(segments) (2u * ((segments) + 1u))
+#define ROW_TEXELS 1024u  /* of a crowd's texture, at most */
+#define PIECE_TEXELS 128u /* uploaded at a time */
 
 /* ---- bytes ---- */
 
@@ -22,20 +22,27 @@ static size_t point_count(const noh_haircut *cut)
     return (size_t)cut->header->hair_count * cut->header->point_count;
 }
 
-/* Rows of corners: two texels a patch. */
-static uint32_t patch_rows(const noh_haircut *cut)
+noh_hair_layout noh_hair_layout_of(const noh_haircut *cut, uint32_t sets, uint32_t bodies)
 {
-    const uint32_t width = cut->header->point_count;
-    return (2u * cut->header->patch_count + width - 1u) / width;
+    const noh_pack_hair_header *h = cut->header;
+    const uint32_t hairs = h->hair_count * (sets ? sets : 1u);
+    noh_hair_layout l;
+    l.in_row = sets && h->point_count < ROW_TEXELS ? ROW_TEXELS / h->point_count : 1u;
+    l.width = l.in_row * h->point_count;
+    l.patches = (hairs + l.in_row - 1u) / l.in_row;
+    l.bodies = l.patches + (2u * h->patch_count + l.width - 1u) / l.width;
+    l.height = l.bodies + (NOH_HAIR_BODY_TEXELS * bodies + l.width - 1u) / l.width;
+    return l;
 }
 
-static noh_gl_texture_desc texture_desc(const noh_haircut *cut)
+noh_gl_texture_desc noh_hair_texture(const noh_haircut *cut, uint32_t sets, uint32_t bodies)
 {
+    const noh_hair_layout l = noh_hair_layout_of(cut, sets, bodies);
     noh_gl_texture_desc d;
     memset(&d, 0, sizeof d);
     d.format = GL_RGB32F;
-    d.width = cut->header->point_count;
-    d.height = cut->header->hair_count + patch_rows(cut);
+    d.width = l.width;
+    d.height = l.height;
     return d;
 }
 
@@ -49,7 +56,7 @@ size_t noh_stage_hair_size(const noh_haircut *cut)
 
 uint64_t noh_stage_hair_bytes(const noh_haircut *cut)
 {
-    const noh_gl_texture_desc d = texture_desc(cut);
+    const noh_gl_texture_desc d = noh_hair_texture(cut, 0, 0);
     return noh_gl_texture_bytes(&d);
 }
 
@@ -87,34 +94,47 @@ static noh_result create_program(const noh_stage_hair *h, int depth, GLuint *pro
 static void upload_patches(const noh_stage_hair *h)
 {
     const noh_haircut *cut = h->wig->cut;
-    const uint32_t width = cut->header->point_count;
-    float row[3u * NOH_HAIR_POINTS_MAX];
-    for (uint32_t y = 0; y < patch_rows(cut); y++) {
-        memset(row, 0, sizeof row);
-        for (uint32_t x = 0; x < width; x++) {
-            const uint32_t texel = y * width + x, patch = texel / 2u;
-            if (patch >= cut->header->patch_count) break;
-            row[3u * x] = (float)cut->patches[4u * patch + 2u * (texel & 1u)];
-            row[3u * x + 1u] = (float)cut->patches[4u * patch + 2u * (texel & 1u) + 1u];
+    const noh_hair_layout l = noh_hair_layout_of(cut, h->sets, h->bodies);
+    const uint32_t all = 2u * cut->header->patch_count;
+    float piece[3u * PIECE_TEXELS];
+    for (uint32_t at = 0; at < all;) {
+        const uint32_t x = at % l.width, in_row = l.width - x, left = all - at;
+        uint32_t count = in_row < left ? in_row : left;
+        count = count < PIECE_TEXELS ? count : PIECE_TEXELS;
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t *corners = cut->patches + 2u * (size_t)(at + i);
+            piece[3u * i] = (float)corners[0];
+            piece[3u * i + 1u] = (float)corners[1];
+            piece[3u * i + 2u] = 0.0f;
         }
-        h->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)(cut->header->hair_count + y), (GLsizei)width, 1, GL_RGB,
-                             GL_FLOAT, row);
+        h->gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)x, (GLint)(l.patches + at / l.width), (GLsizei)count, 1, GL_RGB,
+                             GL_FLOAT, piece);
+        at += count;
     }
 }
 
-static void upload_points(const noh_stage_hair *h)
+void noh_hair_upload(const noh_stage_hair *h, uint32_t set)
 {
     const noh_pack_hair_header *head = h->wig->cut->header;
+    const noh_hair_layout l = noh_hair_layout_of(h->wig->cut, h->sets, h->bodies);
+    const uint32_t first = set * head->hair_count;
     h->gl->ActiveTexture(GL_TEXTURE0);
     h->gl->BindTexture(GL_TEXTURE_2D, h->texture.name);
     h->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    h->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)head->point_count, (GLsizei)head->hair_count, GL_RGB,
-                         GL_FLOAT, h->points);
+    for (uint32_t at = 0; at < head->hair_count;) {
+        const uint32_t x = (first + at) % l.in_row, left = head->hair_count - at, room = l.in_row - x;
+        const uint32_t rows = x || left < room ? 1u : left / l.in_row;
+        const uint32_t hairs = rows > 1u ? l.in_row : left < room ? left : room;
+        h->gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)(x * head->point_count), (GLint)((first + at) / l.in_row),
+                             (GLsizei)(hairs * head->point_count), (GLsizei)rows, GL_RGB, GL_FLOAT,
+                             h->points + 3u * (size_t)at * head->point_count);
+        at += hairs * rows;
+    }
 }
 
-static noh_result create_objects(noh_stage_hair *h, char *log, size_t log_bytes, noh_error *error)
+noh_result noh_hair_create_objects(noh_stage_hair *h, char *log, size_t log_bytes, noh_error *error)
 {
-    const noh_gl_texture_desc d = texture_desc(h->wig->cut);
+    const noh_gl_texture_desc d = noh_hair_texture(h->wig->cut, h->sets, h->bodies);
     noh_result result = noh_gl_texture_create(h->gl, h->ledger, &d, &h->texture, error);
     if (!result) result = create_program(h, 0, &h->color, log, log_bytes, error);
     if (!result) result = create_program(h, 1, &h->depth, log, log_bytes, error);
@@ -123,7 +143,7 @@ static noh_result create_objects(noh_stage_hair *h, char *log, size_t log_bytes,
         return result;
     }
     h->gl->GenVertexArrays(1, &h->vertex_array);
-    upload_points(h);
+    noh_hair_upload(h, 0);
     upload_patches(h);
     h->gl->BindTexture(GL_TEXTURE_2D, 0);
     return NOH_OK;
@@ -144,7 +164,7 @@ noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_wig *wig
     out->lit = lit;
     out->encode_srgb = encode_srgb;
     noh_wig_points(wig, NULL, out->points);
-    return create_objects(out, device->log, device->log_bytes, error);
+    return noh_hair_create_objects(out, device->log, device->log_bytes, error);
 }
 
 void noh_stage_hair_delete(noh_stage_hair *hair)
@@ -165,32 +185,10 @@ noh_result noh_stage_hair_restore(noh_stage_hair *hair, char *log, size_t log_by
     hair->gl = noh_gl_lost_api();
     noh_stage_hair_delete(hair);
     hair->gl = gl;
-    return create_objects(hair, log, log_bytes, error);
+    return noh_hair_create_objects(hair, log, log_bytes, error);
 }
 
 /* ---- where it is ---- */
-
-/* From head space into the world, as the actor is shown. */
-static void place(noh_stage_hair *h, const noh_stage *s, const noh_stage_kind *k, noh_actor actor,
-                  const noh_stage_shown *shown)
-{
-    const float units = 1.0f / h->wig->cut->header->metres;
-    float to_joint[12] = { units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f };
-    float joint[12], rotation[4], at[3];
-    memcpy(joint, shown->world, sizeof joint);
-    if (h->wig->joint < k->skeleton.joint_count && noh_actor_joint(s, actor, h->wig->joint, joint, NULL) == NOH_OK) {
-        noh_stage_joint_at(k, k->skeleton.bind_pose, h->wig->joint, rotation, at);
-        noh_quat_conjugate(rotation, rotation);
-        for (int i = 0; i < 3; i++) {
-            float axis[3] = { i == 0 ? units : 0.0f, i == 1 ? units : 0.0f, i == 2 ? units : 0.0f };
-            noh_quat_rotate(rotation, axis, axis);
-            for (int r = 0; r < 3; r++) to_joint[4 * r + i] = axis[r];
-        }
-        noh_quat_rotate(rotation, at, at);
-        for (int r = 0; r < 3; r++) to_joint[4 * r + 3] = -at[r];
-    }
-    noh_matrix_multiply(joint, to_joint, h->world);
-}
 
 noh_result noh_stage_hair_update(noh_stage_hair *hair, noh_stage *stage, noh_actor actor, uint32_t part,
                                  noh_error *error)
@@ -203,13 +201,9 @@ noh_result noh_stage_hair_update(noh_stage_hair *hair, noh_stage *stage, noh_act
     if (!a || !state) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, has no such part, or a frame has begun", part, 0);
     }
-    const noh_stage_shown *shown = &stage->shown[a - stage->actors];
-    if (shown->frame != stage->frame) return NOH_OK;
-    hair->views = shown->views;
-    hair->pixels_per_metre = shown->scale / hair->wig->cut->header->metres * a->place.scale;
-    place(hair, stage, k, actor, shown);
+    if (!noh_wig_seen(hair->wig, stage, actor, hair->world, &hair->pixels_per_metre, &hair->views)) return NOH_OK;
     noh_wig_points(hair->wig, state, hair->points);
-    upload_points(hair);
+    noh_hair_upload(hair, 0);
     hair->gl->BindTexture(GL_TEXTURE_2D, 0);
     return NOH_OK;
 }
@@ -221,24 +215,29 @@ static GLint named(const noh_stage_hair *h, GLuint program, const char *name)
     return h->gl->GetUniformLocation(program, name);
 }
 
+/* strips  0: each body of a crowd has its own */
 static void set_shape(const noh_stage_hair *h, GLuint program, uint32_t strips)
 {
     const noh_pack_hair_header *d = h->wig->cut->header;
+    const noh_hair_layout l = noh_hair_layout_of(h->wig->cut, h->sets, h->bodies);
     const float widen = 0.5f * noh_haircut_widen(h->wig->cut, strips);
     const float middle[4] = { d->middle[0], d->middle[1], d->middle[2], 0.0f };
     const float root[4] = { d->color_root[0], d->color_root[1], d->color_root[2], 1.0f };
     const float tip[4] = { d->color_tip[0], d->color_tip[1], d->color_tip[2], 1.0f };
-    h->gl->Uniform4f(named(h, program, "u_counts"), (float)d->point_count, (float)d->hair_count, (float)d->patch_count,
+    h->gl->Uniform4f(named(h, program, "u_counts"), (float)d->point_count, (float)l.patches, (float)d->patch_count,
                      (float)d->segment_count);
     h->gl->Uniform4f(named(h, program, "u_widths"), widen * d->width_root, widen * d->width_tip, d->scatter, d->gloss);
-    h->gl->Uniform4f(named(h, program, "u_curl"), d->curl_radius, d->curl_turns, 0.0f, 0.0f);
+    h->gl->Uniform4f(named(h, program, "u_curl"), d->curl_radius, d->curl_turns, noh_haircut_fade(h->pixels_per_metre),
+                     (float)l.in_row);
+    h->gl->Uniform4f(named(h, program, "u_crowd"), 0.0f, 0.0f, 0.0f, 0.0f);
     h->gl->Uniform4fv(named(h, program, "u_middle"), 1, middle);
     h->gl->Uniform4fv(named(h, program, "u_root"), 1, root);
     h->gl->Uniform4fv(named(h, program, "u_tip"), 1, tip);
     h->gl->Uniform4fv(named(h, program, "u_world"), 3, h->world);
 }
 
-static void bind(const noh_stage_hair *h, const noh_stage *s, GLuint program, const noh_stage_view *v, uint32_t strips)
+void noh_hair_bind(const noh_stage_hair *h, const noh_stage *s, GLuint program, const noh_stage_view *v,
+                   uint32_t strips)
 {
     const noh_stage_gl *gl = s->gpu;
     const noh_gl_api *api = h->gl;
@@ -263,7 +262,7 @@ static void bind(const noh_stage_hair *h, const noh_stage *s, GLuint program, co
     api->BindVertexArray(h->vertex_array);
 }
 
-static void unbind(const noh_stage_hair *h)
+void noh_hair_unbind(const noh_stage_hair *h)
 {
     const noh_gl_api *api = h->gl;
     api->BindVertexArray(0);
@@ -279,62 +278,69 @@ static void unbind(const noh_stage_hair *h)
     api->DepthMask(GL_TRUE);
 }
 
-/* All strips: the alphas from `low` up to `high`. */
-static void draw_strips(noh_stage_hair *h, GLuint program, uint32_t strips, float low, float high)
+void noh_hair_draw_strips(noh_stage_hair *h, GLuint program, uint32_t strips, float low, float high)
 {
-    const uint32_t vertices = VERTICES_OF(h->wig->cut->header->segment_count);
+    const uint32_t vertices = 2u * (h->wig->cut->header->segment_count + 1u);
     h->gl->Uniform4f(named(h, program, "u_alpha"), low, high, 0.0f, 0.0f);
     h->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, (GLsizei)vertices, (GLsizei)strips);
     h->draws++;
 }
 
-static void draw_depth(noh_stage_hair *h, const noh_stage *s, uint32_t view, uint32_t strips)
+void noh_hair_draw_pass(noh_stage_hair *h, const noh_stage *s, uint32_t view, noh_pass pass, uint32_t strips,
+                        noh_hair_strips_fn fn, void *user)
 {
-    bind(h, s, h->depth, &s->views[view], strips);
-    h->gl->Enable(GL_DEPTH_TEST);
-    h->gl->Disable(GL_BLEND);
-    h->gl->Disable(GL_CULL_FACE);
-    h->gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    draw_strips(h, h->depth, strips, 0.9f, 2.0f);
-    h->gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    unbind(h);
-}
-
-void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t view, noh_pass pass)
-{
-    const noh_gl_api *gl = hair->gl;
-    NOH_ASSERT(stage && stage->gpu);
-    const uint32_t strips = noh_haircut_strips(hair->wig->cut, hair->pixels_per_metre);
-    if (view >= stage->view_count || !(hair->views >> view & 1u) || !strips) return;
-    if (pass == NOH_PASS_DEPTH) {
-        draw_depth(hair, stage, view, strips);
-        return;
-    }
-    bind(hair, stage, hair->color, &stage->views[view], strips);
+    const noh_gl_api *gl = h->gl;
+    const GLuint program = pass == NOH_PASS_DEPTH ? h->depth : h->color;
+    noh_hair_bind(h, s, program, &s->views[view], strips);
     gl->Enable(GL_DEPTH_TEST);
     gl->Disable(GL_CULL_FACE);
     if (pass != NOH_PASS_BLENDED) {
+        const GLboolean colors = pass == NOH_PASS_DEPTH ? GL_FALSE : GL_TRUE;
         gl->Disable(GL_BLEND);
-        draw_strips(hair, hair->color, strips, 0.9f, 2.0f);
+        gl->ColorMask(colors, colors, colors, colors);
+        fn(user, program, 0.9f, 2.0f);
+        gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
-    if (pass != NOH_PASS_OPAQUE) {
+    if (pass != NOH_PASS_OPAQUE && pass != NOH_PASS_DEPTH) {
         gl->Enable(GL_BLEND);
         gl->BlendEquation(GL_FUNC_ADD);
         gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         gl->DepthMask(GL_FALSE);
-        draw_strips(hair, hair->color, strips, 0.01f, 0.9f);
+        fn(user, program, 0.01f, 0.9f);
     }
-    unbind(hair);
+    noh_hair_unbind(h);
+}
+
+/* ---- of one actor ---- */
+
+static void draw_one(void *user, GLuint program, float low, float high)
+{
+    noh_stage_hair *h = user;
+    noh_hair_draw_strips(h, program, noh_haircut_strips(h->wig->cut, h->pixels_per_metre), low, high);
+}
+
+void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t view, noh_pass pass)
+{
+    NOH_ASSERT(stage && stage->gpu);
+    const uint32_t strips = noh_haircut_strips(hair->wig->cut, hair->pixels_per_metre);
+    if (view >= stage->view_count || !(hair->views >> view & 1u) || !strips) return;
+    noh_hair_draw_pass(hair, stage, view, pass, strips, draw_one, hair);
+}
+
+int noh_hair_begin_shadow(const noh_stage_hair *h, const noh_stage *stage)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    NOH_ASSERT(gl);
+    if (!gl->light || !gl->light->framebuffer) return 0;
+    noh_gl_group_begin(h->gl, "noh hair's shadow", NULL);
+    h->gl->BindFramebuffer(GL_FRAMEBUFFER, gl->light->framebuffer);
+    h->gl->Viewport(0, 0, (GLsizei)gl->light->desc.shadow_px, (GLsizei)gl->light->desc.shadow_px);
+    return 1;
 }
 
 void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, uint32_t view)
 {
-    const noh_stage_gl *gl = stage->gpu;
-    NOH_ASSERT(gl);
-    if (!gl->light || !gl->light->framebuffer) return;
-    noh_gl_group_begin(hair->gl, "noh hair's shadow", NULL);
-    hair->gl->BindFramebuffer(GL_FRAMEBUFFER, gl->light->framebuffer);
-    hair->gl->Viewport(0, 0, (GLsizei)gl->light->desc.shadow_px, (GLsizei)gl->light->desc.shadow_px);
+    if (!noh_hair_begin_shadow(hair, stage)) return;
     noh_stage_hair_draw(hair, stage, view, NOH_PASS_DEPTH);
-    noh_gl_light_end_shadow(gl->light);
+    noh_gl_light_end_shadow(((const noh_stage_gl *)stage->gpu)->light);
 }

@@ -34,6 +34,7 @@ typedef struct noh_stage_hair {
     float pixels_per_metre; /* of head space; 0: nothing sees it */
     uint32_t views;         /* a bit for each that does */
     uint32_t draws;         /* calls of all noh_stage_hair_draw so far */
+    uint32_t sets, bodies;  /* of a crowd (stage_hairs.h): sets of control hairs, heads; 0: one head */
 } noh_stage_hair;
 
 /* The exact bytes: 12 a control point. */
@@ -64,7 +65,8 @@ noh_result noh_stage_hair_update(noh_stage_hair *hair, noh_stage *stage, noh_act
                                  noh_error *error);
 
 /* Draw it into the framebuffer and viewport that are set, after the stage: one draw call for the core, one for the
- * fringe. At less than 25 pixels a metre nothing is drawn.
+ * fringe. From 50 pixels a metre down it fades, pixel by pixel, into what is painted on the head; from 25 down nothing
+ * is drawn.
  * pass   NOH_PASS_COLOR, or one of its halves, or NOH_PASS_DEPTH
  * state  as noh_gl_draw_end leaves it */
 void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t view, noh_pass pass);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "budget_args.h"
+#include "crowd/crowd_hair.h"
 #include "crowd/place_people.h"
 #include "file/ground_file.h"
 #include "stage_budget.h"
@@ -91,9 +92,19 @@ static int add_place(stage_budget *b, const place_file *place, const place_peopl
                             noh_stage_terrain_bytes(place->ground));
 }
 
-/* place NULL: none */
+/* Of a pack's characters, as `noh crowd` draws it. */
+static int add_hair(stage_budget *b, const pack_file *file, const noh_kind_desc *kind)
+{
+    crowd_hair hair;
+    uint64_t cpu_bytes, gpu_bytes;
+    const int status = crowd_hair_plan(&hair, file, 0, kind->skeleton, kind->actor_count);
+    crowd_hair_bytes(&hair, &cpu_bytes, &gpu_bytes);
+    return status || !hair.is_there ? status : stage_budget_add(b, "hair", cpu_bytes, gpu_bytes);
+}
+
+/* place, file NULL: none */
 static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc, const place_file *place,
-                           const place_people *people)
+                           const place_people *people, const pack_file *file)
 {
     noh_gl_caps caps;
     stage_budget b;
@@ -103,6 +114,7 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     if (!status) status = stage_budget_make(&b, subject, desc, desc->gpu ? &caps : NULL);
     if (status) return status;
     if (place) status = add_place(&b, place, people);
+    if (!status && file && desc->gpu) status = add_hair(&b, file, &desc->kinds[0]);
     if (!status && a->as_json) status = stage_budget_json(&b);
     if (!status && !a->as_json) stage_budget_print(&b);
     stage_budget_free(&b);
@@ -114,7 +126,7 @@ int budget_of_desc(const budget_args *a)
     stage_desc_file *file;
     int status = stage_desc_file_read(a->desc, &file);
     if (!status) {
-        status = budget_of_stage(a, a->desc, &file->desc, NULL, NULL);
+        status = budget_of_stage(a, a->desc, &file->desc, NULL, NULL, NULL);
         stage_desc_file_free(file);
     }
     return status;
@@ -151,7 +163,7 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
     if (ragdoll.count && !place) kind.ragdoll = &ragdoll;
     desc.kinds = &kind;
     desc.kind_count = 1;
-    if (!status) status = budget_of_stage(a, a->pack, &desc, place, &people);
+    if (!status) status = budget_of_stage(a, a->pack, &desc, place, &people, file);
     ground_file_close(&ground);
     place_free(place);
     free(name);

@@ -69,10 +69,12 @@ static void print_crowd(const crowd_drawn *d, const crowd_args *a)
 
 static void take_drawn(const crowd *c, crowd_drawn *d)
 {
+    uint64_t cpu, on_gpu;
+    crowd_hair_bytes(&c->hair, &cpu, &on_gpu);
     d->stats = *noh_stage_stats_of(c->stage);
     d->level_count = c->plan.kinds[0].level_count;
-    d->cpu_bytes = c->plan.cpu_bytes; /* noh_stage_init takes exactly these */
-    d->gpu_bytes = c->plan.gpu_bytes + (c->shader ? NOH_GL_RENDERER_BYTES : 0);
+    d->cpu_bytes = c->plan.cpu_bytes + cpu; /* noh_stage_init takes exactly these */
+    d->gpu_bytes = c->plan.gpu_bytes + on_gpu + (c->shader ? NOH_GL_RENDERER_BYTES : 0);
     d->gpu_used = noh_gl_ledger_bytes(&c->ledger);
 }
 

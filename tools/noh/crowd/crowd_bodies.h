@@ -15,6 +15,7 @@
 
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
+#include "crowd_hair.h"
 #include "stage_gl/stage_gl.h"
 
 #define CROWD_FIELD_M 100.0f /* radius of the field around the first camera */
@@ -39,6 +40,7 @@ typedef struct crowd {
     noh_kind_desc kind;
     noh_stage_desc desc;
     noh_stage_plan plan;
+    crowd_hair hair;
     noh_gl_ledger ledger; /* of all below */
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's, lit */

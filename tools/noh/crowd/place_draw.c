@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "crowd_hair.h"
 #include "gpu/canvas.h"
 #include "stage/view.h"
 
@@ -34,6 +35,7 @@ typedef struct scene {
     noh_backdrop backdrop;
     noh_stage_terrain terrain; /* drawn where the place has a ground */
     void *terrain_memory;
+    crowd_hair hair;
     noh_actor *actors;
     noh_smart_phase *phases; /* as they are shown */
     size_t walkers_bytes;
@@ -181,12 +183,18 @@ static int open_scene(scene *s, gpu *g)
         status = place_people_make(&s->people, s->file, s->place, o->agents, o->hit.is_given ? PLACE_RAGDOLLS : 0u);
     if (!status) fill_desc(s);
     if (!status) status = open_stage(s, g);
+    if (!status) {
+        const noh_kind_desc *k = &s->kinds[PEOPLE];
+        status = crowd_hair_plan(&s->hair, s->file, PEOPLE, k->skeleton, k->actor_count);
+    }
+    if (!status) status = crowd_hair_open(&s->hair, g, &s->ledger, 1);
     if (!status) status = open_walkers(s);
     return status ? status : enter_all(s);
 }
 
 static void close_scene(scene *s)
 {
+    crowd_hair_close(&s->hair);
     if (s->backdrop.gl) noh_backdrop_delete(&s->backdrop);
     if (s->terrain.gl) noh_stage_terrain_delete(&s->terrain);
     free(s->terrain_memory);
@@ -300,6 +308,7 @@ static int show(scene *s, const noh_stage_view views[2])
         noh_stage_frame_end(s->stage, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
+    crowd_hair_frame(&s->hair, s->stage, FRAME_TICKS);
     return 0;
 }
 
@@ -325,6 +334,8 @@ static int paint(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
     }
     if (s->terrain.gl) noh_stage_terrain_choose(&s->terrain, &views[0], s->options->pixels);
     if (s->terrain.gl && s->light.has_shadow) noh_stage_terrain_draw_shadow(&s->terrain, s->stage, &views[1]);
+    crowd_hair_update(&s->hair);
+    if (s->light.has_shadow) crowd_hair_draw_shadow(&s->hair, s->stage, 1);
     status = canvas_open(&target, g, s->options->width, s->options->height);
     if (status) return status;
     canvas_begin(&target);
@@ -333,6 +344,7 @@ static int paint(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
                       noh_stage_light_of(s->stage), &s->light.told, &views[0]);
     if (s->terrain.gl) noh_stage_terrain_draw(&s->terrain, s->stage, &views[0]);
     if (noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, &error)) status = tool_fail_error(s->file->path, &error);
+    crowd_hair_draw(&s->hair, s->stage, 0);
     if (!status) status = canvas_read(&target, rgba);
     canvas_close(&target);
     return status;
@@ -340,14 +352,16 @@ static int paint(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
 
 static void take_drawn(const scene *s, place_drawn *d)
 {
+    uint64_t cpu, on_gpu;
+    crowd_hair_bytes(&s->hair, &cpu, &on_gpu);
     d->stats = *noh_stage_stats_of(s->stage);
     d->agents = place_life_agents(s->life);
     d->level_count = s->plan.kinds[PEOPLE].level_count;
     d->near_count = s->near_count;
     d->fell = s->fell;
     d->down = s->down;
-    d->cpu_bytes = s->plan.cpu_bytes;
-    d->gpu_bytes = s->plan.gpu_bytes;
+    d->cpu_bytes = s->plan.cpu_bytes + cpu;
+    d->gpu_bytes = s->plan.gpu_bytes + on_gpu;
     d->walkers_bytes = s->walkers_bytes;
     d->crowd_bytes = place_life_bytes(s->life);
     if (!s->terrain.gl) return;
