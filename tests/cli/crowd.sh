@@ -176,6 +176,7 @@ cp "$work/out" "$work/drawn"
 check 'of whom those who are near stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
 noh crowd "$puppets" --place "$festival" --agents 60 --time 4 --hit 3,0,3,6 -o "$work/hit.png" --size 320x180 --light sky
 expect 0 'a push'
+check 'without a terrain none is told of' sh -c '! grep -q ^terrain "$1"' - "$work/out"
 check 'those who are near fall' awk '/^hit: / { found = $2 > 0 && $2 <= 16 && $(NF - 4) == $2 } END { exit !found }' "$work/out"
 noh crowd "$puppets" --place "$festival" --agents 60 --time 12 --hit 3,0,3,6 -o "$work/hit.png" --size 32x18 --light sky
 check 'and get up' grep -q '^hit: [1-9][0-9]* of a pool of 16 fell, 0 not on their feet' "$work/out"

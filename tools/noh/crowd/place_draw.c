@@ -354,6 +354,7 @@ static void take_drawn(const scene *s, place_drawn *d)
 {
     uint64_t cpu, on_gpu;
     crowd_hair_bytes(&s->hair, &cpu, &on_gpu);
+    memset(d, 0, sizeof *d);
     d->stats = *noh_stage_stats_of(s->stage);
     d->agents = place_life_agents(s->life);
     d->level_count = s->plan.kinds[PEOPLE].level_count;
