@@ -166,7 +166,7 @@ check 'the picture stays nearly the same' "$build/tests/gl/picture_diff" "$work/
 
 noh bench "$puppets" --only people --quick --json
 expect 0 'what agents and walkers take of a frame'
-check 'of a crowd that is dense and of one in the open' awk '/"crowd\/people\/(dense1000|open10000)\/(agents|walkers)"/ { rows++ } /"value":/ { gsub(/[^0-9.]/, ""); if (!($0 > 0 && $0 < 100)) bad = 1 } END { exit !(rows == 4 && !bad) }' "$work/out"
+check 'of a crowd that is dense and of one in the open' awk '/"crowd\/people\/(dense1000|open10000)\/(agents|walkers)"/ { rows++ } /"value":/ { gsub(/[^0-9.]/, ""); if (!($0 + 0 > 0 && $0 + 0 < 100)) bad = 1 } END { exit !(rows == 4 && !bad) }' "$work/out"
 
 # ---- a place of puppets ----
 
