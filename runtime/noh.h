@@ -50,6 +50,7 @@
 #include "stage/fall.h"             /* pushing them, and when they get up */
 #include "stage/blob.h"             /* where actors darken the ground */
 #include "stage/decal.h"            /* marks on actors */
+#include "stage/decal_grow.h"       /* their triangles */
 #include "stage/springs.h"          /* chains of joints that swing */
 #include "stage/wig.h"              /* hair of actors */
 #include "stage/wigs.h"             /* hair of crowds */
