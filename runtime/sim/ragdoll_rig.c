@@ -404,6 +404,20 @@ static void spread_inertia(noh_ragdoll_rig *rig)
     }
 }
 
+/* A small body gets a good part of its parent's mass, and would turn far more easily than that: in a fall it spins by
+ * more in a substep than its limits can take back. Its inertia is at least a twelfth of its parent's, about each axis.
+ */
+static void stabilize_inertia(noh_ragdoll_rig *rig)
+{
+    for (uint32_t i = 1; i < rig->body_count; i++) {
+        noh_ragdoll_body *b = &rig->bodies[i];
+        const noh_ragdoll_body *parent = &rig->bodies[b->parent];
+        const float across = parent->inertia_across / 12.0f, along = parent->inertia_along / 12.0f;
+        b->inertia_across = across > b->inertia_across ? across : b->inertia_across;
+        b->inertia_along = along > b->inertia_along ? along : b->inertia_along;
+    }
+}
+
 /* ---- pairs ---- */
 
 /* How far from each other two capsules are at rest. */
@@ -510,6 +524,7 @@ noh_result noh_ragdoll_rig_make(const noh_ragdoll_source *source, const noh_ragd
     for (uint32_t i = 1; i < count; i++) make_joint(&m, i, mass);
     noh_ragdoll_stabilize(rig);
     spread_inertia(rig);
+    stabilize_inertia(rig);
     find_pairs(rig);
     return noh_ragdoll_rig_check(rig, error);
 }
