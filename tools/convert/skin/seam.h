@@ -7,6 +7,7 @@
  * whole of the other within a tenth of its size at rest, and whose surfaces go on in opposite directions: a neck in a
  * collar is none. Of several the nearest is taken. A neck that ends inside of the head has no such border, and needs
  * none.
+ * LOD levels coarsen each mesh for itself: there a seam that is closed opens by as much as the level is off.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 16, which gives a head the body's bones and
  * leaves the seam to the modeller */
 #ifndef NOH_CONVERT_SKIN_SEAM_H
