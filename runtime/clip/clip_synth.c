@@ -63,7 +63,8 @@ static void build_parabola(uint32_t frames, uint32_t odd, float *rows)
 {
     const uint32_t half = noh_clip_basis_half(frames), middle = (frames + 1u) / 2u;
     const double scale = root(2.0 / (double)frames);
-    double rest[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u], cosine[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u], size, mean;
+    double rest[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u] = { 0.0 };
+    double cosine[(NOH_CLIP_SEGMENT_FRAMES_MAX + 1u) / 2u] = { 0.0 }, size, mean;
     for (uint32_t f = 0; f < middle; f++) {
         const double x = (double)frames - 1.0 - 2.0 * (double)f;
         rest[f] = odd ? x : x * x;

@@ -431,9 +431,10 @@ static void bounds_hold_for_scale(void **state)
 
 static void bounds_hold_for_one_joint_and_for_many(void **state)
 {
+    const uint32_t many = getenv("NOH_EMULATED") ? 128 : 1024; /* four chains: its cost grows with their length */
     (void)state;
     holds_coded(fixture_swing(1, 40, 1, 10.0f, 1.0, 2.0), NULL, "one joint");
-    holds_coded(fixture_swing(1024, 20, 4, 5.0f, 0.2, 0.5), NULL, "1024 joints");
+    holds_coded(fixture_swing(many, 20, 4, 5.0f, 0.2, 0.5), NULL, "many joints");
 }
 
 static void bounds_hold_for_noise(void **state)
