@@ -268,6 +268,19 @@ INIT(hair_init)
     return noh_hair_init(memory, bytes, &desc, &carrier, &hair, error);
 }
 
+INIT(wigs_init)
+{
+    static const float rest[2][2][3] = { { { 0, 1, 0 }, { 0, 2, 0 } }, { { 1, 1, 0 }, { 1, 2, 0 } } };
+    static noh_haircut cut;
+    static noh_wig wig;
+    const noh_hair_desc hair = { rest[0][0], 2, 2, NULL, 0, 1, 0.02f, 0.01f, 2.0f, 0.0f };
+    const noh_wigs_desc desc = { &wig, 0, 5, 3 };
+    noh_wigs *wigs;
+    cut.desc = hair;
+    wig.cut = &cut;
+    return noh_wigs_init(memory, bytes, &desc, &wigs, error);
+}
+
 INIT(springs_init)
 {
     static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } };
@@ -296,6 +309,14 @@ INIT(smart_init)
     const noh_smart_desc desc = { 5, 1, 1, 1, &bench, &seat, { 0.1f } };
     noh_smart *smart;
     return noh_smart_init(memory, bytes, &desc, &smart, error);
+}
+
+INIT(terrain_lod_init)
+{
+    static const uint16_t heights[6] = { 0, 100, 0, 30, 200, 60 };
+    static const noh_field hill = { heights, 3, 2, { -10.0f, 0.0f, -5.0f }, 10.0f, 0.01f };
+    noh_terrain_lod lod;
+    return noh_terrain_lod_init(memory, bytes, &hill, &lod, error);
 }
 
 /* A stage that draws nothing, made once. */
@@ -460,9 +481,11 @@ static const struct {
     ROW(spring_init),
     ROW(springs_init),
     ROW(hair_init),
+    ROW(wigs_init),
     ROW(crowd_init),
     ROW(wire_init),
     ROW(smart_init),
+    ROW(terrain_lod_init),
     ROW(walkers_init),
     ROW(schedule_init),
     ROW(joint_lod_measure),
