@@ -102,7 +102,7 @@ static int add_hair(stage_budget *b, const pack_file *file, const noh_kind_desc 
     return status || !hair.is_there ? status : stage_budget_add(b, "hair", cpu_bytes, gpu_bytes);
 }
 
-/* place, file NULL: none */
+/* place and people, file NULL: none */
 static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_desc *desc, const place_file *place,
                            const place_people *people, const pack_file *file)
 {
@@ -113,7 +113,7 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     if (desc->gpu) status = budget_caps(a, 1, &caps);
     if (!status) status = stage_budget_make(&b, subject, desc, desc->gpu ? &caps : NULL);
     if (status) return status;
-    if (place) status = add_place(&b, place, people);
+    if (place && people) status = add_place(&b, place, people);
     if (!status && file && desc->gpu) status = add_hair(&b, file, &desc->kinds[0]);
     if (!status && a->as_json) status = stage_budget_json(&b);
     if (!status && !a->as_json) stage_budget_print(&b);
