@@ -315,8 +315,8 @@ INIT(terrain_lod_init)
 {
     static const uint16_t heights[6] = { 0, 100, 0, 30, 200, 60 };
     static const noh_field hill = { heights, 3, 2, { -10.0f, 0.0f, -5.0f }, 10.0f, 0.01f };
-    noh_terrain_lod lod;
-    return noh_terrain_lod_init(memory, bytes, &hill, &lod, error);
+    noh_terrain_lod levels;
+    return noh_terrain_lod_init(memory, bytes, &hill, &levels, error);
 }
 
 /* A stage that draws nothing, made once. */
