@@ -106,13 +106,14 @@
 
 /* ---- faces ---- */
 
-#include "face/amplitude.h"  /* mouth shapes out of loudness alone */
-#include "face/corrective.h" /* correctives and in-betweens: targets that follow from others */
-#include "face/ear.h"        /* live sound to mouth shapes */
-#include "face/face.h"       /* blinks, gaze, emotions, breath */
-#include "face/identity.h"   /* people by seed: weights of the targets that tell faces apart */
-#include "face/recipe.h"     /* what a face shows, as weights of the targets that it has */
-#include "face/speech.h"     /* phones to mouth shapes */
+#include "face/amplitude.h"   /* mouth shapes out of loudness alone */
+#include "face/corrective.h"  /* correctives and in-betweens: targets that follow from others */
+#include "face/ear.h"         /* live sound to mouth shapes */
+#include "face/face.h"        /* blinks, gaze, emotions, breath */
+#include "face/identity.h"    /* people by seed: weights of the targets that tell faces apart */
+#include "face/recipe.h"      /* what a face shows, as weights of the targets that it has */
+#include "face/speech.h"      /* phones to mouth shapes */
+#include "face/weight_rule.h" /* how far targets go, and which exclude each other */
 
 /* ---- bodies ---- */
 

@@ -431,9 +431,11 @@ typedef struct noh_recipe_header {
 typedef struct noh_recipe_row {
     uint32_t target, target_hash;
     /* a name, as noh_face_channel_name has it; or '+' and the name of a target that drives a corrective
-     * (face/corrective.h): rows of one corrective follow each other */
+     * (face/corrective.h): rows of one corrective follow each other; or a rule for the target's weight
+     * (face/weight_rule.h): `range-min` and in the next row `range-max`; '-' and its opposite's name; '=' and the name
+     * of the first target of its group */
     uint32_t channel, channel_hash;
-    float weight; /* -4..4; of a corrective's driver its peak, above 0, at most 1 */
+    float weight; /* -4..4; of a corrective's driver its peak, above 0, at most 1; of a range's row its end */
     uint32_t reserved[3];
 } noh_recipe_row;
 

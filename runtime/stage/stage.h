@@ -113,6 +113,8 @@ typedef struct noh_kind_desc {
     uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
     int without_springs;                /* 1: what springs of the mesh's pack (stage/springs.h) would swing is left to
                                          * clips */
+    int weight_rules;                   /* 1: how far its targets go, and which exclude each other, is kept as the
+                                         * mesh's pack tells it (face/weight_rule.h), whoever says the weights */
     uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * none */

@@ -105,6 +105,7 @@ static void measure_meshes(const noh_kind_desc *d, noh_stage_needs *n, noh_mesh 
         (void)noh_pack_mesh_at(d->mesh, items[i].mesh, &mesh, NULL);
         n->weight_count += mesh.header->target_count;
         n->corrective_count += noh_correctives_bind(&mesh, NULL, 0);
+        n->weight_rule_count += d->weight_rules ? noh_weight_rules_bind(&mesh, NULL, 0) : 0;
         pick = d->unpickable ? 0 : noh_pick_scratch_size(&mesh);
         n->pick_bytes = pick > n->pick_bytes ? pick : n->pick_bytes;
         if (noh_pack_skin_at(d->mesh, mesh.header->skin, &skin, NULL) != NOH_OK) {
@@ -259,6 +260,7 @@ static void carve_shared(noh_arena *arena, const noh_kind_desc *d, const noh_kin
     k->defaults = CARVE(arena, n->float_count, float);
     k->target_radii = CARVE(arena, n->weight_count, float);
     k->correctives = CARVE(arena, n->corrective_count, noh_corrective_term);
+    k->weight_rules = CARVE(arena, n->weight_rule_count, noh_weight_rule);
     k->masks = CARVE(arena, n->mask_count * (size_t)(n->shape.joint_count + n->shape.float_count), uint8_t);
     k->levels = CARVE(arena, plan->level_count, noh_lod_mesh);
     k->joint_radii = CARVE(arena, n->shape.joint_count, float);

@@ -38,6 +38,7 @@
 #include "character/lod_pools.h"
 #include "character/scheduler.h"
 #include "face/corrective.h"
+#include "face/weight_rule.h"
 #include "graph/graph_pack.h"
 #include "mesh/mesh.h"
 #include "stage/part.h"
@@ -281,7 +282,8 @@ typedef struct noh_stage_kind {
     noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
     uint8_t *doll_scratch;
     noh_corrective_term *correctives; /* [corrective_count] to the kind's floats */
-    uint32_t corrective_count;
+    noh_weight_rule *weight_rules;    /* [weight_rule_count] to the kind's floats */
+    uint32_t corrective_count, weight_rule_count;
     noh_stage_sampler sampler; /* of `set` */
     noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
     noh_transform rest_pose;
@@ -456,7 +458,7 @@ typedef struct noh_stage_needs {
     size_t part_bytes, part_scratch_bytes; /* 0 without parts */
     size_t springs_bytes;                  /* 0 without springs of the pack */
     uint32_t face_link_max;                /* 0 without faces */
-    uint32_t corrective_count;
+    uint32_t corrective_count, weight_rule_count;
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
     uint32_t skin_joints; /* of its largest skin */
@@ -612,8 +614,9 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
                              const uint32_t *but, uint32_t but_count, noh_error *error);
 const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
 
-/* Bind those of all meshes; k->correctives has room for term_max. */
+/* Bind those of all meshes; k->correctives has room for term_max, k->weight_rules for rule_max. */
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
+void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
 
 /* What is wrong with the face of a kind; NULL: nothing. */

@@ -389,6 +389,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     noh_stage_open_load(s, desc, kind);
     open_floats(k);
     noh_stage_open_correctives(k, needs.corrective_count);
+    noh_stage_open_weight_rules(k, needs.weight_rule_count);
     if (k->desc->face) noh_stage_open_face(k);
     result = noh_stage_open_layers(k, kind, error);
     if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);

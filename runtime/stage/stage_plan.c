@@ -451,6 +451,7 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         hash = mix(hash, d.face ? noh_stage_hash_face(&d) : 0);
         hash = mix(hash, d.ragdoll ? d.ragdoll->count : 0);
         if (!d.without_springs) hash = mix(hash, 1);
+        if (d.weight_rules) hash = mix(hash, 2);
         for (uint32_t p = 0; p < d.part_count; p++) hash = mix(hash, d.parts[p].state_bytes);
         for (uint32_t l = 0; l < k->level_count; l++) {
             hash = mix(hash, k->levels[l].slot_count);

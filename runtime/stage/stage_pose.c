@@ -125,6 +125,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     }
     take_floats(k, ch, floats);
     hold(k, i, floats); /* the game's word is over clips, faces and parts */
+    noh_weight_rules_keep(k->weight_rules, k->weight_rule_count, floats);
     if (k->corrective_count) noh_stage_correct(k, i, floats);
     take_weights(s, k, a, ch, floats, k->weights + (size_t)i * k->weight_count);
     shown->frame = s->frame;

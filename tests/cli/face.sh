@@ -113,6 +113,38 @@ refused 'corrective smile' 'corrective TARGET DRIVER'
 refused 'corrective smile smile' 'does not drive itself'
 refused 'corrective smile blink 1.5' 'not above 0 and at most 1'
 
+# Rules for weights, kept where they are asked for.
+cat >"$work/rules.recipe" <<'END'
+range jaw 0 1
+range grin -1 2
+oppose jaw grin
+share jaw grin
+END
+noh build "$work/both.gltf" -o "$work/both.noh" --recipe "$work/rules.recipe" --no-correctives
+expect 0 'rules for weights'
+noh face "$work/both.noh"
+check 'a range' grep -q '^  range grin: -1 to 2$' "$work/out"
+check 'opposites' grep -q '^  opposed: jaw grin$' "$work/out"
+check 'a group' grep -q '^  share 1: jaw grin$' "$work/out"
+noh face "$work/both.noh" --json
+check 'in JSON' sh -c 'tr -d " \n" <"$1" | grep -q "{\"rule\":\"range\",\"target\":\"grin\",\"min\":-1,\"max\":2}"' - "$work/out"
+shown 4 --weight jaw=3
+shown 2 --weight jaw=3 --weight-rules
+shown 1.75 --weight jaw=1.5 --weight grin=0.25 --weight-rules
+shown 1 --weight jaw=1 --weight grin=1 --weight-rules
+printf 'range jaw -2 0.5\n' >"$work/rules.recipe"
+sed 's/"wink jaw"/"range jaw 0 3;range grin 0 0.25"/' "$work/both.gltf" >"$work/extras.gltf"
+noh build "$work/extras.gltf" -o "$work/both.noh" --recipe "$work/rules.recipe" --no-correctives
+noh face "$work/both.noh"
+check 'a text goes before extras' grep -q '^  range jaw: -2 to 0.5$' "$work/out"
+check 'which keep what it does not say' grep -q '^  range grin: 0 to 0.25$' "$work/out"
+refused 'range jaw 0' 'range TARGET MIN MAX'
+refused 'range jaw 0.5 1' 'from -4 to 0 at least'
+refused 'range jaw 0 1 2' 'one word too many'
+refused 'oppose jaw jaw' 'does not exclude itself'
+refused 'oppose jaw' 'oppose TARGET TARGET'
+refused 'share jaw' 'share TARGET TARGET'
+
 # A target for f and v, where there are lips that touch and teeth behind them.
 noh build "$mask" -o "$work/lips.noh" --lips
 expect 0 'the mask, whose lips are a little apart'

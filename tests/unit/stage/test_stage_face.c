@@ -369,6 +369,50 @@ static void a_pack_brings_its_own_recipe_and_correctives(void **state)
     free(strings);
 }
 
+/* A kind that asks for them keeps its pack's rules, whoever says the weights; another one does not. */
+static void rules_for_weights_hold_on_request(void **state)
+{
+    static const char more[] = "-jawOpen\0mouthFunnel";
+    (void)state;
+    for (int asked = 0; asked < 2; asked++) {
+        noh_recipe_row row;
+        noh_pack own;
+        noh_actor actor;
+        char *strings;
+        cast c;
+        open_cast(&c, 1, NULL, 1);
+        own = c.packs[PUPPETS];
+        strings = test_zeros(own.string_bytes + sizeof more);
+        memcpy(strings, own.strings, own.string_bytes);
+        memcpy(strings + own.string_bytes, more, sizeof more);
+        memset(&row, 0, sizeof row);
+        row.channel = own.string_bytes;
+        row.target = own.string_bytes + 9u;
+        row.weight = 1.0f;
+        own.strings = strings;
+        own.string_bytes += (uint32_t)sizeof more;
+        own.recipe_rows = &row;
+        own.recipe_row_count = 1;
+        c.kinds[0].mesh = &own;
+        c.kinds[0].weight_rules = asked;
+        c.kinds[0].held_float_count = 2;
+        cast_make(&c, NULL);
+        actor = enter(&c, NULL, NULL);
+        assert_int_equal(noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "jawOpen"),
+                                              0.25f, 1.0f, NULL),
+                         NOH_OK);
+        assert_int_equal(noh_actor_hold_float(c.stage, actor,
+                                              noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "mouthFunnel"), 0.75f, 1.0f,
+                                              NULL),
+                         NOH_OK);
+        run(&c, 2);
+        assert_true(float_named(&c, actor, "jawOpen") == (asked ? 0.0f : 0.25f));
+        assert_true(float_named(&c, actor, "mouthFunnel") == (asked ? 0.5f : 0.75f));
+        close_cast(&c);
+        free(strings);
+    }
+}
+
 /* ---- people ---- */
 
 typedef struct person {
@@ -609,6 +653,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
         cmocka_unit_test(a_pack_brings_its_own_recipe_and_correctives),
+        cmocka_unit_test(rules_for_weights_hold_on_request),
         cmocka_unit_test(an_actor_is_a_person),
         cmocka_unit_test(a_person_that_does_not_fit_is_refused),
         cmocka_unit_test(an_hour_unseen_is_skipped),

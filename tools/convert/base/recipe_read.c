@@ -132,6 +132,85 @@ static int read_corrective(text_scan *s, recipe_text *recipe)
     return 0;
 }
 
+/* ---- rules ---- */
+
+static int take_target(text_scan *s, uint32_t line, const char *form, text_word *target)
+{
+    if (text_take_on_line(s, target)) return 1;
+    return target->size ? check_target(s, *target) : text_fail(s, line, "a rule is `%s`", form);
+}
+
+static int end_rule(text_scan *s, const char *form)
+{
+    text_word word;
+    char shown[TEXT_SHOWN];
+    if (text_take_on_line(s, &word)) return 1;
+    return word.size
+               ? text_fail(s, word.line, "'%s' is one word too many: a rule is `%s`", text_show(word, shown), form)
+               : 0;
+}
+
+/* Behind the word `range`. */
+static int read_range(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "range TARGET MIN MAX";
+    const uint32_t line = s->line;
+    text_word target, low, high;
+    double from, to;
+    if (take_target(s, line, form, &target) || text_take_on_line(s, &low) || text_take_on_line(s, &high)) return 1;
+    if (!low.size || !high.size) return text_fail(s, line, "a rule is `%s`", form);
+    if (text_number(s, low, &from) || text_number(s, high, &to)) return 1;
+    if (!(from >= -4.0 && from <= 0.0 && to >= 0.0 && to <= 4.0)) {
+        return text_fail(s, line,
+                         "a range goes from -4 to 0 at least to 0 to 4 at most: 0 is the target that is not shown");
+    }
+    return end_rule(s, form) || add_row(s, recipe, line, "range-min", target, (float)from) ||
+           add_row(s, recipe, line, "range-max", target, (float)to);
+}
+
+static void name_channel(char channel[NOH_NAME_BYTES_MAX], char sign, text_word name)
+{
+    channel[0] = sign;
+    memcpy(channel + 1, name.text, name.size);
+    channel[1 + name.size] = '\0';
+}
+
+/* Behind the word `oppose`. */
+static int read_opposites(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "oppose TARGET TARGET";
+    const uint32_t line = s->line;
+    char channel[NOH_NAME_BYTES_MAX];
+    text_word a, b;
+    if (take_target(s, line, form, &a) || take_target(s, line, form, &b) || end_rule(s, form)) return 1;
+    if (a.size == b.size && memcmp(a.text, b.text, a.size) == 0) {
+        return text_fail(s, line, "a target does not exclude itself");
+    }
+    name_channel(channel, '-', b);
+    return add_row(s, recipe, line, channel, a, 1.0f);
+}
+
+/* Behind the word `share`. */
+static int read_shares(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "share TARGET TARGET ...";
+    const uint32_t line = s->line;
+    char channel[NOH_NAME_BYTES_MAX];
+    text_word target, next;
+    if (take_target(s, line, form, &target) || take_target(s, line, form, &next)) return 1;
+    name_channel(channel, '=', target);
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        if (strcmp(recipe->rows[i].channel, channel) == 0)
+            return text_fail(s, line, "line %u has a group of this first target", recipe->rows[i].line);
+    }
+    if (add_row(s, recipe, line, channel, target, 1.0f)) return 1;
+    for (; next.size;) {
+        if (check_target(s, next) || add_row(s, recipe, line, channel, next, 1.0f) || text_take_on_line(s, &next))
+            return 1;
+    }
+    return 0;
+}
+
 /* ---- lines ---- */
 
 static int read_line(text_scan *s, recipe_text *recipe)
@@ -143,6 +222,9 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_take_on_line(s, &channel)) return 1;
     if (!channel.size) return 0; /* a comment */
     if (text_is(channel, "corrective")) return read_corrective(s, recipe);
+    if (text_is(channel, "range")) return read_range(s, recipe);
+    if (text_is(channel, "oppose")) return read_opposites(s, recipe);
+    if (text_is(channel, "share")) return read_shares(s, recipe);
     count = find_channels(channel, channels);
     if (!count) {
         return text_fail(s, channel.line, "'%s' is no channel: they are " CHANNEL_ANY, text_show(channel, shown));

@@ -24,15 +24,24 @@ static int is_corrective(const recipe_row *row)
     return row->channel[0] == '+';
 }
 
-/* Whether the first `end` rows have the channel; of a corrective, the target. */
+/* A rule for the weights of a target (face/weight_rule.h). */
+static int is_rule(const recipe_row *row)
+{
+    return row->channel[0] == '-' || row->channel[0] == '=' || strncmp(row->channel, "range-", 6) == 0;
+}
+
+/* Whether two rows are of one thing: the target of a corrective, a rule and its target, or a channel. */
+static int are_of_one(const recipe_row *a, const recipe_row *b)
+{
+    const int same_target = strcmp(a->target, b->target) == 0, same_channel = strcmp(a->channel, b->channel) == 0;
+    if (is_corrective(a) || is_corrective(b)) return is_corrective(a) && is_corrective(b) && same_target;
+    return same_channel && (same_target || !is_rule(a));
+}
+
 static int has_row(const recipe_text *recipe, uint32_t end, const recipe_row *row)
 {
     for (uint32_t i = 0; i < end; i++) {
-        const recipe_row *other = &recipe->rows[i];
-        if (is_corrective(row) != is_corrective(other)) continue;
-        if (strcmp(is_corrective(row) ? other->target : other->channel,
-                   is_corrective(row) ? row->target : row->channel) == 0)
-            return 1;
+        if (are_of_one(&recipe->rows[i], row)) return 1;
     }
     return 0;
 }
@@ -81,7 +90,7 @@ static int add_bite(recipe_text *recipe, const model_mesh *mesh)
 {
     const char *names[NOH_TARGETS_MAX], *bite = noh_face_channel_name(NOH_CHANNEL_VISEMES + NOH_VISEME_FF);
     noh_face_link links[LINKS_MAX];
-    const recipe_row row = { NULL, (char *)bite, 1.0f, 0 };
+    const recipe_row row = { (char *)LIP_TARGET, (char *)bite, 1.0f, 0 };
     const uint32_t targets = mesh->target_count < NOH_TARGETS_MAX ? mesh->target_count : NOH_TARGETS_MAX;
     uint32_t count;
     if (has_row(recipe, recipe->count, &row)) return 0;

@@ -37,6 +37,12 @@
         .what = "whether the springs of the pack swing (noh build --springs), beside what clips say"        \
     }
 
+#define OPTION_WEIGHT_RULES(T, m)                                                                                   \
+    {                                                                                                               \
+        .name = "--weight-rules", .kind = OPTION_FLAG, .at = offsetof(T, m),                                        \
+        .what = "keep the pack's rules for weights (range, oppose and share: noh help FORMATS), whoever says these" \
+    }
+
 #define OPTION_HAIR(T, m, text)                                                                          \
     {                                                                                                    \
         .name = "--hair", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \

@@ -59,6 +59,7 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->root_up = 1;
     k->unpickable = !d->pickable && !d->marks;
     k->without_springs = d->without_springs;
+    k->weight_rules = d->weight_rules;
     f->stage_desc.kind_count++;
     return 0;
 }

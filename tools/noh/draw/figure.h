@@ -52,6 +52,7 @@ typedef struct figure_desc {
     int face_layer;       /* 1: clips that move no joint play over those that do, as a face does */
     int alive;            /* 1: faces whose eyes are found blink, look, breathe and feel */
     int without_springs;  /* 1: what springs of the pack would swing is left to clips */
+    int weight_rules;     /* 1: rules of the pack for weights are kept, whoever says them */
     uint32_t level;       /* the finest LOD level that is there, as `noh info` counts them */
     int by_error;         /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
     noh_lod_settings lod; /* by which they are chosen; zeros: as lod.h has them */

@@ -271,6 +271,7 @@ static const option options[] = {
       .example = "hero",
       .excludes = "--weight --clip --anim --lod --path" },
     OPTION_WEIGHT(dump_args, weights, .needs = NULL),
+    OPTION_WEIGHT_RULES(dump_args, figure.weight_rules),
     OPTION_CLIP(dump_args, clips, .needs = NULL),
     OPTION_TIME(dump_args, time_s, .needs = "--clip"),
     OPTION_ANIM(dump_args, anim, .needs = NULL),

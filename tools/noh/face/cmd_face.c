@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "face/corrective.h"
 #include "face/recipe.h"
+#include "face/weight_rule.h"
 #include "file/pack_file.h"
 
 #define LINKS_MAX 4096u
@@ -37,6 +38,8 @@ typedef struct face_report {
     noh_face_source sources[NOH_CHANNEL_COUNT];
     noh_corrective_term terms[NOH_FACE_ROWS_MAX];
     uint32_t term_count;
+    noh_weight_rule rules[NOH_FACE_ROWS_MAX];
+    uint32_t rule_count;
 } face_report;
 
 static void list_recipes(face_report *r)
@@ -70,6 +73,7 @@ static void read_mesh(face_report *r)
     for (uint32_t i = 0; i < r->link_count; i++) r->used[r->links[i].target] = 1;
     r->term_count = noh_correctives_bind(&r->mesh, r->terms, NOH_FACE_ROWS_MAX);
     for (uint32_t i = 0; i < r->term_count; i++) r->used[r->terms[i].target] = 1;
+    r->rule_count = noh_weight_rules_bind(&r->mesh, r->rules, NOH_FACE_ROWS_MAX);
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) {
         noh_face_recipe_source(r->recipes, r->recipe_count, r->names, count, c, &r->sources[c]);
         r->counts[coverage_of(&r->sources[c], c)]++;
@@ -120,6 +124,30 @@ static void print_correctives(const face_report *r)
     if (r->term_count) printf("\n");
 }
 
+/* Whether a rule is another target of the group of the one before. */
+static int goes_on(const face_report *r, uint32_t rule)
+{
+    return rule && r->rules[rule].kind == NOH_WEIGHT_SHARE && r->rules[rule - 1u].kind == NOH_WEIGHT_SHARE &&
+           r->rules[rule].other == r->rules[rule - 1u].other;
+}
+
+static void print_rules(const face_report *r)
+{
+    for (uint32_t i = 0; i < r->rule_count; i++) {
+        const noh_weight_rule *rule = &r->rules[i];
+        const char *name = r->names[rule->target];
+        if (goes_on(r, i)) {
+            printf(" %s", name);
+            continue;
+        }
+        if (i) printf("\n");
+        if (rule->kind == NOH_WEIGHT_RANGE) printf("  range %s: %g to %g", name, (double)rule->low, (double)rule->high);
+        if (rule->kind == NOH_WEIGHT_OPPOSE) printf("  opposed: %s %s", name, r->names[rule->other]);
+        if (rule->kind == NOH_WEIGHT_SHARE) printf("  share 1: %s", name);
+    }
+    if (r->rule_count) printf("\n");
+}
+
 static void print_mesh(const face_report *r)
 {
     uint32_t unused = 0;
@@ -128,6 +156,7 @@ static void print_mesh(const face_report *r)
            r->counts[PARTLY], r->counts[FALLS_BACK], r->counts[NOTHING]);
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) print_channel(r, c);
     print_correctives(r);
+    print_rules(r);
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets of no channel: ", r->names[t]);
     }
@@ -183,6 +212,27 @@ static void json_correctives(json *j, const face_report *r)
     json_close(j, ']');
 }
 
+static const char *const rule_names[] = { "range", "oppose", "share" };
+
+static void json_rules(json *j, const face_report *r)
+{
+    json_open(j, "weight_rules", '[');
+    for (uint32_t i = 0; i < r->rule_count; i++) {
+        const noh_weight_rule *rule = &r->rules[i];
+        json_open(j, NULL, '{');
+        json_text(j, "rule", rule_names[rule->kind]);
+        json_text(j, "target", r->names[rule->target]);
+        if (rule->kind == NOH_WEIGHT_RANGE) {
+            json_number(j, "min", (double)rule->low);
+            json_number(j, "max", (double)rule->high);
+        } else {
+            json_text(j, rule->kind == NOH_WEIGHT_OPPOSE ? "other" : "group", r->names[rule->other]);
+        }
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void json_mesh(json *j, const face_report *r)
 {
     json_open(j, NULL, '{');
@@ -193,6 +243,7 @@ static void json_mesh(json *j, const face_report *r)
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) json_channel(j, r, c);
     json_close(j, ']');
     json_correctives(j, r);
+    json_rules(j, r);
     json_open(j, "unused", '[');
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) json_text(j, NULL, r->names[t]);

@@ -216,6 +216,7 @@ static const option options[] = {
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions),
     OPTION_SPRINGS(render_args, springs),
+    OPTION_WEIGHT_RULES(render_args, figure.weight_rules),
     OPTIONS_BODY(render_args, body_wants),
     OPTION_HAIR(render_args, hair, "on"),
     { .name = "--wind",

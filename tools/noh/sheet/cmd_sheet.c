@@ -300,6 +300,7 @@ static const option options[] = {
     OPTION_ANIMS(sheet_args, s.tiles.anims, .needs = "--clip"),
     OPTION_FACE(sheet_args, face, "off"),
     OPTION_SPRINGS(sheet_args, springs),
+    OPTION_WEIGHT_RULES(sheet_args, s.figure.weight_rules),
     OPTION_HAIR(sheet_args, hair, "on"),
     OPTION_FEEL(sheet_args, s.tiles.emotions),
     { .name = "--tiles",

@@ -78,6 +78,7 @@ static const option options[] = {
       .value = "on|off",
       .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
     OPTION_SPRINGS(view_args, springs),
+    OPTION_WEIGHT_RULES(view_args, run.desc.weight_rules),
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),

@@ -220,6 +220,7 @@ static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, sett
     d.inertia = d.pickable = d.tangents = 1;
     d.alive = desc->alive && !s->show_bones;
     d.without_springs = desc->without_springs;
+    d.weight_rules = desc->weight_rules;
     d.hair = !s->show_bones;
     d.falls = !m->cannot_fall.result;
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;

@@ -1,6 +1,22 @@
-/* stage_corrective.c: correctives of a kind's meshes: their weights follow from what an actor's floats are in the end,
- * whether clips, faces, parts or the game say it. One that is held keeps what it is held at. */
+/* stage_targets.c: rules and correctives of a kind's meshes, over what an actor's floats are in the end, whether clips,
+ * faces, parts or the game say it. Rules go first, since correctives follow from weights that are shown. A corrective
+ * that is held keeps what it is held at. */
 #include "stage/stage_internal.h"
+
+void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max)
+{
+    uint32_t count = 0;
+    for (uint32_t m = 0; m < k->plan->mesh_count && rule_max; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        const uint32_t own = noh_weight_rules_bind(&mesh->mesh, k->weight_rules + count, rule_max - count);
+        for (uint32_t i = count; i < count + own; i++) {
+            k->weight_rules[i].target = (uint16_t)(k->weight_rules[i].target + mesh->first_float);
+            k->weight_rules[i].other = (uint16_t)(k->weight_rules[i].other + mesh->first_float);
+        }
+        count += own;
+    }
+    k->weight_rule_count = count;
+}
 
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max)
 {
