@@ -126,6 +126,18 @@ static void GL_APIENTRY null_TransformFeedbackVaryings(GLuint program, GLsizei c
     if (object && object->ready) noh_null_wrong(NULL_TransformFeedbackVaryings, "the program is linked already");
 }
 
+static void GL_APIENTRY null_GetActiveAttrib(GLuint program, GLuint index, GLsizei room, GLsizei *length, GLint *size,
+                                             GLenum *type, GLchar *name)
+{
+    (void)index;
+    (void)size;
+    (void)type;
+    noh_null_count(NULL_GetActiveAttrib);
+    noh_null_object(NULL_GetActiveAttrib, NOH_NULL_PROGRAM, program);
+    noh_null_wrong(NULL_GetActiveAttrib, "the null platform reads no shaders, and has no active attributes");
+    empty_log(room, length, name);
+}
+
 /* Every name has a location: the null platform reads no shaders. */
 static GLint find(int call, GLuint program)
 {
@@ -227,42 +239,25 @@ UNIFORMV(4fv, GLfloat)
 UNIFORM_MATRIX(3fv)
 UNIFORM_MATRIX(4fv)
 
-const null_entry noh_null_program_functions[] = { NULL_ENTRY(CreateShader),
-                                                  NULL_ENTRY(CreateProgram),
-                                                  NULL_ENTRY(ShaderSource),
-                                                  NULL_ENTRY(CompileShader),
-                                                  NULL_ENTRY(AttachShader),
-                                                  NULL_ENTRY(LinkProgram),
-                                                  NULL_ENTRY(UseProgram),
-                                                  NULL_ENTRY(DeleteShader),
-                                                  NULL_ENTRY(DeleteProgram),
-                                                  NULL_ENTRY(GetShaderiv),
-                                                  NULL_ENTRY(GetProgramiv),
-                                                  NULL_ENTRY(GetShaderInfoLog),
-                                                  NULL_ENTRY(GetProgramInfoLog),
-                                                  NULL_ENTRY(TransformFeedbackVaryings),
-                                                  NULL_ENTRY(GetUniformLocation),
-                                                  NULL_ENTRY(GetAttribLocation),
-                                                  NULL_ENTRY(GetUniformBlockIndex),
-                                                  NULL_ENTRY(UniformBlockBinding),
-                                                  NULL_ENTRY(Uniform1i),
-                                                  NULL_ENTRY(Uniform1ui),
-                                                  NULL_ENTRY(Uniform1f),
-                                                  NULL_ENTRY(Uniform2i),
-                                                  NULL_ENTRY(Uniform2ui),
-                                                  NULL_ENTRY(Uniform2f),
-                                                  NULL_ENTRY(Uniform3i),
-                                                  NULL_ENTRY(Uniform3f),
-                                                  NULL_ENTRY(Uniform4i),
-                                                  NULL_ENTRY(Uniform4ui),
-                                                  NULL_ENTRY(Uniform4f),
-                                                  NULL_ENTRY(Uniform1iv),
-                                                  NULL_ENTRY(Uniform1uiv),
-                                                  NULL_ENTRY(Uniform1fv),
-                                                  NULL_ENTRY(Uniform3fv),
-                                                  NULL_ENTRY(Uniform4iv),
-                                                  NULL_ENTRY(Uniform4uiv),
-                                                  NULL_ENTRY(Uniform4fv),
-                                                  NULL_ENTRY(UniformMatrix3fv),
-                                                  NULL_ENTRY(UniformMatrix4fv),
-                                                  { NULL, NULL } };
+const null_entry noh_null_program_functions[] = {
+    NULL_ENTRY(CreateShader),        NULL_ENTRY(CreateProgram),
+    NULL_ENTRY(ShaderSource),        NULL_ENTRY(CompileShader),
+    NULL_ENTRY(AttachShader),        NULL_ENTRY(LinkProgram),
+    NULL_ENTRY(UseProgram),          NULL_ENTRY(DeleteShader),
+    NULL_ENTRY(DeleteProgram),       NULL_ENTRY(GetShaderiv),
+    NULL_ENTRY(GetProgramiv),        NULL_ENTRY(GetShaderInfoLog),
+    NULL_ENTRY(GetProgramInfoLog),   NULL_ENTRY(TransformFeedbackVaryings),
+    NULL_ENTRY(GetUniformLocation),  NULL_ENTRY(GetActiveAttrib),
+    NULL_ENTRY(GetAttribLocation),   NULL_ENTRY(GetUniformBlockIndex),
+    NULL_ENTRY(UniformBlockBinding), NULL_ENTRY(Uniform1i),
+    NULL_ENTRY(Uniform1ui),          NULL_ENTRY(Uniform1f),
+    NULL_ENTRY(Uniform2i),           NULL_ENTRY(Uniform2ui),
+    NULL_ENTRY(Uniform2f),           NULL_ENTRY(Uniform3i),
+    NULL_ENTRY(Uniform3f),           NULL_ENTRY(Uniform4i),
+    NULL_ENTRY(Uniform4ui),          NULL_ENTRY(Uniform4f),
+    NULL_ENTRY(Uniform1iv),          NULL_ENTRY(Uniform1uiv),
+    NULL_ENTRY(Uniform1fv),          NULL_ENTRY(Uniform3fv),
+    NULL_ENTRY(Uniform4iv),          NULL_ENTRY(Uniform4uiv),
+    NULL_ENTRY(Uniform4fv),          NULL_ENTRY(UniformMatrix3fv),
+    NULL_ENTRY(UniformMatrix4fv),    { NULL, NULL }
+};

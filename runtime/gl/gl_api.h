@@ -60,6 +60,7 @@ extern "C" {
     X(GetProgramInfoLog, GETPROGRAMINFOLOG)                           \
     X(UseProgram, USEPROGRAM)                                         \
     X(DeleteProgram, DELETEPROGRAM)                                   \
+    X(GetActiveAttrib, GETACTIVEATTRIB)                               \
     X(GetAttribLocation, GETATTRIBLOCATION)                           \
     X(GetUniformLocation, GETUNIFORMLOCATION)                         \
     X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)                     \

@@ -105,6 +105,70 @@ static noh_result link_program(const noh_gl_api *api, const noh_gl_program_desc 
     return noh_fail(error, NOH_ERR_DATA, "the program does not link", 0, 0);
 }
 
+/* ---- inputs ---- */
+
+typedef struct input_kind {
+    GLenum scalar;
+    uint32_t components;
+} input_kind;
+
+/* Matrices have no locations of a mesh: they are of no kind. */
+static input_kind kind_of(GLenum type)
+{
+    static const GLenum types[3][4] = {
+        { GL_FLOAT, GL_FLOAT_VEC2, GL_FLOAT_VEC3, GL_FLOAT_VEC4 },
+        { GL_INT, GL_INT_VEC2, GL_INT_VEC3, GL_INT_VEC4 },
+        { GL_UNSIGNED_INT, GL_UNSIGNED_INT_VEC2, GL_UNSIGNED_INT_VEC3, GL_UNSIGNED_INT_VEC4 },
+    };
+    for (uint32_t scalar = 0; scalar < 3; scalar++) {
+        for (uint32_t i = 0; i < 4; i++) {
+            if (types[scalar][i] == type) return (input_kind){ types[scalar][0], i + 1u };
+        }
+    }
+    return (input_kind){ 0, 0 };
+}
+
+/* What is wrong with an input; NULL: nothing. */
+static const char *check_input(const noh_gl_program_desc *desc, GLuint location, GLenum type)
+{
+    const input_kind wants = kind_of(type);
+    for (uint32_t i = 0; i < desc->input_count; i++) {
+        const input_kind has = kind_of(desc->inputs[i].type);
+        if (desc->inputs[i].location != location) continue;
+        if (wants.scalar != has.scalar)
+            return "a vertex shader reads an attribute as floats, integers or unsigned ones, which it is not";
+        if (wants.components > has.components && wants.scalar != GL_FLOAT)
+            return "a vertex shader reads more components of an attribute than there are";
+        return NULL;
+    }
+    return "a vertex shader reads an attribute that what it draws does not have";
+}
+
+static noh_result check_inputs(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
+                               noh_error *error)
+{
+    GLint count = 0;
+    if (!desc->input_count) return NOH_OK;
+    api->GetProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);
+    for (GLint i = 0; i < count; i++) {
+        GLchar name[NOH_NAME_BYTES_MAX] = "";
+        GLint size = 0, location;
+        GLenum type = 0;
+        api->GetActiveAttrib(program, (GLuint)i, (GLsizei)sizeof name, NULL, &size, &type, name);
+        location = api->GetAttribLocation(program, name);
+        const char *wrong = location < 0 ? NULL : check_input(desc, (GLuint)location, type); /* < 0: gl_VertexID */
+        if (!wrong) continue;
+        log_head(log, desc->name, "vertex");
+        log_append(log, name);
+        log_append(log, ": ");
+        log_append(log, wrong);
+        return noh_fail(error, NOH_ERR_DATA, wrong, (uint64_t)location, 0);
+    }
+    return NOH_OK;
+}
+
+/* ---- stages ---- */
+
 /* Compile every stage and attach it. The shaders are marked for deletion at once: they then live exactly as long as the
  * program. */
 static noh_result attach_stages(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
@@ -154,6 +218,7 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
     }
     result = attach_stages(api, desc, name, &words, error);
     if (result == NOH_OK) result = link_program(api, desc, name, &words, error);
+    if (result == NOH_OK) result = check_inputs(api, desc, name, &words, error);
     if (result == NOH_OK) bind_names(api, desc, name);
     /* A refused call is the cause, a failed compile may be its effect: text that never arrived does not compile. */
     noh_result refused = noh_gl_error_check(api, "the driver refuses a call that makes a program", 0, error);

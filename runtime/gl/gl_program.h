@@ -25,6 +25,12 @@ typedef struct noh_gl_source {
     uint32_t piece_count;      /* 1..NOH_GL_PIECES_MAX */
 } noh_gl_source;
 
+/* What a vertex array has at a location, as a vertex shader declares it. */
+typedef struct noh_gl_input {
+    GLuint location;
+    GLenum type; /* of the declaration: GL_FLOAT_VEC3, GL_INT_VEC2, GL_UNSIGNED_INT and so on */
+} noh_gl_input;
+
 typedef struct noh_gl_program_desc {
     const char *name;              /* for the debug label and the log; NULL: none */
     const noh_gl_source *vertex;   /* required */
@@ -44,6 +50,12 @@ typedef struct noh_gl_program_desc {
     uint32_t varying_count;      /* default 0: no transform feedback */
     GLenum varying_mode;         /* 0: GL_INTERLEAVED_ATTRIBS */
 
+    /* All that the vertex arrays have that it will draw. Reading an integer as a float, or what is not there, is
+     * undefined and no GL error, so each active input is held against these: it is at one of their locations, of the
+     * same kind (floats, integers, unsigned ones), and has no more components, but a vec4 whose w is then 1 */
+    const noh_gl_input *inputs;
+    uint32_t input_count; /* default 0: not checked */
+
     noh_gl_ledger *ledger; /* counts the program; NULL: not counted */
 } noh_gl_program_desc;
 
@@ -52,7 +64,8 @@ typedef struct noh_gl_program_desc {
  *         always zero-terminated. For the library's shaders, comments in shaders.gen.c explain its source numbers
  * memory  none
  * errors  ARG a stage is missing or has too many pieces; DATA it does not compile or link, `what` says which, `where`
- *         is the GL stage (0: linking); GL, MEMORY the driver refused a call */
+ *         is the GL stage (0: linking), or it reads an input that `inputs` does not have, at location `where`; GL,
+ * MEMORY the driver refused a call */
 noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
                                  size_t log_bytes, noh_error *error);
 

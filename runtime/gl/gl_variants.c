@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "gl/gl_draw.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 
@@ -262,6 +263,36 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
+/* What the vertex arrays of meshes have (gl_draw.h). Returns how many. Attributes that a mesh lacks are constants of
+ * the same kind. */
+#define INPUTS_MAX 14u
+static uint32_t list_inputs(uint32_t influences, noh_gl_input inputs[INPUTS_MAX])
+{
+    static const noh_gl_input of_meshes[] = {
+        { NOH_ATTRIBUTE_POSITION, GL_FLOAT_VEC3 },
+        { NOH_ATTRIBUTE_NORMAL, GL_INT_VEC2 },
+        { NOH_ATTRIBUTE_TANGENT, GL_INT_VEC2 },
+        { NOH_ATTRIBUTE_UV, GL_FLOAT_VEC2 },
+        { NOH_ATTRIBUTE_COLOR, GL_FLOAT_VEC4 },
+        { NOH_ATTRIBUTE_TEXEL, GL_UNSIGNED_INT },
+        { NOH_ATTRIBUTE_LOBE, GL_INT_VEC4 },
+        { NOH_ATTRIBUTE_MORE_LOBE, GL_INT_VEC4 },
+        { NOH_ATTRIBUTE_STREAMS, GL_UNSIGNED_INT_VEC3 },
+        { NOH_ATTRIBUTE_STREAMS + 1u, GL_UNSIGNED_INT_VEC3 },
+        { NOH_ATTRIBUTE_STREAMS + 2u, GL_UNSIGNED_INT_VEC3 },
+        { NOH_ATTRIBUTE_STREAMS + 3u, GL_UNSIGNED_INT_VEC3 },
+    };
+    static const GLenum words[] = { GL_UNSIGNED_INT, GL_UNSIGNED_INT, GL_UNSIGNED_INT_VEC2, GL_UNSIGNED_INT_VEC3,
+                                    GL_UNSIGNED_INT_VEC4 };
+    const uint32_t word_count = NOH_INFLUENCE_WORDS(influences);
+    uint32_t count = sizeof of_meshes / sizeof of_meshes[0];
+    memcpy(inputs, of_meshes, sizeof of_meshes);
+    if (influences)
+        inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_INFLUENCES, words[word_count < 4u ? word_count : 4u] };
+    if (word_count > 4u) inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_MORE_INFLUENCES, GL_UNSIGNED_INT_VEC3 };
+    return count;
+}
+
 static noh_result create_program(const noh_gl_device *device, const noh_gl_variant *v, const noh_gl_shader_desc *own,
                                  noh_gl_program_desc *desc, GLuint *program, noh_error *error)
 {
@@ -280,6 +311,7 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
                                                                       "noh_environment" };
     char defines[NOH_GL_DEFINES_BYTES];
     whole_source vertex, fragment;
+    noh_gl_input inputs[INPUTS_MAX];
     noh_gl_variant_defines(v->key, defines);
     make_source(&vertex, GL_VERTEX_SHADER, &noh_shader_mesh_vert, own->vertex, own->defines);
     make_source(&fragment, GL_FRAGMENT_SHADER, &noh_shader_mesh_frag, own->fragment, own->defines);
@@ -294,6 +326,8 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
     desc->sampler_count = NOH_UNIT_USER + own->sampler_count;
     desc->blocks = blocks;
     desc->block_count = 1;
+    desc->inputs = inputs;
+    desc->input_count = list_inputs(v->key.influences, inputs);
     desc->ledger = device->ledger;
     return noh_gl_program_create(device->api, desc, program, device->log, device->log_bytes, error);
 }

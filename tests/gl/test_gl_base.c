@@ -734,6 +734,60 @@ static void program_says_what_is_wrong(void **state)
     expect_no_errors(c);
 }
 
+/* A vertex shader that reads what a vertex array does not have links, draws, and shows what nobody wrote. */
+static void errata_C8_4_a_program_reads_what_is_there(void **state)
+{
+    static const struct {
+        const char *declares;
+        noh_result result;
+        const char *says;
+    } cases[] = {
+        { "layout(location = 1) in vec3 a;\nvoid main() { gl_Position = vec4(a, 1.0); }\n", NOH_OK, NULL },
+        { "layout(location = 1) in vec4 a;\nvoid main() { gl_Position = a; }\n", NOH_OK, NULL }, /* w is 1 */
+        { "layout(location = 1) in vec2 a;\nvoid main() { gl_Position = vec4(a, 0.0, float(gl_VertexID)); }\n", NOH_OK,
+          NULL },
+        { "layout(location = 1) in highp ivec3 a;\nvoid main() { gl_Position = vec4(a, 1.0); }\n", NOH_ERR_DATA,
+          "floats, integers or unsigned" },
+        { "layout(location = 2) in highp uvec2 a;\nvoid main() { gl_Position = vec4(a, 1.0, 1.0); }\n", NOH_ERR_DATA,
+          "floats, integers or unsigned" },
+        { "layout(location = 2) in highp ivec4 a;\nvoid main() { gl_Position = vec4(a); }\n", NOH_ERR_DATA,
+          "more components" },
+        { "layout(location = 3) in vec3 a;\nvoid main() { gl_Position = vec4(a, 1.0); }\n", NOH_ERR_DATA,
+          "does not have" },
+        { "layout(location = 3) in vec3 a;\nvoid main() { gl_Position = vec4(1.0); }\n", NOH_OK, NULL }, /* not read */
+    };
+    static const char *const white[] = { "out mediump vec4 o;\nvoid main() { o = vec4(1.0); }\n" };
+    static const noh_gl_source fragment = { "#version 300 es\n", white, 1 };
+    static const noh_gl_input inputs[] = { { 1, GL_FLOAT_VEC3 }, { 2, GL_INT_VEC2 } };
+    context *c = need_context();
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *pieces[] = { cases[i].declares };
+        const noh_gl_source vertex = { "#version 300 es\n", pieces, 1 };
+        noh_gl_program_desc desc = good_desc();
+        noh_error error = { NOH_OK, "", 0, 0 };
+        char log[256];
+        GLuint program = 0;
+        desc.vertex = &vertex;
+        desc.fragment = &fragment;
+        desc.inputs = inputs;
+        desc.input_count = 2;
+        const noh_result got = noh_gl_program_create(&c->gl, &desc, &program, log, sizeof log, &error);
+        if (got != cases[i].result) fail_msg("%zu: %s", i, log);
+        assert_int_equal(program != 0, cases[i].result == NOH_OK);
+        if (cases[i].says) {
+            assert_non_null(strstr(error.what, cases[i].says));
+            assert_int_equal(error.where, i < 4 ? 1 : i < 6 ? 2 : 3);
+            assert_ptr_equal(strstr(log, "good: vertex: a: a vertex shader reads"), log);
+        }
+        noh_gl_program_delete(&c->gl, NULL, &program);
+        desc.input_count = 0; /* not asked, not checked */
+        assert_int_equal(noh_gl_program_create(&c->gl, &desc, &program, NULL, 0, NULL), NOH_OK);
+        noh_gl_program_delete(&c->gl, NULL, &program);
+    }
+    expect_no_errors(c);
+}
+
 static const char *const blocks_pieces[] = {
     "precision highp float;\n",
     "layout(std140) uniform first { vec4 a; };\nlayout(std140) uniform second { vec4 b; };\n",
@@ -1090,6 +1144,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(on_angle),
         cmocka_unit_test(program_counts_and_dies),
         cmocka_unit_test(program_says_what_is_wrong),
+        cmocka_unit_test(errata_C8_4_a_program_reads_what_is_there),
         cmocka_unit_test(program_takes_defines_and_binds_blocks),
         cmocka_unit_test(program_feeds_back),
         cmocka_unit_test(sizes_are_exact),

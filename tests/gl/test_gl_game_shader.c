@@ -384,6 +384,24 @@ static void a_broken_shader_says_where(void **state)
     fixture_expect_no_errors();
 }
 
+/* Attributes of meshes are all that a game's shader can read: another one would be what nobody wrote. */
+static void a_shader_reads_what_meshes_have(void **state)
+{
+    const noh_gl_shader_desc own = {
+        .name = "toon",
+        .vertex = "layout(location = 14) in vec4 mine;\nvoid main()\n{\n    gl_Position = mine;\n}\n",
+        .fragment = "layout(location = 0) out vec4 o;\nvoid main() { o = vec4(1.0); }\n",
+    };
+    char log[2048];
+    noh_error error;
+    (void)state;
+    assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_ERR_DATA);
+    assert_string_equal(error.what, "a vertex shader reads an attribute that what it draws does not have");
+    assert_int_equal(error.where, 14);
+    assert_true(strncmp(log, "toon: vertex: mine: ", 20) == 0);
+    fixture_expect_no_errors();
+}
+
 static void too_many_samplers_are_refused(void **state)
 {
     const char *names[NOH_GL_OWN_SAMPLERS_MAX + 1];
@@ -408,6 +426,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(textures_uniforms_and_defines_arrive),
     cmocka_unit_test(depth_follows_an_own_vertex_shader),
     cmocka_unit_test(a_broken_shader_says_where),
+    cmocka_unit_test(a_shader_reads_what_meshes_have),
     cmocka_unit_test(too_many_samplers_are_refused),
 };
 
