@@ -19,9 +19,7 @@ draw '' --agents 600 --time 30 --camera 18,13,24,0,0 --size 1280x640
 draw _drum --agents 400 --time 40 --camera -35,9,11,-1,-5 --size 960x540
 draw _stall --agents 400 --time 40 --camera 140,9,8,-15.5,-1 --size 960x540
 draw _stairs --agents 400 --time 40 --camera -30,12,9,16,-8 --size 960x540
-for i in 0 1 2 3; do
-    draw "_strip$i" --agents 400 --time "$(awk "BEGIN { print 40 + 0.4 * $i }")" --camera -10,7,7,0,1 --size 480x360
-done
+draw _strip --agents 300 --time 36 --strip 4,1 --camera -60,12,6.5,15.3,-7.7 --size 320x320
 echo
 "$noh" crowd --place "$place" --agents 600 --seconds 60
 echo

@@ -19,13 +19,15 @@
 #define FRAME_TICKS 800u /* 60 frames a second */
 
 typedef struct crowd_args {
-    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera, *ground, *hit;
+    const char *pack, *output, *debug, *driver, *test, *dump, *place, *scenery, *camera, *ground, *hit, *strip;
     light_options light;
     double pixels, instances, time_s, agents, seconds, seed;
     uint32_t size[2];
     int plain, as_json, orca;
     crowd_options options;
     place_hit push; /* of `hit` */
+    uint32_t pictures;
+    double apart_s; /* of `strip` */
 } crowd_args;
 
 static int check_args(crowd_args *a)
@@ -183,19 +185,19 @@ static void print_place(const place_drawn *d, const crowd_args *a)
 
 static int draw_place_of(const pack_file *file, const place_file *place, const crowd_args *a)
 {
-    const place_draw_options options = {
-        (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels, a->time_s,  a->camera,
-        a->scenery,          a->light,          a->size[0],       a->size[1], a->push
-    };
+    const place_draw_options options = { (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels,
+                                         a->time_s,           a->pictures,       a->apart_s,
+                                         a->camera,           a->scenery,        a->light,
+                                         a->size[0],          a->size[1],        a->push };
     place_drawn d;
     gpu g;
-    uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
+    uint8_t *rgba = malloc((size_t)a->size[0] * a->pictures * a->size[1] * 4);
     int status = rgba ? gpu_open_drawing(&g, a->driver) : tool_fail(a->pack, "out of memory");
     if (!status) {
         status = place_draw(&g, file, place, &options, rgba, &d);
         gpu_close(&g);
     }
-    if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
+    if (!status) status = tool_write_png(a->output, a->pictures * a->size[0], a->size[1], rgba);
     if (!status) print_place(&d, a);
     free(rgba);
     return status;
@@ -215,6 +217,22 @@ static int draw_place(const crowd_args *a, const noh_field *ground)
     }
     place_free(place);
     return status;
+}
+
+/* One picture, or a strip that is as wide as one may be. */
+static int parse_strip(crowd_args *a)
+{
+    char end;
+    const int count = a->strip ? sscanf(a->strip, "%u,%lf%c", &a->pictures, &a->apart_s, &end) : 0;
+    if (count < 1) a->pictures = 1;
+    if (count < 2) a->apart_s = 0.5;
+    if (a->strip && (count < 1 || count > 2 || a->pictures < 1 || !(a->apart_s > 0.0 && a->apart_s <= 60.0))) {
+        return tool_usage("--strip wants N[,S]: pictures, and seconds from one to the next, 60 at most, not '%s'",
+                          a->strip);
+    }
+    return (uint64_t)a->pictures * a->size[0] <= 8192u
+               ? 0
+               : tool_usage("--strip: %u pictures of --size are wider than 8192 pixels", a->pictures);
 }
 
 static int parse_hit(crowd_args *a)
@@ -237,10 +255,11 @@ static int run_on(crowd_args *a, const noh_field *ground)
 {
     pack_file file;
     int status;
-    if (!a->output && (a->scenery || a->camera || a->hit)) {
-        return tool_usage("--scenery, --camera and --hit have no effect without -o");
+    if (!a->output && (a->scenery || a->camera || a->hit || a->strip)) {
+        return tool_usage("--scenery, --camera, --hit and --strip have no effect without -o");
     }
     status = a->hit ? parse_hit(a) : 0;
+    if (!status) status = parse_strip(a);
     if (status) return status;
     if (a->test || (a->place && !a->output)) {
         return a->pack ? tool_usage("agents are measured without a pack; one is drawn with --place FILE -o OUT.png")
@@ -355,6 +374,14 @@ static const option options[] = {
       .what =
           "with --place FILE -o: after S seconds those within RADIUS (2) metres of X, Z are pushed away from there by NS (90) newton seconds, the nearest first, at most 16: they fall, and get up by clips whose names begin with get_up",
       .example = "10,0,4,3",
+      .needs = "--place" },
+    { .name = "--strip",
+      .kind = OPTION_TEXT,
+      .at = offsetof(crowd_args, strip),
+      .value = "N[,S]",
+      .what =
+          "with --place FILE -o: N pictures of --size beside each other, S (0.5) seconds apart, the first at --time",
+      .example = "4,0.4",
       .needs = "--place" },
     OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
     { .name = "--agents",

@@ -313,11 +313,12 @@ static int show(scene *s, const noh_stage_view views[2])
 }
 
 /* All steps up to the time; frames before the last one are not drawn. */
-static int run(scene *s, const noh_stage_view views[2])
+static int run(scene *s, const noh_stage_view views[2], double time_s)
 {
-    const uint32_t steps = (uint32_t)(s->options->time_s * 30.0 + 0.5);
+    const uint32_t steps = (uint32_t)(time_s * 30.0 + 0.5);
     int status = 0;
-    for (uint32_t i = 0; i < steps || i < 2u; i++) {
+    while (s->step < steps || s->step < 2u) {
+        const uint32_t i = s->step;
         step(s);
         if (i + SHOWN_FRAMES >= steps && !status) status = show(s, views);
     }
@@ -347,6 +348,24 @@ static int paint(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
     crowd_hair_draw(&s->hair, s->stage, 0);
     if (!status) status = canvas_read(&target, rgba);
     canvas_close(&target);
+    return status;
+}
+
+/* Each picture into its columns. */
+static int paint_all(scene *s, gpu *g, const noh_stage_view views[2], uint8_t *rgba)
+{
+    const place_draw_options *o = s->options;
+    const size_t row = (size_t)o->width * 4u;
+    uint8_t *one = malloc(row * o->height);
+    int status = one ? 0 : tool_fail(s->file->path, "out of memory");
+    for (uint32_t i = 0; i < o->count && !status; i++) {
+        status = run(s, views, o->time_s + i * o->apart_s);
+        if (!status) status = paint(s, g, views, one);
+        for (uint32_t y = 0; y < o->height && !status; y++) {
+            memcpy(rgba + (y * (size_t)o->count + i) * row, one + y * row, row);
+        }
+    }
+    free(one);
     return status;
 }
 
@@ -403,9 +422,8 @@ int place_draw(gpu *g, const pack_file *file, const place_file *place, const pla
         const bounds box = box_of(place);
         memcpy(views[0].light, s.light.told.key_direction, sizeof views[0].light);
         views[1] = lighting_shadow_view(&s.light, &box);
-        status = run(&s, views);
+        status = paint_all(&s, g, views, rgba);
     }
-    if (!status) status = paint(&s, g, views, rgba);
     if (!status) take_drawn(&s, drawn);
     close_scene(&s);
     return status;

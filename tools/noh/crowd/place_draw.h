@@ -21,7 +21,9 @@ typedef struct place_hit {
 typedef struct place_draw_options {
     uint32_t agents, seed;
     float pixels;        /* the largest error of LOD levels */
-    double time_s;       /* when the picture is taken */
+    double time_s;       /* when the first picture is taken */
+    uint32_t count;      /* of pictures, 1 or more, */
+    double apart_s;      /* so many seconds apart */
     const char *camera;  /* "AZ,EL,DIST[,X,Z]": about the place's middle, or about X, Z; NULL: over the whole place */
     const char *scenery; /* a pack drawn where it is; NULL: none */
     light_options light;
@@ -38,7 +40,8 @@ typedef struct place_drawn {
     uint32_t terrain_blocks, terrain_triangles; /* as drawn */
 } place_drawn;
 
-/* Into rgba[height][width][4]. Prints an error and returns an exit code; 0 on success. */
+/* Into rgba[height][count][width][4]: one picture beside the other. What was drawn is that of the last. Prints an error
+ * and returns an exit code; 0 on success. */
 int place_draw(gpu *g, const pack_file *file, const place_file *place, const place_draw_options *o, uint8_t *rgba,
                place_drawn *drawn);
 
