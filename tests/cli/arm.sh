@@ -141,6 +141,22 @@ fi
 expect 0 'a sheet of a target at two weights'
 noh sheet "$work/arm.noh" -o "$work/full.png" --target stream_b --target stream_b --columns 3 --tile 64
 check 'whose weights show' sh -c '! cmp -s "$1" "$2"' - "$work/streams.png" "$work/full.png"
+# The source's demo: a weight that time drives there and back.
+noh sheet "$work/arm.noh" -o "$work/pong.png" --target stream_b --ping-pong 0.5 --tiles 4 --columns 4 --tile 64
+expect 0 'a ping-pong'
+noh sheet "$work/arm.noh" -o "$work/held.png" --target stream_b=0.5 --target stream_b --target stream_b=0.5 --columns 4 --tile 64
+noh sheet "$work/arm.noh" -o "$work/late.png" --target stream_b --target stream_b=0.5 --target stream_b --columns 4 --tile 64
+check 'there half way, whole, half way back: but for labels as tiles of these weights' \
+    "$build/tests/gl/picture_diff" "$work/pong.png" "$work/held.png" 1.5 0.02
+check 'and not as others' sh -c '! "$1" "$2" "$3" 1.5 0.02 >/dev/null' - "$build/tests/gl/picture_diff" "$work/pong.png" "$work/late.png"
+noh sheet "$work/arm.noh" -o "$work/x.png" --ping-pong 0.5
+expect 2 'a ping-pong of no target'
+noh sheet "$work/arm.noh" -o "$work/x.png" --target stream_b --target stream_b --ping-pong 0.5
+expect 2 'of two'
+noh sheet "$work/arm.noh" -o "$work/x.png" --target stream_b --ping-pong -1
+expect 2 'of a time below 0'
+noh sheet "$work/arm.noh" -o "$work/x.png" --target stream_b --ping-pong 0.5 --data
+expect 2 'of textures'
 noh sheet "$work/arm.noh" -o "$work/x.png" --target stream_c=0.5
 expect 1 'a target that is not there'
 says "did you mean 'stream_b'"

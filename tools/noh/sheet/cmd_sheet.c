@@ -210,6 +210,9 @@ static int check_args(sheet_args *a)
                      a->faces == (double)(uint32_t)a->faces && a->seed == (double)(uint32_t)a->seed)) {
         status = tool_usage("--faces wants a whole number from 1 to 1024, --seed one from 0 to 4294965999");
     }
+    if (!status && !(s->tiles.half_s >= 0.0 && s->tiles.half_s <= 60.0)) {
+        status = tool_usage("--ping-pong wants seconds, over 0, at most 60");
+    }
     if (!status) status = check_clips(&s->tiles, a->transition);
     if (!status && s->tiles.push) status = figure_read_push(s->tiles.push, s->tiles.impulse);
     if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
@@ -290,6 +293,14 @@ static const option options[] = {
           "show this target alone, at weight V (default 1); may repeat; with --lods: a row, with --wrinkles: a column, of one or several targets, NAME[=V],NAME[=V]...",
       .example = "smile=0.5",
       .excludes = "--clip --bones" },
+    { .name = "--ping-pong",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(sheet_args, s.tiles.half_s),
+      .value = "S",
+      .what = "the only --target over time: to its weight in S seconds, and back in as many; over 0, at most 60",
+      .example = "0.5",
+      .needs = "--target",
+      .excludes = "--clip --lods --wrinkles --faces --data" },
     { .name = "--clip",
       .kind = OPTION_LIST,
       .at = offsetof(sheet_args, s.tiles.clips),
@@ -308,9 +319,9 @@ static const option options[] = {
       .at = offsetof(sheet_args, tiles),
       .value = "N",
       .initial = "24",
-      .what = "number of moments of the clip to show, 1 to 1024",
+      .what = "number of moments of the clip, or of the ping-pong, to show, 1 to 1024",
       .example = "12",
-      .needs = "--clip" },
+      .needs = "--clip --ping-pong" },
     { .name = "--blend",
       .kind = OPTION_TEXT,
       .at = offsetof(sheet_args, s.tiles.blend),

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "anim/ping_pong.h"
 #include "cli/message.h"
 
 #define AROUND_S 0.3 /* shown before and after a transition */
@@ -41,6 +42,28 @@ static int list_only(sheet_tiles *t)
     return status;
 }
 
+/* The only target there and back over time. Tile 0, at rest, is where it begins. */
+static int list_ping_pong(sheet_tiles *t)
+{
+    const int64_t half = noh_ticks_from_seconds(t->half_s);
+    sheet_target whole;
+    int status;
+    if (t->only.count != 1) return tool_usage("--ping-pong wants one --target");
+    read_target(t->only.items[0], &whole);
+    status = figure_check_target(t->file, whole.name);
+    if (status) return status;
+    t->targets = calloc((size_t)t->clip_tiles, sizeof *t->targets);
+    if (!t->targets) return tool_fail(t->file->path, "out of memory");
+    for (uint32_t i = 1; i < t->clip_tiles; i++) {
+        const int64_t ticks = 2 * half * i / t->clip_tiles;
+        sheet_target *shown = &t->targets[t->target_count++];
+        *shown = whole;
+        shown->weight *= (double)noh_ping_pong(ticks, half);
+        shown->time_s = (double)ticks / NOH_TICKS_PER_SECOND;
+    }
+    return 0;
+}
+
 static void add_name(sheet_tiles *t, const char *name)
 {
     for (uint32_t i = 0; i < t->target_count; i++) {
@@ -57,6 +80,7 @@ static int list_names(sheet_tiles *t)
     const noh_pack *pack = &t->file->pack;
     size_t total = 0;
     noh_mesh mesh;
+    if (t->half_s > 0.0) return list_ping_pong(t);
     if (t->only.count) {
         return list_only(t);
     }
@@ -77,7 +101,9 @@ static int list_names(sheet_tiles *t)
 
 static void label_target(const sheet_target *shown, char *text, size_t bytes)
 {
-    if (shown->weight == 1.0) {
+    if (shown->time_s > 0.0) {
+        snprintf(text, bytes, "%s %.2f, %.2f s", shown->name, shown->weight, shown->time_s);
+    } else if (shown->weight == 1.0) {
         snprintf(text, bytes, "%s", shown->name);
     } else {
         snprintf(text, bytes, "%s %g", shown->name, shown->weight);

@@ -14,6 +14,7 @@
 typedef struct sheet_target {
     char name[NOH_NAME_BYTES_MAX];
     double weight;
+    double time_s; /* of a ping-pong; else 0 */
 } sheet_target;
 
 typedef struct sheet_tiles {
@@ -30,6 +31,7 @@ typedef struct sheet_tiles {
     double clip_seconds;
     uint32_t clip_tiles;   /* columns in time */
     option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */
+    double half_s;         /* the only target goes there in so long, and back again; 0: it does not */
     sheet_target *targets; /* [target_count] */
     uint32_t target_count;
     uint32_t face_count, seed; /* people, of seeds from there on; 0: none */
