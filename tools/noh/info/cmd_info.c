@@ -11,6 +11,7 @@
 #include "cli/args.h"
 #include "cli/message.h"
 #include "file/pack_file.h"
+#include "verify/half_bound.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
 
@@ -78,6 +79,17 @@ static void print_levels(const noh_mesh *m)
     }
 }
 
+/* Of all weights from 0 to 1, micrometres. */
+static double half_bound_um(const noh_mesh *m)
+{
+    float low[NOH_TARGETS_MAX], high[NOH_TARGETS_MAX];
+    for (uint32_t t = 0; t < m->header->target_count; t++) {
+        low[t] = 0.0f;
+        high[t] = 1.0f;
+    }
+    return 1e6 * (double)m->header->world_scale * half_bound(m, low, high, 0, NOH_HALF_RTZ);
+}
+
 static void print_mesh(const noh_pack *pack, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
@@ -90,9 +102,10 @@ static void print_mesh(const noh_pack *pack, const noh_mesh *m)
                h->target_count, h->pair_count, h->rect_count, h->texel_count,
                h->pair_count ? (double)h->texel_count / h->pair_count : 0.0, (unsigned long long)target_bytes(h),
                h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
-        printf("  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights -2..2)\n",
-               h->touched_count, 1u << h->morph_width_log2, h->morph_height,
-               1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+        printf(
+            "  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights 0..1; %.0f: -2..2)\n",
+            h->touched_count, 1u << h->morph_width_log2, h->morph_height, half_bound_um(m),
+            1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
     info_print_transfer(m);
     print_levels(m);
@@ -241,6 +254,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "rects", h->rect_count);
     json_integer(j, "texels", h->texel_count);
     json_integer(j, "target_bytes", target_bytes(h));
+    json_number(j, "f16_bound_0_to_1_um", half_bound_um(m));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_skin(j, pack, h);
     info_json_transfer(j, m);

@@ -7,6 +7,7 @@
 
 #include "cli/message.h"
 #include "gpu/readback.h"
+#include "half_bound.h"
 #include "verify.h"
 #include "verify_skin.h"
 
@@ -167,6 +168,23 @@ static void clear_layers(const verify_job *job, void *memory, size_t bytes, cons
     layers->tangent = job->without_tangents ? NULL : layers->tangent;
 }
 
+/* How far half floats may be off for these weights: a row's bound is that of the set of weights that allows the most.
+ */
+static int raise_bound(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
+                       verify_row *row)
+{
+    const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER;
+    const noh_half_mode mode = plan->path == NOH_MORPH_CPU      ? NOH_HALF_RNE
+                               : plan->path == NOH_MORPH_GATHER ? job->g.caps.f16_store_mode
+                                                                : job->g.caps.f16_blend_mode;
+    double bound;
+    if (plan->accumulate != NOH_ACCUMULATE_F16) return 0;
+    bound = half_bound(mesh, weights, weights, once, mode);
+    if (bound < 0.0) return tool_fail(job->file.path, "out of memory");
+    row->bound_um = fmax(row->bound_um, 1e6 * (double)mesh->header->world_scale * bound);
+    return 0;
+}
+
 /* One mesh, one path: several sets of weights. */
 static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh_index, const noh_gl_mesh *gl_mesh,
                        verify_row *row)
@@ -201,6 +219,7 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
             compare_layers(job, row, mesh, b.got, b.expected);
             compare_vertices(row, mesh, &expected, b.positions, b.normals);
             measure_f16(row, mesh, b.got, b.exact);
+            status = raise_bound(job, plan, mesh, b.weights, row);
         }
     }
     buffers_close(&b);
@@ -218,14 +237,6 @@ static void set_stream_bound(const verify_job *job, verify_row *row)
             most = fmax(most, fmax(fabs((double)h->bounds_min[c]), fabs((double)h->bounds_max[c])));
         }
         row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * STREAM_ULPS * 1.1920929e-7 * most);
-    }
-}
-
-static void set_bound(verify_job *job, verify_row *row, int half)
-{
-    for (uint32_t i = 0; half && i < job->file.pack.mesh_count; i++) {
-        const noh_mesh_header *h = job->meshes[i].header;
-        row->bound_um = fmax(row->bound_um, 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     }
 }
 
@@ -278,7 +289,6 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     row->reason = plan.reason;
     row->cpu_predicted = plan.cpu_bytes;
     row->gpu_predicted = plan.gpu_bytes;
-    set_bound(job, row, accumulate == NOH_ACCUMULATE_F16);
     if (path == NOH_MORPH_STREAMS) set_stream_bound(job, row);
     row->cpu_used = least_block(job, &desc, plan.cpu_bytes);
     before = noh_gl_ledger_bytes(&job->g.ledger);

@@ -1,0 +1,86 @@
+#include "half_bound.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FLOAT_SLACK 1e-5 /* of a sum: products and sums of floats, which are compared with, are rounded too */
+
+/* One coordinate of a vertex: what its sum so far lies between, and how far it may be off. */
+typedef struct partial {
+    double low, high, error;
+} partial;
+
+/* The distance of neighbouring half floats at a magnitude; 2^-24 where they are denormal. */
+static double spacing(double magnitude)
+{
+    int exponent;
+    (void)frexp(magnitude, &exponent); /* 2^(exponent - 1) <= magnitude */
+    return ldexp(1.0, exponent - 11 > -24 ? exponent - 11 : -24);
+}
+
+static double rounding(double magnitude, noh_half_mode mode)
+{
+    return mode == NOH_HALF_RNE ? 0.5 * spacing(magnitude) : spacing(magnitude);
+}
+
+static double largest(double a, double b)
+{
+    return fmax(fabs(a), fabs(b));
+}
+
+static void add(partial *p, double delta, double low, double high, int once, noh_half_mode mode)
+{
+    const double from = fmin(low * delta, high * delta), to = fmax(low * delta, high * delta);
+    p->low += from;
+    p->high += to;
+    if (once || delta == 0.0) return;
+    if (mode == NOH_HALF_UNKNOWN) p->error += spacing(largest(from, to));
+    p->error += rounding(largest(p->low, p->high) + p->error, mode);
+}
+
+static double error_of(const partial *p, int once, noh_half_mode mode)
+{
+    const double sum = largest(p->low, p->high);
+    return p->error + (once && sum > 0.0 ? rounding(sum, mode) : 0.0) + FLOAT_SLACK * sum;
+}
+
+static double worst_of(const partial *parts, uint32_t touched, int once, noh_half_mode mode)
+{
+    double worst = 0.0;
+    for (uint32_t v = 0; v < touched; v++) {
+        double square = 0.0;
+        for (uint32_t c = 0; c < 3; c++) {
+            const double error = error_of(&parts[3 * (size_t)v + c], once, mode);
+            square += error * error;
+        }
+        worst = fmax(worst, sqrt(square));
+    }
+    return worst;
+}
+
+double half_bound(const noh_mesh *mesh, const float *low, const float *high, int once, noh_half_mode mode)
+{
+    const uint32_t touched = mesh->header->touched_count, targets = mesh->header->target_count;
+    const size_t bytes = noh_morph_layers_size(mesh);
+    partial *parts = calloc((size_t)touched * 3u + 1u, sizeof *parts);
+    float *alone = calloc(targets + 1u, sizeof *alone);
+    void *memory = malloc(bytes + 16u);
+    double worst = -1.0;
+    for (uint32_t t = 0; t < targets && parts && alone && memory; t++) {
+        noh_morph_layers layers;
+        if (low[t] == 0.0f && high[t] == 0.0f) continue;
+        noh_morph_layers_init(memory, bytes + 16u, mesh, &layers, NULL);
+        alone[t] = 1.0f;
+        noh_morph_accumulate_scalar(mesh, alone, &layers);
+        alone[t] = 0.0f;
+        for (size_t i = 0; i < 3u * (size_t)touched; i++) {
+            add(&parts[i], (double)layers.position[i], (double)low[t], (double)high[t], once, mode);
+        }
+    }
+    if (parts && alone && memory) worst = worst_of(parts, touched, once, mode);
+    free(memory);
+    free(alone);
+    free(parts);
+    return worst;
+}
