@@ -71,4 +71,12 @@ check 'nothing is written' test ! -e "$work/no.nohz"
 noh pack "$pack" -o "$work/no/such/folder.nohz"
 expect 1 'a folder that is not there'
 says 'cannot write'
+
+noh bench "$build/mask.noh" --only wire --quick --json
+if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
+    skip 'what unpacking costs' 'no GL context here'
+    finish
+fi
+expect 0 'what unpacking costs'
+check 'against copying' grep -q '"baseline": "memcpy"' "$work/out"
 finish

@@ -25,6 +25,7 @@
  *   bench_hair.c        rows sim/hair, sim/hair_points: control hairs of a head that shakes
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
  *   bench_people.c      rows crowd/people: of a frame of a thousand who walk, what agents and walkers take
+ *   bench_wire.c        rows wire/: the wire form unpacked, against memcpy and zstd
  *   bench_report.c      rows, storage, and how they are printed
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
@@ -235,6 +236,7 @@ int bench_ik(bench_job *job);
 #define BENCH_TWO_BONE_SOLVES 1000u
 void bench_two_bone(void *self, uint32_t frame);
 int bench_agents(bench_job *job);
+int bench_wire(bench_job *job);
 int bench_people(bench_job *job); /* none where the first pack has no body that walks */
 
 void bench_print(bench_job *job);

@@ -96,6 +96,12 @@ static void print_head(const bench_job *job)
                        : "the pack's vertex order, which favours it (--source ASSET: the asset's own)");
 }
 
+/* So that small ratios say something too. */
+static int places(double ratio)
+{
+    return ratio < 0.1 ? 5 : 2;
+}
+
 static void print_rows(const bench_rows *rows)
 {
     printf("%-40s %10s %-8s %10s  %s\n", "", "cost", "", "ratio", "against");
@@ -103,9 +109,9 @@ static void print_rows(const bench_rows *rows)
         const bench_row *r = &rows->rows[i];
         int same = i && strcmp(r->name, rows->rows[i - 1].name) == 0;
         if (same) {
-            printf("%-40s %10s %-8s %10.2f  %s\n", "", "", "", r->ratio, r->baseline);
+            printf("%-40s %10s %-8s %10.*f  %s\n", "", "", "", places(r->ratio), r->ratio, r->baseline);
         } else {
-            printf("%-40s %10.4g %-8s %10.2f  %s\n", r->name, r->value, r->unit, r->ratio, r->baseline);
+            printf("%-40s %10.4g %-8s %10.*f  %s\n", r->name, r->value, r->unit, places(r->ratio), r->ratio, r->baseline);
         }
     }
 }

@@ -44,6 +44,7 @@ static const struct group {
     { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
     { "look", bench_look, 1 },         { "face", bench_face, 1 },         { "ear", bench_ear, 1 },
     { "sim", bench_sim, 0 },           { "agents", bench_agents, 0 },     { "people", bench_people, 0 },
+    { "wire", bench_wire, 0 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -167,7 +168,7 @@ static const option options[] = {
       .value = "GROUP",
       .what =
           "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear, "
-          "sim, agents or people; default: all for which the packs have data",
+          "sim, agents, people or wire; default: all for which the packs have data",
       .example = "look" },
     { .name = "--source",
       .kind = OPTION_INPUT,
