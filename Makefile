@@ -436,7 +436,7 @@ WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GRO
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
 WEB_STATIC  := 262144
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js light.js hair.js faces.js load.js speech.js microphone.js page.noh page.nohz)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js keys.js light.js hair.js faces.js load.js speech.js microphone.js page.noh page.nohz)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
@@ -449,9 +449,10 @@ web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
+# HOST=all: also to phones and others in the same network.
+PORT ?= 8000
 web-serve: web
-	@echo 'http://localhost:8000/'
-	@cd $(WEB) && python3 -m http.server 8000 --bind localhost
+	@node tools/web_serve.js $(WEB) $(PORT) $(if $(filter all,$(HOST)),all)
 
 # The page's frame beside three.js's.
 WEB_BENCH ?= $(ASSETS)/hero/head.glb

@@ -1,6 +1,6 @@
 #!/bin/sh
 # web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js, and
-# tests/web/figure.js, tests/web/load.js, tests/web/speech.js with the mask); its canvas is compared with `noh render`, its bytes with the plan that sized its
+# tests/web/figure.js, tests/web/load.js, with the mask tests/web/controls.js and tests/web/speech.js); its canvas is compared with `noh render`, its bytes with the plan that sized its
 # memory, and with `noh budget`. `make web-check` runs it; NOH_WEB_ONLY=lights,hair
 # runs these parts alone, without a comparison. The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
 set -u
@@ -18,7 +18,7 @@ command -v emcc >/dev/null 2>&1 || leave_out 'no emcc here (emscripten)'
 . tests/web/find_browser.sh
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
-find_browser "$build/web-check" playwright-core
+find_browser "$build/web-check" playwright-core axe-core
 
 ok() { passed=$((passed + 1)); }
 not_ok() {
@@ -94,6 +94,8 @@ check_pack() {
         count $? "$out/load.txt"
     fi
     if [ "$name" = mask ]; then
+        timeout -k 5 500 node tests/web/controls.js "$build/web/$name" "$chromium" "$out" "$clip" >"$out/controls.txt" 2>&1
+        count $? "$out/controls.txt"
         timeout -k 5 500 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
         count $? "$out/speech.txt"
     fi

@@ -35,7 +35,7 @@ const floats = (pointer, count) => Module.HEAPF32.subarray(pointer >> 2, (pointe
 // ---- the camera: as `noh render` has it, 30 degrees high ----
 
 const front = { azimuth: 0, elevation: 0.05 };
-const orbit = { ...front, distance: 0, box: null, from: [0, 0, 0] };
+const orbit = { ...front, distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0 };
 const walked = () => Array.from(floats(Module._web_walked(), 3));
 
 function product(a, b) {
@@ -51,12 +51,13 @@ function fit() {
     orbit.box = Array.from(floats(Module._web_measure(), 6));
     orbit.from = walked();
     orbit.distance = 0;
+    orbit.offset = [0, 0, 0];
     redraw();
 }
 
 function setCamera() {
     const b = orbit.box, to = byId('follow').checked ? walked() : orbit.from;
-    const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - orbit.from[c]);
+    const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - orbit.from[c] + orbit.offset[c]);
     const half = [0, 1, 2].map((c) => (b[3 + c] - b[c]) / 2);
     const aspect = canvas.width / canvas.height, f = 1 / Math.tan(Math.PI / 12);
     const radius = Math.max(Math.hypot(...half), 1e-6);
@@ -66,6 +67,7 @@ function setCamera() {
     const ca = Math.cos(orbit.azimuth), sa = Math.sin(orbit.azimuth);
     const ce = Math.cos(orbit.elevation), se = Math.sin(orbit.elevation);
     const right = [ca, 0, -sa], up = [-sa * se, ce, -ca * se], back = [sa * ce, se, ca * ce];
+    Object.assign(orbit, { right, up, pixel: 2 * d / f / canvas.clientHeight });
     const eye = centre.map((c, i) => c + back[i] * d);
     const dot = (a) => a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];
     const view = [0, 1, 2].flatMap((c) => [right[c], up[c], back[c], 0]).concat([-dot(right), -dot(up), -dot(back), 1]);
@@ -78,7 +80,8 @@ function setCamera() {
 }
 
 // One finger or the mouse turns the figure; two fingers or the wheel zoom; two fingers that go the same way, or a drag
-// with shift, turn the light; a tap or a click picks.
+// with the right button, move the picture; a drag with shift turns the light; a tap or a click picks. keys.js has the
+// same for the keyboard.
 const pointers = new Map();
 let tapped = null;
 const apart = () => {
@@ -87,6 +90,16 @@ const apart = () => {
 };
 function zoom(by) {
     orbit.distance = Math.min(4, Math.max(0.15, (orbit.distance || 1) * by));
+    redraw();
+}
+function turn(azimuth, elevation) {
+    orbit.azimuth += azimuth;
+    orbit.elevation = Math.min(1.5, Math.max(-1.5, orbit.elevation + elevation));
+    redraw();
+}
+// By pixels of the page: what is under a finger stays there.
+function pan(x, y) {
+    orbit.offset = orbit.offset.map((o, i) => o + (y * orbit.up[i] - x * orbit.right[i]) * orbit.pixel);
     redraw();
 }
 function pick(event) {
@@ -107,13 +120,12 @@ canvas.addEventListener('pointermove', (event) => {
     if (tapped && Math.hypot(event.clientX - tapped.x, event.clientY - tapped.y) > 6) tapped = null;
     const x = event.clientX - at.x, y = event.clientY - at.y, before = pointers.size === 2 ? apart() : 0;
     Object.assign(at, { x: event.clientX, y: event.clientY });
-    if (before || event.shiftKey) turnLight(before ? x / 2 : x);
+    if (before) pan(x / 2, y / 2);
     if (before) return zoom(before / apart());
-    if (event.shiftKey) return undefined;
-    orbit.azimuth -= x * 0.01;
-    orbit.elevation = Math.min(1.5, Math.max(-1.5, orbit.elevation + y * 0.01));
-    redraw();
+    if (event.shiftKey) return turnLight(x);
+    return event.buttons === 2 ? pan(x, y) : turn(-x * 0.01, y * 0.01);
 });
+canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 canvas.addEventListener('pointerup', (event) => {
     if (tapped && !lost) pick(event);
     tapped = null;
@@ -217,51 +229,6 @@ function beginDetail() {
     Module._web_set_level(Number(byId('detail').value));
 }
 
-// ---- targets: a slider that was moved holds its target, whatever plays, until the reset ----
-
-const sliders = [];
-
-function showWeight(s) {
-    const weight = Module._web_weight(s.index);
-    if (weight === s.shown) return;
-    s.shown = weight;
-    s.slider.value = weight;
-    s.output.textContent = weight.toFixed(2);
-}
-
-function hold(s, weight) {
-    if (!s) return;
-    Module._web_hold(s.index, weight, 1);
-    s.label.classList.add('held');
-    redraw();
-}
-
-function addSlider(index, name) {
-    const label = document.createElement('label'), span = document.createElement('span');
-    const slider = document.createElement('input'), output = document.createElement('output');
-    span.textContent = span.title = name;
-    Object.assign(slider, { type: 'range', min: -1, max: 2, step: 0.01 });
-    slider.dataset.target = name;
-    const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN };
-    slider.addEventListener('input', () => hold(s, Number(slider.value)));
-    label.append(span, slider, output);
-    byId('targets').append(label);
-    sliders.push(s);
-    showWeight(s);
-}
-
-byId('search').addEventListener('input', () => {
-    const part = byId('search').value.trim().toLowerCase();
-    for (const s of sliders) s.label.hidden = !s.name.includes(part);
-});
-byId('reset').addEventListener('click', () => {
-    for (const s of sliders) {
-        Module._web_hold(s.index, 0, 0);
-        s.label.classList.remove('held');
-    }
-    redraw();
-});
-
 // ---- clips ----
 
 const clip = () => Number(byId('clips').value);
@@ -363,20 +330,13 @@ function showMemory() {
     };
     window.noh.memory = memory;
     byId('memory').replaceChildren();
-    addRow(['', 'CPU', 'GPU'], 'th');
+    addRow(['of', 'CPU', 'GPU'], 'th');
     for (const p of parts) if (p.cpu || p.gpu) addRow([p.name, p.cpu, p.gpu]);
     addRow(['the stage', memory.cpu, memory.gpu]);
     addRow(['its block', memory.room, '']);
     addRow(['the pack', memory.pack, '']);
     addRow(['WebAssembly, cannot grow', memory.all, '']);
     byId('device').textContent = (window.noh.path ? `path ${window.noh.path}, ` : '') + window.noh.renderer;
-}
-
-function listTargets() {
-    byId('targets').replaceChildren();
-    sliders.length = 0;
-    for (let i = 0; i < Module._web_target_count(); i++) addSlider(i, text(Module._web_target_name(i)));
-    byId('faces').hidden = !sliders.length;
 }
 
 // A pack as it begins. again: another one was shown before it.

@@ -86,6 +86,10 @@ const reach = (page, seconds) => page.waitForFunction((s) => Number(document.get
 async function held(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=${clip}`);
     await setTarget(page, 'smile', 1.5);
+    const ends = () => page.locator('input[data-target="smile"]').evaluate((e) => [e.min, e.max, e.value].join(' '));
+    check('held: a target is 0 at the left end, and 1 at the right one', await ends() === '0 1 1', await ends());
+    await page.click('#beyond');
+    await setTarget(page, 'smile', 1.5);
     const value = () => page.locator('input[data-target="smile"]').inputValue().then(Number);
     await reach(page, 0.6);
     check('held: a clip does not move a slider that is held', await value() === 1.5, await value());
@@ -212,7 +216,7 @@ async function wrinkles(browser) {
     await close(page, 'wrinkles');
 }
 
-// Two fingers that go the same way turn the light, and so does a drag with shift.
+// A drag with shift turns the light; two fingers that go the same way move the picture.
 async function turns(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 }, hasTouch: true }, 'clip=none&light=room');
     const turned = () => page.inputValue('#rotate').then(Number);
@@ -235,7 +239,10 @@ async function turns(browser) {
         on('pointerup', 11, 240);
         on('pointerup', 12, 440);
     }));
-    check('light: two fingers turn it', await turned() === 50, await turned());
+    check('light: two fingers do not', await turned() === 30, await turned());
+    const moved = await page.evaluate(() => [orbit.offset, orbit.right, orbit.pixel]);
+    const way = moved[0].reduce((sum, o, i) => sum + o * moved[1][i], 0) / moved[2];
+    check('two fingers move the picture as far as they go', Math.abs(way + 40) < 1e-3, way);
     await close(page, 'turns');
 }
 

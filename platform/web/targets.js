@@ -1,0 +1,91 @@
+// targets.js: a slider for each target, in groups by name. One that was moved holds its target, whatever plays, until the
+// reset.
+'use strict';
+
+const sliders = [];
+const groups = [ // the first that fits
+    ['brows', /brow/i],
+    ['eyes', /eye|blink|lid|look|squint|wink/i],
+    ['jaw and tongue', /jaw|tongue|chin/i],
+    ['mouth', /mouth|lip|smile|frown|pucker|teeth|viseme|^(aa|ih|ou|ee|oh|[aiueo]|sil|pp|ff|th|dd|kk|ch|ss|nn|rr)$/i],
+    ['cheeks and nose', /cheek|nose|nostril|sneer/i],
+    ['feelings', /happy|joy|angry|anger|sad|sorrow|fun|surpris|relax|fear|disgust|contempt|neutral/i],
+    ['others', /./],
+];
+const groupOf = (name) => groups.find((g) => g[1].test(name))[0];
+
+function showWeight(s) {
+    const weight = Module._web_weight(s.index);
+    if (weight === s.shown) return;
+    s.shown = weight;
+    s.slider.value = weight;
+    s.output.textContent = weight.toFixed(2);
+}
+
+function hold(s, weight) {
+    if (!s) return;
+    Module._web_hold(s.index, weight, 1);
+    s.label.classList.add('held');
+    redraw();
+}
+
+// A target is not shown at the left end, and whole at the right one; or it goes beyond both.
+function setRange(s) {
+    const beyond = byId('beyond').checked;
+    Object.assign(s.slider, { min: beyond ? -1 : 0, max: beyond ? 2 : 1 });
+    s.shown = NaN;
+    showWeight(s);
+}
+
+function addSlider(index, name, to) {
+    const label = document.createElement('label'), span = document.createElement('span');
+    const slider = document.createElement('input'), output = document.createElement('output');
+    span.textContent = span.title = name;
+    Object.assign(slider, { type: 'range', step: 0.01 });
+    slider.dataset.target = name;
+    const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN };
+    slider.addEventListener('input', () => hold(s, Number(slider.value)));
+    label.append(span, slider, output);
+    to.append(label);
+    sliders.push(s);
+    setRange(s);
+}
+
+function addGroup(name, targets, alone) {
+    const to = document.createElement(alone ? 'div' : 'details');
+    if (!alone) {
+        const summary = document.createElement('summary');
+        summary.textContent = name;
+        to.open = true;
+        to.append(summary);
+    }
+    byId('targets').append(to);
+    for (const t of targets) addSlider(t.index, t.name, to);
+}
+
+function listTargets() {
+    const all = [];
+    for (let i = 0; i < Module._web_target_count(); i++) all.push({ index: i, name: text(Module._web_target_name(i)) });
+    const filled = groups.map(([name]) => [name, all.filter((t) => groupOf(t.name) === name)]).filter(([, list]) => list.length);
+    const alone = all.length < 12 || filled.length < 2;
+    byId('targets').replaceChildren();
+    sliders.length = 0;
+    if (alone) addGroup('', all, true);
+    else for (const [name, list] of filled) addGroup(name, list, false);
+    byId('faces').hidden = !sliders.length;
+    byId('search').dispatchEvent(new Event('input'));
+}
+
+byId('search').addEventListener('input', () => {
+    const part = byId('search').value.trim().toLowerCase();
+    for (const s of sliders) s.label.hidden = !s.name.includes(part);
+    for (const group of byId('targets').children) group.hidden = ![...group.querySelectorAll('label')].some((label) => !label.hidden);
+});
+byId('beyond').addEventListener('change', () => sliders.forEach(setRange));
+byId('reset').addEventListener('click', () => {
+    for (const s of sliders) {
+        Module._web_hold(s.index, 0, 0);
+        s.label.classList.remove('held');
+    }
+    redraw();
+});

@@ -1,0 +1,103 @@
+// controls.js FOLDER CHROMIUM OUT CLIP: the page by keys alone, targets in groups, what axe has to say of it, and how
+// make web-serve serves it. Prints its checks as TAP.
+'use strict';
+const childProcess = require('child_process');
+const fs = require('fs');
+const http = require('http');
+const path = require('path');
+const zlib = require('zlib');
+const { folder, out, check, keep, same, drawn, open, close, run } = require('./harness.js');
+
+const clip = process.argv[5];
+
+// What a mouse does, by keys alone.
+async function keyboard(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=${clip}`);
+    const camera = () => page.evaluate(() => ({ ...orbit }));
+    const press = (key) => drawn(page, () => page.keyboard.press(key));
+    await page.keyboard.press('Tab');
+    check('keys: the canvas is first', await page.evaluate(() => document.activeElement === canvas));
+    await page.keyboard.press(' ');
+    check('keys: space holds the clip', await page.textContent('#play') === 'play');
+    await keep(page, 'keys_before.png');
+    const before = await camera();
+    await press('ArrowLeft');
+    await press('ArrowUp');
+    await press('+');
+    await press('Shift+ArrowRight');
+    const after = await camera();
+    check('keys: arrows turn it', after.azimuth > before.azimuth && after.elevation < before.elevation);
+    check('keys: plus brings it closer', after.distance < 1 && after.distance > 0.8, after.distance);
+    check('keys: arrows with shift move it', Math.hypot(...after.offset) > 0);
+    await keep(page, 'keys_after.png');
+    check('keys: all of which shows', !same('keys_before.png', 'keys_after.png'));
+    await press('Home');
+    await keep(page, 'keys_home.png');
+    check('keys: home is where it began', same('keys_before.png', 'keys_home.png'));
+    await page.keyboard.press(' ');
+    check('keys: space goes on', await page.textContent('#play') === 'pause');
+    check('keys: the page does not scroll', await page.evaluate(() => window.scrollY) === 0);
+    await close(page, 'keys');
+}
+
+// Targets lie in groups; one without any that the search names is not there.
+async function grouped(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none');
+    const names = await page.locator('#targets summary').allTextContents();
+    check('groups: eyes and mouth are apart', names.includes('eyes') && names.includes('mouth'), names.join(', '));
+    const all = await page.locator('#targets input').count();
+    check('groups: each target is in one', all === await page.evaluate(() => Module._web_target_count()), all);
+    await page.fill('#search', 'smile');
+    const left = await page.locator('#targets summary:visible').allTextContents();
+    check('groups: the search leaves those that it is in', left.length > 0 && left.length < names.length && left.includes('mouth'), left.join(', '));
+    await close(page, 'groups');
+}
+
+// What axe finds wrong: nothing, in both colour schemes, wide and narrow.
+async function access(browser) {
+    const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+    for (const [colorScheme, width, height] of [['dark', 1440, 900], ['light', 1440, 900], ['light', 390, 844], ['dark', 844, 390]]) {
+        const page = await open(browser, { viewport: { width, height }, colorScheme, hasTouch: width < 1000, isMobile: width < 1000 }, 'clip=none&size=256');
+        await page.evaluate(axe);
+        const found = await page.evaluate(() => window.axe.run().then((r) => r.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`)));
+        check(`access: axe finds nothing, ${colorScheme}, ${width} x ${height}`, found.length === 0, found.join(' | '));
+        if (width < 1000) {
+            const small = await page.locator('button:visible, select:visible, input[type=range]:visible').evaluateAll((e) => e.filter((c) => c.getBoundingClientRect().height < 44).map((c) => c.id));
+            check(`access: what is touched is 44 pixels high, ${width} x ${height}`, small.length === 0, small.join(' '));
+        }
+        await page.screenshot({ path: path.join(out, `${colorScheme}_${width}.png`) });
+        await close(page, `access ${colorScheme} ${width}`);
+    }
+}
+
+// ---- tools/web_serve.js ----
+
+const get = (address, name, accepted) => new Promise((resolve, reject) => {
+    http.get(address, { path: name, headers: { 'Accept-Encoding': accepted } }, (response) => {
+        const parts = [];
+        response.on('data', (part) => parts.push(part));
+        response.on('end', () => resolve({ code: response.statusCode, coding: response.headers['content-encoding'], bytes: Buffer.concat(parts) }));
+    }).on('error', reject);
+});
+
+async function served() {
+    const program = path.join(__dirname, '../../tools/web_serve.js');
+    const server = childProcess.spawn(process.execPath, [program, folder, '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    const address = await new Promise((resolve) => { server.stdout.once('data', (said) => resolve(String(said).split('\n')[0])); });
+    const want = fs.readFileSync(path.join(folder, 'noh.wasm'));
+    const br = await get(address, '/noh.wasm', 'gzip, deflate, br'), gzip = await get(address, '/noh.wasm', 'gzip'), plain = await get(address, '/noh.wasm', '');
+    check('served: with brotli', br.coding === 'br' && zlib.brotliDecompressSync(br.bytes).equals(want));
+    check('served: with gzip', gzip.coding === 'gzip' && zlib.gunzipSync(gzip.bytes).equals(want));
+    check('served: as it is', !plain.coding && plain.bytes.equals(want));
+    check('served: each smaller than the next', br.bytes.length < gzip.bytes.length && gzip.bytes.length < want.length);
+    check('served: packs as they are', !(await get(address, '/page.nohz', 'br')).coding);
+    check('served: the page', (await get(address, '/', '')).bytes.includes('<canvas'));
+    const codes = [];
+    for (const name of ['/none', '//none', '/../../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/%zz']) codes.push((await get(address, name, '')).code);
+    check('served: nothing else', codes.join() === '404,404,404,404,400', codes.join());
+    server.kill();
+    const refused = (...args) => childProcess.spawnSync(process.execPath, [program, ...args]).status === 1;
+    check('served: no page, no port, no such host', refused('/nowhere') && refused(folder, 'x') && refused(folder, '70000') && refused(folder, '0', 'everybody'));
+}
+
+run({ served, keyboard, grouped, access });
