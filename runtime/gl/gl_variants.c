@@ -263,10 +263,10 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-/* What the vertex arrays of meshes have (gl_draw.h). Returns how many. Attributes that a mesh lacks are constants of
- * the same kind. */
-#define INPUTS_MAX 14u
-static uint32_t list_inputs(uint32_t influences, noh_gl_input inputs[INPUTS_MAX])
+/* What the vertex arrays have: what a game adds, and what those of meshes do (gl_draw.h). Returns how many. Attributes
+ * that a mesh lacks are constants of the same kind. */
+#define INPUTS_MAX (14u + NOH_GL_OWN_INPUTS_MAX)
+static uint32_t list_inputs(uint32_t influences, const noh_gl_shader_desc *own, noh_gl_input inputs[INPUTS_MAX])
 {
     static const noh_gl_input of_meshes[] = {
         { NOH_ATTRIBUTE_POSITION, GL_FLOAT_VEC3 },
@@ -285,8 +285,9 @@ static uint32_t list_inputs(uint32_t influences, noh_gl_input inputs[INPUTS_MAX]
     static const GLenum words[] = { GL_UNSIGNED_INT, GL_UNSIGNED_INT, GL_UNSIGNED_INT_VEC2, GL_UNSIGNED_INT_VEC3,
                                     GL_UNSIGNED_INT_VEC4 };
     const uint32_t word_count = NOH_INFLUENCE_WORDS(influences);
-    uint32_t count = sizeof of_meshes / sizeof of_meshes[0];
-    memcpy(inputs, of_meshes, sizeof of_meshes);
+    uint32_t count = own->input_count + (uint32_t)(sizeof of_meshes / sizeof of_meshes[0]);
+    for (uint32_t i = 0; i < own->input_count; i++) inputs[i] = own->inputs[i];
+    memcpy(inputs + own->input_count, of_meshes, sizeof of_meshes);
     if (influences)
         inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_INFLUENCES, words[word_count < 4u ? word_count : 4u] };
     if (word_count > 4u) inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_MORE_INFLUENCES, GL_UNSIGNED_INT_VEC3 };
@@ -327,7 +328,7 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
     desc->blocks = blocks;
     desc->block_count = 1;
     desc->inputs = inputs;
-    desc->input_count = list_inputs(v->key.influences, inputs);
+    desc->input_count = list_inputs(v->key.influences, own, inputs);
     desc->ledger = device->ledger;
     return noh_gl_program_create(device->api, desc, program, device->log, device->log_bytes, error);
 }
@@ -336,7 +337,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
                                  const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
                                  noh_error *error)
 {
-    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL, NOH_VIEW_LIT };
+    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL, NOH_VIEW_LIT, NULL, 0 };
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
@@ -345,6 +346,10 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     if (own->sampler_count > NOH_GL_OWN_SAMPLERS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "a shader desc has more samplers than the limit", NOH_GL_OWN_SAMPLERS_MAX,
                         own->sampler_count);
+    }
+    if (own->input_count > NOH_GL_OWN_INPUTS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a shader desc has more inputs than the limit", NOH_GL_OWN_INPUTS_MAX,
+                        own->input_count);
     }
     memset(&v, 0, sizeof v);
     memset(&desc, 0, sizeof desc);

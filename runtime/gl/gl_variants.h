@@ -16,6 +16,7 @@
 #ifndef NOH_GL_GL_VARIANTS_H
 #define NOH_GL_GL_VARIANTS_H
 
+#include "gl/gl_program.h"
 #include "gl/gl_skin.h"
 
 #ifdef __cplusplus
@@ -128,13 +129,17 @@ typedef struct noh_gl_shader_desc {
     void *user;
     noh_debug_view view; /* what mesh.frag shows; a fragment shader of yours finds it as NOH_DEBUG_VIEW. 0: lit, or the
                           * view of the renderer's desc */
+    /* Attributes of your own that you set in the vertex arrays that it draws (noh_gl_mesh.vertex_array): the vertex
+     * shader may read these, at locations of your choice below GL_MAX_VERTEX_ATTRIBS, and those of meshes */
+    const noh_gl_input *inputs;
+    uint32_t input_count; /* 0..NOH_GL_OWN_INPUTS_MAX */
 } noh_gl_shader_desc;
 
 /* Compile a program for a key. The device's ledger may be NULL.
  * own       the shaders; NULL: the library's. `bind` is not called here
  * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0
- * errors    LIMIT more samplers than NOH_GL_OWN_SAMPLERS_MAX; DATA, GL, MEMORY as noh_gl_program_create: the log then
- *           has the driver's words, which count the lines of your text from 1 */
+ * errors    LIMIT more samplers than NOH_GL_OWN_SAMPLERS_MAX, or inputs than NOH_GL_OWN_INPUTS_MAX; DATA, GL, MEMORY as
+ * noh_gl_program_create: the log then has the driver's words, which count the lines of your text from 1 */
 noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const noh_gl_shader_desc *own,
                                  const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
                                  noh_error *error);

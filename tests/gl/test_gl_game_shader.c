@@ -387,7 +387,7 @@ static void a_broken_shader_says_where(void **state)
 /* Attributes of meshes are all that a game's shader can read: another one would be what nobody wrote. */
 static void a_shader_reads_what_meshes_have(void **state)
 {
-    const noh_gl_shader_desc own = {
+    noh_gl_shader_desc own = {
         .name = "toon",
         .vertex = "layout(location = 14) in vec4 mine;\nvoid main()\n{\n    gl_Position = mine;\n}\n",
         .fragment = "layout(location = 0) out vec4 o;\nvoid main() { o = vec4(1.0); }\n",
@@ -399,6 +399,13 @@ static void a_shader_reads_what_meshes_have(void **state)
     assert_string_equal(error.what, "a vertex shader reads an attribute that what it draws does not have");
     assert_int_equal(error.where, 14);
     assert_true(strncmp(log, "toon: vertex: mine: ", 20) == 0);
+    own.inputs = &(noh_gl_input){ 14, GL_FLOAT_VEC4 };
+    own.input_count = 1;
+    assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_OK);
+    own.inputs = &(noh_gl_input){ 14, GL_INT_VEC4 };
+    assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_ERR_DATA);
+    own.input_count = NOH_GL_OWN_INPUTS_MAX + 1;
+    assert_int_equal(create_with(&own, NULL, 0, &error), NOH_ERR_LIMIT);
     fixture_expect_no_errors();
 }
 

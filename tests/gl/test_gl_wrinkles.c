@@ -31,6 +31,7 @@ typedef struct program {
 
 static void program_open(program *p, const char *vertex, const char *fragment)
 {
+    static const noh_gl_input added[] = { { 8, GL_FLOAT_VEC3 }, { 9, GL_FLOAT } }; /* area_vertex */
     static char log[8192];
     gpu *g = fixture_gpu();
     noh_gl_variant_key key = { 0 };
@@ -42,6 +43,8 @@ static void program_open(program *p, const char *vertex, const char *fragment)
     snprintf(p->text, sizeof p->text, "%s%s", fragment_head, fragment);
     own.vertex = vertex;
     own.fragment = p->text;
+    own.inputs = added;
+    own.input_count = 2;
     const noh_gl_device device = { &g->gl, &g->caps, &p->ledger, log, sizeof log };
     if (noh_gl_variant_create(&device, key, &own, NULL, 0, &p->variant, &said)) fail_msg("%s\n%s", said.what, log);
     p->gl->UseProgram(p->variant.program);
