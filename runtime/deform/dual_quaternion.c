@@ -167,6 +167,22 @@ void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joi
     memcpy(out, vertex.position, 3 * sizeof *out);
 }
 
+void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
+                         float out[3])
+{
+    uint32_t places[NOH_INFLUENCES_MAX];
+    float weights[NOH_INFLUENCES_MAX];
+    const uint32_t count = noh_mesh_influences(mesh, index, places, weights);
+    noh_dual_quaternion sum;
+    noh_vertex vertex;
+    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
+    blend(joints, places, weights, count, &sum);
+    noh_mesh_vertex(mesh, index, &vertex);
+    memcpy(vertex.position, p, sizeof vertex.position);
+    move(&sum, &vertex);
+    memcpy(out, vertex.position, 3 * sizeof *out);
+}
+
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                             uint32_t first, uint32_t count, float *positions, float *normals, float *tangents)
 {

@@ -218,6 +218,37 @@ void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, ui
     }
 }
 
+/* The words of a target's delta at a texel; NULL: it does not move it. */
+static const uint32_t *delta_at(const noh_mesh *mesh, const noh_target *t, uint32_t x, uint32_t y)
+{
+    const noh_rect *rect = mesh->rects + t->first_rect;
+    const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
+    for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
+        if (x - rect->x < rect->w && y - rect->y < rect->h) {
+            return words + 3u * ((size_t)(y - rect->y) * rect->w + (x - rect->x));
+        }
+        words += 3u * (size_t)rect->w * rect->h;
+    }
+    return NULL;
+}
+
+void noh_morph_position_by(const noh_mesh *mesh, const float *weights, uint32_t index, float out[3])
+{
+    const uint32_t texel = (uint32_t)noh_mesh_accumulation_texel(mesh, index);
+    const uint32_t x = texel & ((1u << mesh->header->morph_width_log2) - 1u);
+    const uint32_t y = texel >> mesh->header->morph_width_log2;
+    float sum[3] = { 0.0f, 0.0f, 0.0f };
+    NOH_ASSERT(mesh && weights && out);
+    for (uint32_t t = 0; texel < mesh->header->touched_count && t < mesh->header->target_count; t++) {
+        const noh_target *target = &mesh->targets[t];
+        const uint32_t *words = weights[t] != 0.0f ? delta_at(mesh, target, x, y) : NULL;
+        const morph_field f = make_field(0, target->position_bits, target->position_scale * weights[t]);
+        for (int i = 0; words && i < 3; i++) sum[i] = sum[i] + noh_field_value(words[i], f);
+    }
+    memcpy(out, mesh->positions + 3u * (size_t)index, 3 * sizeof *out);
+    for (int i = 0; i < 3 && texel < mesh->header->touched_count; i++) out[i] += sum[i];
+}
+
 noh_morph_cost noh_morph_cost_of(const noh_mesh *mesh, const float *weights)
 {
     noh_morph_cost cost = { 0, 0, 0, 0 };

@@ -66,6 +66,11 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
 /* Only its position, in the same bits. layers NULL: that of the bind pose. */
 void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3]);
 
+/* The same without layers: each target that moves the vertex is looked up by its rectangles. For a few vertices, where
+ * there is no memory for layers.
+ * shapes  weights[target_count] */
+void noh_morph_position_by(const noh_mesh *mesh, const float *weights, uint32_t index, float out[3]);
+
 /* The work that these weights cause: targets whose weight is not 0, their rectangles, delta texels and pairs. For cost
  * models and reports. */
 typedef struct noh_morph_cost {

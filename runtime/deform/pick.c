@@ -7,11 +7,13 @@
 #include "deform/bounds.h"
 #include "deform/pick_internal.h"
 #include "deform/skin.h"
+#include "deform/skin_blend_internal.h"
 
 #define EDGE 1e-6f /* how far beyond a triangle's edge is still a hit, so that rays do not slip between two */
 
 typedef struct ray {
     float origin[3], direction[3], limit; /* limit: the nearest hit so far */
+    float moved; /* how far targets move a corner as drawn, at most; below 0: it is not looked at */
 } ray;
 
 /* A box is where three slabs meet; a ray is inside each slab for an interval of its distance, and in the box where the
@@ -79,21 +81,31 @@ static int ray_meets_triangle(const ray *r, float corners[3][3], noh_pick_hit *h
 
 /* ---- the mesh ---- */
 
-static void corner_position(const noh_pick_surface *s, uint32_t vertex, float out[3])
+/* Places of the morphed surface as drawn. */
+static void move_point(const noh_pick_surface *s, uint32_t vertex, const float p[3], float out[3])
 {
     if (s->dual_quaternions) {
-        noh_skin_position_dual(s->mesh, s->dual_quaternions, s->layers, vertex, out);
+        noh_skin_point_dual(s->mesh, s->dual_quaternions, vertex, p, out);
     } else if (s->matrices) {
-        noh_skin_position(s->mesh, s->matrices, s->layers, vertex, out);
+        noh_skin_point(s->mesh, s->matrices, vertex, p, out);
     } else {
-        float p[3];
-        noh_morph_position(s->mesh, s->layers, vertex, p);
-        memcpy(out, p, sizeof p);
+        memcpy(out, p, 3 * sizeof *out);
         for (int i = 0; s->world && i < 3; i++) {
             const float *row = s->world + 4 * i;
             out[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
         }
     }
+}
+
+static void corner_position(const noh_pick_surface *s, uint32_t vertex, float out[3])
+{
+    float p[3];
+    if (s->weights && !s->layers) {
+        noh_morph_position_by(s->mesh, s->weights, vertex, p);
+    } else {
+        noh_morph_position(s->mesh, s->layers, vertex, p);
+    }
+    move_point(s, vertex, p, out);
 }
 
 static int boxes_meet(const float a[6], const float b[6])
@@ -124,6 +136,60 @@ static uint32_t strongest_joint(const noh_mesh *mesh, uint32_t vertex)
     return mesh->palette_joints[mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint + place];
 }
 
+/* ---- how far targets go ---- */
+
+static float magnitude(float v)
+{
+    return v < 0.0f ? -v : v;
+}
+
+static float length_of(const float v[3])
+{
+    return noh_sqrt(noh_dot3(v, v));
+}
+
+/* The most that a matrix stretches, or more: the root of the sum of its squares. */
+static float stretch_of(const float m[12])
+{
+    float square = 0.0f;
+    for (int r = 0; r < 3; r++) square += noh_dot3(m + 4 * r, m + 4 * r);
+    return noh_sqrt(square);
+}
+
+/* The sum of all weighted differences is within a box, and no matrix stretches it by more than the one that stretches
+ * the most. A blend of dual quaternions stretches no more either. */
+static float moved_at_most(const noh_pick_surface *s, uint32_t joints)
+{
+    float most[3] = { 0.0f, 0.0f, 0.0f }, stretch = s->world && !joints ? stretch_of(s->world) : joints ? 0.0f : 1.0f;
+    for (uint32_t t = 0; t < s->mesh->header->target_count; t++) {
+        const float *box = s->mesh->target_boxes + 6u * (size_t)t, weight = magnitude(s->weights[t]);
+        for (int i = 0; weight > 0.0f && i < 3; i++) {
+            const float low = magnitude(box[i]), high = magnitude(box[i + 3]);
+            most[i] += weight * (low > high ? low : high);
+        }
+    }
+    for (uint32_t j = 0; j < joints; j++) {
+        const float own = stretch_of(s->matrices + 12u * (size_t)j);
+        stretch = own > stretch ? own : stretch;
+    }
+    return 1.001f * stretch * length_of(most);
+}
+
+/* Whether the ray comes near enough to a triangle without its targets to hit it with them. */
+static int comes_near(const noh_pick_surface *s, const ray *r, const uint32_t vertices[3])
+{
+    float box[6], p[3];
+    noh_box_empty(box);
+    for (int c = 0; c < 3; c++) {
+        move_point(s, vertices[c], s->mesh->positions + 3u * (size_t)vertices[c], p);
+        for (int i = 0; i < 3; i++) {
+            box[i] = p[i] - r->moved < box[i] ? p[i] - r->moved : box[i];
+            box[i + 3] = p[i] + r->moved > box[i + 3] ? p[i] + r->moved : box[i + 3];
+        }
+    }
+    return ray_meets_box(r, box);
+}
+
 /* Whether the ray may meet this triangle. near: neighbourhoods; NULL for a rigid mesh. */
 static int is_candidate(const ray *r, const noh_mesh *mesh, const uint32_t corners[3], const float *near)
 {
@@ -148,7 +214,7 @@ static void pick_submesh(const noh_pick_surface *s, uint32_t index, const float 
         for (uint32_t c = 0; c < 3; c++) {
             vertices[c] = noh_mesh_index(s->mesh, sub->first_index + i + c);
         }
-        if (!is_candidate(r, s->mesh, vertices, near)) {
+        if (!is_candidate(r, s->mesh, vertices, near) || (r->moved >= 0.0f && !comes_near(s, r, vertices))) {
             continue;
         }
         for (uint32_t c = 0; c < 3; c++) {
@@ -251,6 +317,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
     memcpy(r.origin, origin, sizeof r.origin);
     memcpy(r.direction, direction, sizeof r.direction);
     r.limit = distance_max;
+    r.moved = -1.0f;
     if (count && !surface->matrices) {
         return noh_fail(error, NOH_ERR_ARG, "a skinned mesh is picked without matrices", 0, 0);
     }
@@ -262,6 +329,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
         return result;
     }
     nearest.triangle = NOH_NONE;
+    if (surface->weights && !surface->layers) r.moved = moved_at_most(surface, count);
     if (may_hit(surface, &r, (float *)scratch, count)) {
         for (uint32_t i = 0; i < surface->mesh->header->submesh_count; i++) {
             pick_submesh(surface, i, count ? (float *)scratch + 6u * (size_t)count : NULL, &r, &nearest);

@@ -29,8 +29,9 @@ typedef struct noh_pick_surface {
     const float *world;    /* [12] of a rigid mesh; NULL: mesh space */
     const float *matrices; /* [skin's joint_count][12]; required for a skinned mesh, unused for a rigid one */
     const noh_dual_quaternion *dual_quaternions; /* [skin's joint_count], where they draw the mesh; else NULL */
-    const noh_morph_layers *layers;              /* NULL: no morph targets */
-    const float *weights; /* [target_count], those that the layers were accumulated with; NULL without layers */
+    /* NULL: corners are morphed one by one as `weights` say, where the ray comes near: slower, and without memory */
+    const noh_morph_layers *layers;
+    const float *weights; /* [target_count], those that the layers were accumulated with; NULL: no morph targets */
     const uint8_t *tint;  /* [4] that it is drawn with, of which alpha counts; NULL: white */
 } noh_pick_surface;
 

@@ -119,9 +119,15 @@ void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morp
 void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,
                        float out[3])
 {
-    float m[12], p[3];
-    blend_matrix(mesh, matrices, index, m);
+    float p[3];
     noh_morph_position(mesh, layers, index, p);
+    noh_skin_point(mesh, matrices, index, p, out);
+}
+
+void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index, const float p[3], float out[3])
+{
+    float m[12];
+    blend_matrix(mesh, matrices, index, m);
     for (int r = 0; r < 3; r++) {
         out[r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
     }

@@ -2,7 +2,7 @@
 #ifndef NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 #define NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 
-#include "mesh/mesh.h"
+#include "deform/dual_quaternion.h"
 
 /* c[3][3] rows: the cofactors of a matrix of 3 rows of 4, which turn normals as the matrix turns points, times its
  * determinant. Returns the determinant's sign: a mirror's cofactors point inward. */
@@ -21,6 +21,12 @@ static inline float noh_cofactors(const float m[12], float c[9])
     determinant = m[0] * c[0] + m[1] * c[1] + m[2] * c[2];
     return determinant < 0.0f ? -1.0f : 1.0f;
 }
+
+/* A place of the morphed surface, moved as a vertex's joints say: in the bits of noh_skin_position, and of
+ * noh_skin_position_dual. */
+void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index, const float p[3], float out[3]);
+void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
+                         float out[3]);
 
 /* Move a vertex by a matrix: position, normal, tangent. */
 void noh_skin_apply(const float m[12], noh_vertex *vertex);

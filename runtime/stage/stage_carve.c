@@ -106,7 +106,7 @@ static void measure_meshes(const noh_kind_desc *d, noh_stage_needs *n, noh_mesh 
         n->weight_count += mesh.header->target_count;
         n->corrective_count += noh_correctives_bind(&mesh, NULL, 0);
         n->weight_rule_count += d->weight_rules ? noh_weight_rules_bind(&mesh, NULL, 0) : 0;
-        pick = d->unpickable ? 0 : noh_pick_scratch_size(&mesh);
+        pick = d->unpickable ? 0 : noh_stage_pick_bytes(&mesh, NULL);
         n->pick_bytes = pick > n->pick_bytes ? pick : n->pick_bytes;
         if (noh_pack_skin_at(d->mesh, mesh.header->skin, &skin, NULL) != NOH_OK) {
             continue;

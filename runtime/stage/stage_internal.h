@@ -614,6 +614,10 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
                              const uint32_t *but, uint32_t but_count, noh_error *error);
 const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
 
+/* What picking a mesh takes: dual quaternions, from *behind on where they draw it (NULL: not wanted), after what
+ * noh_pick needs. */
+size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind);
+
 /* Bind those of all meshes; k->correctives has room for term_max, k->weight_rules for rule_max. */
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
 void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);

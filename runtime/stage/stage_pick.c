@@ -46,11 +46,38 @@ static void tell(noh_stage *s, uint32_t index, const noh_stage_mesh *mesh, const
     memcpy(hit->barycentric, from->barycentric, sizeof hit->barycentric);
 }
 
-/* The meshes of one actor, at the level that was drawn. */
+size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind)
+{
+    const size_t bytes = (noh_pick_scratch_size(mesh) + 15u) & ~(size_t)15;
+    noh_skin skin;
+    if (behind) *behind = bytes;
+    if (!(mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ||
+        noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL))
+        return noh_pick_scratch_size(mesh);
+    return bytes + skin.header->joint_count * sizeof(noh_dual_quaternion);
+}
+
+/* A skinned mesh's matrices, and dual quaternions where they draw it. */
+static void set_joints(noh_stage *s, const noh_character *ch, const noh_stage_mesh *mesh, noh_pick_surface *surface)
+{
+    size_t behind;
+    noh_character_skin(ch, &mesh->skin, s->jobs[0].matrices);
+    surface->matrices = s->jobs[0].matrices;
+    if (mesh->mesh.header->flags & NOH_MESH_DUAL_QUATERNION) {
+        noh_dual_quaternion *joints;
+        (void)noh_stage_pick_bytes(&mesh->mesh, &behind);
+        joints = (noh_dual_quaternion *)(void *)((uint8_t *)s->pick_scratch + behind);
+        noh_skin_dual_quaternions(s->jobs[0].matrices, mesh->skin.header->joint_count, joints);
+        surface->dual_quaternions = joints;
+    }
+}
+
+/* The meshes of one actor, at the level that was drawn, with its targets where it has a slot for them. */
 static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, noh_stage_hit *hit, int *found)
 {
     const noh_character *ch = noh_stage_character(k, index - k->first_actor);
     const noh_stage_shown *shown = &s->shown[index];
+    const float *weights = k->weights + (size_t)(index - k->first_actor) * k->weight_count;
     float origin[3], direction[3];
     into(shown->world, r->origin, 1.0f, origin);
     into(shown->world, r->direction, 0.0f, direction);
@@ -63,10 +90,8 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
         surface.mesh = &level;
         surface.tint = noh_stage_tint_of(&s->actors[index]);
         surface.world = mesh->skinned ? NULL : mesh->node_world;
-        if (mesh->skinned) {
-            noh_character_skin(ch, &mesh->skin, s->jobs[0].matrices);
-            surface.matrices = s->jobs[0].matrices;
-        }
+        if (shown->slot.pool != NOH_NONE) surface.weights = weights + mesh->first_weight;
+        if (mesh->skinned) set_joints(s, ch, mesh, &surface);
         if (noh_pick(&surface, origin, direction, r->distance, s->pick_scratch, s->pick_bytes, &own, NULL) == NOH_OK) {
             r->distance = own.distance;
             tell(s, index, mesh, &own, hit);

@@ -395,6 +395,14 @@ static void rays_agree(const scene_pose *p, test_random *r, void *context)
         expected = brute_force(&p->mesh, p->positions, o, d, &triangle, &margin);
         result = noh_pick(&surface, o, d, 1e6f, scratch, bytes, &hit, NULL);
         counts->rays += 1;
+        { /* without layers the same, to the bit */
+            noh_pick_surface by_weights = surface;
+            noh_pick_hit same = hit;
+            if (result == NOH_OK) memset(&same, 0x5a, sizeof same);
+            by_weights.layers = NULL;
+            assert_int_equal(noh_pick(&by_weights, o, d, 1e6f, scratch, bytes, &same, NULL), result);
+            if (result == NOH_OK) assert_memory_equal(&same, &hit, sizeof hit);
+        }
         if (expected >= 0.0 && margin > 1e-3) {
             counts->hits += 1;
             assert_int_equal(result, NOH_OK);

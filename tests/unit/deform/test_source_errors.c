@@ -293,6 +293,10 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &other, NULL), NOH_OK);
     assert_true(hit.distance - other.distance >
                 0.15f); /* the bulge of 0.2 comes first; a clone of the base misses it */
+    smiling.layers = NULL; /* where there is no memory for them, by the weights alone */
+    assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &hit, NULL), NOH_OK);
+    assert_memory_equal(&hit, &other, sizeof hit);
+    smiling.layers = &layers;
     bend(t, 1.0f, 1, 1);
     memset(&miss, 0x5a, sizeof miss);
     hit = miss;
