@@ -4,7 +4,7 @@
  * square about its centre, within a sphere, on what faces as it does. Later rows lie over earlier ones. */
 uniform highp sampler2D u_decals;
 uniform sampler2D u_picture;
-uniform highp vec4 u_marks; /* how many rows; columns and rows of tiles of the picture, 0: round spots; the mesh's number */
+uniform highp vec3 u_marks; /* how many rows; columns and rows of tiles of the picture, 0: round spots */
 
 in vec3 v_world;
 in vec3 v_normal;

@@ -15,9 +15,9 @@ static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_ma
 {
     const noh_stage_decals *d = user;
     (void)material;
-    api->Uniform4f(api->GetUniformLocation(program, "u_marks"), (float)d->count,
+    api->Uniform3f(api->GetUniformLocation(program, "u_marks"), (float)d->count,
                    d->picture.texture ? (float)d->picture.columns : 0.0f,
-                   d->picture.texture ? (float)d->picture.rows : 0.0f, 0.0f);
+                   d->picture.texture ? (float)d->picture.rows : 0.0f);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);
     api->BindTexture(GL_TEXTURE_2D, d->picture.texture ? d->picture.texture : d->shader->renderer.white.name);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
