@@ -37,6 +37,56 @@ bvh kick 80
 noh build "$work/walk.bvh" "$work/kick.bvh" -o "$work/leg.noh" --quiet
 expect 0 'two clips of one skeleton'
 
+# Where a recording faces, and what its rest pose is. This one faces +x: its left is at -z.
+cat >"$work/sides.bvh" <<'END'
+HIERARCHY
+ROOT hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT LeftLeg
+  {
+    OFFSET 0 -40 -10
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 -40 0
+    }
+  }
+  JOINT RightLeg
+  {
+    OFFSET 0 -40 10
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 -40 0
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.0333333
+0 80 0 0 0 -90 0 0 0 0 0 0
+0 80 5 0 0 -90 0 0 0 0 0 0
+END
+noh build "$work/sides.bvh" -o "$work/x.noh" --facing auto
+expect 0 'a recording that faces +x'
+check 'is turned to +z' grep -q '^turned by -90.0 degrees to face +z$' "$work/out"
+noh build "$work/sides.bvh" -o "$work/x.noh" --facing auto --rest first-frame
+expect 0 'whose first frame faces +z'
+check 'and needs no turn by it' grep -q '^turned by -*0.0 degrees' "$work/out"
+noh build "$work/sides.bvh" -o "$work/turned.noh" --facing -90
+expect 0 'by degrees'
+check 'it is another skeleton' sh -c '! cmp -s "$1" "$2"' - "$work/x.noh" "$work/turned.noh"
+noh build "$work/walk.bvh" -o "$work/x.noh" --facing auto
+expect 1 'no joint is left or right'
+says 'give --facing the degrees'
+for refused in '--facing left' '--facing 361' '--rest last'; do
+    # shellcheck disable=SC2086
+    noh build "$work/sides.bvh" -o "$work/x.noh" $refused
+    expect 2 "build $refused"
+done
+
 noh render "$work/leg.noh" -o "$work/rest.png" --size 96x64
 if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
     skip 'bones' 'no GL context here'

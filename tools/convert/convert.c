@@ -531,7 +531,8 @@ static int read_all(const char *const *inputs, int count, const convert_options 
                                options->targets,
                                options->attached,
                                options->attached_count,
-                               options->seam };
+                               options->seam,
+                               options->turn };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];

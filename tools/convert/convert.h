@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "convert/clips/joint_match.h"
+#include "convert/clips/raw_turn.h"
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
 #include "pack/pack.h"
@@ -21,6 +22,7 @@ typedef struct convert_options {
     lod_settings lod;
     clips_settings clip;
     skin_options skin;
+    turn_options turn;              /* of .bvh and .rcl */
     wrinkle_settings wrinkles;      /* zeros: none; report is filled in by convert_files */
     transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */

@@ -52,6 +52,25 @@ static int resample_set(raw_set *set, double sample_rate_hz, model_error *error)
     return 0;
 }
 
+static int turn(raw_set *set, const source_options *options, model_error *error)
+{
+    double degrees = options->turn.degrees;
+    if (options->turn.rest_first_frame && raw_rest_from_frame(set)) {
+        return model_fail(error, "", "--rest first-frame: no clip moves the skeleton's joints");
+    }
+    if (options->turn.faces_ahead) {
+        if (raw_facing(&set->skeleton, &degrees)) {
+            return model_fail(error, "",
+                              "--facing auto: no joints are named left and right, or they are above each other: give "
+                              "--facing the degrees");
+        }
+        degrees = -degrees;
+        if (options->skin.report) fprintf(options->skin.report, "turned by %.1f degrees to face +z\n", degrees);
+    }
+    if (degrees != 0.0) raw_turn(set, degrees);
+    return 0;
+}
+
 static int read_clip_file(const char *path, const source_options *options, source *s, model_error *error)
 {
     bvh_options bvh = { options->unit_cm, 0 };
@@ -66,6 +85,7 @@ static int read_clip_file(const char *path, const source_options *options, sourc
     }
     s->sets[0] = s->single;
     s->set_count = 1;
+    if (turn(s->single, options, error)) return 1;
     return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 

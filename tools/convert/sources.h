@@ -8,6 +8,7 @@
 
 #include "convert/clips/joint_match.h"
 #include "convert/clips/model_clips.h"
+#include "convert/clips/raw_turn.h"
 #include "convert/skin/seam.h"
 #include "convert/skin/skins.h"
 
@@ -32,6 +33,7 @@ typedef struct source_options {
     const char *const *attached; /* [attached_count] models whose meshes are added to the first, see model_attach.h */
     uint32_t attached_count;
     seam_mode seam;
+    turn_options turn;
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

@@ -1,6 +1,7 @@
 /* cmd_build.c: glTF, .bvh and .rcl in, one pack out: the model of the first file that has meshes, the clips of all. */
 #define _POSIX_C_SOURCE 200809L /* isatty */
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +19,8 @@
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
-        *ragdoll, *springs, *targets, *unit_cm, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models, *terrain,
-        *textures, *bound, *rename, *seam;
+        *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
+        *terrain, *textures, *bound, *rename, *seam;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
         terrain_points, texture_max;
@@ -47,6 +48,15 @@ static int set_clip(const build_args *a, convert_options *o)
     if (strcmp(a->unit_cm, "auto") != 0 &&
         (tool_number(a->unit_cm, &o->clip.unit_cm) || !(o->clip.unit_cm > 0.0) || o->clip.unit_cm > 1e9)) {
         return tool_usage("--unit-cm wants auto or a number over 0, at most 1e9, not '%s'", a->unit_cm);
+    }
+    if (strcmp(a->rest, "bind") != 0 && strcmp(a->rest, "first-frame") != 0) {
+        return tool_usage("--rest wants bind or first-frame, not '%s'", a->rest);
+    }
+    o->turn.rest_first_frame = a->rest[0] == 'f';
+    o->turn.faces_ahead = strcmp(a->facing, "auto") == 0;
+    if (!o->turn.faces_ahead && strcmp(a->facing, "keep") != 0 &&
+        (tool_number(a->facing, &o->turn.degrees) || !(fabs(o->turn.degrees) <= 360.0))) {
+        return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->facing);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
@@ -664,8 +674,24 @@ static const option options[] = {
       .at = offsetof(build_args, unit_cm),
       .value = "auto|CM",
       .initial = "auto",
-      .what = "centimetres per unit of .bvh, .obj and .fbx files, over 0; auto: 1 for .bvh, 100 for .obj, what an .fbx says",
+      .what =
+          "centimetres per unit of .bvh, .obj and .fbx files, over 0; auto: 1 for .bvh, 100 for .obj, what an .fbx says",
       .example = "2.54" },
+    { .name = "--rest",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, rest),
+      .value = "bind|first-frame",
+      .initial = "bind",
+      .what = "the rest pose of .bvh and .rcl files: the file's, or that of its first frame",
+      .example = "first-frame" },
+    { .name = "--facing",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, facing),
+      .value = "keep|auto|DEG",
+      .initial = "keep",
+      .what =
+          "turn .bvh and .rcl files about +y: by degrees from +z towards +x, or so that the rest pose faces +z, as its joints named left and right have it",
+      .example = "auto" },
 };
 
 const verb verb_build = {

@@ -1,0 +1,36 @@
+/* raw_turn.h: recordings whose rest pose says little, or that face elsewhere: what .bvh leaves to whoever reads it.
+ *
+ *   raw_rest_from_frame  the bind pose is that of the first frame
+ *   raw_facing           where a skeleton faces, by its left and right
+ *   raw_turn             skeleton and clips turned about +y */
+#ifndef NOH_CONVERT_CLIPS_RAW_TURN_H
+#define NOH_CONVERT_CLIPS_RAW_TURN_H
+
+#include "raw_clip.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How recordings stand, of .bvh and .rcl. Zeros: as the file has them. */
+typedef struct turn_options {
+    int rest_first_frame; /* 1: the bind pose is that of the first frame */
+    int faces_ahead;      /* 1: turned so that the bind pose faces +z, by its left and right */
+    double degrees;       /* else turned by so many, from +z towards +x */
+} turn_options;
+
+/* Of the first clip that moves joints. Clips stay as they are. Returns 0, or 1: there is none. */
+int raw_rest_from_frame(raw_set *set);
+
+/* Joints in pairs by their names (LeftUpLeg and RightUpLeg, lHip and rHip, hand_l and hand_r, thigh.L and thigh.R):
+ * with y up, forward is what left and up make. degrees  from +z towards +x, -180 to 180, of the bind pose returns  0,
+ * or 1: no pair, or left and right are above each other */
+int raw_facing(const raw_skeleton *skeleton, double *degrees);
+
+/* Roots, in the bind pose and in every frame, from +z towards +x. */
+void raw_turn(raw_set *set, double degrees);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
