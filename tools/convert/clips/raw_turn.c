@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,9 +43,7 @@ static uint32_t other_side(const raw_skeleton *skeleton, const char *name, size_
     char *text = malloc(length - size + put + 1u);
     uint32_t found;
     if (!text) return MODEL_NONE;
-    memcpy(text, name, at);
-    memcpy(text + at, right, put);
-    memcpy(text + at + put, name + at + size, length - at - size + 1u);
+    snprintf(text, length - size + put + 1u, "%.*s%s%s", (int)at, name, right, name + at + size);
     found = joint_named(skeleton, text);
     free(text);
     return found;
