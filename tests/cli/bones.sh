@@ -81,7 +81,35 @@ check 'it is another skeleton' sh -c '! cmp -s "$1" "$2"' - "$work/x.noh" "$work
 noh build "$work/walk.bvh" -o "$work/x.noh" --facing auto
 expect 1 'no joint is left or right'
 says 'give --facing the degrees'
-for refused in '--facing left' '--facing 361' '--rest last'; do
+
+# Sixty frames of an arm that swings, which is elsewhere for one frame and held for five.
+awk 'BEGIN {
+    print "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    print " JOINT Arm\n {\n  OFFSET 0 60 0\n  CHANNELS 3 Zrotation Xrotation Yrotation\n  End Site\n  {\n   OFFSET 0 30 0\n  }\n }"
+    print " JOINT Foot\n {\n  OFFSET 0 -80 0\n  CHANNELS 3 Zrotation Xrotation Yrotation\n  End Site\n  {\n   OFFSET 0 0 15\n  }\n }\n}"
+    print "MOTION\nFrames: 60\nFrame Time: 0.0166667"
+    for (i = 0; i < 60; i++) {
+        at = 40 * sin(i / 8)
+        if (i >= 40 && i < 45) at = 40 * sin(39 / 8)
+        print 0, 80, 0, 0, 0, 0, i == 20 ? 170 : at, 0, 0, 0, 0, 0
+    }
+}' >"$work/swing.bvh"
+noh build "$work/swing.bvh" -o "$work/swing.noh"
+expect 0 'a recording with gaps'
+check 'of which nothing is said unasked' sh -c '! grep -q clean "$1"' - "$work/out"
+noh build "$work/swing.bvh" -o "$work/clean.noh" --clean all
+expect 0 'cleaned up'
+check 'both gaps are filled' grep -q "^clean 'swing': 2 gaps in 1 tracks filled, the longest of 0.083 s; 0 longer" "$work/out"
+check 'its foot, which never moves, makes it go nowhere' grep -q "^clean 'swing': the root goes 0.0 cm" "$work/out"
+noh build "$work/swing.bvh" -o "$work/x.noh" --clean gaps
+check 'gaps alone give the same pack' cmp -s "$work/x.noh" "$work/clean.noh"
+for ending in c3d trc; do
+    : >"$work/markers.$ending"
+    noh build "$work/markers.$ending" -o "$work/x.noh"
+    expect 1 "markers: .$ending"
+    says 'export .bvh'
+done
+for refused in '--facing left' '--facing 361' '--rest last' '--clean gap' '--clean gaps,'; do
     # shellcheck disable=SC2086
     noh build "$work/sides.bvh" -o "$work/x.noh" $refused
     expect 2 "build $refused"

@@ -532,7 +532,8 @@ static int read_all(const char *const *inputs, int count, const convert_options 
                                options->attached,
                                options->attached_count,
                                options->seam,
-                               options->turn };
+                               options->turn,
+                               options->clean };
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];

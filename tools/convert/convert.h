@@ -23,6 +23,7 @@ typedef struct convert_options {
     clips_settings clip;
     skin_options skin;
     turn_options turn;              /* of .bvh and .rcl */
+    unsigned clean;                 /* bits of mocap/clean.h, of all clips */
     wrinkle_settings wrinkles;      /* zeros: none; report is filled in by convert_files */
     transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */

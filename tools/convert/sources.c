@@ -13,6 +13,7 @@
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/model_attach.h"
+#include "convert/mocap/clean.h"
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
 #include "convert/skin/eye_split.h"
@@ -86,6 +87,7 @@ static int read_clip_file(const char *path, const source_options *options, sourc
     s->sets[0] = s->single;
     s->set_count = 1;
     if (turn(s->single, options, error)) return 1;
+    if (clean_set(s->single, options->clean, options->skin.report)) return out_of_memory(error);
     return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 
@@ -94,6 +96,11 @@ static int read_model(const char *path, const source_options *options, model **o
     const obj_options obj = { options->unit_cm, options->targets };
     const fbx_options fbx = { options->unit_cm };
     if (has_ending(path, ".fbx")) return fbx_read(path, &fbx, out, error);
+    if (has_ending(path, ".c3d") || has_ending(path, ".trc")) {
+        return model_fail(error, "",
+                          "markers of optical capture (.c3d, .trc) are not read: solve them for a skeleton and "
+                          "export .bvh, which noh build --clean then fills and filters");
+    }
     return has_ending(path, ".obj") ? obj_read(path, &obj, out, error) : model_read_gltf(path, out, error);
 }
 
@@ -142,6 +149,9 @@ static int read_model_file(const char *path, const source_options *options, sour
         return out_of_memory(error);
     }
     s->set_count = s->made->set_count;
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        if (clean_set(s->made->sets[i], options->clean, options->skin.report)) return out_of_memory(error);
+    }
     if (s->set_count) memcpy(s->sets, s->made->sets, s->set_count * sizeof *s->sets);
     return 0;
 }

@@ -34,6 +34,7 @@ typedef struct source_options {
     uint32_t attached_count;
     seam_mode seam;
     turn_options turn;
+    unsigned clean; /* bits of mocap/clean.h */
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

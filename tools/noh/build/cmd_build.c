@@ -9,6 +9,7 @@
 
 #include "cli/args.h"
 #include "convert/convert.h"
+#include "convert/mocap/clean.h"
 #include "cli/message.h"
 #include "pack/format.h"
 #include "platform.h"
@@ -20,7 +21,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
-        *terrain, *textures, *bound, *rename, *seam;
+        *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, influences, palette, bounce, wrinkle_size, terrain_size, terrain_height,
         terrain_points, texture_max;
@@ -57,6 +58,9 @@ static int set_clip(const build_args *a, convert_options *o)
     if (!o->turn.faces_ahead && strcmp(a->facing, "keep") != 0 &&
         (tool_number(a->facing, &o->turn.degrees) || !(fabs(o->turn.degrees) <= 360.0))) {
         return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->facing);
+    }
+    if (clean_parse(a->clean, &o->clean)) {
+        return tool_usage("--clean wants off, all or a list of gaps, jitter, root and contacts, not '%s'", a->clean);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
@@ -692,6 +696,14 @@ static const option options[] = {
       .what =
           "turn .bvh and .rcl files about +y: by degrees from +z towards +x, or so that the rest pose faces +z, as its joints named left and right have it",
       .example = "auto" },
+    { .name = "--clean",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, clean),
+      .value = "off|all|LIST",
+      .initial = "off",
+      .what =
+          "clean up recorded clips, any of gaps (filled), jitter (filtered as far as it is noise), root (moved by the feet where it stays on the spot), contacts (a sync marker where a foot comes down)",
+      .example = "gaps,jitter" },
 };
 
 const verb verb_build = {
