@@ -46,7 +46,8 @@
 #define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
 /* a uniform block of 12 KiB; ES 3.0 guarantees 16. A vertex has 8 bits for an index into its palette */
 #define NOH_PALETTE_JOINTS_MAX 256u
-#define NOH_INFLUENCES_MAX 8u /* joints that move one vertex */
+#define NOH_INFLUENCES_MAX 8u /* joints that move one vertex, as the GPU and the SIMD kernels have it */
+#define NOH_SKIN_LIST_MAX 32u /* joints that move one vertex of a list (deform/skin_list.h), on the CPU */
 
 /* ---- clips, their sets and banks ---- */
 

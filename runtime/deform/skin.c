@@ -107,13 +107,18 @@ void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morp
 {
     float m[12];
     blend_matrix(mesh, matrices, index, m);
+    noh_skin_rest(mesh, layers, index, out);
+    noh_skin_apply(m, out);
+}
+
+void noh_skin_rest(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out)
+{
     if (layers && noh_mesh_accumulation_texel(mesh, index) < mesh->header->touched_count) {
         noh_morph_vertex(mesh, layers, index, out);
     } else {
         noh_mesh_vertex(mesh, index, out);
         noh_mesh_directions(mesh, index, out->normal, out->tangent); /* unnormalised: noh_skin_apply makes them unit */
     }
-    noh_skin_apply(m, out);
 }
 
 void noh_skin_position(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,

@@ -28,6 +28,9 @@ void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index,
 void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
                          float out[3]);
 
+/* A vertex as it is before its joints move it: morphed where targets reach it. layers NULL: no morph targets. */
+void noh_skin_rest(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
+
 /* Move a vertex by a matrix: position, normal, tangent. */
 void noh_skin_apply(const float m[12], noh_vertex *vertex);
 

@@ -48,6 +48,7 @@ noh_result noh_check_texture(noh_check *check);
 noh_result noh_check_materials(noh_check *check);
 noh_result noh_check_mesh(noh_check *check);
 noh_result noh_check_transfer(noh_check *check);
+noh_result noh_check_influences(noh_check *check);
 noh_result noh_check_wrinkles(noh_check *check);
 noh_result noh_check_nodes(noh_check *check);
 noh_result noh_check_skeleton(noh_check *check);

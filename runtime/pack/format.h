@@ -34,6 +34,7 @@ extern "C" {
 #define NOH_CHUNK_RAGDOLL NOH_FOURCC('R', 'G', 'D', 'L')
 #define NOH_CHUNK_HAIR NOH_FOURCC('H', 'A', 'I', 'R')
 #define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
+#define NOH_CHUNK_INFLUENCES NOH_FOURCC('I', 'N', 'F', 'L')
 #define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
 #define NOH_CHUNK_SPRINGS NOH_FOURCC('S', 'P', 'R', 'G')
 #define NOH_CHUNK_TERRAIN NOH_FOURCC('T', 'E', 'R', 'R')
@@ -225,6 +226,23 @@ typedef struct noh_transfer_header {
                               * reflected is not in the records */
     uint32_t reserved[5];
 } noh_transfer_header;
+
+/* ---- CHUNK_INFLUENCES, none or one for a mesh, in the order of meshes: header, then four arrays. All joints of those
+ * vertices that more than NOH_INFLUENCES_MAX move (deform/skin_list.h); the mesh itself has the strongest of them. Levels
+ * of the mesh use the first so many vertices of the list. ---- */
+
+typedef struct noh_influences_header {
+    uint32_t mesh;            /* the n-th mesh chunk, a skinned one */
+    uint32_t vertex_count;    /* of the list; 0: stripped levels had them all */
+    uint32_t influence_count; /* of all vertices of the list together */
+    uint32_t most;            /* of one vertex, at most NOH_SKIN_LIST_MAX */
+    uint32_t vertices_offset; /* uint32_t[vertex_count] of the mesh, ascending */
+    uint32_t firsts_offset;   /* uint32_t[vertex_count + 1] from 0: where each one's influences begin; the last is
+                               * influence_count */
+    uint32_t weights_offset;  /* float[influence_count], above 0, at most 1; a vertex's sum to 1 within 2^-16 */
+    uint32_t joints_offset;   /* uint16_t[influence_count] of the skin's joints */
+    uint32_t reserved[8];
+} noh_influences_header;
 
 /* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the matrix. How much each target
  * wrinkles each of twelve regions (mesh/wrinkles.h), which the wrinkle_weights of a material show. ---- */
@@ -668,6 +686,7 @@ NOH_STATIC_ASSERT(sizeof(noh_node) == 112, node);
 NOH_STATIC_ASSERT(sizeof(noh_material) == 160, material);
 NOH_STATIC_ASSERT(sizeof(noh_texture_header) == 48, texture_header);
 NOH_STATIC_ASSERT(sizeof(noh_transfer_header) == 64, transfer_header);
+NOH_STATIC_ASSERT(sizeof(noh_influences_header) == 64, influences_header);
 NOH_STATIC_ASSERT(sizeof(noh_wrinkles_header) == 32, wrinkles_header);
 
 #ifdef __cplusplus

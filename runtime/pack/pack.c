@@ -18,15 +18,16 @@ static int chunk_rank(uint32_t type)
     case NOH_CHUNK_SKIN: return 4;
     case NOH_CHUNK_MESH: return 5;
     case NOH_CHUNK_TRANSFER: return 6;
-    case NOH_CHUNK_WRINKLES: return 7;
-    case NOH_CHUNK_NODES: return 8;
-    case NOH_CHUNK_CLIP: return 9;
-    case NOH_CHUNK_GRAPH: return 10;
-    case NOH_CHUNK_RECIPE: return 11;
-    case NOH_CHUNK_RAGDOLL: return 12;
-    case NOH_CHUNK_SPRINGS: return 13;
-    case NOH_CHUNK_HAIR: return 14;
-    case NOH_CHUNK_TERRAIN: return 15;
+    case NOH_CHUNK_INFLUENCES: return 7;
+    case NOH_CHUNK_WRINKLES: return 8;
+    case NOH_CHUNK_NODES: return 9;
+    case NOH_CHUNK_CLIP: return 10;
+    case NOH_CHUNK_GRAPH: return 11;
+    case NOH_CHUNK_RECIPE: return 12;
+    case NOH_CHUNK_RAGDOLL: return 13;
+    case NOH_CHUNK_SPRINGS: return 14;
+    case NOH_CHUNK_HAIR: return 15;
+    case NOH_CHUNK_TERRAIN: return 16;
     default: return -1;
     }
 }
@@ -167,6 +168,10 @@ static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
     case NOH_CHUNK_TRANSFER:
         result = noh_check_transfer(&check);
         count_chunk(&pack->transfer_count, &pack->first_transfer, index);
+        break;
+    case NOH_CHUNK_INFLUENCES:
+        result = noh_check_influences(&check);
+        count_chunk(&pack->influences_count, &pack->first_influences, index);
         break;
     case NOH_CHUNK_WRINKLES:
         result = noh_check_wrinkles(&check);

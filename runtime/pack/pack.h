@@ -28,6 +28,7 @@ typedef struct noh_pack {
     uint32_t clip_count, first_clip;
     uint32_t graph_count, first_graph;
     uint32_t transfer_count, first_transfer;
+    uint32_t influences_count, first_influences;
     uint32_t wrinkles_count, first_wrinkles;
     uint32_t springs_count, first_springs;
     uint32_t material_count;

@@ -225,7 +225,12 @@ static void encode(const model *m, const lod_settings *settings, mesh_levels *le
 
 void lod_pack_make(model *m, const lod_settings *settings, uint32_t palette, lod_pack *p)
 {
-    skin_options skin;
+    const skin_options skin = { .palette = palette };
+    lod_pack_make_skinned(m, settings, &skin, p);
+}
+
+void lod_pack_make_skinned(model *m, const lod_settings *settings, const skin_options *skin, lod_pack *p)
+{
     sample_options rate = { 0.0 };
     clips_settings clip_of;
     model_clips *made;
@@ -234,11 +239,9 @@ void lod_pack_make(model *m, const lod_settings *settings, uint32_t palette, lod
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error = { "", "" };
     memset(p, 0, sizeof *p);
-    memset(&skin, 0, sizeof skin);
-    skin.palette = palette;
     memset(&clip_of, 0, sizeof clip_of);
     clip_of.skeletons_only = 1;
-    if (clips_from_model(m, &rate, &made, &error) || skins_bind(m, made, &skin, &error) ||
+    if (clips_from_model(m, &rate, &made, &error) || skins_bind(m, made, skin, &error) ||
         clips_encode(made->sets, made->set_count, &clip_of, &encoded, &error)) {
         fail_msg("%s (%s)", error.what, error.where);
     }

@@ -45,6 +45,7 @@ typedef struct lod_pack {
 
 /* palette: joints that a draw may use, 0: as many as the format holds. Fails the test where it cannot be made. */
 void lod_pack_make(model *m, const lod_settings *settings, uint32_t palette, lod_pack *out);
+void lod_pack_make_skinned(model *m, const lod_settings *settings, const skin_options *skin, lod_pack *p);
 void lod_pack_free(lod_pack *p);
 
 /* [vertex_count] for each vertex of the pack the model's, found by position and uv alone; to be freed. */

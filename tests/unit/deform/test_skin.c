@@ -195,9 +195,10 @@ static void halves_are_exact(void **state)
     uint32_t halves = 0;
     (void)state;
     for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++) {
-        m->meshes[0].joint_weights[v * 8] = m->meshes[0].joint_weights[v * 8 + 1] = 0.5f;
-        m->meshes[0].joints[v * 8] = 1;
-        m->meshes[0].joints[v * 8 + 1] = 2;
+        m->meshes[0].joint_weights[v * MODEL_INFLUENCES_MAX] =
+            m->meshes[0].joint_weights[v * MODEL_INFLUENCES_MAX + 1] = 0.5f;
+        m->meshes[0].joints[v * MODEL_INFLUENCES_MAX] = 1;
+        m->meshes[0].joints[v * MODEL_INFLUENCES_MAX + 1] = 2;
     }
     x.bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
     x.pack = test_open(x.bytes, count);

@@ -132,7 +132,7 @@ static float missing_weight(const model_mesh *mesh, const place *p, uint16_t joi
 {
     for (uint32_t i = 0; i < 3u; i++) {
         size_t row = (size_t)p->vertex[i] * MODEL_INFLUENCES_MAX;
-        for (uint32_t k = 0; k < MODEL_INFLUENCES_MAX; k++) {
+        for (uint32_t k = 0; k < MODEL_INFLUENCES_MAX && mesh->joint_weights[row + k] > 0.0f; k++) {
             if (mesh->joints[row + k] == joint) {
                 weight -= p->weight[i] * mesh->joint_weights[row + k];
             }

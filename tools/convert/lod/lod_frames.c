@@ -150,7 +150,8 @@ static void skin_vertex(const model_mesh *mesh, const double *joints, size_t v, 
     double sum[3] = { 0.0, 0.0, 0.0 }, total = 0.0;
     for (size_t i = v * MODEL_INFLUENCES_MAX; i < v * MODEL_INFLUENCES_MAX + most; i++) {
         const double *m = joints + (size_t)mesh->joints[i] * 12u, weight = mesh->joint_weights[i];
-        for (int row = 0; row < 3 && weight > 0.0; row++) {
+        if (!(weight > 0.0)) break; /* zeros come last */
+        for (int row = 0; row < 3; row++) {
             sum[row] += weight * (m[row] * p[0] + m[3 + row] * p[1] + m[6 + row] * p[2] + m[9 + row]);
         }
         total += weight;

@@ -73,7 +73,7 @@ typedef struct model_submesh {
     uint8_t missing;                     /* MODEL_MISSING_* bits; zero once model_complete has run */
 } model_submesh;
 
-#define MODEL_INFLUENCES_MAX 8u
+#define MODEL_INFLUENCES_MAX 32u
 
 /* One glTF mesh: its primitives' vertices one after another, indices rebased. */
 typedef struct model_mesh {

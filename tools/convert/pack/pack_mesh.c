@@ -287,7 +287,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
 
 int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
               float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
-              model_error *error)
+              mesh_extra *extra, model_error *error)
 {
     size_t base = out->count;
     noh_mesh_header h;
@@ -305,6 +305,7 @@ int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encodi
         append_target_boxes(m, e, &h, base, out);
         pack_influences(m, &l, &h, base, out);
         pack_joint_boxes(m, skin_joint_count, &h, base, out);
+        pack_influence_list(m, &l, extra->index, &extra->influences);
     }
     for (uint32_t k = 0; k < l.level_count && !failed && !out->failed; k++) {
         const noh_mesh_header header = level_header(&h, e, &l, &levels->errors[k], k);

@@ -6,6 +6,12 @@
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 
+/* What comes of a mesh beside its chunk. */
+typedef struct mesh_extra {
+    uint32_t index;         /* the n-th mesh chunk */
+    byte_buffer influences; /* the chunk of its influence list; empty: none. To be freed */
+} mesh_extra;
+
 /* Append a mesh chunk: the full mesh and its levels; e was made with the levels' ranks.
  * submesh_blends  [submesh_count] 1 if the material blends
  * world_scale     model_mesh_scale
@@ -13,6 +19,6 @@
  * Returns 0, or 1 and a filled error if the mesh cannot be split into palettes. */
 int pack_mesh(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
               float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
-              model_error *error);
+              mesh_extra *extra, model_error *error);
 
 #endif

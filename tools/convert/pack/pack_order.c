@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "deform/skin_list.h"
 
 #define EDGES 15u   /* that the filter can go on from */
 #define FIXED 0xffu /* of a texel under two rectangles of a target: it stays where it is */
@@ -376,10 +377,13 @@ static int apply(orderer *o)
 
 /* ---- a mesh ---- */
 
-/* Vertices keep their places where something else refers to them: a transfer, or texels shared between palettes. */
-static int may_rename(const orderer *o)
+/* Vertices keep their places where something else refers to them: a transfer, an influence list, or texels shared
+ * between palettes. */
+static int may_rename(const orderer *o, const noh_pack *pack, uint32_t index)
 {
-    return !o->mesh.transfer && !((o->mesh.header->flags & NOH_MESH_TEXELS) && o->mesh.header->level_count == 1u) &&
+    noh_skin_list list;
+    return !o->mesh.transfer && noh_pack_skin_list(pack, index, &list, NULL) &&
+           !((o->mesh.header->flags & NOH_MESH_TEXELS) && o->mesh.header->level_count == 1u) &&
            o->mesh.header->palette_count <= 1u;
 }
 
@@ -414,7 +418,7 @@ static int order_mesh(noh_pack *copy, uint32_t index)
     (void)noh_pack_mesh_at(copy, index, &o.mesh, NULL);
     o.chunk = (uint8_t *)(uintptr_t)copy->bytes + copy->chunks[copy->first_mesh + index].offset;
     o.indices = malloc(4u * (size_t)o.mesh.header->index_count + 4u);
-    failed = !o.indices || order_triangles(&o) || (may_rename(&o) && rename_all(&o));
+    failed = !o.indices || order_triangles(&o) || (may_rename(&o, copy, index) && rename_all(&o));
     free(o.indices);
     return failed;
 }

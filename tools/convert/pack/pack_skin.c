@@ -34,6 +34,11 @@ void pack_skin(const model_skin *skin, uint32_t skeleton, byte_buffer *out)
     }
 }
 
+static uint32_t round_up_16(uint32_t bytes)
+{
+    return (bytes + 15u) & ~15u;
+}
+
 static uint32_t place_of(const mesh_layout *l, uint32_t palette, uint32_t joint)
 {
     const uint16_t *joints = l->palette_joints + l->palettes[palette].first_joint;
@@ -67,6 +72,51 @@ void pack_influences(const model_mesh *m, const mesh_layout *l, noh_mesh_header 
     buffer_append(out, l->palette_joints, sizeof *l->palette_joints * l->palette_joint_count);
 }
 
+/* The vertices of a layout that more joints move than the mesh has room for. */
+static uint32_t long_vertices(const model_mesh *m, const mesh_layout *l, noh_influences_header *h)
+{
+    for (uint32_t v = 0; v < l->vertex_count; v++) {
+        const uint32_t count = influence_count(m, l->source[v]);
+        if (count <= NOH_INFLUENCES_MAX) continue;
+        h->vertex_count++;
+        h->influence_count += count;
+        h->most = count > h->most ? count : h->most;
+    }
+    return h->vertex_count;
+}
+
+void pack_influence_list(const model_mesh *m, const mesh_layout *l, uint32_t mesh, byte_buffer *out)
+{
+    noh_influences_header h;
+    uint32_t *vertices, *firsts, at = 0, n = 0;
+    float *weights;
+    uint16_t *joints;
+    memset(&h, 0, sizeof h);
+    h.mesh = mesh;
+    if (!m->bound || m->dual_quaternion || m->influence_max <= NOH_INFLUENCES_MAX || !long_vertices(m, l, &h)) return;
+    h.vertices_offset = sizeof h;
+    h.firsts_offset = round_up_16(h.vertices_offset + 4u * h.vertex_count);
+    h.weights_offset = round_up_16(h.firsts_offset + 4u * (h.vertex_count + 1u));
+    h.joints_offset = round_up_16(h.weights_offset + 4u * h.influence_count);
+    if (!buffer_append(out, NULL, h.joints_offset + 2u * (size_t)h.influence_count)) return;
+    memcpy(out->bytes, &h, sizeof h);
+    vertices = (uint32_t *)(void *)(out->bytes + h.vertices_offset);
+    firsts = (uint32_t *)(void *)(out->bytes + h.firsts_offset);
+    weights = (float *)(void *)(out->bytes + h.weights_offset);
+    joints = (uint16_t *)(void *)(out->bytes + h.joints_offset);
+    for (uint32_t v = 0; v < l->vertex_count; v++) {
+        const size_t row = (size_t)l->source[v] * MODEL_INFLUENCES_MAX;
+        const uint32_t count = influence_count(m, l->source[v]);
+        if (count <= NOH_INFLUENCES_MAX) continue;
+        vertices[n] = v;
+        firsts[n++] = at;
+        memcpy(weights + at, m->joint_weights + row, count * sizeof *weights);
+        memcpy(joints + at, m->joints + row, count * sizeof *joints);
+        at += count;
+    }
+    firsts[n] = at;
+}
+
 void pack_joint_boxes(const model_mesh *m, uint32_t joint_count, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
     float *boxes;
@@ -81,6 +131,10 @@ void pack_joint_boxes(const model_mesh *m, uint32_t joint_count, noh_mesh_header
         influence_quantise(m, v, &list);
         for (uint32_t i = 0; i < list.count; i++) {
             pack_grow_box(boxes + 6 * (size_t)list.joints[i], m->position + 3 * (size_t)v);
+        }
+        for (uint32_t i = NOH_INFLUENCES_MAX; i < influence_count(m, v); i++) {
+            pack_grow_box(boxes + 6 * (size_t)m->joints[(size_t)v * MODEL_INFLUENCES_MAX + i],
+                          m->position + 3 * (size_t)v);
         }
     }
 }

@@ -3,11 +3,12 @@
  * Levels are prefixes of one another: vertices, accumulation texels, and for each target its rectangles and delta
  * texels. So the arrays are cut at the counts of the finest level that stays. Rectangles and delta texels of all
  * targets lie in one array each, in target order: they move together, and every level's targets are told where. A
- * mesh's transfer is cut likewise. */
+ * mesh's transfer and influence list are cut likewise. */
 #include "pack_strip.h"
 
 #include <string.h>
 
+#include "deform/skin_list.h"
 #include "mesh/mesh.h"
 #include "pack_copy.h"
 
@@ -229,6 +230,34 @@ static void append_transfer(stripper *s, uint32_t index)
     }
 }
 
+/* ---- an influence list ---- */
+
+/* Vertices of the levels that stay are the first ones, and the list is in their order. */
+static void append_influences(stripper *s, uint32_t index)
+{
+    const uint8_t *from = s->pack->bytes + s->pack->chunks[index].offset;
+    noh_influences_header h = *(const noh_influences_header *)(const void *)from;
+    const uint32_t *firsts = (const uint32_t *)(const void *)(from + h.firsts_offset);
+    noh_skin_list list;
+    (void)noh_pack_mesh_at(s->pack, h.mesh, &s->from, NULL);
+    (void)noh_pack_skin_list(s->pack, h.mesh, &list, NULL);
+    s->from = noh_mesh_at_lod(&s->from, s->first[h.mesh]);
+    h.vertex_count = noh_skin_list_place(&list, s->from.header->vertex_count);
+    h.influence_count = firsts[h.vertex_count];
+    h.most = 0;
+    for (uint32_t i = 0; i < h.vertex_count; i++) {
+        h.most = firsts[i + 1u] - firsts[i] > h.most ? firsts[i + 1u] - firsts[i] : h.most;
+    }
+    buffer_append(s->out, NULL, sizeof h);
+    h.vertices_offset = append(s, list.vertices, 4u * (size_t)h.vertex_count);
+    h.firsts_offset = append(s, firsts, 4u * (h.vertex_count + (size_t)1u));
+    h.weights_offset = append(s, list.weights, 4u * (size_t)h.influence_count);
+    h.joints_offset = append(s, list.joints, 2u * (size_t)h.influence_count);
+    if (!s->out->failed) {
+        memcpy(s->out->bytes + s->base, &h, sizeof h);
+    }
+}
+
 /* ---- the pack ---- */
 
 static void append_chunk(void *context, uint32_t index, byte_buffer *out)
@@ -246,6 +275,8 @@ static void append_chunk(void *context, uint32_t index, byte_buffer *out)
         append_mesh(s);
     } else if (s->pack->chunks[index].type == NOH_CHUNK_TRANSFER) {
         append_transfer(s, index);
+    } else if (s->pack->chunks[index].type == NOH_CHUNK_INFLUENCES) {
+        append_influences(s, index);
     } else {
         pack_copy_as_is(s->pack, index, out);
     }

@@ -23,6 +23,7 @@ typedef struct writer {
     noh_pack_chunk *chunks;
     uint32_t chunk_count;
     uint32_t *skin_chunks; /* [skin_count] the n-th skin chunk, or NOH_NONE where no mesh is bound to it */
+    mesh_extra *extras;    /* [mesh_count] */
     model_error *error;
     int refused; /* a mesh cannot be packed: the error says why */
 } writer;
@@ -129,11 +130,13 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
         uint32_t material = mesh->submeshes[s].material;
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
+    w->extras[index].index = index;
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
     w->refused = w->refused ||
                  pack_mesh(mesh, w->levels ? &w->levels[index] : &alone, e, blends, model_mesh_scale(w->m, index),
                            mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
-                           mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out, w->error);
+                           mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out,
+                           &w->extras[index], w->error);
     end_chunk(w);
 }
 
@@ -229,6 +232,16 @@ static void write_skins(writer *w)
     }
 }
 
+static void write_influences(writer *w, uint32_t index)
+{
+    const byte_buffer *list = &w->extras[index].influences;
+    w->out.failed |= list->failed;
+    if (!list->count) return;
+    begin_chunk(w, NOH_CHUNK_INFLUENCES, w->m->meshes[index].name);
+    buffer_append(&w->out, list->bytes, list->count);
+    end_chunk(w);
+}
+
 static void write_wrinkles(writer *w, uint32_t index)
 {
     const model_mesh *mesh = &w->m->meshes[index];
@@ -257,6 +270,9 @@ static void write_content(writer *w, morph_encoding *const *encodings)
     }
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
         write_mesh(w, i, encodings[i]);
+    }
+    for (uint32_t i = 0; i < w->m->mesh_count; i++) {
+        write_influences(w, i);
     }
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
         if (w->m->meshes[i].wrinkles) write_wrinkles(w, i);
@@ -472,7 +488,9 @@ static int assemble(writer *w, byte_buffer *out)
 
 static size_t chunk_capacity(const model *m, const encoded_clips *made)
 {
-    return 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 7 +
+    size_t lists = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) lists += m->meshes[i].influence_max > NOH_INFLUENCES_MAX;
+    return lists + 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 7 +
            (made ? 2 * (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
 }
 
@@ -500,8 +518,9 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     w.error = error;
     w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);
     w.skin_chunks = calloc(m->skin_count + 1u, sizeof *w.skin_chunks);
+    w.extras = calloc(m->mesh_count + 1u, sizeof *w.extras);
     string_offset(&w.strings, "");
-    if (w.chunks && w.skin_chunks) {
+    if (w.chunks && w.skin_chunks && w.extras) {
         begin_chunk(&w, NOH_CHUNK_STRINGS, "");
         w.chunk_count = 1; /* the strings, filled in by assemble */
         write_content(&w, encodings);
@@ -515,7 +534,8 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
             write_terrain(&w);
         }
     }
-    failed = w.refused || !w.chunks || !w.skin_chunks || w.out.failed || w.strings.bytes.failed || assemble(&w, out);
+    failed = w.refused || !w.chunks || !w.skin_chunks || !w.extras || w.out.failed || w.strings.bytes.failed ||
+             assemble(&w, out);
     if (failed && !w.refused) {
         snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes",
                  NOH_PACK_BYTES_MAX);
@@ -526,5 +546,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     buffer_free(&w.strings.bytes);
     free(w.chunks);
     free(w.skin_chunks);
+    for (uint32_t i = 0; w.extras && i < m->mesh_count; i++) buffer_free(&w.extras[i].influences);
+    free(w.extras);
     return failed;
 }

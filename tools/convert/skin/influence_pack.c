@@ -5,15 +5,34 @@
 
 #include "pack/format.h"
 
+uint32_t influence_count(const model_mesh *mesh, uint32_t vertex)
+{
+    const float *weights = mesh->joint_weights + (size_t)vertex * MODEL_INFLUENCES_MAX;
+    uint32_t count = 1;
+    while (count < MODEL_INFLUENCES_MAX && weights[count] > 0.0f) count++;
+    return count;
+}
+
+/* What the strongest sum to; 1 where there are no others, whatever rounding makes of it. */
+static double strongest_sum(const model_mesh *mesh, uint32_t vertex)
+{
+    const float *weights = mesh->joint_weights + (size_t)vertex * MODEL_INFLUENCES_MAX;
+    double sum = 0.0;
+    if (influence_count(mesh, vertex) <= NOH_INFLUENCES_MAX) return 1.0;
+    for (uint32_t i = 0; i < NOH_INFLUENCES_MAX; i++) sum += (double)weights[i];
+    return sum;
+}
+
 void influence_quantise(const model_mesh *mesh, uint32_t vertex, influence_list *out)
 {
     const uint16_t *joints = mesh->joints + (size_t)vertex * MODEL_INFLUENCES_MAX;
     const float *weights = mesh->joint_weights + (size_t)vertex * MODEL_INFLUENCES_MAX;
+    const double sum = strongest_sum(mesh, vertex);
     uint32_t rest = NOH_WEIGHT_ONE;
     out->count = 1;
     out->joints[0] = joints[0];
-    for (uint32_t i = 1; i < MODEL_INFLUENCES_MAX; i++) {
-        uint32_t weight = (uint32_t)floor((double)weights[i] * (double)NOH_WEIGHT_ONE + 0.5);
+    for (uint32_t i = 1; i < NOH_INFLUENCES_MAX; i++) {
+        uint32_t weight = (uint32_t)floor((double)weights[i] / sum * (double)NOH_WEIGHT_ONE + 0.5);
         uint32_t most = i == 1 ? NOH_WEIGHT_ONE / 2u
                                : NOH_WEIGHT_ONE / 2u - 1u; /* 22 and 21 bits; only rounding gets there */
         weight = weight < most ? weight : most;

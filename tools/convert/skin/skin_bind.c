@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/limits.h"
 #include "convert/clips/model_clips.h"
 #include "mesh_join.h"
 #include "convert/model/model_build.h"
@@ -114,7 +115,7 @@ static int limit_influences(model *m, model_mesh *mesh, uint32_t limit)
                ? model_warn(
                      m,
                      "mesh '%.40s': %u vertices have more than %u joints; the strongest were kept, up to %.2g of the "
-                     "weight was dropped",
+                     "weight was dropped (--influences keeps more)",
                      mesh->name, changed, limit, most)
                : 0;
 }
@@ -138,12 +139,13 @@ static int mark_dual_quaternion(model *m, const char *name, model_error *error)
 
 int skins_bind(model *m, model_clips *made, const skin_options *options, model_error *error)
 {
+    const uint32_t limit = options->influences ? options->influences : NOH_INFLUENCES_MAX;
     if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report)) {
         return fail_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         m->meshes[i].palette_limit = options->palette;
-        if (m->meshes[i].bound && options->influences && limit_influences(m, &m->meshes[i], options->influences)) {
+        if (m->meshes[i].bound && limit_influences(m, &m->meshes[i], limit)) {
             return fail_memory(error);
         }
     }

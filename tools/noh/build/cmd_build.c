@@ -433,7 +433,8 @@ static const option options[] = {
       .at = offsetof(build_args, influences),
       .value = "N",
       .initial = "8",
-      .what = "joints per vertex at most, 1 to 8; the heaviest are kept",
+      .what =
+          "joints per vertex at most, 1 to 32; the heaviest are kept. What is drawn has up to 8 of them; the CPU has a list of all (deform/skin_list.h)",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--palette",

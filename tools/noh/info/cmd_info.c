@@ -14,6 +14,7 @@
 #include "verify/half_bound.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
+#include "deform/skin_list.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {
@@ -33,13 +34,18 @@ static const char *method_of(const noh_mesh_header *h)
     return h->flags & NOH_MESH_DUAL_QUATERNION ? "dual quaternions" : "matrices";
 }
 
-static void print_skin(const noh_pack *pack, const noh_mesh_header *h)
+static void print_skin(const noh_pack *pack, uint32_t mesh, const noh_mesh_header *h)
 {
     noh_skin skin;
+    noh_skin_list list;
     if (noh_pack_skin_at(pack, h->skin, &skin, NULL) == NOH_OK) {
         printf("  skin '%s': %u joints, %u influence%s per vertex, %u palette%s, with %s\n", skin.name,
                skin.header->joint_count, h->influence_count, plural(h->influence_count), h->palette_count,
                plural(h->palette_count), method_of(h));
+    }
+    if (noh_pack_skin_list(pack, mesh, &list, NULL) == NOH_OK) {
+        printf("  all joints of %u vertices, up to %u each, are listed for the CPU\n", list.header->vertex_count,
+               list.header->most);
     }
 }
 
@@ -90,13 +96,13 @@ static double half_bound_um(const noh_mesh *m)
     return 1e6 * (double)m->header->world_scale * half_bound(m, low, high, 0, NOH_HALF_RTZ);
 }
 
-static void print_mesh(const noh_pack *pack, const noh_mesh *m)
+static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
     printf("mesh '%s': %u vertices, %u indices, %u submeshes%s%s%s\n", m->name, h->vertex_count, h->index_count,
            h->submesh_count, (h->flags & NOH_MESH_TANGENTS) ? ", tangents" : "",
            (h->flags & NOH_MESH_UVS) ? ", uvs" : "", (h->flags & NOH_MESH_COLORS) ? ", colours" : "");
-    print_skin(pack, h);
+    print_skin(pack, index, h);
     if (h->target_count) {
         printf("  %u targets, %u pairs in %u rectangles of %u texels (%.3f per pair), %llu bytes (%.2f per pair)\n",
                h->target_count, h->pair_count, h->rect_count, h->texel_count,
@@ -157,7 +163,7 @@ static int print_info(const pack_file *file)
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);
-        print_mesh(p, &mesh);
+        print_mesh(p, i, &mesh);
     }
     for (uint32_t i = 0; i < p->skeleton_count; i++) {
         noh_skeleton skeleton;
@@ -198,9 +204,11 @@ static void json_target(json *j, const noh_pack *pack, const noh_target *t, doub
 }
 
 /* Null for a rigid mesh. */
-static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
+static void json_skin(json *j, const noh_pack *pack, uint32_t mesh, const noh_mesh_header *h)
 {
     noh_skin skin;
+    noh_skin_list list;
+    const int listed = noh_pack_skin_list(pack, mesh, &list, NULL) == NOH_OK;
     if (noh_pack_skin_at(pack, h->skin, &skin, NULL) != NOH_OK) {
         json_null(j, "skin");
         return;
@@ -209,6 +217,8 @@ static void json_skin(json *j, const noh_pack *pack, const noh_mesh_header *h)
     json_text(j, "name", skin.name);
     json_integer(j, "joints", skin.header->joint_count);
     json_integer(j, "influences", h->influence_count);
+    json_integer(j, "listed_vertices", listed ? list.header->vertex_count : 0);
+    json_integer(j, "listed_influences", listed ? list.header->most : 0);
     json_integer(j, "palettes", h->palette_count);
     json_bool(j, "dual_quaternion", (h->flags & NOH_MESH_DUAL_QUATERNION) != 0);
     json_close(j, '}');
@@ -239,7 +249,7 @@ static void json_levels(json *j, const noh_mesh *m)
     json_close(j, ']');
 }
 
-static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
+static void json_mesh(json *j, const noh_pack *pack, uint32_t index, const noh_mesh *m)
 {
     const noh_mesh_header *h = m->header;
     json_open(j, NULL, '{');
@@ -256,7 +266,7 @@ static void json_mesh(json *j, const noh_pack *pack, const noh_mesh *m)
     json_integer(j, "target_bytes", target_bytes(h));
     json_number(j, "f16_bound_0_to_1_um", half_bound_um(m));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
-    json_skin(j, pack, h);
+    json_skin(j, pack, index, h);
     info_json_transfer(j, m);
     json_integer(j, "level_first", h->level_first);
     json_integer(j, "source", noh_mesh_source(m));
@@ -330,7 +340,7 @@ static int json_info(const pack_file *file)
     for (uint32_t i = 0; i < p->mesh_count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);
-        json_mesh(&j, p, &mesh);
+        json_mesh(&j, p, i, &mesh);
     }
     json_close(&j, ']');
     json_open(&j, "skeletons", '[');
