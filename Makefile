@@ -96,7 +96,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -114,6 +114,7 @@ help:
 	@echo 'make check-validator DIR=...  what noh build says to the glTF validator'"'"'s broken files'
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each), needs clang'
+	@echo 'make check-long  all that .ci/run does in its long form: hours; and memcheck, paths by gcc and clang, AFL++'
 	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
 	@echo 'make budgets    what the demo characters take, to the byte, against a table; budgets-update: a new table'
@@ -384,6 +385,13 @@ check: deps-check
 threads: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/tsan.sh
+
+# What CI leaves out to be done in time (.ci/run): NOH_LONG=1 in every stage, five minutes for every fuzzer, and three
+# stages more.
+deps-long:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check view fuzz lint long
+check-long: deps-long
+	@NOH_LONG=1 DEPS="$(DEPS)" FUZZ_SECONDS=300 AFL_SECONDS=300 .ci/run
 
 # The same bits from every compiler, optimisation and processor that is here, and as in tests/golden/golden.txt.
 golden: deps-cross

@@ -4,6 +4,7 @@
 #   fuzz   clang and its fuzzer                           cross  other processors
 #   web    the page and its test                          view   the window of noh view
 #   lint   clang-tidy and cppcheck                        docs   the API reference
+#   long   what make check-long adds: memcheck, AFL++
 #   ear    synthesisers that teach the ear (make ear-tables)
 # Optional packages ("?") may be unavailable: what needs them is left out, or its test is skipped with the reason.
 # Where there is no apt, the list is printed and the script stops.
@@ -62,6 +63,8 @@ packages_web='?emscripten:the page
 libcmocka-dev:its test'
 packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'
+packages_long='?valgrind:memcheck
+?afl++:fuzzing noh build'
 packages_ear='libespeak-ng-dev:formants in every language
 flite:statistics of four voices
 festival:voices cut out of recordings
@@ -102,6 +105,8 @@ $packages_cross" ;;
 $packages_web" ;;
     lint) all="$all
 $packages_lint" ;;
+    long) all="$all
+$packages_long" ;;
     ear) all="$all
 $packages_ear" ;;
     docs) all="$all

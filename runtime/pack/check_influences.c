@@ -36,10 +36,6 @@ static noh_result check_header(const noh_check *check, const noh_influences_head
                                   offsetof(noh_influences_header, reserved) + 4ull * i);
         }
     }
-    if (!mesh_of(check->pack, h)) {
-        return noh_check_fail(check, "influence list names a mesh that is not there or not skinned, or is out of order",
-                              offsetof(noh_influences_header, mesh));
-    }
     return NOH_OK;
 }
 
@@ -82,9 +78,8 @@ static noh_result check_vertex(const noh_check *check, const noh_influences_head
                                 h->weights_offset + 4ull * first);
 }
 
-static noh_result check_values(const noh_check *check, const noh_influences_header *h)
+static noh_result check_values(const noh_check *check, const noh_influences_header *h, const noh_mesh_header *mesh)
 {
-    const noh_mesh_header *mesh = mesh_of(check->pack, h);
     const uint32_t *vertices = (const uint32_t *)(const void *)(check->bytes + h->vertices_offset);
     const uint32_t *firsts = (const uint32_t *)(const void *)(check->bytes + h->firsts_offset);
     const uint32_t joint_count = noh_check_skin_joints(check->pack, mesh->skin);
@@ -117,8 +112,15 @@ static noh_result check_values(const noh_check *check, const noh_influences_head
 noh_result noh_check_influences(noh_check *check)
 {
     const noh_influences_header *h = (const noh_influences_header *)(const void *)check->bytes;
+    const noh_mesh_header *mesh;
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_header(check, h);
-    if (!result) result = check_arrays(check, h);
-    return result ? result : check_values(check, h);
+    if (result) return result;
+    mesh = mesh_of(check->pack, h);
+    if (!mesh) {
+        return noh_check_fail(check, "influence list names a mesh that is not there or not skinned, or is out of order",
+                              offsetof(noh_influences_header, mesh));
+    }
+    result = check_arrays(check, h);
+    return result ? result : check_values(check, h, mesh);
 }

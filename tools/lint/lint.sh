@@ -3,7 +3,8 @@
 #
 # Findings that are none are in accepted.txt, one a line: FILE CHECK REASON. A finding is fixed, or it gets a line there
 # with the reason; what the list does not hold is a failure. Lines that no longer match anything are named, so that the
-# list does not grow stale. Closes with "N passed, N failed, N skipped": a file that a tool has nothing to say about is
+# list does not grow stale. With NOH_LONG set, the paths through what games link are followed too, by clang and by gcc
+# -fanalyzer (make check-long). Closes with "N passed, N failed, N skipped": a file that a tool has nothing to say about is
 # one passed.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -11,6 +12,8 @@ build=${NOH_BUILD:-build}
 work=$build/lint
 accepted=tools/lint/accepted.txt
 jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+NOH_LONG=${NOH_LONG:-}
+export NOH_LONG
 mkdir -p "$work"
 includes="-Iruntime -Iplatform -Itools -Itools/noh -Itools/demo_assets -I$build/gen"
 # Not the page (emscripten's headers), the template for porters, and what a build without windows has instead of view/.
@@ -47,15 +50,24 @@ tell() { # TOOL
 }
 
 if command -v clang-tidy >/dev/null 2>&1; then
-    # Clang's path analysis takes most of the time: it is for what games link. tools/ has cppcheck's.
+    # Clang's path analysis takes most of the time: it is for what games link, in the long form. tools/ has cppcheck's.
     # shellcheck disable=SC2016
     xargs -P "$jobs" -I '{}' sh -c '
-        case $1 in tools/*) fewer=--checks=-clang-analyzer-* ;; *) fewer= ;; esac
+        case $1$NOH_LONG in tools/* | *.c) fewer=--checks=-clang-analyzer-* ;; *) fewer= ;; esac
         clang-tidy --quiet $fewer "$1" -- -std=c99 $2 2>/dev/null' sh '{}' "$includes" <"$work/files" >"$work/clang-tidy.txt"
     tell clang-tidy
 else
     echo 'clang-tidy skipped: it is not installed'
     skipped=$((skipped + 1))
+fi
+if [ -n "$NOH_LONG" ]; then
+    # Without its uninitialised values, which in gcc 12 are mostly arrays that loops and called functions fill.
+    # shellcheck disable=SC2016
+    grep '^runtime/' "$work/files" | grep -v '/result\.c$' | xargs -P "$jobs" -I '{}' sh -c '
+        timeout 300 ${CC:-gcc} -std=c99 -O1 -ffp-contract=off -fno-math-errno $2 -include tools/lint/analyzer.h -fanalyzer \
+            -Wno-analyzer-use-of-uninitialized-value -Wno-analyzer-too-complex -fdiagnostics-plain-output -c "$1" -o /dev/null 2>&1' \
+        sh '{}' "$includes" >"$work/gcc-analyzer.txt"
+    tell gcc-analyzer
 fi
 if command -v cppcheck >/dev/null 2>&1; then
     # Its uninitialised variables are arrays that a called function fills; the compilers and clang-tidy see those.
@@ -70,7 +82,8 @@ else
     skipped=$((skipped + 1))
 fi
 
-[ ! -f "$work/clang-tidy.used" ] || [ ! -f "$work/cppcheck.used" ] ||
+# The short form does not look for all of them.
+[ -z "$NOH_LONG" ] || [ ! -f "$work/clang-tidy.used" ] || [ ! -f "$work/cppcheck.used" ] ||
     sed '/^#/d; /^$/d' "$accepted" | cut -d' ' -f1,2 | while read -r line; do
         cat "$work"/*.used | grep -q "^$line " || echo "no longer found, remove it from $accepted: $line"
     done
