@@ -64,7 +64,8 @@ libcmocka-dev:its test'
 packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'
 packages_long='?valgrind:memcheck
-?afl++:fuzzing noh build'
+?afl++:fuzzing noh build
+?frama-c-base:proofs of the checkers'
 packages_ear='libespeak-ng-dev:formants in every language
 flite:statistics of four voices
 festival:voices cut out of recordings

@@ -148,6 +148,7 @@ static void play(const step *s, const walker *r, noh_controller *c, float passes
 {
     const float weights[WALKER_CLIPS] = { r->goes * (1.0f - r->runs), 1.0f - r->goes, r->goes * r->runs };
     uint32_t track = s->k->layers[s->w->layer].first_track;
+    memset(p->before, 0, sizeof p->before); /* clips that are not there weigh nothing */
     memset(p->sway, 0, sizeof p->sway);
     memset(p->shares, 0, sizeof p->shares);
     memcpy(p->weights, weights, sizeof weights);

@@ -123,7 +123,7 @@ static void updates_on_time_have_the_error_of_interpolation(void **state)
     double worst[NOH_UPDATE_RATE_COUNT] = { 0.0 }, last = 0.0;
     int64_t clock = 12345;
     uint32_t period = 6000;
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     (void)state;
     noh_time_lod_init(&l.t, 77);
     for (int frame = 0; frame < 200000; frame++) {
@@ -161,7 +161,7 @@ static void frames_between_steps_have_the_error_of_interpolation(void **state)
     noh_update_rate rate = NOH_UPDATE_RATE_FULL;
     int64_t shown_clock = 5000, clock = 4800, span = 0;
     double worst[NOH_UPDATE_RATE_COUNT] = { 0.0 };
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     (void)state;
     noh_time_lod_init(&l.t, 31);
     for (int frame = 0; frame < 200000; frame++) {
@@ -197,7 +197,7 @@ static void late_updates_and_changes_never_jump(void **state)
     test_random r = test_random_from(24);
     double kind = 0.0, last = 0.0;
     int64_t clock = 0, changed = 0;
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     (void)state;
     noh_time_lod_init(&l.t, 5);
     noh_time_lod_frame(&l.t, 0, NOH_UPDATE_RATE_8);
@@ -226,7 +226,7 @@ static void late_updates_and_changes_never_jump(void **state)
 
 static void unseen_for_long_is_posed_at_once(void **state)
 {
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     (void)state;
     noh_time_lod_init(&l.t, 9);
     noh_time_lod_frame(&l.t, 100, NOH_UPDATE_RATE_15);
@@ -246,7 +246,7 @@ static void unseen_for_long_is_posed_at_once(void **state)
 /* A finer rate does not wait for the end of the mix that is shown; a coarser one does. */
 static void a_finer_rate_begins_at_once(void **state)
 {
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     double before;
     (void)state;
     noh_time_lod_init(&l.t, 4);
@@ -297,7 +297,7 @@ static void clocks_at_the_ends(void **state)
 /* Ten frames a second at 30 and at 15 Hz: every frame is exact. */
 static void frames_longer_than_a_period_are_exact(void **state)
 {
-    line l;
+    line l = { .value = { 0.0, 0.0 } };
     (void)state;
     noh_time_lod_init(&l.t, 3);
     for (int64_t clock = 0; clock < 480000; clock += 4800) {
