@@ -359,11 +359,12 @@ static void rates_are_those_of_the_worst_vertex(void **state)
 /* Two joints a metre apart, three vertices; the farthest has too small a weight on the second to count. */
 static void only_what_a_joint_moves_counts(void **state)
 {
-    float positions[9] = { 0.0f, 0.5f, 0.0f, 0.0f, 1.25f, 0.0f, 0.0f, 4.0f, 0.0f }, weights[24] = { 0.0f }, reach[3];
+    float positions[9] = { 0.0f, 0.5f, 0.0f, 0.0f, 1.25f, 0.0f, 0.0f, 4.0f, 0.0f },
+          weights[3 * MODEL_INFLUENCES_MAX] = { 0.0f }, reach[3];
     float binds[32] = {
         1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1
     };
-    uint16_t joints[24] = { 0 };
+    uint16_t joints[3 * MODEL_INFLUENCES_MAX] = { 0 };
     uint32_t places[2] = { 0, 2 };
     model_skin skin;
     model_mesh mesh;
@@ -378,8 +379,11 @@ static void only_what_a_joint_moves_counts(void **state)
     mesh.bound = 1;
     m.mesh_count = m.skin_count = 1, m.meshes = &mesh, m.skins = &skin;
     weights[0] = 1.0f;
-    joints[8] = 0, weights[8] = 0.95f, joints[9] = 1, weights[9] = 0.05f;
-    joints[16] = 0, weights[16] = 0.96f, joints[17] = 1, weights[17] = 0.04f;
+    uint16_t *j = joints + MODEL_INFLUENCES_MAX;
+    float *w = weights + MODEL_INFLUENCES_MAX;
+    j[0] = 0, w[0] = 0.95f, j[1] = 1, w[1] = 0.05f;
+    j += MODEL_INFLUENCES_MAX, w += MODEL_INFLUENCES_MAX;
+    j[0] = 0, w[0] = 0.96f, j[1] = 1, w[1] = 0.04f;
     assert_int_equal(joint_radius(&m, 0, 3, reach), 1);
     assert_true(reach[0] == 4.0f && reach[1] == -1.0f && reach[2] == 0.25f);
     assert_int_equal(joint_radius(&m, 1, 3, reach), 0); /* no mesh of that skeleton */

@@ -153,7 +153,7 @@ static void weights_are_normalised_with_a_warning(void **state)
         "mesh 'm': the weights of 2 vertices do not sum to 1 and were divided by their sum, at worst 0.9812");
     assert_true(fabsf(m->meshes[0].joint_weights[0] - 0.5f / 0.9812f) < 1e-6f &&
                 fabsf(m->meshes[0].joint_weights[1] - 0.4812f / 0.9812f) < 1e-6f);
-    assert_true(m->meshes[0].joint_weights[16] == 1.0f);
+    assert_true(m->meshes[0].joint_weights[2 * MODEL_INFLUENCES_MAX] == 1.0f);
     model_free(m);
     s.weights[0][0][0] = 0.7f; /* above 1 the implied last weight would be negative */
     s.weights[0][0][1] = 0.5f;
@@ -175,8 +175,9 @@ static void vertices_without_weights_follow_a_joint(void **state)
     s.joints[0][2][0] = 4;
     model *m = load(&s);
     assert_true(has_warning(m, "mesh 'm': 2 vertices have no weight for any joint"));
-    assert_int_equal(m->meshes[0].joints[16], 4);
-    assert_true(m->meshes[0].joint_weights[16] == 1.0f && m->meshes[0].joint_weights[17] == 0.0f);
+    assert_int_equal(m->meshes[0].joints[2 * MODEL_INFLUENCES_MAX], 4);
+    assert_true(m->meshes[0].joint_weights[2 * MODEL_INFLUENCES_MAX] == 1.0f &&
+                m->meshes[0].joint_weights[2 * MODEL_INFLUENCES_MAX + 1] == 0.0f);
     model_free(m);
 }
 
