@@ -51,7 +51,7 @@ for value in 0 -3 2.5 65536 many; do
     expect 2 "--rects $value"
     says '--rects wants'
 done
-for value in 0 9 2.5 many; do
+for value in 0 33 2.5 many; do
     noh build in.glb -o "$work/out.noh" --influences $value
     expect 2 "--influences $value"
     says '--influences wants'
