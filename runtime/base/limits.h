@@ -19,7 +19,7 @@
 #define NOH_PACK_ALIGN 64u
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
-/* The largest number of a mesh, skeleton, skin, node or material, either sign: sums and products of a frame then stay
+/* The largest number of a mesh, skeleton, skin, node, material or place, either sign: sums and products of a frame then stay
  * finite. Scales of joints and nodes, and where they lead, are held to it along the whole chain. */
 #define NOH_NUMBER_MAX 1e12f
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
@@ -32,6 +32,7 @@
 #define NOH_VERTICES_MAX (1u << 22) /* a texture of 2048 x 2048, which every ES 3.0 has */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
+#define NOH_PIXELS_MAX 1e6f             /* of an error that may show */
 #define NOH_LOD_LEVELS_MAX 8u           /* of a mesh, of a skeleton, and rows of a table of LOD levels */
 #define NOH_TARGETS_MAX 1024u           /* the gather list keeps 10 bits for a target */
 #define NOH_DELTA_TEXELS_MAX (1u << 22) /* delta texels; the gather list keeps 22 bits */

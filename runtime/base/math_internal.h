@@ -1,7 +1,7 @@
 /* math_internal.h: the little arithmetic that the library needs, without libm.
  *
  *   noh_sqrt          correctly rounded
- *   noh_is_finite
+ *   noh_is_finite, noh_is_number
  *   noh_dot3
  *   noh_normalize3
  *
@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "base/limits.h"
 
 /* 16: gcc's word for half floats that are kept as they are, and floats, too. */
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 && !defined(NOH_ALLOW_X87)
@@ -30,6 +31,12 @@
 static inline int noh_is_finite(float x)
 {
     return x - x == 0.0f;
+}
+
+/* Small enough that what a frame computes of it stays finite. */
+static inline int noh_is_number(float x)
+{
+    return x >= -NOH_NUMBER_MAX && x <= NOH_NUMBER_MAX;
 }
 
 /* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they

@@ -38,7 +38,7 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
 {
     double sum = 0.0;
     NOH_ASSERT(s);
-    if (!(s->pixels >= 0.0f && s->pixels <= 1e6f)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
+    if (!(s->pixels >= 0.0f && s->pixels <= NOH_PIXELS_MAX)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_LOD_KIND_COUNT; i++) {
         if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f))
             return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);

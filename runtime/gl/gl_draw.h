@@ -2,9 +2,10 @@
  *
  *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
  *   noh_gl_mesh_lod          which indices an LOD level draws
- *   noh_gl_mesh_create_empty buffers without contents, for levels that come later; noh_gl_mesh_fill fills them in
- * pieces noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
- *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _restore, _variant
+ *   noh_gl_mesh_create_empty buffers without contents, for levels that come later; noh_gl_mesh_fill fills them in pieces
+ *   noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
+ *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
+ *                            _variant
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
@@ -164,6 +165,9 @@ size_t noh_gl_renderer_size(const noh_gl_renderer_desc *desc);
 noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, void *memory,
                                   size_t bytes, noh_gl_renderer *out, noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
+
+/* The same where the context was lost (gl_lost.h): no GL is called. It may be restored later. */
+void noh_gl_renderer_forget(noh_gl_renderer *renderer);
 
 /* Make its GL objects again in a new context (gl_lost.h). `log` as in noh_gl_program_create.
  * errors  GL, MEMORY, DATA as noh_gl_renderer_create: it then has no GL objects */

@@ -178,7 +178,7 @@ void noh_gl_light_delete(noh_gl_light *light)
     noh_gl_texture_delete(light->gl, light->ledger, &light->shadow);
 }
 
-noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error)
+void noh_gl_light_forget(noh_gl_light *light)
 {
     const noh_gl_api *gl;
     NOH_ASSERT(light && light->gl);
@@ -186,6 +186,11 @@ noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error)
     light->gl = noh_gl_lost_api();
     noh_gl_light_delete(light);
     light->gl = gl;
+}
+
+noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error)
+{
+    noh_gl_light_forget(light);
     return create_objects(light, error);
 }
 

@@ -4,7 +4,8 @@
  *   noh_lighting_make       what shaders are told: the key light and the rest, out of any light
  *   noh_lighting_shadow     where a shadow map looks
  *   noh_gl_light_bytes      exact GPU bytes of the textures
- *   noh_gl_light_create     upload the reflection, make the shadow map; noh_gl_light_delete, noh_gl_light_restore
+ *   noh_gl_light_create     upload the reflection, make the shadow map; noh_gl_light_delete,
+ *                           noh_gl_light_forget, noh_gl_light_restore
  *   noh_gl_light_upload     the reflection is another one now
  *   noh_gl_light_begin_shadow  bind and clear the shadow map; noh_gl_light_end_shadow
  *   noh_gl_renderer_light   light what the renderer draws from now on
@@ -84,6 +85,9 @@ uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc);
 noh_result noh_gl_light_create(const noh_gl_device *device, const noh_gl_light_desc *desc, noh_gl_light *out,
                                noh_error *error);
 void noh_gl_light_delete(noh_gl_light *light);
+
+/* The same where the context was lost (gl_lost.h): no GL is called. It may be restored later. */
+void noh_gl_light_forget(noh_gl_light *light);
 
 /* Make its GL objects again in a new context (gl_lost.h).
  * errors  MEMORY, GL as noh_gl_light_create: it then has no GL objects */

@@ -9,10 +9,11 @@
  *
  * Each takes the old names out of the ledger without calling GL, because in the new context these names may be other
  * objects, and makes new objects from the pack. The ledger is then as before, to the byte. The new context must have
- * the capabilities of the old one: probe it with noh_gl_caps_probe, and if they differ, delete the objects with the
- * table below and plan again.
+ * the capabilities of the old one: probe it with noh_gl_caps_probe. If they differ, or if there is no new context, let
+ * go of the objects without calling GL, and plan again: noh_gl_*_delete that take an api take the table below, the
+ * others have a noh_gl_*_forget. A stage has neither: copy the table below over your own, then noh_stage_delete.
  *
- *   noh_gl_lost_api  a table whose delete functions do nothing: pass it to any noh_gl_*_delete that takes an api
+ *   noh_gl_lost_api  a table whose delete functions do nothing
  *
  * Threads: any; the table touches nothing. */
 #ifndef NOH_GL_GL_LOST_H

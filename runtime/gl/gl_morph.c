@@ -169,11 +169,16 @@ void noh_gl_morph_delete(noh_gl_morph *m)
     delete_objects(m, m->gl);
 }
 
-noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+void noh_gl_morph_forget(noh_gl_morph *m)
 {
     NOH_ASSERT(m && m->gl && m->ledger);
-    noh_result result;
     delete_objects(m, noh_gl_lost_api());
+}
+
+noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result;
+    noh_gl_morph_forget(m);
     mark_all_dirty(m);
     result = make_gl_objects(m, log, log_bytes, error);
     if (result) {

@@ -150,6 +150,9 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
 /* Delete the GL objects. The memory is yours again. */
 void noh_gl_morph_delete(noh_gl_morph *morph);
 
+/* The same where the context was lost (gl_lost.h): no GL is called. It may be restored later. */
+void noh_gl_morph_forget(noh_gl_morph *morph);
+
 /* Make its GL objects again in a new context (gl_lost.h). Weights stay; the next noh_gl_morph_update accumulates every
  * instance. `log` as in noh_gl_program_create.
  * errors  GL, MEMORY, DATA as noh_gl_morph_init: it then has no GL objects, and may be restored again */

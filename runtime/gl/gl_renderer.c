@@ -257,7 +257,7 @@ void noh_gl_renderer_delete(noh_gl_renderer *renderer)
     noh_gl_texture_delete(renderer->gl, renderer->ledger, &renderer->white);
 }
 
-noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error)
+void noh_gl_renderer_forget(noh_gl_renderer *renderer)
 {
     const noh_gl_api *gl;
     NOH_ASSERT(renderer && renderer->gl && renderer->ledger);
@@ -265,5 +265,10 @@ noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t 
     renderer->gl = noh_gl_lost_api();
     noh_gl_renderer_delete(renderer);
     renderer->gl = gl;
+}
+
+noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_gl_renderer_forget(renderer);
     return create_objects(renderer, log, log_bytes, error);
 }

@@ -344,13 +344,19 @@ void noh_gl_skin_delete(noh_gl_skin *skin)
     noh_gl_texture_delete(skin->gl, skin->ledger, &skin->texture);
 }
 
-noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
+void noh_gl_skin_forget(noh_gl_skin *skin)
 {
-    const noh_gl_api *gl = skin->gl;
-    NOH_ASSERT(skin->ledger);
+    const noh_gl_api *gl;
+    NOH_ASSERT(skin && skin->gl && skin->ledger);
+    gl = skin->gl;
     skin->gl = noh_gl_lost_api();
     noh_gl_skin_delete(skin);
     skin->gl = gl;
+}
+
+noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
+{
+    noh_gl_skin_forget(skin);
     return create_object(skin, error);
 }
 

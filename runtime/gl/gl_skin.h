@@ -91,6 +91,9 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *dev
 /* Delete the GL object. The memory is yours again. */
 void noh_gl_skin_delete(noh_gl_skin *skin);
 
+/* The same where the context was lost (gl_lost.h): no GL is called. It may be restored later. */
+void noh_gl_skin_forget(noh_gl_skin *skin);
+
 /* Make the GL object again in a new context (gl_lost.h); the next noh_gl_skin_update sends everything.
  * errors  GL, MEMORY as noh_gl_skin_init: it then has no GL object, and may be restored again */
 noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error);

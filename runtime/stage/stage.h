@@ -257,7 +257,7 @@ typedef struct noh_stage noh_stage;
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error);
 
-/* Delete the GL objects. The memory is yours again. */
+/* Delete the GL objects. The memory is yours again. After a lost context gl_lost.h says how. */
 void noh_stage_delete(noh_stage *stage);
 
 /* Make the GL objects again in a new context (gl_lost.h): the next frame shows what it would have shown.
@@ -333,7 +333,8 @@ noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index);
 
 /* Where it is after the next step, or, set after a step and before the next frame, after that one; before root motion.
  * Frames between two steps show it on its way (noh_stage_frame_between), other frames show it there.
- * errors  NOT_FOUND; ARG a value that is not finite, a rotation without length, a scale below 0 */
+ * errors  NOT_FOUND; ARG a value that is not finite or beyond NOH_NUMBER_MAX, a rotation without length, a scale below
+ *         0 */
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error);
 
 /* Where it is after the last step; one that hangs on another: relative to the joint.
@@ -368,7 +369,7 @@ typedef struct noh_look {
     uint8_t reserved[2];    /* 0 */
 } noh_look;
 
-/* errors  NOT_FOUND; ARG pixels is negative or not finite, the kind has no such texture_set, or wrinkle_models has
+/* errors  NOT_FOUND; ARG pixels is not in 0..NOH_PIXELS_MAX, the kind has no such texture_set, or wrinkle_models has
  *         unknown bits */
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
 
@@ -521,8 +522,8 @@ typedef struct noh_stage_hit {
     float barycentric[3];
 } noh_stage_hit;
 
-/* The nearest of the actors that were shown in the last frame along origin + distance * direction. Morph targets are
- * left out: a face is picked as it is at rest. What alpha cuts away is gone through (deform/pick.h), by the textures of
+/* The nearest of the actors that were shown in the last frame along origin + distance * direction, as they are morphed
+ * and posed. What alpha cuts away is gone through (deform/pick.h), by the textures of
  * the kind's own pack, whatever texture set an actor wears.
  * errors  NOT_FOUND nothing is hit; ARG direction has no length, or distance_max is not above 0 */
 noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float direction[3], float distance_max,

@@ -82,11 +82,11 @@ static const char *normal_place(const noh_place *in, noh_place *out)
     float square = 0.0f;
     *out = *in;
     for (int i = 0; i < 3; i++) {
-        if (!noh_is_finite(in->position[i])) return "position of a place is not finite";
+        if (!noh_is_number(in->position[i])) return "position of a place is not a number, or larger than 10^12";
     }
     for (int i = 0; i < 4; i++) square += q[i] * q[i];
     if (!noh_is_finite(square)) return "rotation of a place is not finite";
-    if (!(in->scale >= 0.0f) || !noh_is_finite(in->scale)) return "scale of a place is below 0 or not finite";
+    if (!(in->scale >= 0.0f && noh_is_number(in->scale))) return "scale of a place is not in 0..10^12";
     if (in->scale <= 0.0f) out->scale = 1.0f;
     if (q[0] == 0.0f && q[1] == 0.0f && q[2] == 0.0f && q[3] == 0.0f) {
         memcpy(out->rotation, identity, sizeof identity);
@@ -358,8 +358,8 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     if (result != NOH_OK) {
         return result;
     }
-    if (!(look->pixels >= 0.0f) || !noh_is_finite(look->pixels)) {
-        return noh_fail(error, NOH_ERR_ARG, "pixels of a look is negative or not finite", actor.id & 0xffffu, 0);
+    if (!(look->pixels >= 0.0f && look->pixels <= NOH_PIXELS_MAX)) {
+        return noh_fail(error, NOH_ERR_ARG, "pixels of a look is not in 0..1e6", actor.id & 0xffffu, 0);
     }
     if (look->texture_set > k->desc->texture_set_count) {
         return noh_fail(error, NOH_ERR_ARG, "texture_set of a look is none of the kind's", actor.id & 0xffffu,

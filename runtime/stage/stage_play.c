@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "anim/controller_pose.h"
+#include "base/math_internal.h"
 #include "pose/inertial_internal.h"
 #include "stage/stage_internal.h"
 
@@ -438,8 +439,8 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
     if (index >= k->float_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no such float", index, k->float_count);
     }
-    if (value - value != 0.0f || !(amount >= 0.0f && amount <= 1.0f)) {
-        return noh_fail(error, NOH_ERR_ARG, "a held float is not finite, or its amount is not in 0..1", index, 0);
+    if (!noh_is_number(value) || !(amount >= 0.0f && amount <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "a held float is not a number, or its amount is not in 0..1", index, 0);
     }
     held = k->held + (size_t)noh_stage_index(k, a) * k->desc->held_float_count;
     for (uint32_t i = 0; i < k->desc->held_float_count; i++) {

@@ -40,11 +40,11 @@ static const char *bad_place(const noh_place *place)
 {
     float length = 0.0f;
     for (int i = 0; i < 3; i++) {
-        if (!noh_is_finite(place->position[i])) return "state: an actor's place is not finite";
+        if (!noh_is_number(place->position[i])) return "state: an actor's place is not a number";
     }
     for (int i = 0; i < 4; i++) length += place->rotation[i] * place->rotation[i];
-    if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f) || !noh_is_finite(place->scale))
-        return "state: an actor's rotation is not unit, or its scale not above 0";
+    if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f && noh_is_number(place->scale)))
+        return "state: an actor's rotation is not unit, or its scale not in 0..10^12";
     return NULL;
 }
 
@@ -58,7 +58,8 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     if (what) return what;
-    if (!(a->look.pixels >= 0.0f) || !noh_is_finite(a->look.pixels)) return "state: an actor's look is not finite";
+    if (!(a->look.pixels >= 0.0f && a->look.pixels <= NOH_PIXELS_MAX))
+        return "state: an actor's look asks for no error";
     if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
     if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
@@ -72,8 +73,8 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
 static const char *bad_held(const noh_stage_kind *k, const noh_stage_held *held)
 {
     for (uint32_t i = 0; i < k->desc->held_float_count; i++) {
-        if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !noh_is_finite(held[i].value))
-            return "state: a held float is not finite";
+        if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !noh_is_number(held[i].value))
+            return "state: a held float is not a number";
         if (held[i].amount > 0.0f && held[i].index >= k->float_count) return "state: a held float out of range";
     }
     return NULL;

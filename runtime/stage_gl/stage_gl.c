@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "character/skin_palette.h"
+#include "gl/gl_lost.h"
 #include "gl/gl_renderer_internal.h"
 #include "mesh/wrinkles.h"
 #include "pose/local_to_model.h"
@@ -300,23 +301,48 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
     return noh_gl_renderer_create(device, &d, memory, bytes, out, error);
 }
 
+static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
+    }
+}
+
 static void destroy(noh_stage *stage)
 {
     noh_stage_gl *gl = stage->gpu;
-    const noh_gl_device *d = &gl->device;
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
     if (gl->light && gl->light->gl) noh_gl_light_delete(gl->light);
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
-        const noh_stage_kind *k = &stage->kinds[i];
-        for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        for (uint32_t m = 0; m < stage->kinds[i].plan->mesh_count; m++) {
             if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
         }
     }
-    noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) noh_gl_morph_delete(gl->models[i].morph);
-        if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
     }
+    let_go_meshes(stage, &gl->device);
+}
+
+/* The context is gone, and with it the objects: only the ledger is told. */
+static void forget(noh_stage *stage)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_gl_device lost = gl->device;
+    lost.api = noh_gl_lost_api();
+    if (gl->renderer->gl) noh_gl_renderer_forget(gl->renderer);
+    if (gl->light) noh_gl_light_forget(gl->light);
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        for (uint32_t m = 0; m < stage->kinds[i].plan->mesh_count; m++) {
+            noh_gl_skin_forget(gl->kinds[i].items[m].skin);
+        }
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_forget(gl->models[i].morph);
+    }
+    let_go_meshes(stage, &lost);
 }
 
 static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
@@ -368,7 +394,7 @@ static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *err
     return result;
 }
 
-static noh_result restore(noh_stage *stage, noh_error *error)
+static noh_result restore_all(noh_stage *stage, noh_error *error)
 {
     noh_stage_gl *gl = stage->gpu;
     noh_result result = NOH_OK;
@@ -382,6 +408,17 @@ static noh_result restore(noh_stage *stage, noh_error *error)
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
     if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
+}
+
+/* All or nothing: where one object cannot be made, those before it are deleted, and no name of the old context is left
+ * to be deleted in the new one. */
+static noh_result restore(noh_stage *stage, noh_error *error)
+{
+    noh_result result;
+    forget(stage);
+    result = restore_all(stage, error);
+    if (result != NOH_OK) destroy(stage);
+    return result;
 }
 
 /* ---- upload ---- */
