@@ -438,23 +438,25 @@ bench-lod: deps-build
 WEB_PACK    ?= $(BUILD)/mask.noh
 WEB_ACTORS  ?= 1
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
-WEB_FLAGS   := -std=c99 -Os -msimd128 -msse2 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
-WEB_LINK    := -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
+WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB_LINK    := -msse2 -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
                -s MALLOC=emmalloc -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
 WEB_HEAP    := 65536
 WEB_STATIC  := 262144
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js keys.js light.js hair.js faces.js load.js speech.js microphone.js page.noh page.nohz)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js keys.js light.js hair.js faces.js load.js convert.js speech.js microphone.js page.noh page.nohz)
+WEB_CONVERTER := $(addprefix $(WEB)/convert/,convert.js convert.wasm worker.js)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERTER) || echo 'The page has no converter: it shows packs alone.'
 
 # Of the mask and of the puppet; or of one pack, if it is named.
 WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(WEB_PACKS)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
 # HOST=all: also to phones and others in the same network.
@@ -492,15 +494,18 @@ WEB_MAIN := $(addprefix platform/web/,main.c load.c light.c faces.c hair.c sound
 WEB_C := platform/web/bounds.c platform/web/cast.c platform/web/context.c $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
 WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/file.o $(filter-out %/context.o,$(WEB_O))
-WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # Debian's emscripten uses Debian's node modules
-$(WEB_OBJECTS)/%.o: %.c
+WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
+$(BUILD)/web-cc: tools/web_cc.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_cc.sh $@
+$(WEB_OBJECTS)/%.o: %.c | $(BUILD)/web-cc
 	@mkdir -p $(@D)
 	$(call say,EMCC,$@)
-	$(Q)$(WEB_CC) $(WEB_FLAGS) -MMD -MP -c $< -o $@
-$(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c
+	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
+$(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c | $(BUILD)/web-cc
 	@mkdir -p $(@D)
 	$(call say,EMCC,$@)
-	$(Q)$(WEB_CC) $(WEB_FLAGS) -MMD -MP -c $< -o $@
+	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
 $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
@@ -510,6 +515,51 @@ $(WEB)/noh.js: $(WEB_MAIN) $(wildcard platform/web/*.h) $(WEB_O) $(WEB_OBJECTS)/
 	@mkdir -p $(@D)
 	@PLAN=$(WEB_OBJECTS)/plan.js PACK="$(WEB_PACK)" WIRE=$(WEB)/page.nohz ACTORS=$(WEB_ACTORS) STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) \
 	    STATIC=$(WEB_STATIC) OUT=$@ FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_MAIN) $(WEB_O)
+
+# ---- the page's converter ----
+
+# `noh build` and `noh pack` as WebAssembly, which a page loads when a model is dropped on it (tools/web_convert). Headers
+# of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco and
+# Assimp are left out: what needs them is refused.
+WEB_CONVERT   := $(BUILD)/web-convert
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename tools/web_convert/main.c tools/web_convert/libraries.cpp \
+                 tools/noh/build/cmd_build.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
+                 $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) \
+                 $(filter-out tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%,$(CONVERT_CC)))) \
+                 $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
+WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include
+WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker,node \
+                     -s TOTAL_STACK=1MB -s MODULARIZE=1 -s EXPORT_NAME=nohConvert -s INVOKE_RUN=0 \
+                     -s EXPORTED_RUNTIME_METHODS=FS,callMain -s INCOMING_MODULE_JS_API=stdout,stderr,locateFile,wasmMemory
+
+# Headers that any processor can have, and nothing else of /usr/include.
+$(WEB_CONVERT)/include/.made: tools/web_convert/meshoptimizer.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_convert/meshoptimizer.sh $(WEB_CONVERT)
+	$(Q)ln -sfn /usr/include/nlohmann /usr/include/stb /usr/include/tiny_gltf.h $(abspath $(WEB_CONVERT)/meshoptimizer/src/meshoptimizer.h) $(@D)
+	@touch $@
+$(WEB_CONVERT)/%.o: %.c $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc -std=c99 $(WEB_CONVERT_FLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+$(WEB_CONVERT)/tools/%.o: tools/%.cpp $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc -std=c++17 -fwasm-exceptions $(WEB_CONVERT_FLAGS) -O1 -isystem /usr/include/stb $(INCLUDES) -MMD -MP -c $< -o $@
+$(WEB_CONVERT)/meshoptimizer/%.o: $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc $(WEB_CONVERT_FLAGS) -U__SSE2__ -w -c $(@:.o=.cpp) -o $@
+$(WEB_CONVERT)/convert.js: $(WEB_CONVERT_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_CONVERT_FLAGS) $^ $(WEB_CONVERT_LINK) -o $@
+-include $(WEB_CONVERT_O:.o=.d)
+$(WEB_CONVERT)/convert.wasm: $(WEB_CONVERT)/convert.js
+$(WEB)/convert/worker.js: tools/web_convert/worker.js
+	@mkdir -p $(@D)
+	@cp $< $@
+$(WEB)/convert/convert.%: $(WEB_CONVERT)/convert.%
+	@mkdir -p $(@D)
+	@cp $< $@
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz

@@ -127,5 +127,9 @@ for pack in "$@"; do
     [ "$name" != puppet ] || clip=dance time=3.25
     if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
 done
+said=$(NOH_BUILD="$build" sh tests/web_convert.sh)
+echo "$said" | sed '$d'
+passed=$((passed + $(echo "$said" | sed -n 's/^\([0-9]*\) passed, .*/\1/p')))
+failed=$((failed + $(echo "$said" | sed -n 's/^[0-9]* passed, \([0-9]*\) failed.*/\1/p')))
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

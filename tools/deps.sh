@@ -60,6 +60,7 @@ packages_web='?emscripten:the page
 ?nodejs:its test
 ?npm:its test
 ?chromium:its test
+?dpkg-dev:its converter, out of sources
 libcmocka-dev:its test'
 packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'

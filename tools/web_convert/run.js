@@ -1,0 +1,20 @@
+// run.js CONVERT.js ARGUMENT...: the page's converter under node, on files of this machine, for the tests: `build a.glb -o
+// a.noh`. Paths are absolute.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+
+const [script, ...args] = process.argv.slice(2);
+const inside = (file) => `/${path.basename(file)}`;
+
+(async () => {
+    const program = await require(path.resolve(script))({ locateFile: (name) => path.join(path.dirname(path.resolve(script)), name) });
+    const given = args.map((argument, i) => {
+        if (!path.isAbsolute(argument)) return argument;
+        if (args[i - 1] !== '-o') program.FS.writeFile(inside(argument), fs.readFileSync(argument));
+        return inside(argument);
+    });
+    const status = program.callMain(given), out = args[args.indexOf('-o') + 1];
+    if (!status) fs.writeFileSync(out, program.FS.readFile(inside(out)));
+    process.exitCode = status;
+})().catch((error) => { console.error(String(error)); process.exitCode = 1; });
