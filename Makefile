@@ -432,31 +432,29 @@ bench-lod: deps-build
 
 # ---- the page ----
 
-# Built for one pack and so many characters, in a folder of its own: WebAssembly memory cannot grow, and its size is the
-# pack, the stage's plan for the path that takes the most (platform/web/plan.c, run under node), the program's own static
-# data, the stack and a heap for emscripten's strings.
+# One program for all packs: the memory that it runs in is made in the browser, for its pack (platform/web/package).
 WEB_PACK    ?= $(BUILD)/mask.noh
-WEB_ACTORS  ?= 1
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
 WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
-WEB_LINK    := -msse2 -s MIN_WEBGL_VERSION=2 -s MAX_WEBGL_VERSION=2 -s ALLOW_MEMORY_GROWTH=0 -s ENVIRONMENT=web --no-entry \
-               -s MALLOC=emmalloc -s EXPORTED_RUNTIME_METHODS=UTF8ToString -s INCOMING_MODULE_JS_API=onRuntimeInitialized
 WEB_STACK   := 65536
-WEB_HEAP    := 65536
-WEB_STATIC  := 262144
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js keys.js light.js hair.js faces.js load.js convert.js speech.js microphone.js page.noh page.nohz)
+WEB_STATIC  := 1048576
+WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
+               -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
+WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js convert.js speech.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
 WEB_CONVERTER := $(addprefix $(WEB)/convert/,convert.js convert.wasm worker.js)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
-	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB)/noh.js $(WEB_PAGE)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PAGE)
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERTER) || echo 'The page has no converter: it shows packs alone.'
+	@sh tools/web_sizes.sh $(WEB)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
 WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_PACKS)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
 # HOST=all: also to phones and others in the same network.
@@ -485,15 +483,17 @@ $(WEB)/page.noh: $(WEB_PACK)
 $(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh
 	@mkdir -p $(@D)
 	$(Q)$(BUILD)/noh pack $< -o $@ --quiet
+$(WEB)/package/noh.wasm: $(WEB_OBJECTS)/noh.wasm
+	@mkdir -p $(@D)
+	@cp $< $@
 $(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-# What does not depend on the pack is compiled once, for all pages and for the planner.
-WEB_MAIN := $(addprefix platform/web/,main.c load.c light.c faces.c hair.c sound.c touch.c) # these know the size of its memory
-WEB_C := platform/web/bounds.c platform/web/cast.c platform/web/context.c $(RUNTIME_C)
+# The program, and the planner that the tests run under node.
+WEB_C := $(filter-out %/plan.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
-WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/file.o $(filter-out %/context.o,$(WEB_O))
+WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/web/cast.o $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
 $(BUILD)/web-cc: tools/web_cc.sh
 	@mkdir -p $(@D)
@@ -511,10 +511,10 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
 -include $(WEB_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
-$(WEB)/noh.js: $(WEB_MAIN) $(wildcard platform/web/*.h) $(WEB_O) $(WEB_OBJECTS)/plan.js $(WEB_PACK) $(WEB)/page.nohz tools/web.sh $(if $(filter 1,$(WEB_ACTORS)),,FORCE)
-	@mkdir -p $(@D)
-	@PLAN=$(WEB_OBJECTS)/plan.js PACK="$(WEB_PACK)" WIRE=$(WEB)/page.nohz ACTORS=$(WEB_ACTORS) STACK=$(WEB_STACK) HEAP=$(WEB_HEAP) \
-	    STATIC=$(WEB_STATIC) OUT=$@ FLAGS="$(WEB_FLAGS)" LINK="$(WEB_LINK)" sh tools/web.sh $(WEB_MAIN) $(WEB_O)
+$(WEB_OBJECTS)/noh.wasm: $(WEB_O)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
+	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|height\|lost\|string\|width\)'
 
 # ---- the page's converter ----
 

@@ -1,35 +1,47 @@
-/* context.c: a WebGL 2 context on the element #canvas. WebGL has no lookup by name, so a table of the functions that
- * the library calls stands in for one, and no other GL function is linked into the page. */
+/* context.c: a WebGL 2 context, which gl.js reaches for this program. WebGL has no lookup by name, so a table of the
+ * functions that the library calls stands in for one; no other is imported. */
 #define GL_GLES_PROTOTYPES 1
 #include "context.h"
 
-#include <emscripten/html5.h>
-
 #include <string.h>
 
-#define CANVAS "#canvas"
-#define UNMASKED_RENDERER 0x9246 /* of WEBGL_debug_renderer_info */
+/* What GL does not have. Strings are written with their zero, cut to fit. */
+#define NAMED(what) __attribute__((import_module("noh"), import_name(what)))
+NAMED("string") void web_gl_string(GLenum what, char *text, uint32_t room);
+NAMED("extension") void web_gl_extension(GLuint index, char *text, uint32_t room);
+NAMED("enable") void web_gl_enable(void);
+NAMED("lost") int web_gl_lost(void);
+NAMED("width") uint32_t web_gl_width(void);
+NAMED("height") uint32_t web_gl_height(void);
 
 struct noh_platform_context {
-    EMSCRIPTEN_WEBGL_CONTEXT_HANDLE handle;
+    int unused;
 };
 
-static noh_platform_context only; /* one canvas, one context */
+static noh_platform_context only; /* gl.js has the context itself */
 
-/* Browsers give a name of their own as GL_RENDERER. The driver's, which quirks are matched with, is another query. */
+/* GL_RENDERER is the driver's own name, which quirks are matched with, where the browser gives it. */
 static const GLubyte *GL_APIENTRY get_string(GLenum what)
 {
-    const GLubyte *text = NULL;
-    if (what == GL_RENDERER && emscripten_webgl_enable_extension(only.handle, "WEBGL_debug_renderer_info")) {
-        text = glGetString(UNMASKED_RENDERER);
-    }
-    return text ? text : glGetString(what);
+    static char text[256];
+    web_gl_string(what, text, sizeof text);
+    return (const GLubyte *)text;
+}
+
+static const GLubyte *GL_APIENTRY get_string_i(GLenum what, GLuint index)
+{
+    static char text[64];
+    (void)what; /* extensions are all that there is */
+    web_gl_extension(index, text, sizeof text);
+    return (const GLubyte *)text;
 }
 
 static const struct {
     const char *name;
     noh_gl_proc proc;
 } functions[] = {
+#define glGetString get_string
+#define glGetStringi get_string_i
 #define WEB_FUNCTION(field, TYPE) { "gl" #field, (noh_gl_proc)gl##field },
     NOH_GL_REQUIRED(WEB_FUNCTION)
 #undef WEB_FUNCTION
@@ -37,33 +49,23 @@ static const struct {
 
 void noh_web_enable_extensions(noh_platform_context *context)
 {
-    static const char *const wanted[] = { "EXT_color_buffer_float", "EXT_color_buffer_half_float", "EXT_float_blend",
-                                          "WEBGL_compressed_texture_etc" };
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-        emscripten_webgl_enable_extension(context->handle, wanted[i]);
-    }
+    (void)context;
+    web_gl_enable();
 }
 
 static noh_result make_current(noh_platform_context *context)
 {
-    return emscripten_webgl_make_context_current(context->handle) == EMSCRIPTEN_RESULT_SUCCESS ? NOH_OK : NOH_ERR_GL;
+    (void)context;
+    return NOH_OK;
 }
 
 static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message, size_t message_bytes)
 {
-    EmscriptenWebGLContextAttributes attributes;
     (void)desc;
     (void)message;
     (void)message_bytes;
-    emscripten_webgl_init_context_attributes(&attributes);
-    attributes.majorVersion = 2;
-    attributes.antialias = 1;
-    attributes.depth = 1;
-    attributes.alpha = 0;
-    attributes.preserveDrawingBuffer = 1; /* so that the canvas can be saved */
-    only.handle = emscripten_webgl_create_context(CANVAS, &attributes);
-    if (only.handle <= 0 || make_current(&only) != NOH_OK) return NOH_ERR_UNSUPPORTED;
-    noh_web_enable_extensions(&only);
+    if (web_gl_lost()) return NOH_ERR_UNSUPPORTED;
+    web_gl_enable();
     *out = &only;
     return NOH_OK;
 }
@@ -71,7 +73,6 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
 static noh_gl_proc get_proc(void *user, const char *name)
 {
     (void)user;
-    if (strcmp(name, "glGetString") == 0) return (noh_gl_proc)get_string;
     for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
         if (strcmp(functions[i].name, name) == 0) return functions[i].proc;
     }
@@ -81,22 +82,22 @@ static noh_gl_proc get_proc(void *user, const char *name)
 /* The browser itself shows the canvas when the event handler or animation frame returns. */
 static noh_result present(noh_platform_context *context)
 {
-    return emscripten_is_webgl_context_lost(context->handle) ? NOH_ERR_GL : NOH_OK;
+    (void)context;
+    return web_gl_lost() ? NOH_ERR_GL : NOH_OK;
 }
 
 static void size(noh_platform_context *context, uint32_t *width, uint32_t *height)
 {
-    int w = 0, h = 0;
-    emscripten_webgl_get_drawing_buffer_size(context->handle, &w, &h);
-    *width = (uint32_t)w;
-    *height = (uint32_t)h;
+    (void)context;
+    *width = web_gl_width();
+    *height = web_gl_height();
 }
 
 static void destroy(noh_platform_context *context)
 {
-    if (context) emscripten_webgl_destroy_context(context->handle);
+    (void)context;
 }
 
 const noh_platform noh_platform_web = {
-    "web", "WebGL 2 on the page's canvas", create, make_current, get_proc, present, size, destroy
+    "web", "WebGL 2 on a page's canvas", create, make_current, get_proc, present, size, destroy
 };

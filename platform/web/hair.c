@@ -42,7 +42,7 @@ noh_result web_hair_open(void)
 
 void web_hair_close(void)
 {
-    for (uint32_t i = 0; i < NOH_WEB_ACTORS; i++) {
+    for (uint32_t i = 0; i < WEB_CHARACTERS_MAX; i++) {
         if (web.hair.drawn[i].gl) noh_stage_hair_delete(&web.hair.drawn[i]);
         memset(&web.hair.drawn[i], 0, sizeof web.hair.drawn[i]);
     }

@@ -3,73 +3,46 @@
 'use strict';
 
 const firstLight = 'studio'; // as pictures of `noh render` have it
-const backgrounds = ['plain', 'gradient', 'light'];
-const shadows = ['off', 'on', 'blob'];
 const ofLight = ['rotate', 'shadow', 'tonemap', 'background'];
+const plainLight = 'plain'; // no environment
 
-function setLighting() {
-    const degrees = Number(byId('rotate').value);
+function lightAsked() {
+    const offered = (select, asked, otherwise) => ([...byId(select).options].some((o) => o.value === asked) ? asked : otherwise);
+    return {
+        light: query.get('light') || firstLight, degrees: Number(query.get('rotate') || 0), shadow: offered('shadow', query.get('shadow'), 'on'),
+        tonemap: query.get('tonemap') !== 'none', background: offered('background', query.get('background'), 'light'), transfer: query.get('transfer') !== 'off',
+    };
+}
+
+// Plain light has nothing to turn, no shadow and no tones.
+function showLight({ light, degrees, shadow, tonemap, background, transfer }) {
+    const plain = !character.lights.includes(light), select = byId('light');
+    if (select.options.length === 1) for (const name of character.lights) select.add(new Option(name, name));
+    select.value = plain ? plainLight : light;
+    byId('rotate').value = degrees;
     byId('rotate-text').textContent = `${degrees.toFixed(0)}\u00b0`;
-    Module._web_set_lighting(degrees, shadows.indexOf(byId('shadow').value), byId('tonemap').checked ? 1 : 0, backgrounds.indexOf(byId('background').value));
+    byId('shadow').value = shadow;
+    byId('tonemap').checked = tonemap;
+    byId('background').value = background;
+    byId('transfer').checked = transfer;
+    for (const id of ofLight.concat('transfer')) byId(id).disabled = plain;
 }
 
-// Plain light has nothing to turn, no shadow and no tones. In a lost context nothing is made: it is, once that is back.
 function chooseLight() {
-    const light = Number(byId('light').value);
-    for (const id of ofLight.concat('transfer')) byId(id).disabled = light < 0;
-    if (lost) return;
-    check(Module._web_set_light(light));
-    if (!window.noh.ready) return;
+    character.setLight({
+        light: byId('light').value, degrees: Number(byId('rotate').value), shadow: byId('shadow').value, tonemap: byId('tonemap').checked,
+        background: byId('background').value, transfer: byId('transfer').checked,
+    });
     showMemory();
-    redraw();
-}
-
-function turnLight(pixels) {
-    const slider = byId('rotate');
-    if (slider.disabled) return;
-    slider.value = (Number(slider.value) + pixels * 0.5 + 540) % 360 - 180;
-    setLighting();
-    redraw();
-}
-
-// Before the stage is made, so that it is made once.
-function beginLight() {
-    const asked = query.get('light') || firstLight;
-    for (let i = 0; i < Module._web_light_count(); i++) byId('light').add(new Option(text(Module._web_light_name(i)), i));
-    const option = [...byId('light').options].find((o) => o.text === asked);
-    byId('light').value = option ? option.value : -1;
-    byId('rotate').value = Number(query.get('rotate') || 0);
-    byId('shadow').value = shadows.includes(query.get('shadow')) ? query.get('shadow') : 'on';
-    byId('tonemap').checked = query.get('tonemap') !== 'none';
-    byId('background').value = backgrounds.includes(query.get('background')) ? query.get('background') : 'light';
-    setLighting();
-    chooseLight();
 }
 
 // Whether meshes shade themselves by what was worked out when the pack was built. It is told in words of a pack without.
-function chooseTransfer() {
-    if (lost) return;
-    check(Module._web_set_transfer(byId('transfer').checked ? 1 : 0));
-    showMemory();
-    redraw();
-}
-
 function beginTransfer() {
     const has = Module._web_has_transfer();
     byId('transfer-row').hidden = !has;
-    if (query.get('transfer') === 'off' && has) {
-        byId('transfer').checked = false;
-        check(Module._web_set_transfer(0));
-    } else if (query.has('transfer') && !has) {
-        say('the pack has no precomputed light: build it with noh build --transfer');
-    }
+    showLight(character.chosen);
+    if (query.has('transfer') && !has) say('the pack has no precomputed light: build it with noh build --transfer');
 }
 
-byId('transfer').addEventListener('change', chooseTransfer);
-byId('light').addEventListener('change', chooseLight);
-for (const id of ofLight) {
-    byId(id).addEventListener('input', () => {
-        setLighting();
-        redraw();
-    });
-}
+for (const id of ['light', 'transfer']) byId(id).addEventListener('change', chooseLight);
+for (const id of ofLight) byId(id).addEventListener('input', chooseLight);

@@ -1,8 +1,6 @@
-/* main.c: the page's program. It shows the characters of one pack, whose targets and clips are given by index, on a
- * stage in memory whose size was fixed when the page was built. page.js calls the web_* functions. Those that return an
- * int return 0 or a noh_result; web_error then says what is wrong.
- *
- * The Makefile sets NOH_WEB_PACK_BYTES, NOH_WEB_ACTORS, and NOH_WEB_MEMORY_BYTES to what plan.c says. */
+/* main.c: the program behind a canvas. It shows the characters of one pack, whose targets and clips are given by index,
+ * on a stage in memory that was made for this pack and cannot grow. program.js makes that memory and calls the web_*
+ * functions. Those that return an int return 0 or a noh_result; web_error then says what is wrong. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -11,37 +9,36 @@
 
 #define SPEED_ONE 65536
 
-static uint8_t memory[NOH_WEB_MEMORY_BYTES] __attribute__((aligned(16)));
 struct web web = { .light = { .environment = WEB_PLAIN } };
 
 /* ---- loading ---- */
 
-static noh_result open_context(void)
+noh_result web_open_context(void)
 {
     if (noh_platform_web.create(NULL, &web.context, NULL, 0)) {
         return noh_fail(&web.error, NOH_ERR_UNSUPPORTED, "this browser gives no WebGL 2 context", 0, 0);
     }
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
     web.gl.decode = noh_etc2_decode;
-    return result ? result : noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
+    if (result || web.caps.version) return result; /* another program probed the same context */
+    return noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
 void *web_block(size_t at)
 {
-    return memory + at;
+    return web.block + at;
 }
 
 static noh_result make_stage(const web_wants *wants)
 {
     const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
-    noh_result result = web_cast_plan(&web.cast, &web.pack, wants, memory, sizeof memory, &web.caps, &web.error);
-    if (!result && web.cast.bytes > sizeof memory) {
-        return noh_fail(&web.error, NOH_ERR_MEMORY, "less memory than the pack needs: build the page for this pack", 0,
-                        web.cast.bytes);
+    noh_result result = web_cast_plan(&web.cast, &web.pack, wants, web.block, web.block_bytes, &web.caps, &web.error);
+    if (!result && web.cast.bytes > web.block_bytes) {
+        return noh_fail(&web.error, NOH_ERR_MEMORY, "less memory than was planned", 0, web.cast.bytes);
     }
     if (!result) result = web_light_bake();
     if (!result) {
-        result = noh_stage_init(memory, (size_t)web.cast.plan.cpu_bytes, &device, &web.cast.desc, &web.cast.plan,
+        result = noh_stage_init(web.block, (size_t)web.cast.plan.cpu_bytes, &device, &web.cast.desc, &web.cast.plan,
                                 &web.stage, &web.error);
     }
     if (!result) result = web_light_open();
@@ -61,7 +58,7 @@ noh_result web_open_stage(const web_wants *wants)
 {
     size_t bytes = 0;
     const void *state = web.stage ? noh_stage_state(web.stage, &bytes) : NULL;
-    uint8_t *kept = memory + sizeof memory - bytes;
+    uint8_t *kept = web.block + web.block_bytes - bytes;
     noh_result result;
     if (web.stage) {
         memmove(kept, state, bytes);
@@ -95,7 +92,7 @@ static void go_home(void)
 static noh_result enter(uint32_t characters)
 {
     noh_result result = NOH_OK;
-    for (uint32_t n = 0; n < characters && n < NOH_WEB_ACTORS; n++) {
+    for (uint32_t n = 0; n < characters; n++) {
         for (uint32_t k = 0; k < web.cast.desc.kind_count && !result; k++) {
             web_figure *f = &web.figures[web.figure_count++];
             f->kind = k;
@@ -144,29 +141,21 @@ static noh_result begin(const web_wants *wants)
     return result;
 }
 
-/* Open the pack that was loaded. path: a noh_morph_path. characters: on stage, at most as many as there is room for.
- * alive: 0: without faces */
+/* Open the pack that was loaded. path: a noh_morph_path. characters: on stage. alive: 0: without faces. All as they
+ * were when its memory was planned. */
 EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
 {
-    const web_wants wants = { NOH_WEB_ACTORS, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
+    const web_wants wants = { characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
     noh_result result = web_load(&web.pack);
     web.character_count = characters;
-    if (!result) result = open_context();
+    if (!result) result = web_open_context();
     return (int)(result ? result : begin(&wants));
 }
 
-/* Another pack is there, or the whole one in place of its coarsest levels: all begins anew with it. Nothing plays,
- * nothing is held. After an error nothing is there, until this succeeds. */
-EMSCRIPTEN_KEEPALIVE int web_open_again(void)
+/* All GL objects go. Nothing may follow. */
+EMSCRIPTEN_KEEPALIVE void web_close(void)
 {
-    const web_wants wants = web.cast.wants;
-    noh_result result;
     close_stage();
-    web.figure_count = web.target_count = 0;
-    result = web_load(&web.pack);
-    if (!result) result = begin(&wants);
-    if (!result) go_home();
-    return (int)result;
 }
 
 /* Make every GL object again from the pack, after the browser restored a lost context. */
@@ -198,7 +187,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_path(void)
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_memory_room(void)
 {
-    return sizeof memory;
+    return (uint32_t)web.block_bytes;
 }
 EMSCRIPTEN_KEEPALIVE uint32_t web_gpu_bytes(void)
 {
@@ -426,8 +415,8 @@ EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     set_looks(1);
     if (noh_stage_frame(web.stage, 0, NULL, NULL, NULL, &web.error) == NOH_OK) {
-        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * NOH_WEB_ACTORS, web_block(web.cast.matrices_at),
-                   web.bounds);
+        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * web.cast.wants.actors,
+                   web_block(web.cast.matrices_at), web.bounds);
     }
     set_looks(0);
     web.view.cut = 1;

@@ -1,20 +1,17 @@
-// page.js: the page around the WebAssembly program (main.c): the camera, clips, sliders, the table of memory.
+// page.js: panels around a character (package/character.js): clips, sliders, the table of memory.
 // The query: ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
-// the camera where it is; ?actors=3 shows so many characters, as far as the page was built for them; ?size=512 draws a
-// canvas of so many pixels across. load.js, light.js, hair.js, faces.js and speech.js have parts of the query of their own.
+// the camera where it is; ?actors=3 shows so many characters; ?size=512 draws a canvas of so many pixels across. load.js,
+// light.js, hair.js, faces.js and speech.js have parts of the query of their own.
 'use strict';
 
 const query = new URLSearchParams(location.search);
-const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
-const transition = 0.3; // seconds from one clip into another
-const body = 0, face = 1; // layers
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
-let lost = false;
-let wanted = false;
-let drawn = 0; // time of the last frame, in ms
-let busy = 0; // until then something fades
+const arriving = Promise.all([import('./package/character.js'), import('./package/pointer.js')]);
+let character = null;
+let Module = null; // its program
+let fresh = true; // the next pack begins anew, else it goes on
 
 // Tests wait for these.
 window.noh = { ready: false, whole: false, coarse: 0, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
@@ -27,182 +24,24 @@ function fail(text) {
 
 // What is not as the query asks, beside the picture.
 const say = (words) => { byId('message').textContent = words; };
+const text = (pointer) => Module.text(pointer);
 
-const text = (pointer) => Module.UTF8ToString(pointer);
-const check = (result) => { if (result) fail(text(Module._web_error())); };
-const floats = (pointer, count) => Module.HEAPF32.subarray(pointer >> 2, (pointer >> 2) + count);
+// ---- the camera, pushes, what is picked ----
 
-// ---- the camera: as `noh render` has it, 30 degrees high ----
-
-const front = { azimuth: 0, elevation: 0.05 };
-const orbit = { ...front, distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0 };
-const walked = () => Array.from(floats(Module._web_walked(), 3));
-
-function product(a, b) {
-    const out = new Float32Array(16);
-    for (let i = 0; i < 16; i++) {
-        for (let k = 0; k < 4; k++) out[i] += a[4 * k + i % 4] * b[4 * (i >> 2) + k];
-    }
-    return out;
-}
-
-// Come as near as all figures in their current pose allow.
-function fit() {
-    orbit.box = Array.from(floats(Module._web_measure(), 6));
-    orbit.from = walked();
-    orbit.distance = 0;
-    orbit.offset = [0, 0, 0];
-    redraw();
-}
-
-function setCamera() {
-    const b = orbit.box, to = byId('follow').checked ? walked() : orbit.from;
-    const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - orbit.from[c] + orbit.offset[c]);
-    const half = [0, 1, 2].map((c) => (b[3 + c] - b[c]) / 2);
-    const aspect = canvas.width / canvas.height, f = 1 / Math.tan(Math.PI / 12);
-    const radius = Math.max(Math.hypot(...half), 1e-6);
-    const need = Math.max(half[1], Math.max(half[0], half[2] * 0.7) / aspect) * 1.05;
-    const fitting = Math.max(need * f + half[2], radius * 1.02);
-    const d = (orbit.distance || 1) * fitting, near = Math.max(d - 2 * radius, d * 0.02), far = d + 2 * radius;
-    const ca = Math.cos(orbit.azimuth), sa = Math.sin(orbit.azimuth);
-    const ce = Math.cos(orbit.elevation), se = Math.sin(orbit.elevation);
-    const right = [ca, 0, -sa], up = [-sa * se, ce, -ca * se], back = [sa * ce, se, ca * ce];
-    Object.assign(orbit, { right, up, pixel: 2 * d / f / canvas.clientHeight });
-    const eye = centre.map((c, i) => c + back[i] * d);
-    const dot = (a) => a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];
-    const view = [0, 1, 2].flatMap((c) => [right[c], up[c], back[c], 0]).concat([-dot(right), -dot(up), -dot(back), 1]);
-    const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
-    const key = right.map((r, i) => -0.45 * r + 0.62 * up[i] + 0.64 * back[i]);
-    const out = floats(Module._web_view(), 22); // matrix, eye, light
-    out.set(product(projection, view), 0);
-    out.set(eye, 16);
-    out.set(key.map((k) => k / Math.hypot(...key)), 19);
-}
-
-// One finger or the mouse turns the figure; two fingers or the wheel zoom; two fingers that go the same way, or a drag
-// with the right button, move the picture; a drag with shift turns the light; a tap or a click picks. keys.js has the
-// same for the keyboard.
-const pointers = new Map();
-let tapped = null;
-const apart = () => {
-    const [a, b] = [...pointers.values()];
-    return Math.max(Math.hypot(a.x - b.x, a.y - b.y), 1);
-};
-function zoom(by) {
-    orbit.distance = Math.min(4, Math.max(0.15, (orbit.distance || 1) * by));
-    redraw();
-}
-function turn(azimuth, elevation) {
-    orbit.azimuth += azimuth;
-    orbit.elevation = Math.min(1.5, Math.max(-1.5, orbit.elevation + elevation));
-    redraw();
-}
-// By pixels of the page: what is under a finger stays there.
-function pan(x, y) {
-    orbit.offset = orbit.offset.map((o, i) => o + (y * orbit.up[i] - x * orbit.right[i]) * orbit.pixel);
-    redraw();
-}
-function pick(event) {
-    const r = canvas.getBoundingClientRect();
-    const x = (event.clientX - r.left) * canvas.width / r.width, y = (event.clientY - r.top) * canvas.height / r.height;
-    if (event.altKey) return push((strength) => Module._web_push_at(x, y, strength));
-    const names = Module._web_pick(x, y) ? [Module._web_picked_mesh(), Module._web_picked_joint()].map(text) : [];
-    byId('picked').textContent = names.filter((name) => name).join(', joint ');
-}
-canvas.addEventListener('pointerdown', (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    tapped = pointers.size ? null : { x: event.clientX, y: event.clientY };
-    pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-});
-canvas.addEventListener('pointermove', (event) => {
-    const at = pointers.get(event.pointerId);
-    if (!at || pointers.size > 2) return;
-    if (tapped && Math.hypot(event.clientX - tapped.x, event.clientY - tapped.y) > 6) tapped = null;
-    const x = event.clientX - at.x, y = event.clientY - at.y, before = pointers.size === 2 ? apart() : 0;
-    Object.assign(at, { x: event.clientX, y: event.clientY });
-    if (before) pan(x / 2, y / 2);
-    if (before) return zoom(before / apart());
-    if (event.shiftKey) return turnLight(x);
-    return event.buttons === 2 ? pan(x, y) : turn(-x * 0.01, y * 0.01);
-});
-canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-canvas.addEventListener('pointerup', (event) => {
-    if (tapped && !lost) pick(event);
-    tapped = null;
-});
-for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
-canvas.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    zoom(Math.exp(event.deltaY * 0.001));
-}, { passive: false });
-
-// A push at the chest or where a click with Alt hits, newton seconds. Who lies gets up, and goes on with the clip.
-const strength = 90;
-let fallen = 0;
-function push(by) {
-    const error = lost ? 0 : by(strength);
+function showPush({ error }) {
     byId('push-text').hidden = !error;
-    byId('push-text').textContent = error ? `cannot be pushed: ${text(Module._web_error())}` : '';
-    redraw();
-}
-function showFall() {
-    const before = fallen;
-    fallen = Module._web_fallen();
-    if (before && !fallen && clip() >= 0) play(body, clip(), 0, transition);
-}
-byId('push').addEventListener('click', () => push(Module._web_push));
-
-byId('fit').addEventListener('click', fit);
-byId('front').addEventListener('click', () => { Object.assign(orbit, front); redraw(); });
-byId('follow').addEventListener('change', redraw);
-
-// ---- frames ----
-
-function draw() {
-    wanted = false;
-    if (lost || !window.noh.ready) return;
-    const now = performance.now();
-    showSpeech();
-    check(Module._web_step(Math.min(now - drawn, 100) / 1000));
-    drawn = now;
-    showFall();
-    setCamera();
-    check(Module._web_draw());
-    window.noh.frames++;
-    showDetail();
-    showTime();
-    sliders.forEach(showWeight);
-    if (playing || now < busy || Module._web_fades() || isAlive() || isSpeaking() || fallen || hairMoves()) redraw();
+    byId('push-text').textContent = error ? `cannot be pushed: ${error}` : '';
 }
 
-function redraw() {
-    window.noh.due = window.noh.frames + 1;
-    if (!wanted) requestAnimationFrame(draw);
-    wanted = true;
-}
-
-function resize() {
-    const fixed = Number(query.get('size')), scale = Math.min(window.devicePixelRatio || 1, 2);
-    const [width, height] = fixed ? [fixed, fixed] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
-    if (width === canvas.width && height === canvas.height) return;
-    Object.assign(canvas, { width, height });
-    if (!window.noh.ready) return;
-    draw(); // at once, because resizing clears a canvas
-}
-
-canvas.addEventListener('webglcontextlost', (event) => {
-    event.preventDefault(); // else the browser never restores it
-    lost = true;
-    window.noh.lost++;
-    byId('message').textContent = 'the context is lost';
+byId('push').addEventListener('click', () => character.push());
+byId('fit').addEventListener('click', () => character.fit());
+byId('front').addEventListener('click', () => {
+    Object.assign(character.camera, { azimuth: 0, elevation: 0.05 });
+    character.redraw();
 });
-canvas.addEventListener('webglcontextrestored', () => {
-    check(Module._web_restore());
-    lost = false;
-    window.noh.restored++;
-    chooseLight();
-    byId('message').textContent = '';
-    draw();
+byId('follow').addEventListener('change', () => {
+    character.camera.follows = byId('follow').checked;
+    character.redraw();
 });
 
 // ---- LOD levels ----
@@ -213,70 +52,48 @@ function showDetail() {
     byId('detail-text').textContent = `${shown ? `level ${shown}` : 'full'}, off by at most ${error.toFixed(2)} pixels`;
 }
 
-byId('detail').addEventListener('change', () => {
-    Module._web_set_level(Number(byId('detail').value));
-    redraw();
-});
+byId('detail').addEventListener('change', () => { character.level = Number(byId('detail').value); });
 
-// By pixels, or at the level that ?detail says.
-function beginDetail() {
+// By pixels, or at the level that was chosen, as far as there is one.
+function listDetail() {
     const count = Module._web_level_count();
     byId('detail').length = 2; // by pixels, full
     for (let i = 1; i < count; i++) byId('detail').add(new Option(`level ${i}`, i));
     byId('details').hidden = count < 2;
-    const asked = Number(query.get('detail') || -1);
-    byId('detail').value = asked >= 0 && asked < count ? asked : -1;
-    Module._web_set_level(Number(byId('detail').value));
+    byId('detail').value = character.level < count ? character.level : -1;
 }
 
 // ---- clips ----
 
-const clip = () => Number(byId('clips').value);
-let playing = false;
+const named = (select) => (Number(select.value) < 0 ? null : select.selectedOptions[0].text);
 
 function showTime() {
-    const time = Module._web_time();
+    const time = character.time;
     byId('time').value = time;
     byId('time-text').textContent = `${time.toFixed(2)} s`;
 }
 
-const setSpeed = () => Module._web_set_speed(playing ? Number(byId('speed').value) : 0);
-
-function play(layer, which, time, over) {
-    check(Module._web_play(layer, which, time, over));
-    busy = performance.now() + 1000 * over + 100;
-    redraw();
+function choose(fade) {
+    const name = named(byId('clips'));
+    byId('time').max = name === null ? 0.001 : Math.max(character.clipNamed(name).seconds, 0.001);
+    character.play(name, { fade });
 }
 
-function choose(over) {
-    byId('time').max = Math.max(clip() < 0 ? 0 : Module._web_clip_seconds(clip()), 0.001);
-    play(body, clip(), 0, over);
-}
-
-function setPlaying(on) {
-    playing = on;
-    byId('play').textContent = playing ? 'pause' : 'play';
-    setSpeed();
-    redraw();
-}
-
-byId('play').addEventListener('click', () => setPlaying(!playing));
-byId('clips').addEventListener('change', () => choose(playing ? transition : 0));
-byId('face').addEventListener('change', () => play(face, Number(byId('face').value), 0, transition));
+byId('play').addEventListener('click', () => { character.paused = !character.paused; });
+byId('clips').addEventListener('change', () => choose(character.paused ? 0 : undefined));
+byId('face').addEventListener('change', () => character.play(named(byId('face')), { layer: 'face' }));
 byId('time').addEventListener('input', () => {
-    setPlaying(false);
-    play(body, clip(), Number(byId('time').value), 0);
+    character.paused = true;
+    character.time = Number(byId('time').value);
 });
 byId('speed').addEventListener('input', () => {
     byId('speed-text').textContent = Number(byId('speed').value).toFixed(2);
-    setSpeed();
+    character.speed = Number(byId('speed').value);
 });
 
 function listClips(select) {
     select.length = 1; // none
-    for (let i = 0; i < Module._web_clip_count(); i++) {
-        if (Module._web_clip_seconds(i) >= 0) select.add(new Option(text(Module._web_clip_name(i)), i));
-    }
+    for (const clip of character.clips) select.add(new Option(clip.name, clip.index));
 }
 
 // The clip of the query; without one the option that is given, or none.
@@ -294,13 +111,11 @@ function beginClips() {
     byId('motion').hidden = byId('clips').options.length < 2;
     byId('faces-row').hidden = !moves || !sliders.length;
     byId('follow-row').hidden = byId('push-row').hidden = !moves;
-    byId('follow').checked = query.get('camera') !== 'fixed';
     begin(byId('clips'), 'clip', 1);
     begin(byId('face'), 'face', 0);
-    setSpeed();
+    character.paused = named(byId('clips')) === null || matchMedia('(prefers-reduced-motion: reduce)').matches;
     choose(0);
-    if (Number(byId('face').value) >= 0) play(face, Number(byId('face').value), 0, transition);
-    if (clip() >= 0 && !matchMedia('(prefers-reduced-motion: reduce)').matches) setPlaying(true);
+    if (named(byId('face')) !== null) character.play(named(byId('face')), { layer: 'face' });
 }
 
 // ---- start ----
@@ -314,24 +129,13 @@ function addRow(cells, tag) {
     }
 }
 
-// What each part of noh takes, and what the page gives it.
+// What each part of noh takes, and what its pack gave it.
 function showMemory() {
-    const byName = new Map();
-    for (let i = 0; i < Module._web_part_count(); i++) { // those of several skeletons in one row
-        const name = text(Module._web_part_name(i)), row = byName.get(name) || { name, cpu: 0, gpu: 0 };
-        row.cpu += Module._web_part_cpu_bytes(i);
-        row.gpu += Module._web_part_gpu_bytes(i);
-        byName.set(name, row);
-    }
-    const parts = [...byName.values()];
-    const sum = (key) => parts.reduce((all, p) => all + p[key], 0);
-    const memory = {
-        cpu: sum('cpu'), gpu: Module._web_gpu_bytes(), room: Module._web_memory_room(), pack: Module._web_pack_room(), all: Module.HEAPU8.length,
-    };
+    const { memory } = character;
     window.noh.memory = memory;
     byId('memory').replaceChildren();
     addRow(['of', 'CPU', 'GPU'], 'th');
-    for (const p of parts) if (p.cpu || p.gpu) addRow([p.name, p.cpu, p.gpu]);
+    for (const p of memory.parts) if (p.cpu || p.gpu) addRow([p.name, p.cpu, p.gpu]);
     addRow(['the stage', memory.cpu, memory.gpu]);
     addRow(['its block', memory.room, '']);
     addRow(['the pack', memory.pack, '']);
@@ -339,67 +143,74 @@ function showMemory() {
     byId('device').textContent = (window.noh.path ? `path ${window.noh.path}, ` : '') + window.noh.renderer;
 }
 
-// A pack as it begins. again: another one was shown before it.
-function showPack(again) {
-    if (!again) beginLight();
-    check(again ? Module._web_open_again() : Module._web_open(Math.max(0, paths.indexOf(query.get('path') || 'auto')),
-        Number(query.get('actors') || 1), query.get('alive') === 'off' ? 0 : 1));
-    const box = floats(Module._web_measure(), 6);
-    Module._web_set_spacing((box[3] - box[0]) * 1.1);
+// A pack as it begins.
+function showPack() {
+    fresh = false;
+    character.releaseWeights();
     listTargets();
-    window.noh.renderer = text(Module._web_renderer());
-    window.noh.path = text(Module._web_path());
-    beginDetail();
     beginClips();
     say('');
     beginTransfer();
     beginHair();
     beginFaces();
     beginSpeech();
-    fit();
+    character.fit();
+}
+
+function showLoaded({ whole }) {
+    Module = window.Module = character.program;
+    window.noh.renderer = text(Module._web_renderer());
+    window.noh.path = text(Module._web_path());
+    listDetail();
+    if (fresh) showPack();
+    else listTargets(); // all levels in place of the coarsest: what was chosen and held meanwhile stays
+    character.draw();
     window.noh.ready = true;
-    resize();
-    draw();
-    check(Module._web_check());
+    if (!whole) window.noh.coarse = character.frames;
+    window.noh.whole = whole;
     showMemory();
 }
 
-// All levels in place of the coarsest: what was chosen and held meanwhile stays.
-function goOn() {
-    const time = Module._web_time(), kept = sliders.filter((s) => s.label.classList.contains('held')).map((s) => [s.slider.dataset.target, Number(s.slider.value)]);
-    const over = Number(byId('face').value);
-    check(Module._web_open_again());
-    listTargets();
-    for (const [name, weight] of kept) hold(sliders.find((s) => s.slider.dataset.target === name), weight);
-    beginDetail();
-    play(body, clip(), time, 0);
-    if (over >= 0) play(face, over, 0, 0);
-    if (!byId('hair-section').hidden) setHair();
-    smooth();
-    setAlive();
-    feel();
-    draw();
-    check(Module._web_check());
-    showMemory();
+function showFrame() {
+    window.noh.frames = character.frames;
+    showDetail();
+    showTime();
+    sliders.forEach(showWeight);
 }
 
-function showArrived(shows, again) {
-    if (window.noh.ready) goOn();
-    else showPack(again);
-    if (shows === 1) window.noh.coarse = window.noh.frames;
-    window.noh.whole = shows === 2;
-}
-
-// Of another pack than the one that is shown, which goes.
-function takeOver() {
-    Object.assign(window.noh, { ready: false, whole: false, error: '' });
-    return (shows) => showArrived(shows, true);
+function listen() {
+    const on = (type, call) => character.addEventListener(type, (event) => call(event.detail));
+    on('load', showLoaded);
+    on('frame', showFrame);
+    on('progress', showProgress);
+    on('light', showLight);
+    on('push', showPush);
+    on('speech', showSaid);
+    on('pick', ({ mesh, joint }) => { byId('picked').textContent = [mesh, joint].filter((name) => name).join(', joint '); });
+    on('pause', ({ paused }) => { byId('play').textContent = paused ? 'play' : 'pause'; });
+    on('lost', () => {
+        window.noh.lost++;
+        say('the context is lost');
+    });
+    on('restored', () => {
+        window.noh.restored++;
+        say('');
+    });
 }
 
 async function start() {
-    await load(asked, (shows) => showArrived(shows, false));
-    new ResizeObserver(resize).observe(canvas);
+    const [{ Character }, { addPointers, addGaze }] = await arriving;
+    character = new Character(canvas, {
+        path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')),
+        follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),
+    });
+    byId('follow').checked = character.camera.follows;
+    Object.defineProperty(window.noh, 'due', { get: () => character.due });
+    listen();
+    addPointers(canvas, character);
+    addGaze(canvas, character, () => byId('looks').checked);
+    await load(asked);
 }
 
-var Module = { onRuntimeInitialized: () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }) };
-window.Module = Module;
+// Once the other scripts are there.
+document.addEventListener('DOMContentLoaded', () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }));

@@ -15,7 +15,7 @@ const groups = [ // the first that fits
 const groupOf = (name) => groups.find((g) => g[1].test(name))[0];
 
 function showWeight(s) {
-    const weight = Module._web_weight(s.index);
+    const weight = character.weight(s.name);
     if (weight === s.shown) return;
     s.shown = weight;
     s.slider.value = weight;
@@ -23,10 +23,8 @@ function showWeight(s) {
 }
 
 function hold(s, weight) {
-    if (!s) return;
-    Module._web_hold(s.index, weight, 1);
+    character.setWeight(s.name, weight);
     s.label.classList.add('held');
-    redraw();
 }
 
 // A target is not shown at the left end, and whole at the right one; or it goes beyond both.
@@ -37,14 +35,15 @@ function setRange(s) {
     showWeight(s);
 }
 
-function addSlider(index, name, to) {
+function addSlider(name, to) {
     const label = document.createElement('label'), span = document.createElement('span');
     const slider = document.createElement('input'), output = document.createElement('output');
     span.textContent = span.title = name;
     Object.assign(slider, { type: 'range', step: 0.01 });
     slider.dataset.target = name;
-    const s = { index, label, slider, output, name: name.toLowerCase(), shown: NaN };
+    const s = { label, slider, output, name, shown: NaN };
     slider.addEventListener('input', () => hold(s, Number(slider.value)));
+    label.classList.toggle('held', character.weights.has(name));
     label.append(span, slider, output);
     to.append(label);
     sliders.push(s);
@@ -60,13 +59,12 @@ function addGroup(name, targets, alone) {
         to.append(summary);
     }
     byId('targets').append(to);
-    for (const t of targets) addSlider(t.index, t.name, to);
+    for (const name of targets) addSlider(name, to);
 }
 
 function listTargets() {
-    const all = [];
-    for (let i = 0; i < Module._web_target_count(); i++) all.push({ index: i, name: text(Module._web_target_name(i)) });
-    const filled = groups.map(([name]) => [name, all.filter((t) => groupOf(t.name) === name)]).filter(([, list]) => list.length);
+    const all = character.targets;
+    const filled = groups.map(([name]) => [name, all.filter((target) => groupOf(target) === name)]).filter(([, list]) => list.length);
     const alone = all.length < 12 || filled.length < 2;
     byId('targets').replaceChildren();
     sliders.length = 0;
@@ -78,14 +76,11 @@ function listTargets() {
 
 byId('search').addEventListener('input', () => {
     const part = byId('search').value.trim().toLowerCase();
-    for (const s of sliders) s.label.hidden = !s.name.includes(part);
+    for (const s of sliders) s.label.hidden = !s.name.toLowerCase().includes(part);
     for (const group of byId('targets').children) group.hidden = ![...group.querySelectorAll('label')].some((label) => !label.hidden);
 });
 byId('beyond').addEventListener('change', () => sliders.forEach(setRange));
 byId('reset').addEventListener('click', () => {
-    for (const s of sliders) {
-        Module._web_hold(s.index, 0, 0);
-        s.label.classList.remove('held');
-    }
-    redraw();
+    character.releaseWeights();
+    for (const s of sliders) s.label.classList.remove('held');
 });

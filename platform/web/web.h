@@ -9,7 +9,8 @@
 #include "wire/wire.h"
 
 #define WEB_PARTS_MAX 128u
-#define WEB_ACTORS_MAX (NOH_STAGE_KINDS_MAX * NOH_WEB_ACTORS)
+#define WEB_CHARACTERS_MAX 16u
+#define WEB_ACTORS_MAX (NOH_STAGE_KINDS_MAX * WEB_CHARACTERS_MAX)
 #define WEB_PLAIN (-1) /* no environment: the plain renderer's own light */
 
 /* A character has an actor for each of its skeletons. */
@@ -39,7 +40,7 @@ typedef struct web_light {
 } web_light;
 
 typedef struct web_hair {
-    noh_stage_hair drawn[NOH_WEB_ACTORS]; /* of each character */
+    noh_stage_hair drawn[WEB_CHARACTERS_MAX]; /* of each character */
     int off;                              /* 1: not shown */
     float wind[3];
     double shake_s; /* how long heads are still shaken */
@@ -47,6 +48,8 @@ typedef struct web_hair {
 
 struct web {
     noh_platform_context *context;
+    uint8_t *block; /* what is behind the pack */
+    size_t block_bytes;
     noh_gl_api gl;
     noh_gl_caps caps;
     noh_gl_ledger ledger;
@@ -77,7 +80,10 @@ extern struct web web;
 /* The block's part at an offset of web.cast. */
 void *web_block(size_t at);
 
-/* The best pack that has arrived. */
+/* Load and probe the canvas's context. */
+noh_result web_open_context(void);
+
+/* Open the best pack that has arrived, and give what is behind it to the block. */
 noh_result web_load(noh_pack *pack);
 
 /* Make the stage for what is wanted, in place of another one, whose state it then goes on with. */

@@ -3,10 +3,10 @@
 // around it. ?path=gather forces noh's path. compare.js calls the functions of window.compare.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/loaders/GLTFLoader.js';
+import { Arrival, compile } from '/noh/package/program.js';
 
-const M = window.Module;
-const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
-const text = (pointer) => M.UTF8ToString(pointer);
+let M = null; // noh's program
+const text = (pointer) => M.text(pointer);
 const check = (result) => { if (result) throw new Error(text(M._web_error())); };
 
 // Every target is active, with other weights in every frame.
@@ -19,13 +19,12 @@ const wait = (gl) => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel)
 // ---- noh ----
 
 async function openNoh() {
-    await M.started;
-    const file = new Uint8Array(await (await fetch('/noh/page.noh')).arrayBuffer());
-    const forced = new URLSearchParams(location.search).get('path') || 'auto';
-    M.HEAPU8.set(file, M._web_pack(file.length));
-    check(M._web_open(file.length, paths.indexOf(forced), 1));
+    const gl = document.getElementById('canvas').getContext('webgl2', { alpha: false, preserveDrawingBuffer: true });
+    const arrival = await Arrival.begin(await compile(), gl);
+    arrival.push(new Uint8Array(await (await fetch('/noh/page.nohz')).arrayBuffer()));
+    M = await arrival.open({ path: new URLSearchParams(location.search).get('path') || 'auto', characters: 1, alive: false });
+    M.open();
     M._web_set_level(0); // all targets, however small
-    const gl = document.getElementById('canvas').getContext('webgl2');
     const count = M._web_target_count();
     let atRest = true;
     return {

@@ -13,7 +13,7 @@ const clip = process.argv[5];
 // What a mouse does, by keys alone.
 async function keyboard(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=${clip}`);
-    const camera = () => page.evaluate(() => ({ ...orbit }));
+    const camera = () => page.evaluate(() => ({ ...character.camera }));
     const press = (key) => drawn(page, () => page.keyboard.press(key));
     await page.keyboard.press('Tab');
     check('keys: the canvas is first', await page.evaluate(() => document.activeElement === canvas));
@@ -84,8 +84,8 @@ async function served() {
     const program = path.join(__dirname, '../../tools/web_serve.js');
     const server = childProcess.spawn(process.execPath, [program, folder, '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
     const address = await new Promise((resolve) => { server.stdout.once('data', (said) => resolve(String(said).split('\n')[0])); });
-    const want = fs.readFileSync(path.join(folder, 'noh.wasm'));
-    const br = await get(address, '/noh.wasm', 'gzip, deflate, br'), gzip = await get(address, '/noh.wasm', 'gzip'), plain = await get(address, '/noh.wasm', '');
+    const want = fs.readFileSync(path.join(folder, 'package/noh.wasm'));
+    const br = await get(address, '/package/noh.wasm', 'gzip, deflate, br'), gzip = await get(address, '/package/noh.wasm', 'gzip'), plain = await get(address, '/package/noh.wasm', '');
     check('served: with brotli', br.coding === 'br' && zlib.brotliDecompressSync(br.bytes).equals(want));
     check('served: with gzip', gzip.coding === 'gzip' && zlib.gunzipSync(gzip.bytes).equals(want));
     check('served: as it is', !plain.coding && plain.bytes.equals(want));

@@ -10,7 +10,7 @@ const wide = { viewport: { width: 1440, height: 900 } };
 const shot = (page, name) => page.screenshot({ path: path.join(out, name) });
 
 // Until nothing moves by itself any more.
-const still = (page) => page.waitForFunction(() => !wanted && performance.now() > busy, null, minute);
+const still = (page) => page.waitForFunction(() => !character.wanted && performance.now() > character.busy, null, minute);
 
 async function hair(browser) {
     const page = await open(browser, wide, 'clip=none&size=256&light=studio');
@@ -94,7 +94,7 @@ async function transfer(browser) {
 }
 
 // Until the number of figures that fell is so.
-const fallen = (page, count) => page.waitForFunction((n) => fallen === n, count, { timeout: 120000 }).then(() => 1, () => 0);
+const fallen = (page, count) => page.waitForFunction((n) => character.fallen === n, count, { timeout: 120000 }).then(() => 1, () => 0);
 
 async function pushes(browser) {
     const page = await open(browser, wide, 'light=room&size=256');
@@ -125,7 +125,7 @@ async function falls(page, by) {
     check(`push by ${by}: it gets up`, await fallen(page, 0) === 1);
     const frames = await page.evaluate(() => window.noh.frames);
     await page.waitForFunction((n) => window.noh.frames > n + 10, frames, minute);
-    check(`push by ${by}: and goes on with its clip`, await page.evaluate(() => clip() < 0 || Module._web_time() > 0));
+    check(`push by ${by}: and goes on with its clip`, await page.evaluate(() => character.playing[0].clip === null || character.time > 0));
     await drawn(page, () => page.click('#fit'));
     await shot(page, 'got_up.png');
 }

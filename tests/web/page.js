@@ -23,7 +23,7 @@ async function onePath(browser, forced) {
     check(`${forced}: and takes that path`, state.path === (forced === 'auto' ? 'cpu' : forced), state.path);
     if (forced === 'auto') console.log(`# ${state.renderer}; ${JSON.stringify(state.memory)}`);
     console.log(`# budget ${state.path} plain still ${state.memory.cpu} ${state.memory.gpu}`);
-    check(`${forced}: what noh uses is within what the page was built for`, state.memory.cpu <= state.memory.room);
+    check(`${forced}: what noh uses is within what was planned`, state.memory.cpu <= state.memory.room);
     await keep(page, `${forced}_rest.png`);
     await setTarget(page, 'smile', 1);
     await keep(page, `${forced}_smile.png`);
@@ -80,7 +80,7 @@ async function panels(browser) {
 }
 
 const pickAt = (page, x, y) => page.mouse.click(x, y).then(() => page.textContent('#picked'));
-const view = (page) => page.evaluate(() => ({ walked: Array.from(walked()), eye: Array.from(floats(Module._web_view() + 64, 3)) }));
+const view = (page) => page.evaluate(() => ({ walked: character.walked, eye: Array.from(Module.floats(Module._web_view() + 64, 3)) }));
 const reach = (page, seconds) => page.waitForFunction((s) => Number(document.getElementById('time').value) > s, seconds, { timeout: 60000 });
 
 async function held(browser) {
@@ -125,7 +125,7 @@ async function faces(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=idle');
     const weights = () => page.locator('#targets input').evaluateAll((all) => all.map((e) => Number(e.value)));
     await page.click('#play');
-    await page.waitForFunction(() => performance.now() > busy);
+    await page.waitForFunction(() => performance.now() > character.busy);
     const before = await weights();
     await page.selectOption('#face', { label: clip });
     await page.click('#play');
@@ -240,7 +240,7 @@ async function turns(browser) {
         on('pointerup', 12, 440);
     }));
     check('light: two fingers do not', await turned() === 30, await turned());
-    const moved = await page.evaluate(() => [orbit.offset, orbit.right, orbit.pixel]);
+    const moved = await page.evaluate(() => [character.camera.offset, character.camera.right, character.camera.pixel]);
     const way = moved[0].reduce((sum, o, i) => sum + o * moved[1][i], 0) / moved[2];
     check('two fingers move the picture as far as they go', Math.abs(way + 40) < 1e-3, way);
     await close(page, 'turns');
@@ -275,7 +275,7 @@ async function living(browser) {
     check('a face: joy smiles', await reaches(page, 'smile', 0.3) + await reaches(page, 'mouthSmileLeft', 0.3) > 0);
     await page.click('#alive');
     await page.selectOption('#emotion', { label: 'no emotion' });
-    await page.waitForFunction(() => !wanted && performance.now() > busy, null, { timeout: 60000 });
+    await page.waitForFunction(() => !character.wanted && performance.now() > character.busy, null, { timeout: 60000 });
     const frames = await page.evaluate(() => new Promise((resolve) => {
         const before = window.noh.frames;
         requestAnimationFrame(() => requestAnimationFrame(() => resolve(window.noh.frames - before)));

@@ -106,7 +106,7 @@ async function refused(browser) {
     const page = await open(browser, { permissions: [] });
     await page.click('#listen');
     check('refused: it says so, and what to do', await words(page, 'Allow it for this page'), await page.textContent('#speech-text'));
-    check('refused: nothing listens', await page.getAttribute('#listen', 'aria-pressed') === 'false' && await page.evaluate(() => !isSpeaking()));
+    check('refused: nothing listens', await page.getAttribute('#listen', 'aria-pressed') === 'false' && await page.evaluate(() => !character.speech.speaks));
     await close(page, 'refused');
     for (const [name, error, said] of [['no device', 'NotFoundError', 'There is no microphone'], ['a device in use', 'NotReadableError', 'another program'],
         ['an unknown error', 'OddError', 'cannot be used: odd']]) {
@@ -134,7 +134,7 @@ async function file(browser) {
     check('a file: open in the vowel', mean(115, 190) > 0.3, mean(115, 190));
     check('a file: silent after', mean(220, 290) < 0.05, mean(220, 290));
     check('a file: the mouth opens', await opens(page));
-    await page.waitForFunction(() => !isSpeaking(), null, minute);
+    await page.waitForFunction(() => !character.speech.speaks, null, minute);
     check('a file: and is shut at its end', await shuts(page));
     await close(page, 'a file');
 }
@@ -162,7 +162,7 @@ async function text(browser) {
     await page.click('#say button');
     check('text: it says that the mouth is rough', await words(page, 'roughly'));
     check('text: the mouth opens', await opens(page));
-    const at = await page.evaluate(() => [0, 5, 9, 14].map((c) => shapesOfText('Papa und Mama aaa', 1).find((s) => s.at >= c).shape));
+    const at = await page.evaluate(async () => [0, 5, 9, 14].map(((shapesOfText) => (c) => shapesOfText('Papa und Mama aaa', 1).find((s) => s.at >= c).shape)((await import('./package/index.js')).shapesOfText)));
     check('text: letters are shapes', at.join() === '1,14,1,10', at.join());
     await page.evaluate(() => window.voice.now.onboundary({ charIndex: 14 }));
     check('text: at a word the mouth is where the word is', await opens(page) && await words(page, 'where words begin'));

@@ -1,0 +1,60 @@
+// camera.js: a camera that turns about the figures, as `noh render` has it: 30 degrees high.
+
+export const front = { azimuth: 0, elevation: 0.05 };
+
+function product(a, b, out) {
+    for (let i = 0; i < 16; i++) {
+        out[i] = 0;
+        for (let k = 0; k < 4; k++) out[i] += a[4 * k + i % 4] * b[4 * (i >> 2) + k];
+    }
+}
+
+export class Camera {
+    constructor() {
+        // distance: 1 frames the figures; pixel: what one of the page's is there, in world units
+        Object.assign(this, front, { distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true });
+        this.matrix = new Float32Array(16);
+    }
+
+    // Come as near as a box allows, that was measured where the figures were.
+    fit(box, from) {
+        Object.assign(this, { box, from, distance: 0, offset: [0, 0, 0] });
+    }
+
+    zoom(by) {
+        this.distance = Math.min(4, Math.max(0.15, (this.distance || 1) * by));
+    }
+
+    turn(azimuth, elevation) {
+        this.azimuth += azimuth;
+        this.elevation = Math.min(1.5, Math.max(-1.5, this.elevation + elevation));
+    }
+
+    // By pixels of the page: what is under a finger stays there.
+    pan(x, y) {
+        this.offset = this.offset.map((o, i) => o + (y * this.up[i] - x * this.right[i]) * this.pixel);
+    }
+
+    // Into 22 floats: matrix, eye, light. walked: where the figures are now; height: of the canvas on the page.
+    write(out, walked, aspect, height) {
+        const b = this.box, to = this.follows ? walked : this.from;
+        const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - this.from[c] + this.offset[c]);
+        const half = [0, 1, 2].map((c) => (b[3 + c] - b[c]) / 2), f = 1 / Math.tan(Math.PI / 12);
+        const radius = Math.max(Math.hypot(...half), 1e-6);
+        const need = Math.max(half[1], Math.max(half[0], half[2] * 0.7) / aspect) * 1.05;
+        const d = (this.distance || 1) * Math.max(need * f + half[2], radius * 1.02);
+        const near = Math.max(d - 2 * radius, d * 0.02), far = d + 2 * radius;
+        const ca = Math.cos(this.azimuth), sa = Math.sin(this.azimuth), ce = Math.cos(this.elevation), se = Math.sin(this.elevation);
+        const right = [ca, 0, -sa], up = [-sa * se, ce, -ca * se], back = [sa * ce, se, ca * ce];
+        Object.assign(this, { right, up, pixel: 2 * d / f / height });
+        const eye = centre.map((c, i) => c + back[i] * d);
+        const dot = (a) => a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];
+        const view = [0, 1, 2].flatMap((c) => [right[c], up[c], back[c], 0]).concat([-dot(right), -dot(up), -dot(back), 1]);
+        const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
+        const key = right.map((r, i) => -0.45 * r + 0.62 * up[i] + 0.64 * back[i]);
+        product(projection, view, this.matrix);
+        out.set(this.matrix, 0);
+        out.set(eye, 16);
+        out.set(key.map((k) => k / Math.hypot(...key)), 19);
+    }
+}

@@ -1,0 +1,475 @@
+// character.js: a character on a canvas: its pack arrives, is drawn, plays clips, looks, feels and speaks. What is chosen
+// is kept here, so that it holds for the coarsest levels of a pack, for the whole of it, and for another pack.
+import { Camera, front } from './camera.js';
+import { Arrival, compile, receive } from './program.js';
+import { Speech } from './speech.js';
+
+export const layers = ['body', 'face'];
+export const backgrounds = ['plain', 'gradient', 'light'];
+export const shadows = ['off', 'on', 'blob'];
+const transition = 0.3; // seconds from one clip into another
+const mostPixels = 2; // of the canvas to one of the page
+const settles = 2500; // ms in which a gaze and a feeling arrive
+const swings = 2000; // in which hair comes to rest
+const shakes = 4000;
+const strength = 90; // of a push, newton seconds
+
+// How a character is shown, where nothing else was asked for.
+const asMade = { light: 'studio', degrees: 0, shadow: 'on', tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
+    emotion: null, amount: 1, hair: true, wind: 0, speed: 1, paused: false };
+
+export class Character extends EventTarget {
+    // options: { program: where noh.wasm is, path, characters, alive, size: pixels across instead of the canvas's own,
+    // follows: whether the camera does }, and what `asMade` has.
+    constructor(canvas, options = {}) {
+        super();
+        const { program, path = 'auto', characters = 1, alive = true, size = 0, follows = true, ...chosen } = options;
+        this.wants = { path, characters, alive };
+        Object.assign(this, { canvas, size, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
+        Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
+        Object.assign(this, { ready: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
+        this.speech = new Speech(this);
+        this.camera.follows = follows;
+        this.ended = new AbortController();
+        this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // so that the canvas can be saved
+        this.watch();
+    }
+
+    emit(type, detail) {
+        this.dispatchEvent(new CustomEvent(type, { detail }));
+    }
+
+    watch() {
+        const { signal } = this.ended;
+        this.canvas.addEventListener('webglcontextlost', (event) => {
+            event.preventDefault(); // else the browser never restores it
+            this.lost = true;
+            if (!signal.aborted) this.emit('lost');
+        }, { signal });
+        this.canvas.addEventListener('webglcontextrestored', () => this.restore(), { signal });
+        this.resizes = new ResizeObserver(() => this.resize());
+        this.resizes.observe(this.canvas);
+    }
+
+    restore() {
+        if (this.program) this.program.check(this.program._web_restore());
+        this.lost = false;
+        if (this.program) this.setLight({});
+        this.emit('restored');
+        this.draw();
+    }
+
+    // ---- the pack arrives ----
+
+    // source: an address, a Response, a File or Blob, or bytes. What is shown stays until there is something to show.
+    // Resolves when the pack is there as a whole.
+    async load(source) {
+        const number = this.loads = (this.loads || 0) + 1, was = this.whole;
+        const mine = () => this.loads === number && !this.ended.signal.aborted;
+        if (!this.gl) throw new Error('this browser gives no WebGL 2 context');
+        this.whole = false;
+        let shown = 0;
+        const show = async (arrival) => {
+            const program = await arrival.open(this.wants), { shows } = arrival;
+            if (!mine()) return;
+            this.caps = arrival.caps();
+            this.use(program, shown === 0);
+            shown = shows;
+            this.whole = shows === 2;
+            this.emit('load', { whole: this.whole });
+        };
+        try {
+            await this.arrive(source, () => shown, show, mine);
+        } catch (error) {
+            if (shown === 0 && mine()) this.whole = was;
+            throw error;
+        }
+    }
+
+    async arrive(source, shown, show, mine) {
+        const [module, answer] = await Promise.all([compile(this.address), responseOf(source)]);
+        if (!mine()) return;
+        const arrival = await Arrival.begin(module, this.gl, this.caps);
+        await receive(answer, async (bytes) => {
+            if (mine() && arrival.push(bytes) > shown()) await show(arrival);
+        }, (taken, all) => { if (mine()) this.emit('progress', { taken, all, shows: shown() }); }, this.ended.signal);
+        if (!mine()) return;
+        arrival.end();
+        if (shown() < 2) await show(arrival);
+    }
+
+    // Another program shows the character. first: of another pack.
+    use(program, first) {
+        const time = this.program && !first ? this.time : 0;
+        this.close();
+        this.program = program;
+        this.list();
+        this.beginLight();
+        program.open();
+        if (first) this.begin();
+        this.restoreChoices(first, time);
+        this.speech.moved();
+        this.ready = true;
+        this.resize();
+        this.draw();
+        program.check(program._web_check());
+    }
+
+    // What the pack has.
+    list() {
+        const p = this.program, names = (count, name) => Array.from({ length: count }, (_, i) => p.text(name(i)));
+        this.lights = names(p._web_light_count(), p._web_light_name);
+        this.emotions = [];
+        for (let i = 0; p._web_emotion_name(i); i++) this.emotions.push(p.text(p._web_emotion_name(i)));
+    }
+
+    // Before the stage is made, so that it is made once.
+    beginLight() {
+        const { light } = this.chosen;
+        this.tellLighting();
+        this.program.check(this.program._web_set_light(this.lights.indexOf(light)));
+    }
+
+    begin() {
+        this.weights.clear();
+        this.playing = layers.map(() => ({ clip: null }));
+        this.fallen = 0;
+    }
+
+    restoreChoices(first, time) {
+        const p = this.program, c = this.chosen;
+        this.targets = Array.from({ length: p._web_target_count() }, (_, i) => p.text(p._web_target_name(i)));
+        this.clips = Array.from({ length: p._web_clip_count() }, (_, index) => ({ index, name: p.text(p._web_clip_name(index)), seconds: p._web_clip_seconds(index) }))
+            .filter((clip) => clip.seconds >= 0);
+        const box = p.floats(p._web_measure(), 6);
+        p._web_set_spacing((box[3] - box[0]) * 1.1);
+        this.level = c.level;
+        if (!c.transfer && p._web_has_transfer()) p.check(p._web_set_transfer(0));
+        p._web_set_hair(c.hair ? 1 : 0, c.wind);
+        p._web_set_wrinkles(c.wrinkles);
+        p._web_set_calm(c.calm ? 1 : 0);
+        this.tellSpeed();
+        this.feel(c.emotion, c.amount);
+        for (const [name, weight] of this.weights) this.setWeight(name, weight);
+        this.playing.forEach(({ clip }, layer) => { if (clip !== null) this.play(clip, { layer: layers[layer], fade: 0, time: layer ? 0 : time }); });
+        if (first || !this.camera.box) this.fit();
+    }
+
+    // ---- frames ----
+
+    draw() {
+        this.wanted = false;
+        if (this.lost || !this.ready) return;
+        const now = performance.now(), seconds = Math.min(now - this.drawn, 100) / 1000;
+        this.drawn = now;
+        try {
+            this.advance(seconds);
+        } catch (error) { // nobody waits for a frame
+            this.ready = false;
+            this.emit('fault', { message: String(error.message || error) });
+            return;
+        }
+        if (this.moves(now)) this.redraw();
+    }
+
+    // Move time on, and draw.
+    advance(seconds) {
+        const p = this.program;
+        this.speech.frame();
+        p.check(p._web_step(seconds));
+        for (let i = 0; i < p._web_key_count(); i++) this.tellKey(i);
+        this.watchFall();
+        this.camera.write(p.floats(p._web_view(), 22), p.floats(p._web_walked(), 3), this.canvas.width / this.canvas.height, this.canvas.clientHeight || this.canvas.height);
+        p.check(p._web_draw());
+        this.frames++;
+        this.emit('frame', { seconds });
+    }
+
+    tellKey(i) {
+        const p = this.program;
+        this.emit('key', { name: p.text(p._web_key_name(i)), clip: p.text(p._web_key_clip(i)), layer: layers[p._web_key_layer(i)], weight: p._web_key_weight(i),
+            character: p._web_key_character(i) });
+    }
+
+    // Whether there is something to draw after a frame.
+    moves(now) {
+        const p = this.program, hair = p._web_has_hair() && this.chosen.hair && (this.chosen.wind > 0 || p._web_shakes());
+        return !this.stopped && (this.runs || now < this.busy || p._web_fades() > 0 || this.lives || this.speech.speaks || this.fallen > 0 || hair);
+    }
+
+    get lives() { return this.program._web_alive() > 0 && !this.chosen.calm; }
+    get runs() { return this.playing.some(({ clip }) => clip !== null) && this.speed > 0 && !this.paused; }
+
+    redraw() {
+        this.due = this.frames + 1;
+        if (!this.wanted && !this.ended.signal.aborted) requestAnimationFrame(() => this.draw());
+        this.wanted = true;
+    }
+
+    // A pose is not made anew in every frame, and what is calm moves when it is told to.
+    settle(ms = settles) {
+        this.busy = Math.max(this.busy, performance.now() + ms);
+        this.redraw();
+    }
+
+    resize() {
+        const { canvas, size } = this, scale = Math.min(window.devicePixelRatio || 1, mostPixels);
+        const [width, height] = size ? [size, size] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
+        if (width === canvas.width && height === canvas.height) return;
+        Object.assign(canvas, { width, height });
+        if (this.ready) this.draw(); // at once, because resizing clears a canvas
+    }
+
+    // ---- the camera ----
+
+    // Where the first character has walked to.
+    get walked() { return Array.from(this.program.floats(this.program._web_walked(), 3)); }
+
+    // Come as near as all figures in their present pose allow.
+    fit() {
+        this.camera.fit(Array.from(this.program.floats(this.program._web_measure(), 6)), this.walked);
+        this.redraw();
+    }
+
+    home() { Object.assign(this.camera, front); this.fit(); }
+    zoom(by) { this.camera.zoom(by); this.redraw(); }
+    turn(azimuth, elevation) { this.camera.turn(azimuth, elevation); this.redraw(); }
+    pan(x, y) { this.camera.pan(x, y); this.redraw(); }
+
+    // ---- clips ----
+
+    clipNamed(name) { return this.clips.find((clip) => clip.name === name); }
+
+    // A clip by its name, null: none. With a fade in seconds it goes on from what is shown; with 0 the body begins at a
+    // time in seconds.
+    play(name, { layer = 'body', fade = transition, time = 0 } = {}) {
+        const clip = name === null ? null : this.clipNamed(name), at = Math.max(0, layers.indexOf(layer));
+        if (clip === undefined) throw new Error(`the pack has no clip '${name}' that moves it`);
+        this.playing[at].clip = name;
+        this.program.check(this.program._web_play(at, clip ? clip.index : -1, time, fade));
+        this.settle(1000 * fade + 100);
+    }
+
+    // Of what plays on the body, in seconds.
+    get time() { return this.program._web_time(); }
+    set time(seconds) { this.play(this.playing[0].clip, { fade: 0, time: seconds }); }
+
+    // 1: as it was made.
+    get speed() { return this.chosen.speed; }
+    set speed(speed) {
+        this.chosen.speed = speed;
+        this.tellSpeed();
+    }
+
+    // Whether clips stand still.
+    get paused() { return this.chosen.paused; }
+    set paused(on) {
+        if (this.paused === Boolean(on)) return;
+        this.chosen.paused = Boolean(on);
+        this.emit('pause', { paused: this.paused });
+        this.tellSpeed();
+    }
+
+    tellSpeed() {
+        if (!this.program) return;
+        this.program._web_set_speed(this.paused ? 0 : this.speed);
+        this.redraw();
+    }
+
+    // ---- targets ----
+
+    // Held at a weight, whatever plays, until it is released.
+    setWeight(name, weight) {
+        this.weights.set(name, weight);
+        const at = this.targets.indexOf(name);
+        if (at < 0) return;
+        this.program._web_hold(at, weight, 1);
+        this.redraw();
+    }
+
+    releaseWeight(name) {
+        this.weights.delete(name);
+        const at = this.targets.indexOf(name);
+        if (at < 0) return;
+        this.program._web_hold(at, 0, 0);
+        this.redraw();
+    }
+
+    releaseWeights() { for (const name of this.targets) this.releaseWeight(name); }
+
+    // As the last frame showed it.
+    weight(name) {
+        const at = this.targets.indexOf(name);
+        return at < 0 ? 0 : this.program._web_weight(at);
+    }
+
+    // ---- light, levels, wrinkles, hair ----
+
+    tellLighting() {
+        const c = this.chosen;
+        this.program._web_set_lighting(c.degrees, Math.max(0, shadows.indexOf(c.shadow)), c.tonemap ? 1 : 0, Math.max(0, backgrounds.indexOf(c.background)));
+    }
+
+    // { light, degrees, shadow, tonemap, background, transfer }, or some of them. In a lost context nothing is made: it
+    // is, once that is back.
+    setLight(what) {
+        const before = this.chosen.transfer;
+        Object.assign(this.chosen, what);
+        if (!this.program) return;
+        this.tellLighting();
+        this.emit('light', { ...this.chosen });
+        if (this.lost) return;
+        this.program.check(this.program._web_set_light(this.lights.indexOf(this.chosen.light)));
+        if (this.chosen.transfer !== before) this.program.check(this.program._web_set_transfer(this.chosen.transfer ? 1 : 0));
+        this.redraw();
+    }
+
+    turnLight(degrees) {
+        if (this.lights.includes(this.chosen.light)) this.setLight({ degrees: (this.chosen.degrees + degrees + 540) % 360 - 180 });
+    }
+
+    // -1: the coarsest that an error of one pixel allows.
+    get level() { return this.chosen.level; }
+    set level(level) {
+        this.chosen.level = level;
+        if (!this.program) return;
+        this.program._web_set_level(level < this.program._web_level_count() ? level : -1);
+        this.redraw();
+    }
+
+    setWrinkles(amount) {
+        this.chosen.wrinkles = amount;
+        this.program._web_set_wrinkles(amount);
+        this.redraw();
+    }
+
+    // wind: metres a second, from the right.
+    setHair(shown, wind) {
+        Object.assign(this.chosen, { hair: shown, wind });
+        this.program._web_set_hair(shown ? 1 : 0, wind);
+        this.settle(swings);
+    }
+
+    shake() {
+        this.program._web_shake();
+        this.settle(shakes);
+    }
+
+    // ---- the face ----
+
+    // Whether it blinks, breathes and looks about by itself.
+    get alive() { return !this.chosen.calm; }
+    set alive(on) {
+        this.chosen.calm = !on;
+        if (!this.program) return;
+        this.program._web_set_calm(on ? 0 : 1);
+        this.redraw();
+    }
+
+    pixelOf(x, y) {
+        const r = this.canvas.getBoundingClientRect();
+        return [(x - r.left) * this.canvas.width / r.width, (y - r.top) * this.canvas.height / r.height];
+    }
+
+    // At a point of the page, as if it hung in the air before the figure.
+    lookAt(x, y) {
+        if (this.lost || !this.ready) return;
+        this.program._web_look(...this.pixelOf(x, y), 1);
+        this.settle();
+    }
+
+    lookAhead() {
+        if (!this.ready) return;
+        this.program._web_look(0, 0, 0);
+        this.settle();
+    }
+
+    // An emotion by its name, null: none; in place of the one before.
+    feel(name, amount = 1) {
+        const emotion = name === null ? -1 : this.emotions.indexOf(name);
+        if (name !== null && emotion < 0) throw new Error(`there is no emotion '${name}': ${this.emotions.join(', ')}`);
+        Object.assign(this.chosen, { emotion: name, amount });
+        this.program._web_feel(emotion, amount);
+        if (this.program._web_alive()) this.settle();
+    }
+
+    // Fifteen weights of mouth shapes, in the order of noh_viseme; null: nothing is said.
+    setMouth(weights) {
+        this.speech.stop();
+        this.speech.show(weights);
+        this.redraw();
+    }
+
+    // ---- touch ----
+
+    tap(x, y, pushes) {
+        if (this.lost || !this.ready) return;
+        const p = this.program, at = this.pixelOf(x, y);
+        if (pushes) {
+            this.push(...at);
+            return;
+        }
+        const names = p._web_pick(...at) ? [p.text(p._web_picked_mesh()), p.text(p._web_picked_joint())] : ['', ''];
+        this.emit('pick', { mesh: names[0], joint: names[1] });
+    }
+
+    // At a pixel of the canvas, or at the chest. Who lies gets up, and goes on with the clip. Returns 0, or why not.
+    push(x, y) {
+        if (this.lost || !this.ready) return '';
+        const p = this.program, failed = x === undefined ? p._web_push(strength) : p._web_push_at(x, y, strength);
+        this.emit('push', { error: failed ? p.words() : '' });
+        this.redraw();
+        return failed ? p.words() : '';
+    }
+
+    watchFall() {
+        const before = this.fallen, { clip } = this.playing[0];
+        this.fallen = this.program._web_fallen();
+        if (before && !this.fallen && clip !== null) this.play(clip);
+    }
+
+    // ---- memory ----
+
+    // In bytes: pack; stage: what the plan says, of which parts tell; block: what the stage has to itself; all: the
+    // WebAssembly memory, which cannot grow; gpu.
+    get memory() {
+        const p = this.program, byName = new Map();
+        for (let i = 0; i < p._web_part_count(); i++) { // those of several skeletons in one row
+            const name = p.text(p._web_part_name(i)), row = byName.get(name) || { name, cpu: 0, gpu: 0 };
+            row.cpu += p._web_part_cpu_bytes(i);
+            row.gpu += p._web_part_gpu_bytes(i);
+            byName.set(name, row);
+        }
+        const parts = [...byName.values()], cpu = parts.reduce((all, part) => all + part.cpu, 0);
+        return { cpu, gpu: p._web_gpu_bytes(), room: p._web_memory_room(), pack: p.packBytes, all: p.HEAPU8.length, parts };
+    }
+
+    // ---- the end ----
+
+    close() {
+        if (this.program && !this.lost) this.program._web_close();
+        this.program = null;
+        this.ready = false;
+    }
+
+    // The context is released, memory dropped; nothing may follow.
+    dispose() {
+        if (this.ended.signal.aborted) return;
+        this.speech.stop();
+        this.ended.abort();
+        this.resizes.disconnect();
+        this.close();
+        const loses = this.gl && this.gl.getExtension('WEBGL_lose_context');
+        if (loses) loses.loseContext();
+        this.gl = this.caps = null;
+    }
+}
+
+// What a source is, as an answer with a stream.
+async function responseOf(source) {
+    const given = await source;
+    if (given instanceof Response) return given;
+    if (given instanceof Blob) return new Response(given.stream(), { headers: { 'Content-Length': given.size } });
+    if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return new Response(given, { headers: { 'Content-Length': given.byteLength } });
+    return fetch(given).catch(() => { throw new Error(`no pack: ${given} cannot be reached`); });
+}

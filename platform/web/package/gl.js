@@ -1,0 +1,222 @@
+// gl.js: the functions of OpenGL ES 3.0 that the program imports, on a WebGL 2 context. GL has numbers where WebGL has
+// objects, and addresses where WebGL has views of memory. Nothing is allocated in a frame: views are given with offsets.
+
+// Without objects or addresses: the same function by the same name.
+const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEquation', 'Viewport', 'Scissor', 'DepthFunc', 'DepthMask', 'ColorMask',
+    'FrontFace', 'GetError', 'EnableVertexAttribArray', 'VertexAttribPointer', 'VertexAttribIPointer', 'VertexAttribDivisor', 'VertexAttrib4f',
+    'VertexAttribI4i', 'ActiveTexture', 'TexStorage2D', 'TexStorage3D', 'TexParameteri', 'PixelStorei', 'CheckFramebufferStatus', 'ReadBuffer',
+    'RenderbufferStorageMultisample', 'DrawElements', 'DrawElementsInstanced', 'DrawArraysInstanced'];
+
+// By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r: a buffer, a vertex
+// array, a texture, a framebuffer, a renderbuffer; n: a number.
+const mapped = {
+    AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform2i: 'unn',
+    Uniform3i: 'unnn', Uniform4i: 'unnnn', Uniform2f: 'unn', Uniform3f: 'unnn', Uniform4f: 'unnnn', BindBuffer: 'nb', BindBufferBase: 'nnb',
+    BindBufferRange: 'nnbnn', BindVertexArray: 'v', BindTexture: 'nt', BindFramebuffer: 'nf', FramebufferTexture2D: 'nnntn',
+    FramebufferTextureLayer: 'nntnn', BindRenderbuffer: 'nr',
+};
+
+const COMPRESSED_ETC = 'WEBGL_compressed_texture_etc';
+const extensions = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float', 'EXT_float_blend', COMPRESSED_ETC];
+
+// What texels of a type are read and written through, and how many bytes an element has as a shift.
+function viewOf(gl, type) {
+    switch (type) {
+        case gl.UNSIGNED_BYTE: return ['U8', 0];
+        case gl.BYTE: return ['I8', 0];
+        case gl.SHORT: return ['I16', 1];
+        case gl.UNSIGNED_SHORT: case gl.HALF_FLOAT: return ['U16', 1];
+        case gl.INT: return ['I32', 2];
+        case gl.FLOAT: return ['F32', 2];
+        default: return ['U32', 2];
+    }
+}
+
+// Objects by number, from 1; 0 is none.
+class Names {
+    constructor() {
+        this.objects = [null];
+        this.free = [];
+    }
+
+    add(object) {
+        const name = this.free.length ? this.free.pop() : this.objects.length;
+        this.objects[name] = object;
+        return name;
+    }
+
+    take(name) {
+        const object = this.objects[name];
+        if (!name || !object) return null;
+        this.objects[name] = null;
+        this.free.push(name);
+        return object;
+    }
+}
+
+const decoder = new TextDecoder(), encoder = new TextEncoder();
+
+// The texts of C in a heap, whose views are U8, U32 and so on.
+export function textAt(heap, at, length) {
+    let end = at;
+    if (length === undefined) while (heap.U8[end]) end++;
+    return decoder.decode(heap.U8.subarray(at, length === undefined ? end : at + length));
+}
+
+// Returns how many bytes were written, without the zero.
+function writeText(heap, text, at, room) {
+    if (!room) return 0;
+    const bytes = encoder.encode(text).subarray(0, room - 1);
+    heap.U8.set(bytes, at);
+    heap.U8[at + bytes.length] = 0;
+    return bytes.length;
+}
+
+// gl.bindBuffer('buffer', number) and so on, by the letters of `mapped`.
+function addMapped(out, gl, kinds) {
+    const by = { s: kinds.shaders, p: kinds.programs, u: kinds.uniforms, b: kinds.buffers, v: kinds.arrays, t: kinds.textures, f: kinds.framebuffers, r: kinds.renderbuffers };
+    for (const [name, letters] of Object.entries(mapped)) {
+        const call = gl[name[0].toLowerCase() + name.slice(1)].bind(gl);
+        const [a, b, c, d] = [...letters].map((l) => (by[l] ? by[l].objects : null));
+        const object = (list, n) => (list ? list[n] || null : n);
+        out[`gl${name}`] = letters.length === 1 ? (x) => call(object(a, x))
+            : letters.length === 2 ? (x, y) => call(object(a, x), object(b, y))
+                : letters.length === 3 ? (x, y, z) => call(object(a, x), object(b, y), object(c, z))
+                    : (x, y, z, w, q) => call(object(a, x), object(b, y), object(c, z), object(d, w), q);
+    }
+}
+
+// Gen and Delete, each of n names.
+function addNamed(out, gl, heap, what, names, make, remove) {
+    out[`glGen${what}`] = (n, at) => {
+        for (let i = 0; i < n; i++) heap.U32[(at >> 2) + i] = names.add(make.call(gl));
+    };
+    out[`glDelete${what}`] = (n, at) => {
+        for (let i = 0; i < n; i++) {
+            const object = names.take(heap.U32[(at >> 2) + i]);
+            if (object) remove.call(gl, object);
+        }
+    };
+}
+
+function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
+    const ofProgram = new Map(); // the uniforms of each, which go with it
+    const tell = (value, at) => { heap.I32[at >> 2] = value; };
+    const log = (text, room, length, at) => {
+        const written = writeText(heap, text || '', at, room);
+        if (length) tell(written, length);
+    };
+    out.glCreateShader = (type) => shaders.add(gl.createShader(type));
+    out.glShaderSource = (shader, count, strings, lengths) => {
+        let source = '';
+        for (let i = 0; i < count; i++) {
+            const length = lengths ? heap.I32[(lengths >> 2) + i] : -1;
+            source += textAt(heap, heap.U32[(strings >> 2) + i], length < 0 ? undefined : length);
+        }
+        gl.shaderSource(shaders.objects[shader], source);
+    };
+    out.glGetShaderiv = (shader, what, at) => {
+        const value = what === 0x8B84 ? (gl.getShaderInfoLog(shaders.objects[shader]) || '').length + 1 : gl.getShaderParameter(shaders.objects[shader], what);
+        tell(Number(value), at);
+    };
+    out.glGetShaderInfoLog = (shader, room, length, at) => log(gl.getShaderInfoLog(shaders.objects[shader]), room, length, at);
+    out.glDeleteShader = (shader) => { gl.deleteShader(shaders.take(shader)); };
+    out.glCreateProgram = () => programs.add(gl.createProgram());
+    out.glGetProgramiv = (program, what, at) => {
+        const value = what === 0x8B84 ? (gl.getProgramInfoLog(programs.objects[program]) || '').length + 1 : gl.getProgramParameter(programs.objects[program], what);
+        tell(Number(value), at);
+    };
+    out.glGetProgramInfoLog = (program, room, length, at) => log(gl.getProgramInfoLog(programs.objects[program]), room, length, at);
+    out.glDeleteProgram = (program) => {
+        for (const uniform of ofProgram.get(program) || []) uniforms.take(uniform);
+        ofProgram.delete(program);
+        gl.deleteProgram(programs.take(program));
+    };
+    out.glGetActiveAttrib = (program, index, room, length, size, type, name) => {
+        const found = gl.getActiveAttrib(programs.objects[program], index);
+        if (!found) return;
+        tell(found.size, size);
+        tell(found.type, type);
+        log(found.name, room, length, name);
+    };
+    out.glGetAttribLocation = (program, name) => gl.getAttribLocation(programs.objects[program], textAt(heap, name));
+    out.glGetUniformBlockIndex = (program, name) => gl.getUniformBlockIndex(programs.objects[program], textAt(heap, name));
+    out.glGetUniformLocation = (program, name) => {
+        const found = gl.getUniformLocation(programs.objects[program], textAt(heap, name));
+        if (!found) return -1;
+        const uniform = uniforms.add(found);
+        if (!ofProgram.has(program)) ofProgram.set(program, []);
+        ofProgram.get(program).push(uniform);
+        return uniform;
+    };
+    out.glUniform3fv = (uniform, count, at) => gl.uniform3fv(uniforms.objects[uniform] || null, heap.F32, at >> 2, 3 * count);
+    out.glUniform4fv = (uniform, count, at) => gl.uniform4fv(uniforms.objects[uniform] || null, heap.F32, at >> 2, 4 * count);
+    out.glUniformMatrix4fv = (uniform, count, transpose, at) => gl.uniformMatrix4fv(uniforms.objects[uniform] || null, transpose, heap.F32, at >> 2, 16 * count);
+    out.glTransformFeedbackVaryings = (program, count, strings, mode) => {
+        const names = Array.from({ length: count }, (_, i) => textAt(heap, heap.U32[(strings >> 2) + i]));
+        gl.transformFeedbackVaryings(programs.objects[program], names, mode);
+    };
+}
+
+function addData(out, gl, heap) {
+    out.glClearBufferfv = (buffer, index, at) => gl.clearBufferfv(buffer, index, heap.F32, at >> 2);
+    out.glGetIntegerv = (what, at) => {
+        const value = what === 0x821D ? gl.getSupportedExtensions().length : what === 0x821B ? 3 : what === 0x821C ? 0 : gl.getParameter(what);
+        const all = value && value.length !== undefined ? value : [Number(value) || 0];
+        for (let i = 0; i < all.length; i++) heap.I32[(at >> 2) + i] = all[i];
+    };
+    out.glBufferData = (target, bytes, at, usage) => (at ? gl.bufferData(target, heap.U8, usage, at, bytes) : gl.bufferData(target, bytes, usage));
+    out.glBufferSubData = (target, offset, bytes, at) => gl.bufferSubData(target, offset, heap.U8, at, bytes);
+    out.glTexSubImage2D = (target, level, x, y, width, height, format, type, at) => {
+        const [view, shift] = viewOf(gl, type);
+        gl.texSubImage2D(target, level, x, y, width, height, format, type, heap[view], at >>> shift);
+    };
+    out.glTexSubImage3D = (target, level, x, y, z, width, height, depth, format, type, at) => {
+        const [view, shift] = viewOf(gl, type);
+        gl.texSubImage3D(target, level, x, y, z, width, height, depth, format, type, heap[view], at >>> shift);
+    };
+    out.glCompressedTexSubImage2D = (target, level, x, y, width, height, format, bytes, at) => {
+        gl.compressedTexSubImage2D(target, level, x, y, width, height, format, heap.U8, at, bytes);
+    };
+    out.glReadPixels = (x, y, width, height, format, type, at) => {
+        const [view, shift] = viewOf(gl, type);
+        gl.readPixels(x, y, width, height, format, type, heap[view], at >>> shift);
+    };
+    out.glDrawBuffers = (count, at) => gl.drawBuffers(Array.from(heap.U32.subarray(at >> 2, (at >> 2) + count)));
+}
+
+// What GL lacks (context.c).
+function addOthers(gl, heap) {
+    const renderer = () => {
+        const info = gl.getExtension('WEBGL_debug_renderer_info');
+        return (info && gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) || gl.getParameter(gl.RENDERER);
+    };
+    return {
+        string(what, at, room) {
+            const text = what === gl.RENDERER ? renderer() : gl.getParameter(what) || '';
+            writeText(heap, what === gl.VERSION ? `OpenGL ES 3.0 (${text})` : text, at, room);
+        },
+        extension: (index, at, room) => { writeText(heap, gl.getSupportedExtensions()[index] || '', at, room); },
+        enable: () => { for (const name of extensions) gl.getExtension(name); },
+        lost: () => Number(gl.isContextLost()),
+        width: () => gl.drawingBufferWidth,
+        height: () => gl.drawingBufferHeight,
+    };
+}
+
+// heap: { U8, I8, U16, I16, U32, I32, F32 }, whose views may be replaced. Returns { imports, textures, buffers }: what the
+// program imports, and the objects by their numbers.
+export function importsOf(gl, heap) {
+    const kinds = Object.fromEntries(['shaders', 'programs', 'uniforms', 'buffers', 'arrays', 'textures', 'framebuffers', 'renderbuffers'].map((kind) => [kind, new Names()]));
+    const out = {};
+    for (const name of plain) out[`gl${name}`] = gl[name[0].toLowerCase() + name.slice(1)].bind(gl);
+    addMapped(out, gl, kinds);
+    addNamed(out, gl, heap, 'Buffers', kinds.buffers, gl.createBuffer, gl.deleteBuffer);
+    addNamed(out, gl, heap, 'VertexArrays', kinds.arrays, gl.createVertexArray, gl.deleteVertexArray);
+    addNamed(out, gl, heap, 'Textures', kinds.textures, gl.createTexture, gl.deleteTexture);
+    addNamed(out, gl, heap, 'Framebuffers', kinds.framebuffers, gl.createFramebuffer, gl.deleteFramebuffer);
+    addNamed(out, gl, heap, 'Renderbuffers', kinds.renderbuffers, gl.createRenderbuffer, gl.deleteRenderbuffer);
+    addShaders(out, gl, heap, kinds);
+    addData(out, gl, heap);
+    return { imports: { env: out, noh: addOthers(gl, heap) }, textures: kinds.textures.objects, buffers: kinds.buffers.objects };
+}

@@ -1,0 +1,173 @@
+// program.js: the WebAssembly program in memory of its own, which is made for one pack and cannot grow.
+import { importsOf, textAt } from './gl.js';
+
+const PAGE = 65536;
+const UNPACKING = 16; // pages that a program which plans begins with: static data and stack; it may grow
+const MOST = 32768; // 2 GiB
+export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
+
+const compiled = new Map(); // by address
+
+// The program, compiled once for all characters. address: where noh.wasm is.
+export function compile(address = new URL('noh.wasm', import.meta.url)) {
+    const key = String(address);
+    if (!compiled.has(key)) {
+        const module = WebAssembly.compileStreaming(fetch(key)).catch(async (error) => {
+            const answer = await fetch(key); // a server that does not know the type
+            if (!answer.ok) throw new Error(`no program: ${key}: the server says ${answer.status}`);
+            return WebAssembly.compile(await answer.arrayBuffer()).catch(() => { throw error; });
+        });
+        module.catch(() => compiled.delete(key)); // the next one tries again
+        compiled.set(key, module);
+    }
+    return compiled.get(key);
+}
+
+// Its functions begin with an underscore, as C has them in an object of JavaScript: program._web_step(0.1).
+export class Program {
+    constructor(memory) {
+        this.memory = memory;
+        this.heap = {};
+        this.look();
+    }
+
+    // In memory that is there; caps: of another program on the same context.
+    static async start(module, gl, memory, caps) {
+        const program = new Program(memory);
+        const { imports, textures, buffers } = importsOf(gl, program.heap);
+        const instance = await WebAssembly.instantiate(module, { ...imports, env: { ...imports.env, memory } });
+        for (const [name, value] of Object.entries(instance.exports)) if (name.startsWith('web_')) program[`_${name}`] = value;
+        Object.assign(program, { gl, textures, buffers });
+        instance.exports._initialize();
+        if (caps) program.heap.U8.set(caps, program._web_caps());
+        return program;
+    }
+
+    look() {
+        const { buffer } = this.memory;
+        Object.assign(this.heap, { U8: new Uint8Array(buffer), I8: new Int8Array(buffer), U16: new Uint16Array(buffer), I16: new Int16Array(buffer),
+            U32: new Uint32Array(buffer), I32: new Int32Array(buffer), F32: new Float32Array(buffer) });
+    }
+
+    get HEAPU8() { return this.heap.U8; }
+    get HEAPU32() { return this.heap.U32; }
+    get HEAPF32() { return this.heap.F32; }
+
+    text(at) { return textAt(this.heap, at); }
+    UTF8ToString(at) { return textAt(this.heap, at); }
+    floats(at, count) { return this.heap.F32.subarray(at >> 2, (at >> 2) + count); }
+    words() { return this.text(this._web_error()); }
+
+    // A noh_result of the program; an error is thrown in words.
+    check(result) { if (result) throw new Error(this.words()); }
+
+    reserve(bytes) {
+        const more = Math.ceil((bytes - this.memory.buffer.byteLength) / PAGE);
+        if (more <= 0) return;
+        try {
+            this.memory.grow(more);
+        } catch {
+            throw new Error(`there is no memory for ${bytes} bytes`);
+        }
+        this.look();
+    }
+}
+
+// Takes a pack in, a piece at a time, and makes the program that shows it.
+export class Arrival {
+    static async begin(module, gl, caps) {
+        const arrival = new Arrival();
+        Object.assign(arrival, { module, gl, shows: 0, parts: [], bytes: 0, place: 0 });
+        arrival.program = await Program.start(module, gl, new WebAssembly.Memory({ initial: UNPACKING, maximum: MOST }), caps);
+        return arrival;
+    }
+
+    // More of the file. Returns 0: nothing can be shown yet, 1: the coarsest levels can, 2: all of it (the wire form).
+    push(bytes) {
+        this.bytes += bytes.length;
+        if (this.place) return this.unpack(bytes);
+        this.parts.push(bytes);
+        const head = this.program._web_head_bytes();
+        if (this.bytes < head || (this.bytes - bytes.length >= head)) return this.shows; // a pack as it is, or too little
+        const all = joined(this.parts);
+        if (String.fromCharCode(...all.subarray(0, 4)) !== 'NOHZ') return this.shows;
+        this.program.HEAPU8.set(all.subarray(0, head), this.program._web_head());
+        const memory = this.program._web_wire_memory();
+        if (!memory) throw new Error(this.program.words());
+        this.program.reserve(memory);
+        this.place = this.program._web_wire();
+        if (!this.place) throw new Error(this.program.words());
+        this.parts = [];
+        return this.unpack(all);
+    }
+
+    unpack(bytes) {
+        const room = this.program._web_piece_bytes();
+        for (let at = 0; at < bytes.length; at += room) {
+            const piece = bytes.subarray(at, at + room);
+            this.program.HEAPU8.set(piece, this.place);
+            this.program.check(this.program._web_wire_push(piece.length));
+        }
+        this.shows = this.program._web_wire_shows();
+        return this.shows;
+    }
+
+    // Nothing more comes.
+    end() {
+        if (this.place) {
+            if (this.shows < 2) throw new Error(`the pack was cut short: ${kilobytes(this.bytes)} kB came`);
+            return;
+        }
+        if (this.bytes < 4) throw new Error(`the pack is no pack: it has ended after ${this.bytes} bytes`);
+        const file = joined(this.parts);
+        this.parts = [];
+        this.program.reserve(this.program._web_memory_for(file.length, 0));
+        this.program.HEAPU8.set(file, this.program._web_pack(file.length));
+        this.shows = 2;
+    }
+
+    // The best pack that is there, in a program whose memory is what it takes: { path, characters, alive }.
+    async open(wants) {
+        const planner = this.program, path = Math.max(0, paths.indexOf(wants.path || 'auto'));
+        planner.check(planner._web_loaded());
+        const bytes = planner._web_loaded_bytes();
+        planner.reserve(planner.memory.buffer.byteLength + planner._web_plan_grows());
+        const block = planner._web_plan(path, wants.characters, wants.alive ? 1 : 0);
+        if (!block) throw new Error(planner.words());
+        const pages = Math.ceil(planner._web_memory_for(bytes, block) / PAGE);
+        const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
+        const program = await Program.start(this.module, this.gl, memory, this.caps());
+        program.HEAPU8.set(planner.HEAPU8.subarray(planner._web_loaded_at(), planner._web_loaded_at() + bytes), program._web_pack(bytes));
+        return Object.assign(program, { packBytes: bytes, open: () => program.check(program._web_open(path, wants.characters, wants.alive ? 1 : 0)) });
+    }
+
+    // What the context can do, once it was asked.
+    caps() {
+        const at = this.program._web_caps();
+        return this.program.HEAPU8.slice(at, at + this.program._web_caps_bytes());
+    }
+}
+
+export const kilobytes = (bytes) => Math.round(bytes / 1000).toLocaleString('en');
+
+function joined(parts) {
+    const out = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+    parts.reduce((at, part) => { out.set(part, at); return at + part.length; }, 0);
+    return out;
+}
+
+// The bytes of an answer to a fetch, as they come: push(piece) for each, tell(taken, all) of how far it is. Without a
+// length that the server tells, all is 0.
+export async function receive(answer, push, tell, signal) {
+    if (!answer.ok) throw new Error(`no pack: the server says ${answer.status}`);
+    const reader = answer.body.getReader();
+    const coded = answer.headers.get('Content-Encoding'); // then the length is that of what was sent
+    const all = coded ? 0 : Number(answer.headers.get('Content-Length'));
+    for (let taken = 0; ;) {
+        const { value, done } = await reader.read().catch(() => { throw new Error(`the connection was lost after ${kilobytes(taken)} kB of the pack`); });
+        if (done || (signal && signal.aborted)) break;
+        taken += value.length;
+        await push(value);
+        tell(taken, all);
+    }
+}
