@@ -19,8 +19,8 @@
 #define NOH_PACK_ALIGN 64u
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
-/* The largest number of a mesh, skeleton, skin, node, material or place, either sign: sums and products of a frame then stay
- * finite. Scales of joints and nodes, and where they lead, are held to it along the whole chain. */
+/* The largest number of a mesh, skeleton, skin, node, material or place, either sign: sums and products of a frame then
+ * stay finite. Scales of joints and nodes, and where they lead, are held to it along the whole chain. */
 #define NOH_NUMBER_MAX 1e12f
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
 #define NOH_NODES_MAX 65535u

@@ -91,7 +91,7 @@ void noh_lod_pools_ask(noh_lod_pools *pools, uint32_t instance, uint32_t level, 
 void noh_lod_pools_share(noh_lod_pools *pools);
 
 /* The same, and at most `moves` slots change hands in this frame; 2 where it is less, for an exchange is two. Every
- * frame settles some, so who asks for the same for long enough gets what noh_lod_pools_share gives. */
+ * frame settles some, so one that keeps asking for the same ends with what noh_lod_pools_share gives. */
 void noh_lod_pools_share_some(noh_lod_pools *pools, uint32_t moves);
 
 /* Of an instance that asked in this frame. */

@@ -3,7 +3,7 @@
  *   noh_crowd_size, noh_crowd_init   a crowd in one block
  *   noh_crowd_put, noh_crowd_remove  an agent enters, leaves
  *   noh_crowd_aim, noh_crowd_pace    where it wants to go, how fast; noh_crowd_move: where it is
- *   noh_crowd_field_aim, noh_crowd_follow   a goal that many share, behind any walls; who goes there
+ *   noh_crowd_field_aim, noh_crowd_follow   a goal that many agents share, behind any walls, and who follows it
  *   noh_crowd_step                   time moves on
  *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
  *   noh_crowd_agent_at               where an agent is, as shown; noh_crowd_agent_stepped: as of the last step
@@ -22,7 +22,7 @@
  * Where the ground is a height field agents are slowed by its slopes, do not walk up what is too steep, and are led
  * around it by flow fields. Their height is the field's (noh_field_height).
  *
- * A crowd is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
+ * A crowd is one block without pointers: a copy of it continues with the same bits, on every processor.
  * source   Weiss, Litteneker, Jiang, Terzopoulos: Position-Based Multi-Agent Dynamics for Real-Time Crowd Simulation,
  *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations); van den Berg, Guy, Lin, Manocha:
  *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA); Zhao: A fast sweeping method for Eikonal

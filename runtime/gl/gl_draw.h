@@ -2,7 +2,7 @@
  *
  *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
  *   noh_gl_mesh_lod          which indices an LOD level draws
- *   noh_gl_mesh_create_empty buffers without contents, for levels that come later; noh_gl_mesh_fill fills them in pieces
+ *   noh_gl_mesh_create_empty buffers for levels that come later; noh_gl_mesh_fill fills them piece by piece
  *   noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
  *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
  *                            _variant

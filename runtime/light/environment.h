@@ -13,7 +13,7 @@
  * round each: what an eye reflects of a room. Its panes are integrated by a rule that is as good as exact.
  *
  * Radiance is linear RGB; a white matte surface under radiance 1 from everywhere reflects 1. Y is up, +Z is towards
- * the viewer who sees a character from the front.
+ * a viewer in front of the character.
  * Threads: no state; any thread. */
 #ifndef NOH_LIGHT_ENVIRONMENT_H
 #define NOH_LIGHT_ENVIRONMENT_H

@@ -1,6 +1,6 @@
-/* blob.h: soft dark spots where bodies come near the ground, for those who have no shadow map.
+/* blob.h: soft dark spots where bodies come near the ground, in place of a shadow map.
  *
- *   noh_blob_rig_make   what of a kind may come near the ground: boxes of its largest parts
+ *   noh_blob_rig_make   boxes of a kind's largest parts
  *   noh_actor_blobs     the spots of an actor, as it was shown last
  *
  * stage_gl/stage_blob.h draws them. A part of radius r at a height h over the ground takes r^2 / (r^2 + (2 h)^2) of the

@@ -145,9 +145,9 @@ typedef struct noh_stage_desc {
     uint32_t load_bytes;  /* of levels that are loaded (noh_stage_load_level), so many are uploaded in a frame at most;
                            * below 64 counts as 64; default (0) 65,536 */
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
-    uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh: whoever
-                                * waits is drawn coarser, or without targets as long as it has no slot. 1 counts as 2;
-                                * default (0) no bound. A frame with a cut has none */
+    uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh:
+                                * actors that wait are drawn coarser, or without targets until they have a slot. 1
+                                * counts as 2; default (0) no bound. A frame with a cut has none */
     int tangents;         /* 1: accumulators with a layer of tangents, for shaders of yours that read them morphed; the
                            * library's do not */
     int halves;           /* 1: 16-bit accumulators; -1: 32-bit ones, which are not given up either */
@@ -617,9 +617,9 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
  *         (where: the mesh); nothing has changed then */
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
 
-/* Let go of them again, at whatever stage of their upload: from the next frame on whoever shows them is drawn coarser
- * at once. The pack is not read any more. What is on the GPU stays there, as planned. noh_actor_mesh_at tells levels of
- * them until the next frame.
+/* Let go of them again, at whatever stage of their upload: from the next frame on actors that show them are drawn
+ * coarser at once. The pack is not read any more. What is on the GPU stays there, as planned. noh_actor_mesh_at tells
+ * levels of them until the next frame.
  * errors  ARG kind, or a frame or a step has begun */
 noh_result noh_stage_drop_level(noh_stage *stage, uint32_t kind, noh_error *error);
 

@@ -1,18 +1,18 @@
-/* wigs.h: hair of a whole kind in fixed memory: of the actors that look the largest it moves, of all others it hangs as
- * at rest and goes with the head.
+/* wigs.h: hair of a whole kind in fixed memory. Hair moves on the actors that look largest; on all others it hangs at
+ * rest and follows the head.
  *
- *   noh_wigs_size, noh_wigs_init   for a wig (wig.h), so many actors, and so many whose hair moves at once
- *   noh_wigs_frame                 after each frame: who is seen, whose hair moves, its steps
- *   noh_wigs_bodies                who is seen, and where each head is
+ *   noh_wigs_size, noh_wigs_init   for a wig (wig.h), a number of actors, and a number whose hair moves at once
+ *   noh_wigs_frame                 after each frame: find the visible actors, choose whose hair moves, step it
+ *   noh_wigs_bodies                the visible actors, and where each head is
  *   noh_wigs_points                control hairs of one of them
  *
- * In place of noh_wig_part, which gives hair of its own to every actor of a kind: hundreds of them would take tens of
- * kilobytes each, and time for hair that nobody sees. Nothing of it is state of the stage: it is not saved, forked or
- * hashed, and a restored stage begins with hair at rest. stage_gl/stage_hairs.h draws it.
+ * noh_wig_part, by contrast, gives every actor of a kind hair of its own: hundreds of them would take tens of kilobytes
+ * each, and time for hair that nobody sees. Wigs are not part of the stage's state: they are not saved, forked or
+ * hashed, and a restored stage begins with hair at rest. stage_gl/stage_hairs.h draws them.
  *
- * Hair moves from NOH_WIGS_MOVING_PIXELS pixels a metre on, fully from twice that, so that who comes nearer or goes
- * away swings more or less, and never leaps. Where more actors than near_max are that large, the largest have it; one
- * that has it keeps it until another looks a quarter larger, and then hangs at rest at once.
+ * Hair begins to move at NOH_WIGS_MOVING_PIXELS pixels a metre and moves fully from twice that on, so that it swings
+ * more or less as an actor approaches or recedes, without a jump. If more than near_max actors are that large, the
+ * largest are chosen. A chosen actor is kept until another looks a quarter larger; its hair is then at rest at once.
  *
  * Threads: the stage's, outside of steps and frames; noh_wigs_size, any. */
 #ifndef NOH_STAGE_WIGS_H
@@ -30,29 +30,30 @@ extern "C" {
 typedef struct noh_wigs_desc {
     const noh_wig *wig; /* must outlive all */
     uint32_t kind;      /* of the stage */
-    uint32_t actor_max; /* actors of the kind that are seen at once, 1..NOH_STAGE_ACTORS_MAX; more are bald */
-    uint32_t near_max;  /* whose hair moves, 0..NOH_WIGS_NEAR_MAX */
+    uint32_t actor_max; /* actors of the kind that are visible at once, 1..NOH_STAGE_ACTORS_MAX; any more
+                         * have no hair */
+    uint32_t near_max;  /* actors whose hair moves at once, 0..NOH_WIGS_NEAR_MAX */
 } noh_wigs_desc;
 
-/* One that is seen. */
+/* A visible actor. */
 typedef struct noh_wigs_body {
     float world[12];        /* from head space (metres) */
     float pixels_per_metre; /* of head space */
-    float moves;            /* 0 at rest, to 1: as its hair moves */
-    uint32_t views;         /* a bit for each that sees it */
-    uint32_t slot;          /* of those whose hair moves; NOH_NONE: at rest */
+    float moves;            /* 0 (at rest) to 1 (in full motion) */
+    uint32_t views;         /* a bit for each view that sees it */
+    uint32_t slot;          /* among those whose hair moves; NOH_NONE: at rest */
 } noh_wigs_body;
 
 typedef struct noh_wigs noh_wigs;
 
-/* The exact bytes: 80 an actor, those of noh_hair_size for each whose hair moves. 0 for an impossible desc. */
+/* The exact bytes: 80 for each actor, and noh_hair_size for each whose hair moves. 0 for an impossible desc. */
 size_t noh_wigs_size(const noh_wigs_desc *desc);
 
 /* errors  ARG memory, or a number of the desc is out of its range; MEMORY */
 noh_result noh_wigs_init(void *memory, size_t bytes, const noh_wigs_desc *desc, noh_wigs **wigs, noh_error *error);
 
 /* After noh_stage_frame_end, in every frame.
- * ticks  that the stage was stepped by since the frame before */
+ * ticks  by which the stage was stepped since the last frame */
 void noh_wigs_frame(noh_wigs *wigs, noh_stage *stage, uint32_t ticks);
 
 /* bodies[*count], until the next frame. */
