@@ -11,7 +11,8 @@
  * suit few, and flocks: in a crowd they hardly get on, since repulsion drowns the goal.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 13, corrected: its repulsion vanishes at contact,
  *          its obstacles attract, its overlaps are resolved in place, its sums lose their size; Reynolds: Flocks,
- * herds, and schools, 1987 (noh_flock_join) Threads: no state; any thread. */
+ *          herds, and schools, 1987 (noh_flock_join)
+ * Threads: no state; any thread. */
 #ifndef NOH_CROWD_FLOCK_H
 #define NOH_CROWD_FLOCK_H
 
@@ -40,7 +41,8 @@ void noh_flock_avoid(const float to[2], float radius, float force[2]);
 int noh_flock_apart(const float to[2], float size, uint32_t id, uint32_t other, float move[2]);
 
 /* Add what makes a flock: the mean velocity of neighbours less one's own, and towards the middle of them, each per
- * second. shapes  velocity[2]; to[count][2], velocities[count][2]; force[2] in and out */
+ * second.
+ * shapes  velocity[2]; to[count][2], velocities[count][2]; force[2] in and out */
 void noh_flock_join(const float velocity[2], const float *to, const float *velocities, uint32_t count, float force[2]);
 
 /* The velocity changes by at most `acceleration` * seconds towards the wish, whose length is at most `speed`: so it may

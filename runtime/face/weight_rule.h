@@ -13,12 +13,12 @@
  *   share TARGET TARGET ...  those of one group sum up to 1 at most: above that, each keeps its share
  *
  * Ranges are kept first, then opposites, then groups. Negative weights are left alone by the last two. A stage keeps
- * the rules of kinds that ask for it (noh_kind_desc.weight_rules), whoever says the weights. Correctives follow from
+ * the rules of kinds that ask for it (noh_kind_desc.weight_rules), wherever weights come from. Correctives follow from
  * other targets (face/corrective.h) and have no rules.
  *
  * source   Lewis and others, "Practice and Theory of Blendshape Facial Models", Eurographics 2014, section 3.1
- * (limits); combining opposites by their difference is the slider with two ends of facial rigs Threads  no state; any
- * thread */
+ * (limits); combining opposites by their difference is the two-ended slider of facial rigs
+ * Threads  no state; any thread */
 #ifndef NOH_FACE_WEIGHT_RULE_H
 #define NOH_FACE_WEIGHT_RULE_H
 
@@ -38,8 +38,10 @@ typedef struct noh_weight_rule {
     float low, high; /* RANGE: low at most 0, high at least 0; else 0 */
 } noh_weight_rule;
 
-/* Those that the mesh has the targets for, in the order in which they are kept. A group is of those targets that it
- * has. shapes   rules[rule_max] returns  how many there are; those past rule_max are not written */
+/* The rules whose targets the mesh has, in the order in which they are kept. A group holds those of its targets
+ * that the mesh has.
+ * shapes   rules[rule_max]
+ * returns  how many there are; those past rule_max are not written */
 uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);
 
 /* Change weights that break a rule. Those of no rule, and those that break none, keep their bits. NaN of a target with

@@ -201,12 +201,13 @@ typedef struct noh_gl_lod {
 /* Draw a mesh's submeshes of one pass: first every mesh with NOH_DRAW_OPAQUE, then every mesh with NOH_DRAW_BLENDED.
  * Of a material that blends and has a texture, NOH_DRAW_OPAQUE draws the pixels with an alpha of 0.9 or more, which
  * then hide what is behind them; so strands of hair are in order from all sides without being sorted. A tint's alpha
- * counts in that. NOH_DRAW_DEPTH fetches positions alone, of alpha-cut materials uv, colours
- * and texture too, and writes no colour. It may come before the others, with the same framebuffer, or stand alone. A
- * mesh whose variant the renderer's desc did not ask for asserts, and is not drawn. shapes  world[12] rows of 3 x 4;
- * pictures[texture_count of the pack] morph   where its deltas are, accumulated for this LOD level or a finer one;
- * NULL: no target is active skin    where its palettes are; NULL: a rigid mesh, or the bind pose lod     NULL: the
- * finest level that was uploaded, all pixels */
+ * counts in that. NOH_DRAW_DEPTH fetches positions alone (for alpha-cut materials uv, colours and texture, too) and
+ * writes no colour. It may come before the others, with the same framebuffer, or stand alone. A mesh whose variant the
+ * renderer's desc did not ask for asserts, and is not drawn.
+ * shapes  world[12] rows of 3 x 4; pictures[texture_count of the pack]
+ * morph   where its deltas are, accumulated for this LOD level or a finer one; NULL: no target is active
+ * skin    where its palettes are; NULL: a rigid mesh, or the bind pose
+ * lod     NULL: the finest level that was uploaded, all pixels */
 void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass);

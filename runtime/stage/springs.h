@@ -1,8 +1,8 @@
 /* springs.h: springs of a kind: chains of its joints that swing as its actors move.
  *
- *   noh_springs_of_pack                  those that a pack brings (noh build --springs): its kinds swing them by
- * themselves noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors of kinds
- * that have it noh_springs_part                     the part that swings them, for noh_kind_desc.parts
+ *   noh_springs_of_pack                  the springs of a pack (noh build --springs), which stages run by themselves
+ *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors that have it
+ *   noh_springs_part                     the part that runs them, for noh_kind_desc.parts
  *
  * A kind whose pack brings springs needs none of these calls: its stage makes them, and runs them after all other
  * parts, unless noh_kind_desc.without_springs. The calls are for springs that the game describes itself.
@@ -13,8 +13,8 @@
  * is the bind pose.
  *
  * A chain that looks shorter than NOH_SPRINGS_FADE_PIXELS fades into its rest, and stands at rest, at no cost, from
- * half of that length down; it begins anew from rest, and fades in. All chains are at rest after a cut. Threads:
- * noh_springs_init as any init; afterwards it is read only. */
+ * half of that length down; it begins anew from rest, and fades in. All chains are at rest after a cut.
+ * Threads: noh_springs_init as any init; afterwards it is read only. */
 #ifndef NOH_STAGE_SPRINGS_H
 #define NOH_STAGE_SPRINGS_H
 

@@ -36,9 +36,10 @@ noh_stage_part noh_wig_part(const noh_wig *wig);
 /* shapes  state: of noh_actor_part; points[hair_count][point_count][3], head space; at rest where none was posed */
 void noh_wig_points(const noh_wig *wig, const void *state, float *points);
 
-/* Where the head of an actor is, as the last frame showed it. Returns 0 and leaves all as it was where it was not
- * shown. shapes  world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each that sees
- * it */
+/* Where the head of an actor is, as the last frame showed it.
+ * shapes   world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each view that sees
+ *          it
+ * returns  0 if it was not shown; nothing is written then */
 int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
                  uint32_t *views);
 
