@@ -58,7 +58,7 @@ PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(call sources,tools/convert,*.c)
 CONVERT_CC := $(filter-out $(if $(HAVE_ASSIMP),,tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%),$(call sources,tools/convert,*.cpp))
 VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
-VIEW_C     := $(filter-out $(VIEW_NOT_C),$(call sources,tools/noh/view,*.c))
+VIEW_C     := $(filter-out $(VIEW_NOT_C) %/cmd_view.c,$(call sources,tools/noh/view,*.c))
 VIEW_CC    := $(call sources,tools/noh/view,*.cpp)
 TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C),$(call sources,tools/noh,*.c))
 DEMO_C     := $(call sources,tools/demo_assets,*.c)
@@ -268,6 +268,21 @@ FORCE:
 $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
+
+# The same as on a machine that has only what it must: no Draco, no Assimp, no window. For the tests.
+WITHOUT_CC := tools/convert/gltf/gltf_draco.cpp tools/convert/fbx/fbx_read.cpp
+WITHOUT_O  := $(WITHOUT_CC:%.cpp=$(BUILD)/without/%.o) $(VIEW_NOT_C:%.c=$(BUILD)/without/%.o)
+$(BUILD)/without/%.o: %.cpp
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+$(BUILD)/without/%.o: %.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"glfw3 and imgui"' -MMD -MP -c $< -o $@
+$(BUILD)/noh_without: $(TOOL_O) $(WITHOUT_O) $(filter-out $(BUILD)/tools/convert/fbx/% %/gltf_draco.o,$(CONVERT_O)) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(filter-out -ldraco -lassimp,$(TOOL_LIBS))
 
 # The man page and the completion for bash come from the tables that the verbs read their options by.
 $(BUILD)/noh.1: $(BUILD)/noh
@@ -566,7 +581,7 @@ fuzz: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/tests/fuzz/corpus/.made $(BUILD)/gen/shaders.gen.c
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS)) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
+tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS) $(BUILD)/noh_without) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
        $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/fuzz_wire $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and

@@ -173,9 +173,10 @@ static void filter_track(filter *f, const raw_skeleton *skeleton, raw_clip *clip
 
 static int measure(const raw_skeleton *skeleton, const raw_clip *before, const raw_clip *after, jitter_report *report)
 {
-    double *a = malloc((size_t)skeleton->joint_count * 24u * sizeof *a), *b = a + (size_t)skeleton->joint_count * 12u;
+    double *a = malloc((size_t)skeleton->joint_count * 24u * sizeof *a), *b;
     double sum = 0.0;
     if (!a) return 1;
+    b = a + (size_t)skeleton->joint_count * 12u;
     for (uint32_t f = 0; f < after->frame_count; f++) {
         raw_pose_object(skeleton, before, f, a);
         raw_pose_object(skeleton, after, f, b);

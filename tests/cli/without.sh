@@ -1,0 +1,44 @@
+#!/bin/sh
+# noh as it is built where Draco, Assimp and the libraries of the viewer are missing: it says so, and does all else.
+. "$(dirname "$0")/lib.sh"
+
+if [ ! -x "$build/noh_without" ]; then
+    skip 'noh without optional libraries' 'built without sanitizers alone'
+    finish
+    exit 0
+fi
+noh_without() {
+    "$build/noh_without" "$@" >"$work/out" 2>"$work/err"
+    code=$?
+}
+
+noh_without view "$build/mask.noh"
+expect 1 'a window'
+says 'noh was built without glfw3 and imgui (Debian: apt install libglfw3-dev libimgui-dev'
+
+printf '; FBX 7.4.0 project file\nObjects:  {\n}\n' >"$work/a.fbx"
+noh_without build "$work/a.fbx" -o "$work/a.noh"
+expect 1 'an FBX file'
+says 'built without Assimp'
+
+cat >"$work/draco.gltf" <<'GLTF'
+{ "asset": { "version": "2.0" }, "extensionsUsed": ["KHR_draco_mesh_compression"],
+  "extensionsRequired": ["KHR_draco_mesh_compression"], "scene": 0, "scenes": [{ "nodes": [0] }],
+  "nodes": [{ "mesh": 0 }], "buffers": [{ "uri": "data:application/octet-stream;base64,AAAAAA==", "byteLength": 4 }],
+  "bufferViews": [{ "buffer": 0, "byteLength": 4 }],
+  "accessors": [{ "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1] },
+                { "componentType": 5123, "count": 3, "type": "SCALAR" }],
+  "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1,
+      "extensions": { "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": { "POSITION": 0 } } } }] }] }
+GLTF
+noh_without build "$work/draco.gltf" -o "$work/draco.noh"
+expect 1 'a mesh compressed by Draco'
+says 'or build noh with Draco (Debian: apt install libdraco-dev)'
+check 'no half-written file' sh -c '! ls "$1"/*.noh' - "$work"
+
+noh build "$build/mask.glb" -o "$work/with.noh"
+expect 0 'a model, by the whole program'
+noh_without build "$build/mask.glb" -o "$work/without.noh"
+expect 0 'and by this one'
+check 'gives the same bytes' cmp "$work/with.noh" "$work/without.noh"
+finish
