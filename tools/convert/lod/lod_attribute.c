@@ -16,6 +16,8 @@
 #define MINOR_COLORS 3.0f /* in a small part, such as an eye, colours matter most */
 #define SKIN_EDGES 1.0f
 #define FIRST_COLOR 2u
+#define COLORS (LOD_ATTRIBUTES - FIRST_COLOR)
+#define BOUND_ROUNDING 1.0001f /* of sums over three weights that may not add up to 1 in the last bits */
 
 static double area_of(const float *a, const float *b, const float *c, uint32_t axes)
 {
@@ -87,27 +89,48 @@ static uint32_t moved(const lod_move *m, uint32_t vertex)
     return vertex;
 }
 
-/* The nearest one at rest, among the new triangles of an island (LOD_NONE: all). 0 if the island has none here. */
-static int nearest_place(const lod_surface *s, const lod_move *m, const float *at, uint32_t island, place *out)
+/* The triangles that a move leaves, at rest. */
+typedef struct rest_move {
+    const lod_move *move;
+    lod_prepared triangles[LOD_FAN_MAX]; /* [kept_count] */
+} rest_move;
+
+static void rest_move_make(const lod_surface *s, const lod_move *m, rest_move *out)
 {
+    out->move = m;
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        float triangle[9];
+        lod_move_triangle(s, m->kept[i], m->to, 0, triangle);
+        lod_prepare(triangle, &out->triangles[i]);
+    }
+}
+
+/* The nearest one at rest, among the new triangles of an island (LOD_NONE: all). 0 if the island has none here. */
+static int nearest_place(const lod_surface *s, const rest_move *r, const float *at, uint32_t island, place *out)
+{
+    const lod_move *m = r->move;
+    uint32_t best = LOD_NONE, corner;
     out->squared = FLT_MAX;
     for (uint32_t i = 0; i < m->kept_count; i++) {
-        uint32_t c = m->kept[i];
-        float triangle[9], weight[3], squared;
-        if (island != LOD_NONE && s->island[c / 3u] != island) {
+        float squared;
+        if (island != LOD_NONE && s->island[m->kept[i] / 3u] != island) {
             continue;
         }
-        lod_move_triangle(s, c, m->to, 0, triangle);
-        squared = lod_distance_point(triangle, at, weight);
+        squared = lod_distance_prepared(&r->triangles[i], at);
         if (squared < out->squared) {
             out->squared = squared;
-            memcpy(out->weight, weight, sizeof weight);
-            out->vertex[0] = moved(m, s->corner[c]);
-            out->vertex[1] = s->corner[lod_next(c)];
-            out->vertex[2] = s->corner[lod_previous(c)];
+            best = i;
         }
     }
-    return out->squared < FLT_MAX;
+    if (best == LOD_NONE) {
+        return 0;
+    }
+    corner = m->kept[best];
+    (void)lod_distance_weights(&r->triangles[best], at, out->weight);
+    out->vertex[0] = moved(m, s->corner[corner]);
+    out->vertex[1] = s->corner[lod_next(corner)];
+    out->vertex[2] = s->corner[lod_previous(corner)];
+    return 1;
 }
 
 /* The squared difference of attributes first to end - 1, at a point of the new surface and at the weights `mean` of an
@@ -141,12 +164,12 @@ static float missing_weight(const model_mesh *mesh, const place *p, uint16_t joi
     return weight > 0.0f ? weight : 0.0f;
 }
 
-static double skin_error(const lod_surface *s, const lod_move *m)
+static double skin_error(const lod_surface *s, const rest_move *m)
 {
-    size_t row = (size_t)m->from * MODEL_INFLUENCES_MAX;
+    size_t row = (size_t)m->move->from * MODEL_INFLUENCES_MAX;
     float missing = 0.0f;
     place p;
-    if (!(s->skin_length > 0.0f) || !nearest_place(s, m, lod_posed(&s->poses, m->from, 0), LOD_NONE, &p)) {
+    if (!(s->skin_length > 0.0f) || !nearest_place(s, m, lod_posed(&s->poses, m->move->from, 0), LOD_NONE, &p)) {
         return 0.0;
     }
     for (uint32_t k = 0; k < MODEL_INFLUENCES_MAX && s->mesh->joint_weights[row + k] > 0.0f; k++) {
@@ -165,7 +188,7 @@ static void weigh_corners(const lod_surface *s, const uint32_t *corners, const f
 
 /* Colours are compared at the nearest point of any island, where they are seen: otherwise a pupil with its own vertices
  * would shrink into the iris around it. They often change at an edge, where a triangle's centre does not show it. */
-static float color_error(const lod_surface *s, const lod_move *m, const uint32_t *corners)
+static float color_error(const lod_surface *s, const rest_move *m, const uint32_t *corners)
 {
     static const float means[4][3] = {
         { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f }, { 0.8f, 0.1f, 0.1f }, { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.1f, 0.8f }
@@ -183,7 +206,7 @@ static float color_error(const lod_surface *s, const lod_move *m, const uint32_t
 }
 
 /* UVs are compared in the triangle's own island: one that has vanished says nothing about the others. */
-static float uv_error(const lod_surface *s, const lod_move *m, const uint32_t *corners, uint32_t island)
+static float uv_error(const lod_surface *s, const rest_move *m, const uint32_t *corners, uint32_t island)
 {
     static const float middle[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };
     float at[3];
@@ -192,14 +215,48 @@ static float uv_error(const lod_surface *s, const lod_move *m, const uint32_t *c
     return nearest_place(s, m, at, island, &p) ? attribute_error(s, &p, corners, middle, 0, FIRST_COLOR) : 0.0f;
 }
 
+static void widen(const lod_surface *s, uint32_t vertex, float *low, float *high)
+{
+    const float *color = s->attribute + (size_t)vertex * LOD_ATTRIBUTES + FIRST_COLOR;
+    for (uint32_t k = 0; k < COLORS; k++) {
+        low[k] = color[k] < low[k] ? color[k] : low[k];
+        high[k] = color[k] > high[k] ? color[k] : high[k];
+    }
+}
+
+/* No colour error at a triangle is above this: the colours of the new surface here, and its own, differ by no more. */
+static float color_bound(const lod_surface *s, const lod_move *m, const uint32_t *corners)
+{
+    float low[COLORS], high[COLORS], sum = 0.0f;
+    memcpy(low, s->attribute + (size_t)corners[0] * LOD_ATTRIBUTES + FIRST_COLOR, sizeof low);
+    memcpy(high, low, sizeof high);
+    widen(s, corners[1], low, high);
+    widen(s, corners[2], low, high);
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        const uint32_t c = m->kept[i];
+        widen(s, moved(m, s->corner[c]), low, high);
+        widen(s, s->corner[lod_next(c)], low, high);
+        widen(s, s->corner[lod_previous(c)], low, high);
+    }
+    for (uint32_t k = 0; k < COLORS; k++) {
+        sum += (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    return sum;
+}
+
 double lod_attribute_cost(const lod_surface *s, const lod_move *m, const uint32_t *triangles, uint32_t count,
                           const uint32_t *source)
 {
-    double worst = skin_error(s, m);
+    rest_move r;
+    double worst;
+    rest_move_make(s, m, &r);
+    worst = skin_error(s, &r);
     for (uint32_t i = 0; i < count && m->kept_count; i++) {
         const uint32_t *corners = source + (size_t)triangles[i] * 3u;
-        float error = s->mesh->uv ? uv_error(s, m, corners, s->island[triangles[i]]) : 0.0f;
-        error += s->mesh->color ? color_error(s, m, corners) : 0.0f;
+        float error = s->mesh->uv ? uv_error(s, &r, corners, s->island[triangles[i]]) : 0.0f;
+        if (s->mesh->color && error + color_bound(s, m, corners) * BOUND_ROUNDING > worst) {
+            error += color_error(s, &r, corners);
+        }
         worst = error > worst ? error : worst;
     }
     return worst;

@@ -34,6 +34,7 @@ typedef struct way {
     uint32_t sample_count;
     uint32_t *nearest;      /* [sample_count] triangles in the previous pose: the guess for the next */
     uint32_t *rest_nearest; /* [sample_count] */
+    float *rest_weight;     /* [sample_count][3] of the nearest place on it */
     float *rest;            /* [sample_count] distances */
     uint32_t worst;         /* the farthest sample at rest */
 } way;
@@ -131,11 +132,12 @@ static int way_make(way *w, const uint32_t *from, uint32_t from_count, const uin
     }
     w->samples = calloc(count + 1u, sizeof *w->samples);
     w->nearest = calloc(count + 1u, 2u * sizeof *w->nearest);
-    w->rest = calloc(count + 1u, sizeof *w->rest);
+    w->rest = calloc(count + 1u, 4u * sizeof *w->rest);
     if (count > UINT32_MAX || !w->samples || !w->nearest || !w->rest || lod_tree_make(to, to_count, position, &w->to)) {
         return 1;
     }
     w->rest_nearest = w->nearest + count;
+    w->rest_weight = w->rest + count;
     for (uint32_t t = 0; t < from_count; t++) {
         sample_triangle(w, t, grid_steps(w, position, t, spacing), triangle_area(position, from + (size_t)t * 3u),
                         &random);
@@ -177,17 +179,22 @@ static void way_measure_rest(way *w, const float *position)
         w->nearest[i] = guess;
         w->rest[i] = sqrtf(lod_tree_nearest(&w->to, at, &w->nearest[i]));
         guess = w->nearest[i];
+        lod_distance_place(w->to.triangles + (size_t)guess * 9u, at, w->rest_weight + (size_t)i * 3u);
         w->worst = w->rest[i] > w->rest[w->worst] ? i : w->worst;
     }
     memcpy(w->rest_nearest, w->nearest, w->sample_count * sizeof *w->nearest);
 }
 
-/* The distance of one sample, if it is above *most. A sample with any triangle nearer than that is skipped, as most
- * are: they lie near the triangle that was nearest in the previous pose. */
+/* The distance of one sample, if it is above *most. A sample with any place nearer than that is skipped, as most are:
+ * they lie near the place that was nearest at rest, or near the triangle that was in the previous pose. */
 static void way_raise(way *w, uint32_t i, const float *position, float *most)
 {
     float at[3], squared;
     sample_point(w, &w->samples[i], position, at);
+    if (lod_distance_from(w->to.triangles + (size_t)w->rest_nearest[i] * 9u, w->rest_weight + (size_t)i * 3u, at[0],
+                          at[1], at[2]) <= *most * *most) {
+        return;
+    }
     squared = lod_tree_distance(&w->to, at, w->nearest[i]);
     if (squared > *most * *most) {
         squared = lod_tree_nearest(&w->to, at, &w->nearest[i]);

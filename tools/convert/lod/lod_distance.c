@@ -6,16 +6,6 @@
 #pragma GCC optimize("no-trapping-math")
 #endif
 
-/* A corner, the edge from it, and the plane through that edge perpendicular to the triangle. */
-typedef struct edge {
-    float at[3], along[3], side[3], inverse; /* inverse: 1 / |along|^2, 0 for an edge without length */
-} edge;
-
-typedef struct prepared {
-    edge edges[3];
-    float normal[3], inverse; /* 1 / |normal|^2, 0 for a triangle without area */
-} prepared;
-
 static float dot(const float *a, const float *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -28,12 +18,12 @@ static void cross(const float *a, const float *b, float *out)
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static void prepare(const float *triangle, prepared *out)
+void lod_prepare(const float *triangle, lod_prepared *out)
 {
     float squared;
     for (uint32_t e = 0; e < 3u; e++) {
         const float *a = triangle + e * 3u, *b = triangle + (e + 1u) % 3u * 3u;
-        edge *to = &out->edges[e];
+        lod_edge *to = &out->edges[e];
         for (uint32_t k = 0; k < 3u; k++) {
             to->at[k] = a[k];
             to->along[k] = b[k] - a[k];
@@ -50,7 +40,7 @@ static void prepare(const float *triangle, prepared *out)
 }
 
 /* The squared distance to an edge; *inside falls to the least of the sides' signs. */
-static inline float edge_squared(const edge *e, float x, float y, float z, float *inside)
+static inline float edge_squared(const lod_edge *e, float x, float y, float z, float *inside)
 {
     float dx = x - e->at[0], dy = y - e->at[1], dz = z - e->at[2];
     float side = dx * e->side[0] + dy * e->side[1] + dz * e->side[2];
@@ -64,7 +54,7 @@ static inline float edge_squared(const edge *e, float x, float y, float z, float
     return dx * dx + dy * dy + dz * dz;
 }
 
-static inline float triangle_squared(const prepared *p, float x, float y, float z)
+static inline float triangle_squared(const lod_prepared *p, float x, float y, float z)
 {
     float inside = 1.0f;
     float d0 = edge_squared(&p->edges[0], x, y, z, &inside);
@@ -81,8 +71,8 @@ static inline float triangle_squared(const prepared *p, float x, float y, float 
 void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z, uint32_t count,
                            float *squared)
 {
-    prepared p;
-    prepare(triangle, &p);
+    lod_prepared p;
+    lod_prepare(triangle, &p);
     for (uint32_t i = 0; i < count; i += LOD_LANES) {
         float lane[LOD_LANES];
         for (uint32_t k = 0; k < LOD_LANES; k++) {
@@ -94,10 +84,27 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
     }
 }
 
-/* Barycentric weights of the nearest point on the edge from corner e. */
-static float edge_barycentric(const prepared *p, uint32_t e, const float *point, float *out)
+void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y, const float *z,
+                          uint32_t count, float *squared, uint32_t *nearest)
 {
-    const edge *of = &p->edges[e];
+    lod_prepared p;
+    lod_prepare(triangle, &p);
+    for (uint32_t i = 0; i < count; i += LOD_LANES) {
+        float lane[LOD_LANES];
+        for (uint32_t k = 0; k < LOD_LANES; k++) {
+            lane[k] = triangle_squared(&p, x[i + k], y[i + k], z[i + k]);
+        }
+        for (uint32_t k = 0; k < LOD_LANES; k++) {
+            nearest[i + k] = lane[k] < squared[i + k] ? which : nearest[i + k];
+            squared[i + k] = lane[k] < squared[i + k] ? lane[k] : squared[i + k];
+        }
+    }
+}
+
+/* Barycentric weights of the nearest point on the edge from corner e. */
+static float edge_barycentric(const lod_prepared *p, uint32_t e, const float *point, float *out)
+{
+    const lod_edge *of = &p->edges[e];
     float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] },
           t = dot(d, of->along) * of->inverse;
     t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
@@ -110,17 +117,17 @@ static float edge_barycentric(const prepared *p, uint32_t e, const float *point,
     return dot(d, d);
 }
 
-float lod_distance_point(const float *triangle, const float *point, float *barycentric)
+float lod_distance_prepared(const lod_prepared *p, const float *point)
 {
-    prepared p;
-    float squared, best = 0.0f;
-    prepare(triangle, &p);
-    squared = triangle_squared(&p, point[0], point[1], point[2]);
-    if (!barycentric) {
-        return squared;
-    }
+    return triangle_squared(p, point[0], point[1], point[2]);
+}
+
+float lod_distance_weights(const lod_prepared *p, const float *point, float *barycentric)
+{
+    const float squared = triangle_squared(p, point[0], point[1], point[2]);
+    float best = 0.0f;
     for (uint32_t e = 0; e < 3u; e++) {
-        float weights[3], d = edge_barycentric(&p, e, point, weights);
+        float weights[3], d = edge_barycentric(p, e, point, weights);
         if (e == 0 || d < best) {
             best = d;
             barycentric[0] = weights[0];
@@ -130,10 +137,70 @@ float lod_distance_point(const float *triangle, const float *point, float *baryc
     }
     if (squared < best) { /* inside: weights from the areas opposite the corners */
         for (uint32_t e = 0; e < 3u; e++) {
-            const edge *of = &p.edges[e];
+            const lod_edge *of = &p->edges[e];
             float d[3] = { point[0] - of->at[0], point[1] - of->at[1], point[2] - of->at[2] };
-            barycentric[(e + 2u) % 3u] = dot(d, of->side) * p.inverse;
+            barycentric[(e + 2u) % 3u] = dot(d, of->side) * p->inverse;
         }
     }
     return squared;
+}
+
+float lod_distance_point(const float *triangle, const float *point)
+{
+    lod_prepared p;
+    lod_prepare(triangle, &p);
+    return lod_distance_prepared(&p, point);
+}
+
+static void minus(const float *a, const float *b, float *out)
+{
+    for (uint32_t k = 0; k < 3u; k++) {
+        out[k] = a[k] - b[k];
+    }
+}
+
+/* On the edge between corners a and b, where a's and b's projections have these lengths. */
+static void on_edge(uint32_t a, uint32_t b, float from_a, float to_b, float *out)
+{
+    const float sum = from_a + to_b;
+    out[0] = out[1] = out[2] = 0.0f;
+    out[b] = sum > 0.0f ? from_a / sum : 0.0f;
+    out[a] = 1.0f - out[b];
+}
+
+/* By the regions around a triangle: Ericson, "Real-Time Collision Detection" (2005), 5.1.5. */
+void lod_distance_place(const float *triangle, const float *point, float *out)
+{
+    float ab[3], ac[3], p[3], a1, a2, b1, b2, c1, c2, va, vb, vc;
+    minus(triangle + 3, triangle, ab);
+    minus(triangle + 6, triangle, ac);
+    minus(point, triangle, p);
+    a1 = dot(ab, p);
+    a2 = dot(ac, p);
+    minus(point, triangle + 3, p);
+    b1 = dot(ab, p);
+    b2 = dot(ac, p);
+    minus(point, triangle + 6, p);
+    c1 = dot(ab, p);
+    c2 = dot(ac, p);
+    va = b1 * c2 - c1 * b2;
+    vb = c1 * a2 - a1 * c2;
+    vc = a1 * b2 - b1 * a2;
+    if (a1 <= 0.0f && a2 <= 0.0f) {
+        on_edge(0, 1, 0.0f, 0.0f, out);
+    } else if (b1 >= 0.0f && b2 <= b1) {
+        on_edge(1, 0, 0.0f, 0.0f, out);
+    } else if (vc <= 0.0f && a1 >= 0.0f && b1 <= 0.0f) {
+        on_edge(0, 1, a1, -b1, out);
+    } else if (c2 >= 0.0f && c1 <= c2) {
+        on_edge(2, 0, 0.0f, 0.0f, out);
+    } else if (vb <= 0.0f && a2 >= 0.0f && c2 <= 0.0f) {
+        on_edge(0, 2, a2, -c2, out);
+    } else if (va <= 0.0f && b2 >= b1 && c1 >= c2) {
+        on_edge(1, 2, b2 - b1, c1 - c2, out);
+    } else {
+        out[1] = vb / (va + vb + vc);
+        out[2] = vc / (va + vb + vc);
+        out[0] = 1.0f - out[1] - out[2];
+    }
 }

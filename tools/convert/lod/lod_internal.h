@@ -140,12 +140,43 @@ int lod_quadric_merge(lod_quadric_row *rows, uint32_t from, uint32_t to);
 
 #define LOD_LANES 8u
 
+/* A corner, the edge from it, and the plane through that edge perpendicular to the triangle. */
+typedef struct lod_edge {
+    float at[3], along[3], side[3], inverse; /* inverse: 1 / |along|^2, 0 for an edge without length */
+} lod_edge;
+
+/* A triangle that many points are measured to. */
+typedef struct lod_prepared {
+    lod_edge edges[3];
+    float normal[3], inverse; /* 1 / |normal|^2, 0 for a triangle without area */
+} lod_prepared;
+
+void lod_prepare(const float *triangle, lod_prepared *out);
+float lod_distance_prepared(const lod_prepared *p, const float *point);
+/* The same, and the weights of the nearest place, [3]. */
+float lod_distance_weights(const lod_prepared *p, const float *point, float *barycentric);
+
 /* squared[i] = min(squared[i], squared distance of sample i to the triangle [3][3]); count is a multiple of LOD_LANES.
  */
 void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z, uint32_t count,
                            float *squared);
-/* One point; barycentric[3] of the nearest place, or NULL. */
-float lod_distance_point(const float *triangle, const float *point, float *barycentric);
+/* The same, and nearest[i] = which where it fell. */
+void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y, const float *z,
+                          uint32_t count, float *squared, uint32_t *nearest);
+/* One point. */
+float lod_distance_point(const float *triangle, const float *point);
+
+/* The weights of the nearest place alone, [3]. */
+void lod_distance_place(const float *triangle, const float *point, float *out);
+
+/* The squared distance of a point to the place of given weights on a triangle [3][3]. */
+static inline float lod_distance_from(const float *c, const float *w, float x, float y, float z)
+{
+    x -= w[0] * c[0] + w[1] * c[3] + w[2] * c[6];
+    y -= w[0] * c[1] + w[1] * c[4] + w[2] * c[7];
+    z -= w[0] * c[2] + w[1] * c[5] + w[2] * c[8];
+    return x * x + y * y + z * z;
+}
 
 /* ---- tracked samples: lod_track.c, lod_measure.c ---- */
 

@@ -24,10 +24,12 @@ static int grow(lod_track *t, uint32_t count)
     free(t->sample);
     free(t->squared);
     free(t->block);
+    free(t->match);
+    t->match = calloc(capacity, sizeof *t->match);
     t->sample = calloc(capacity, 3u * sizeof *t->sample);
     t->squared = calloc(capacity, 3u * sizeof *t->squared);
     t->block = calloc((size_t)poses * capacity, 12u * sizeof *t->block);
-    if (!t->sample || !t->squared || !t->block) {
+    if (!t->sample || !t->squared || !t->block || !t->match) {
         t->capacity = 0;
         return 1;
     }
@@ -80,6 +82,7 @@ void lod_track_free(lod_track *t)
         free(t->sample);
         free(t->squared);
         free(t->block);
+        free(t->match);
         free(t);
     }
 }

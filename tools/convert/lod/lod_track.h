@@ -14,6 +14,15 @@ typedef struct lod_pose_view {
     float *triangles; /* [capacity][9] */
 } lod_pose_view;
 
+#define LOD_REVERSE_SAMPLES 6u                              /* of a new triangle, compared with the full mesh */
+#define LOD_REVERSE_MAX (LOD_REVERSE_SAMPLES * LOD_FAN_MAX) /* a multiple of LOD_LANES */
+
+/* Where a sample was nearest in one pose: in any other it is at most as far from there as from this place. */
+typedef struct lod_match {
+    uint32_t triangle;
+    float weight[3];
+} lod_match;
+
 struct lod_track {
     lod_surface *surface;
     uint32_t *first, *next;           /* [triangle_count], [vertex_count + triangle_count]: the samples at a triangle */
@@ -24,6 +33,8 @@ struct lod_track {
     uint32_t *triangle;               /* [capacity] the mesh's triangle of each centroid */
     float *squared, *nearest, *worst; /* [capacity] */
     uint32_t *owner;                  /* [capacity] */
+    lod_match *match;                 /* [capacity] of the samples on a move's new triangles */
+    lod_match back[LOD_REVERSE_MAX];  /* of the new triangles' samples on the mesh's */
     uint64_t *shows;                  /* [words] poses in which one of its samples is a rim that opens or closes */
     uint64_t *set;                    /* [words] poses in which the fan or its samples move */
     uint32_t *pose;                   /* [pose_count] those poses as a list; the one that decided last comes first */

@@ -73,12 +73,12 @@ static void swap_last(box_stack *s)
 
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle)
 {
-    return lod_distance_point(t->triangles + (size_t)triangle * 9u, point, NULL);
+    return lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
 }
 
 float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
 {
-    float best = lod_distance_point(t->triangles + (size_t)*nearest * 9u, point, NULL);
+    float best = lod_distance_point(t->triangles + (size_t)*nearest * 9u, point);
     box_stack s;
     s.count = 0;
     push(&s, t, 0, point);
@@ -89,7 +89,7 @@ float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
         }
         for (uint32_t i = 0; i < n->count; i++) {
             uint32_t triangle = t->boxes.order[n->first + i];
-            float squared = lod_distance_point(t->triangles + (size_t)triangle * 9u, point, NULL);
+            float squared = lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
             if (squared < best) {
                 best = squared;
                 *nearest = triangle;
