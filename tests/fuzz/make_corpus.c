@@ -129,7 +129,7 @@ static void write_skin(const char *folder, const char *name, uint32_t palette)
 /* Three LOD levels; the model is freed. */
 static void write_levels(const char *folder, const char *name, model *m, uint32_t palette)
 {
-    const lod_settings three = { 3, 0, LOD_FAST };
+    const lod_settings three = { 3, 0, LOD_FAST, NULL };
     char path[4096];
     lod_pack p;
     lod_pack_make(m, &three, palette, &p);
@@ -153,8 +153,8 @@ static void write_graph(const char *folder)
 /* LOD levels and a transfer. */
 static void write_transfer(const char *folder)
 {
-    const lod_face face = { 8, 7, 2, 0, 0 };
-    const lod_settings two = { 2, 0, LOD_FAST };
+    const lod_face face = { 12, 10, 2, 0, 0 };
+    const lod_settings two = { 2, 0, LOD_FAST, NULL };
     const transfer_settings settings = { 4, 0, NULL, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     model *m = lod_face_model(&face);
@@ -295,7 +295,7 @@ static void corpus(void **state)
                   { "scene_without_targets", { 1, 3, 0, TEST_SCENE, 5 } },
                   { "two_meshes", { 2, 3, 2, TEST_SCENE, 6 } },
                   { "many_targets", { 1, 5, 20, TEST_COLORS, 7 } } };
-    const lod_face face = { 8, 7, 2, 0, 0 }, all_touched = { 6, 6, 2, 0, 1 };
+    const lod_face face = { 12, 10, 2, 0, 0 }, all_touched = { 12, 10, 2, 0, 1 };
     const skin_cylinder tube = { 4, 12, 8, 2, 2, 0, 2.0f, 0.5f };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {

@@ -316,10 +316,6 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     morph_options morph = options->morph;
     morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) /
                      scale; /* given in world units, held in the mesh's own */
-    say(options, "LOD levels", m, index);
-    if (mesh_levels_make(m, index, &options->lod, &e->levels[index], error)) {
-        return 1;
-    }
     morph.rank = e->levels[index].rank;
     morph.level_count = e->levels[index].count;
     morph.skip_radius = skip_radius;
@@ -339,7 +335,10 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
 
 static int encode_meshes(const model *m, const convert_options *options, encoded *e, model_error *error)
 {
-    int failed = 0;
+    lod_settings levels = options->lod;
+    int failed;
+    levels.progress = options->progress;
+    failed = model_levels_make(m, &levels, e->levels, error);
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
         failed = encode_mesh(m, i, options, e, error);
     }

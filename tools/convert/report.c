@@ -77,6 +77,11 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
         }
         fputc('\n', out);
     }
+    if (levels->count == 1 && levels->built) {
+        fprintf(out, "  no coarser levels: %u of %u points may not move (seams without a partner, borders that touch, ",
+                levels->built->stuck, levels->built->points);
+        fprintf(out, "folds); the rest saves less than a twentieth at the errors asked\n");
+    }
 }
 
 void convert_report_skins(FILE *out, const noh_pack *pack)

@@ -2,6 +2,7 @@
  * that the levels have to follow.
  *
  *   lod_build, lod_free     an ordered list of half-edge collapses, and the levels cut from it
+ *   lod_cut                 other levels from the same list
  *   lod_certify             the distance between a level and the full mesh, measured both ways
  *
  * A collapse moves one point of the surface onto a neighbour. No vertex is created or changed: the vertices of a level
@@ -24,6 +25,7 @@ extern "C" {
 
 #define LOD_LEVELS_MAX 16u
 #define LOD_POSES_MAX 4096u
+#define LOD_STAYS 0xffffffffu
 
 typedef enum lod_mode {
     LOD_QUALITY, /* quadrics choose candidates, tracked samples measure them: tens of seconds for a body */
@@ -36,6 +38,7 @@ typedef struct lod_options {
     uint32_t level_count;      /* 0: four, or no more than LOD_LEVELS_MAX */
     const float *ratios;       /* [level_count] falling shares of the triangles, 0 to 1; NULL: 1, 0.5, 0.25, 0.1 */
     const float *errors;       /* [level_count] rising: the largest cost of each level, instead of ratios */
+    float error_max;           /* with ratios: the largest cost, where a share would ask for more; 0: any */
     const float *const *poses; /* [pose_count][vertex_count][3] further shapes, such as frames of clips */
     uint32_t pose_count;
     uint32_t mix_count; /* random mixes of targets as poses; 0: 24 */
@@ -47,6 +50,7 @@ typedef struct lod_options {
                            the mean edge; below 0: ignored */
     float skin_length; /* skin weights that go to other joints entirely count as this length; 0: the mean edge; below 0:
                           ignored */
+    uint32_t asset_triangles; /* of all meshes of the asset: a part with few of them is a small part; 0: this mesh's */
     void (*progress)(void *user, uint32_t done,
                      uint32_t total); /* called now and then with the triangles removed; NULL: none */
     void *user;
@@ -59,6 +63,7 @@ typedef struct lod_collapse {
     uint32_t step;     /* counts the points collapsed, from 0 */
     float cost; /* distance from the full surface after this collapse, in the worst pose that the builder saw; never
                    falls along the list */
+    uint32_t triangles; /* left after it */
 } lod_collapse;
 
 typedef struct lod_level {
@@ -74,6 +79,10 @@ typedef struct lod_level {
 typedef struct lod {
     uint32_t submesh_count, collapse_count, level_count;
     lod_collapse *collapses;
+    uint32_t *gone; /* [triangles of the mesh] after how many collapses of the list each is gone; LOD_STAYS: none */
+    uint32_t stuck; /* points that no collapse was ever allowed for, of `points` */
+    uint32_t points;
+    uint32_t least; /* triangles that hair cards keep in any case */
     lod_level levels[LOD_LEVELS_MAX];
 } lod;
 
@@ -84,6 +93,10 @@ typedef struct lod {
  * simplified that far (locked borders, folds) the level has more triangles; that is not an error. */
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
 void lod_free(lod *l);
+
+/* Cut other levels from the list of collapses: level k is what the first collapse_counts[k] leave (rising). The old
+ * levels are freed. Returns 1 when out of memory. */
+int lod_cut(const model_mesh *mesh, lod *l, const uint32_t *collapse_counts, uint32_t level_count);
 
 /* The distance between two surfaces in one pose, the larger of both directions. */
 typedef struct lod_distance {

@@ -186,20 +186,22 @@ static void weigh_corners(const lod_surface *s, const uint32_t *corners, const f
     }
 }
 
+/* The middle of a triangle, and points near its corners. */
+static const float inner_points[4][3] = {
+    { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f }, { 0.8f, 0.1f, 0.1f }, { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.1f, 0.8f }
+};
+
 /* Colours are compared at the nearest point of any island, where they are seen: otherwise a pupil with its own vertices
  * would shrink into the iris around it. They often change at an edge, where a triangle's centre does not show it. */
 static float color_error(const lod_surface *s, const rest_move *m, const uint32_t *corners)
 {
-    static const float means[4][3] = {
-        { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f }, { 0.8f, 0.1f, 0.1f }, { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.1f, 0.8f }
-    };
     float worst = 0.0f;
     for (uint32_t i = 0; i < 4u; i++) {
         float at[3], error;
         place p;
-        weigh_corners(s, corners, means[i], at);
+        weigh_corners(s, corners, inner_points[i], at);
         nearest_place(s, m, at, LOD_NONE, &p);
-        error = attribute_error(s, &p, corners, means[i], FIRST_COLOR, LOD_ATTRIBUTES);
+        error = attribute_error(s, &p, corners, inner_points[i], FIRST_COLOR, LOD_ATTRIBUTES);
         worst = error > worst ? error : worst;
     }
     return worst;
@@ -244,18 +246,73 @@ static float color_bound(const lod_surface *s, const lod_move *m, const uint32_t
     return sum;
 }
 
-double lod_attribute_cost(const lod_surface *s, const lod_move *m, const uint32_t *triangles, uint32_t count,
-                          const uint32_t *source)
+/* The squared distance of a point to the triangles of a submesh that a move leaves; where none is left, to the point
+ * that stays. */
+static float part_squared(const lod_surface *s, const rest_move *r, const float *at, uint32_t submesh)
 {
+    const float *stays = lod_posed(&s->poses, r->move->to, 0);
+    float best = FLT_MAX, squared;
+    for (uint32_t i = 0; i < r->move->kept_count; i++) {
+        if (s->submesh[r->move->kept[i] / 3u] == submesh) {
+            squared = lod_distance_prepared(&r->triangles[i], at);
+            best = squared < best ? squared : best;
+        }
+    }
+    squared = (at[0] - stays[0]) * (at[0] - stays[0]) + (at[1] - stays[1]) * (at[1] - stays[1]) +
+              (at[2] - stays[2]) * (at[2] - stays[2]);
+    return best < FLT_MAX ? best : squared;
+}
+
+/* Whether all triangles that a move leaves are of one submesh, and which. */
+static int is_one_part(const lod_surface *s, const lod_move *m, uint32_t *submesh)
+{
+    *submesh = s->submesh[m->kept[0] / 3u];
+    for (uint32_t i = 1; i < m->kept_count; i++) {
+        if (s->submesh[m->kept[i] / 3u] != *submesh) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Where materials meet, the surface may stay and one of them spread over the other: so the triangles of each are
+ * compared with what is left of it. */
+static float part_error(const lod_surface *s, const rest_move *r, uint32_t triangle, const uint32_t *corners)
+{
+    float worst = 0.0f;
+    for (uint32_t i = 0; i < 4u; i++) {
+        float at[3], squared;
+        weigh_corners(s, corners, inner_points[i], at);
+        squared = part_squared(s, r, at, s->submesh[triangle]);
+        worst = squared > worst ? squared : worst;
+    }
+    return worst;
+}
+
+double lod_attribute_cost(const lod_surface *s, const lod_move *m, const uint32_t *triangles, uint32_t count,
+                          const uint32_t *source, double *parts)
+{
+    uint32_t part;
     rest_move r;
     double worst;
+    int one_part;
+    *parts = 0.0;
+    if (!m->kept_count) {
+        return 0.0;
+    }
     rest_move_make(s, m, &r);
+    one_part = is_one_part(s, m, &part);
     worst = skin_error(s, &r);
-    for (uint32_t i = 0; i < count && m->kept_count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const uint32_t *corners = source + (size_t)triangles[i] * 3u;
         float error = s->mesh->uv ? uv_error(s, &r, corners, s->island[triangles[i]]) : 0.0f;
         if (s->mesh->color && error + color_bound(s, m, corners) * BOUND_ROUNDING > worst) {
             error += color_error(s, &r, corners);
+        }
+        if (!one_part || s->submesh[triangles[i]] != part) {
+            const float apart = part_error(s, &r, triangles[i], corners);
+            *parts = apart > *parts ? apart : *parts;
+            error += apart;
         }
         worst = error > worst ? error : worst;
     }

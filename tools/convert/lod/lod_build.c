@@ -24,6 +24,8 @@
 #define PROGRESS_STEP 256u
 
 #define MINOR_GROWTH 1.5
+#define STALE_SHARE 0.7 /* of the cost that a point had before its surroundings changed */
+#define CHEAP_SHARE 0.2 /* one whose cost may be less than this of it is put to where that would be */
 
 typedef enum point_state { OUT, QUEUED, PARKED } point_state;
 
@@ -36,6 +38,7 @@ typedef struct builder {
     uint32_t *best_to;                    /* [vertex_count] the neighbour that a queued point would move to */
     float *best_length;                   /* [vertex_count] that collapse's error as a length */
     uint8_t *state;                       /* [vertex_count] point_state; PARKED points wait for a coarser level */
+    uint8_t *stale;                       /* [vertex_count] a queued point whose surroundings have changed */
     uint32_t steps, live, full, coarsest; /* live, full, coarsest: triangles left, of the mesh, of the last level */
     float cost;
     lod *out;
@@ -75,25 +78,27 @@ static double measure(builder *b, const lod_fan *fan, const candidate *c, double
     const lod_surface *s = &b->surface;
     uint32_t triangles[LOD_FAN_MAX], count = fan->count;
     const uint32_t *list = triangles;
-    double cost, tracked = c->quadric;
+    double cost, parts, tracked = c->quadric;
     lod_move move;
     lod_move_allowed(&b->surface, fan, c->to, &move);
     if (b->track) {
         cost = QUADRIC_SHARE * c->quadric;
         list = lod_track_triangles(b->track, &count);
-        cost += lod_attribute_cost(s, &move, list, count, s->mesh->indices);
+        cost += lod_attribute_cost(s, &move, list, count, s->mesh->indices, &parts);
         if (cost >= bound) {
             return cost;
         }
         cost += lod_track_cost(b->track, &move, bound - cost, &tracked);
-        *length = (float)sqrt(tracked);
+        *length = (float)sqrt(tracked > parts ? tracked : parts);
         return cost;
     }
     for (uint32_t i = 0; i < count; i++) {
         triangles[i] = fan->corner[i] / 3u;
     }
+    cost = tracked + lod_attribute_cost(s, &move, list, count, s->corner, &parts);
+    tracked = parts > tracked ? parts : tracked;
     *length = (float)sqrt(tracked > 0.0 ? tracked : 0.0);
-    return tracked + lod_attribute_cost(s, &move, list, count, s->corner);
+    return cost;
 }
 
 /* The factor on a squared length at a point: in small parts (eyes, teeth) it grows with the length, which is a larger
@@ -120,6 +125,7 @@ static int queue_point(builder *b, uint32_t point)
         lod_queue_drop(&b->queue, point);
     }
     b->state[point] = OUT;
+    b->stale[point] = 0;
     if (b->surface.locked[point] || lod_fan_gather(&b->surface, point, &fan)) {
         return 0;
     }
@@ -157,6 +163,10 @@ static int record(builder *b, const lod_move *m)
         c->to = m->wedge_to[w];
         c->step = b->steps;
         c->cost = b->cost;
+        c->triangles = b->live - m->gone_count;
+    }
+    for (uint32_t i = 0; i < m->gone_count; i++) {
+        l->gone[m->gone[i] / 3u] = l->collapse_count;
     }
     b->steps++;
     b->live -= m->gone_count;
@@ -164,6 +174,53 @@ static int record(builder *b, const lod_move *m)
         b->options.progress(b->options.user, b->full - b->live, b->full - b->coarsest);
     }
     return lod_quadric_merge(b->quadrics, m->from, m->to);
+}
+
+/* Less than a point's cost by what is cheap to measure. */
+static double least_cost(builder *b, const lod_fan *fan, const candidate *list, uint32_t count, double bound)
+{
+    double least = HUGE_VAL;
+    count = b->track && count > TESTED ? TESTED : count;
+    for (uint32_t i = 0; i < count && least > bound; i++) {
+        double cost = list[i].quadric;
+        lod_move move;
+        if (b->track) {
+            lod_move_allowed(&b->surface, fan, list[i].to, &move);
+            cost = QUADRIC_SHARE * cost + lod_track_least(b->track, &move);
+        }
+        least = cost < least ? cost : least;
+    }
+    return least * importance(b, fan->point, least);
+}
+
+/* A point beside a collapse is judged again when its turn comes, since most change several times before. Until then it
+ * stands where it stood, a little to the front: costs seldom fall. Where it may have become cheap it is put there.
+ * Returns 1 when out of memory. */
+static int change_point(builder *b, uint32_t point)
+{
+    candidate list[LOD_RING_MAX];
+    lod_fan fan;
+    uint32_t count;
+    double cost = b->queue.cost[point] * (b->stale[point] ? 1.0 : STALE_SHARE), least;
+    if (b->state[point] == OUT) {
+        return queue_point(b, point);
+    }
+    if (b->state[point] == QUEUED) {
+        lod_queue_drop(&b->queue, point);
+    }
+    b->state[point] = OUT;
+    count = lod_fan_gather(&b->surface, point, &fan) ? 0u : list_candidates(b, &fan, list);
+    if (!count) {
+        return 0;
+    }
+    if (b->track && lod_track_open(b->track, &fan)) {
+        return 1;
+    }
+    least = least_cost(b, &fan, list, count, cost * CHEAP_SHARE);
+    b->state[point] = QUEUED;
+    b->stale[point] = 1;
+    lod_queue_put(&b->queue, point, (float)(least < cost * CHEAP_SHARE ? least : cost));
+    return 0;
 }
 
 static int collapse(builder *b, lod_fan *fan, const lod_move *m)
@@ -179,7 +236,7 @@ static int collapse(builder *b, lod_fan *fan, const lod_move *m)
         return 1;
     }
     for (uint32_t i = 0; i < fan->ring_count; i++) { /* `to` is among them */
-        if (queue_point(b, fan->ring[i])) {
+        if (change_point(b, fan->ring[i])) {
             return 1;
         }
     }
@@ -204,13 +261,18 @@ static int take(builder *b, uint32_t point)
 /* Whether a point has to wait for a coarser level. */
 static int is_beyond(const builder *b, uint32_t level, uint32_t point)
 {
-    return b->options.errors && b->best_length[point] > b->options.errors[level];
+    const float most = b->options.errors ? b->options.errors[level] : b->options.error_max;
+    return most > 0.0f && b->best_length[point] > most;
 }
 
-/* The number of triangles wanted for a level. */
+/* The number of triangles wanted for a level: its share of those that may go. Otherwise the rest would have to make up
+ * for hair cards, which keep two each. */
 static uint32_t goal_of(const builder *b, uint32_t level)
 {
-    return b->options.errors ? 0u : (uint32_t)ceil((double)b->options.ratios[level] * b->full - 1e-3);
+    const uint32_t least = lod_cards_least(&b->surface);
+    return b->options.errors
+               ? 0u
+               : least + (uint32_t)ceil((double)b->options.ratios[level] * (double)(b->full - least) - 1e-3);
 }
 
 static int collapse_to_level(builder *b, uint32_t level)
@@ -224,6 +286,10 @@ static int collapse_to_level(builder *b, uint32_t level)
         }
     }
     while (!failed && b->live > goal && lod_queue_first(&b->queue, &point)) {
+        if (b->stale[point]) {
+            failed = queue_point(b, point);
+            continue;
+        }
         lod_queue_take(&b->queue);
         if (is_beyond(b, level, point)) {
             b->state[point] = PARKED;
@@ -254,12 +320,9 @@ static int write_level(builder *b, lod_level *level)
     for (uint32_t i = 0; i < b->out->submesh_count; i++) {
         level->index_count += s->live[i] * 3u;
     }
-    level->indices = calloc((size_t)level->index_count + 1u, sizeof *level->indices);
-    level->submesh_first = calloc((size_t)b->out->submesh_count * 2u + 1u, sizeof *level->submesh_first);
-    if (!level->indices || !level->submesh_first) {
+    if (lod_level_alloc(level, b->out->submesh_count)) {
         return 1;
     }
-    level->submesh_count = level->submesh_first + b->out->submesh_count;
     for (uint32_t i = 0; i < b->out->submesh_count; i++) {
         const model_submesh *sub = &s->mesh->submeshes[i];
         level->submesh_first[i] = at;
@@ -285,9 +348,12 @@ static int build_levels(builder *b)
         b->full += b->surface.live[i];
     }
     b->live = b->full;
+    b->out->least = lod_cards_least(&b->surface);
     b->coarsest = goal_of(b, b->options.level_count - 1u);
     for (uint32_t p = 0; p < b->surface.mesh->vertex_count && !failed; p++) {
         failed = queue_point(b, p);
+        b->out->points += b->surface.first[p] != LOD_NONE;
+        b->out->stuck += b->surface.first[p] != LOD_NONE && b->state[p] == OUT;
     }
     for (uint32_t i = 0; i < b->options.level_count && !failed; i++) {
         failed = collapse_to_level(b, i) || write_level(b, &b->out->levels[i]);
@@ -304,11 +370,19 @@ static int allocate(builder *b, const model_mesh *mesh)
     b->best_to = calloc(vertices, sizeof *b->best_to);
     b->best_length = calloc(vertices, sizeof *b->best_length);
     b->state = calloc(vertices, 1);
+    b->stale = calloc(vertices, 1);
     b->out = calloc(1, sizeof *b->out);
-    if (!b->best_to || !b->best_length || !b->state || !b->out) {
+    if (!b->best_to || !b->best_length || !b->state || !b->stale || !b->out) {
         return 1;
     }
     b->out->submesh_count = mesh->submesh_count;
+    b->out->gone = malloc(((size_t)mesh->index_count / 3u + 1u) * sizeof *b->out->gone);
+    if (!b->out->gone) {
+        return 1;
+    }
+    for (uint32_t t = 0; t < mesh->index_count / 3u; t++) {
+        b->out->gone[t] = b->surface.dead[t] ? 0u : LOD_STAYS;
+    }
     b->out->collapses = calloc(vertices, sizeof *b->out->collapses);
     return !b->out->collapses || lod_queue_make(&b->queue, mesh->vertex_count);
 }
@@ -322,6 +396,7 @@ static void builder_free(builder *b)
     free(b->best_to);
     free(b->best_length);
     free(b->state);
+    free(b->stale);
 }
 
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error)
@@ -357,6 +432,7 @@ void lod_free(lod *l)
             free(l->levels[i].submesh_first);
         }
         free(l->collapses);
+        free(l->gone);
         free(l);
     }
 }

@@ -6,6 +6,15 @@
 #pragma GCC optimize("no-trapping-math")
 #endif
 
+/* A second version with AVX2 where the processor has it; without fused multiply-adds, so with the same bits. Sanitizers
+ * do not take functions that are chosen at load time. */
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define LOD_WIDE __attribute__((target_clones("default", "avx2")))
+#else
+#define LOD_WIDE
+#endif
+
 static float dot(const float *a, const float *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -68,8 +77,8 @@ static inline float triangle_squared(const lod_prepared *p, float x, float y, fl
     return inside > 0.0f ? plane : d0;
 }
 
-void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z, uint32_t count,
-                           float *squared)
+LOD_WIDE void lod_distance_triangle(const float *triangle, const float *x, const float *y, const float *z,
+                                    uint32_t count, float *squared)
 {
     lod_prepared p;
     lod_prepare(triangle, &p);
@@ -84,8 +93,8 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
     }
 }
 
-void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y, const float *z,
-                          uint32_t count, float *squared, uint32_t *nearest)
+LOD_WIDE void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y,
+                                   const float *z, uint32_t count, float *squared, uint32_t *nearest)
 {
     lod_prepared p;
     lod_prepare(triangle, &p);

@@ -43,7 +43,16 @@ static inline int lod_set_has(const uint64_t *set, uint32_t pose)
     return (int)(set[pose / 64u] >> (pose % 64u) & 1u);
 }
 
+/* Arrays for level->index_count indices. Returns 1 when out of memory. lod_cut.c */
+int lod_level_alloc(lod_level *level, uint32_t submesh_count);
+
 /* ---- the surface: lod_surface.c ---- */
+
+/* lod_cards.c */
+typedef struct lod_card {
+    double full, left; /* areas at rest */
+    uint32_t triangles;
+} lod_card;
 
 typedef struct lod_surface {
     const model_mesh *mesh;
@@ -59,8 +68,12 @@ typedef struct lod_surface {
     uint8_t *face;              /* [vertex_count] by point: a target moves it */
     uint8_t *minor;             /* [submesh_count] a small part, such as teeth */
     uint32_t *part;             /* [vertex_count] by point: the submesh of one of its triangles */
-    uint64_t *shows; /* [vertex_count][poses.words] by point: the poses in which a rim opens or closes there */
-    uint32_t *mark;  /* [vertex_count] scratch of the link test */
+    uint64_t *shows;  /* [vertex_count][poses.words] by point: the poses in which a rim opens or closes there */
+    uint8_t *faceted; /* [vertex_count] by point: nearly each triangle around it has a vertex of its own there */
+    uint32_t *card;   /* [vertex_count] by point: into cards, or LOD_NONE */
+    lod_card *cards;
+    uint32_t card_count;
+    uint32_t *mark; /* [vertex_count] scratch of the link test */
     uint32_t stamp;
     float *attribute; /* [vertex_count][LOD_ATTRIBUTES] as lengths */
     float skin_length;
@@ -73,6 +86,11 @@ void lod_surface_free(lod_surface *s);
 
 /* Find the rims (lod_rims.c). Returns 1 when out of memory. */
 int lod_rims_mark(lod_surface *s);
+
+/* Find the cards; border [vertex_count] by point. Returns 1 when out of memory. */
+int lod_cards_make(lod_surface *s, const uint8_t *border);
+/* Triangles that the cards keep in any case. */
+uint32_t lod_cards_least(const lod_surface *s);
 
 /* The live triangles around a point. */
 typedef struct lod_fan {
@@ -112,6 +130,10 @@ typedef struct lod_move {
 /* 1 if the collapse keeps topology, seams, borders and orientation; fills *move. */
 int lod_move_allowed(lod_surface *s, const lod_fan *fan, uint32_t to, lod_move *move);
 void lod_move_apply(lod_surface *s, const lod_move *move);
+
+/* Whether a card would keep its area, and the move done to it; to be called before lod_move_apply. lod_cards.c */
+int lod_cards_allow(const lod_surface *s, const lod_move *move);
+void lod_cards_move(lod_surface *s, const lod_move *move);
 
 /* The triangle of a corner in a pose, with that corner moved to `point`; [3][3]. */
 void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, uint32_t pose, float *out);
@@ -191,6 +213,8 @@ const uint32_t *lod_track_triangles(const lod_track *t, uint32_t *count);
 /* The cost of a move: the largest weighted squared distance, over the fan's poses, between the samples and the surface
  * that the move leaves, both ways; stops at `bound`. *squared: the largest one unweighted. */
 double lod_track_cost(lod_track *t, const lod_move *move, double bound, double *squared);
+/* Less than the cost of a move, by the samples at rest alone. */
+double lod_track_least(lod_track *t, const lod_move *move);
 /* Attach the fan's samples, and the removed point itself, to the triangles that stay. To be called before
  * lod_move_apply. */
 void lod_track_commit(lod_track *t, const lod_move *move);
@@ -199,8 +223,9 @@ void lod_track_commit(lod_track *t, const lod_move *move);
 
 int lod_attributes_make(lod_surface *s, const lod_options *o);
 /* The largest squared error, as lengths, of UVs and colours at the centroids of triangles (their corners are in
- * source: the mesh's indices, or lod_surface.corner), and of the skin weights of the point that goes. */
+ * source: the mesh's indices, or lod_surface.corner), and of the skin weights of the point that goes.
+ * *parts: the largest squared distance at rest of triangles to what is left of their submesh, which is in it too. */
 double lod_attribute_cost(const lod_surface *s, const lod_move *move, const uint32_t *triangles, uint32_t count,
-                          const uint32_t *source);
+                          const uint32_t *source, double *parts);
 
 #endif

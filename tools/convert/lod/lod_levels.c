@@ -10,8 +10,9 @@
 #define FRAMES_CERTIFIED 28u /* frames that the levels are measured in */
 #define FINEST_ERROR (1.0f / 4000.0f)
 #define ERROR_STEP 4.0f
-#define LEVELS_BY_ERROR 5u /* the coarsest is off by 1/62 of the diagonal */
-#define LEAST_SAVED 0.95f  /* of the finer level's triangles: a level with more is left out */
+#define COARSEST_ERROR (1.0f / 16.0f) /* by shares too: what is off by more shows nothing of the shape */
+#define LEVELS_BY_ERROR 5u            /* the coarsest is off by 1/62 of the diagonal */
+#define LEAST_SAVED 0.95f             /* of the finer level's triangles: a level with more is left out */
 
 typedef struct pose_list {
     uint32_t count, pairs; /* the first `pairs` poses are pairs of targets */
@@ -170,10 +171,25 @@ static float diagonal(const model_mesh *mesh)
     return sqrtf(high[0] * high[0] + high[1] * high[1] + high[2] * high[2]);
 }
 
-static int build(const model_mesh *mesh, const lod_settings *settings, const lod_frames *frames, mesh_levels *out,
-                 model_error *error)
+typedef struct shown {
+    FILE *out;
+    uint32_t mesh, mesh_count;
+} shown;
+
+static void show_progress(void *user, uint32_t done, uint32_t total)
+{
+    const shown *s = user;
+    fprintf(s->out, "\r\033[KLOD levels of mesh %u of %u: %.0f %% ", s->mesh + 1u, s->mesh_count,
+            100.0 * done / (total ? total : 1u));
+    fflush(s->out);
+}
+
+static int build(const model *m, uint32_t index, const lod_settings *settings, lod_part part, const lod_frames *frames,
+                 mesh_levels *out, model_error *error)
 {
     static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
+    const model_mesh *mesh = &m->meshes[index];
+    shown progress = { settings->progress, index, m->mesh_count };
     float errors[NOH_LOD_LEVELS_MAX];
     lod_options o = { 0 };
     o.mode = settings->mode;
@@ -181,6 +197,14 @@ static int build(const model_mesh *mesh, const lod_settings *settings, const lod
     o.pose_count = frames->count < FRAMES_BUILT ? frames->count : FRAMES_BUILT;
     o.level_count = (settings->by_error ? LEVELS_BY_ERROR : settings->level_count) - 1u;
     o.ratios = shares + 1;
+    o.error_max = settings->mode == LOD_QUALITY ? diagonal(mesh) * COARSEST_ERROR : 0.0f; /* else costs are guesses */
+    o.asset_triangles = part.asset_triangles;
+    o.progress = settings->progress ? show_progress : NULL;
+    o.user = &progress;
+    if (part.share > 0.0f) {
+        o.level_count = 1;
+        o.ratios = &part.share;
+    }
     if (settings->by_error) {
         o.errors = errors;
         errors[0] = diagonal(mesh) * FINEST_ERROR;
@@ -215,34 +239,47 @@ static int rank_vertices(const model_mesh *mesh, mesh_levels *out, model_error *
     return out->rank ? 0 : model_fail(error, "", "out of memory");
 }
 
-static int make(const model *m, uint32_t index, const lod_settings *settings, mesh_levels *out, model_error *error)
+int mesh_levels_build(const model *m, uint32_t index, const lod_settings *settings, lod_part part, lod_frames *frames,
+                      mesh_levels *out, model_error *error)
+{
+    const uint32_t node = lod_skinned_node(m, index);
+    int failed;
+    memset(frames, 0, sizeof *frames);
+    memset(out, 0, sizeof *out);
+    out->count = 1;
+    if ((settings->level_count < 2 && !settings->by_error) || !m->meshes[index].index_count) {
+        return 0;
+    }
+    failed = node != MODEL_NONE && lod_frames_choose(m, node, FRAMES_CERTIFIED, frames) &&
+             model_fail(error, m->meshes[index].name, "frames of its clips could not be skinned");
+    memcpy(out->cap_error, frames->cap_error, sizeof out->cap_error);
+    return failed || build(m, index, settings, part, frames, out, error);
+}
+
+int mesh_levels_finish(const model *m, uint32_t index, lod_frames *frames, mesh_levels *out, model_error *error)
 {
     const model_mesh *mesh = &m->meshes[index];
-    const uint32_t node = lod_skinned_node(m, index);
-    lod_frames frames = { 0 };
     pose_list poses = { 0, 0, NULL };
-    int failed = node != MODEL_NONE && lod_frames_choose(m, node, FRAMES_CERTIFIED, &frames) &&
-                 model_fail(error, mesh->name, "frames of its clips could not be skinned");
-    memcpy(out->cap_error, frames.cap_error, sizeof out->cap_error);
-    failed = failed || build(mesh, settings, &frames, out, error);
-    if (!failed) {
+    int failed = 0;
+    if (out->built) {
         choose_levels(mesh, out);
-        failed = (poses_make(mesh, &frames, &poses) && model_fail(error, "", "out of memory")) ||
+        failed = (poses_make(mesh, frames, &poses) && model_fail(error, "", "out of memory")) ||
                  certify(mesh, &poses, out, error) || rank_vertices(mesh, out, error);
     }
     poses_free(&poses);
-    lod_frames_free(&frames);
+    lod_frames_free(frames);
     return failed;
 }
 
 int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error)
 {
-    memset(out, 0, sizeof *out);
-    out->count = 1;
-    if ((settings->level_count < 2 && !settings->by_error) || !m->meshes[mesh].index_count) {
-        return 0;
+    const lod_part whole = { 0, 0.0f };
+    lod_frames frames;
+    if (mesh_levels_build(m, mesh, settings, whole, &frames, out, error)) {
+        lod_frames_free(&frames);
+        return 1;
     }
-    return make(m, mesh, settings, out, error);
+    return mesh_levels_finish(m, mesh, &frames, out, error);
 }
 
 void mesh_levels_free(mesh_levels *levels)

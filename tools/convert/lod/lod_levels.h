@@ -2,6 +2,8 @@
 #ifndef NOH_CONVERT_LOD_LOD_LEVELS_H
 #define NOH_CONVERT_LOD_LOD_LEVELS_H
 
+#include <stdio.h>
+
 #include "base/limits.h"
 #include "lod.h"
 #include "lod_frames.h"
@@ -17,6 +19,7 @@ typedef struct lod_settings {
     int by_error; /* instead: up to four coarser levels, with costs of 1/4000 of the box's diagonal, and four times as
                      much for each further one */
     lod_mode mode;
+    FILE *progress; /* a terminal, for progress; NULL: none */
 } lod_settings;
 
 #define LOD_SHARES                                            \
@@ -47,11 +50,28 @@ typedef struct mesh_levels {
     float cap_error[LOD_CAPS]; /* lod_frames.h */
 } mesh_levels;
 
-/* Build and certify. Levels that would have nearly as many triangles as the finer one are left out.
+/* Build and certify those of all meshes; out [mesh_count]. By shares, the meshes of an asset have levels of like error:
+ * level k of all of them together has its share of all triangles, and each mesh is simplified as far as the others are
+ * for one error in world units. So a fringe of hair does not vanish while a smooth body hardly changes.
+ * Returns 1 and *error: out of memory, or as lod_build. Free each in both cases. */
+int model_levels_make(const model *m, const lod_settings *settings, mesh_levels *out, model_error *error);
+
+/* Those of one mesh by itself. Levels that would have nearly as many triangles as the finer one are left out.
  * m, mesh  a model that is complete and bound to its skins: clips that move the mesh are sampled for poses
  * Returns 1 and *error: out of memory, or as lod_build. Free in both cases. */
 int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error);
 void mesh_levels_free(mesh_levels *levels);
+
+/* The two halves of mesh_levels_make, for model_levels_make: the order of collapses, to a share of the mesh's triangles
+ * (0: to the settings' levels); and what follows once built->levels are there. frames is freed by the second. */
+typedef struct lod_part {
+    uint32_t asset_triangles; /* lod_options */
+    float share;
+} lod_part;
+
+int mesh_levels_build(const model *m, uint32_t mesh, const lod_settings *settings, lod_part part, lod_frames *frames,
+                      mesh_levels *out, model_error *error);
+int mesh_levels_finish(const model *m, uint32_t mesh, lod_frames *frames, mesh_levels *out, model_error *error);
 
 /* A level that is not the full mesh. */
 lod_view mesh_levels_view(const mesh_levels *levels, uint32_t level);

@@ -18,11 +18,11 @@
 /* A move in one pose. */
 typedef struct posed_move {
     const lod_pose_view *view;
-    uint32_t pose, count;             /* count: new triangles */
+    uint32_t pose, count;              /* count: new triangles */
     float triangles[LOD_FAN_MAX * 9u]; /* [count][3][3] the new ones */
-    float at[3][LOD_REVERSE_MAX];     /* their samples */
-    uint32_t samples, padded;         /* of those */
-    float turned;                     /* turned_area */
+    float at[3][LOD_REVERSE_MAX];      /* their samples */
+    uint32_t samples, padded;          /* of those */
+    float turned;                      /* turned_area */
 } posed_move;
 
 static float largest(const float *values, uint32_t count)
@@ -238,4 +238,16 @@ double lod_track_cost(lod_track *t, const lod_move *m, double bound, double *squ
         }
     }
     return worst;
+}
+
+double lod_track_least(lod_track *t, const lod_move *m)
+{
+    const lod_pose_view *v = lod_track_view(t, 0);
+    const float *const from[3] = { v->samples, v->samples + t->capacity, v->samples + 2u * t->capacity };
+    float triangles[LOD_FAN_MAX * 9u];
+    for (uint32_t i = 0; i < m->kept_count; i++) {
+        lod_move_triangle(t->surface, m->kept[i], m->to, 0, triangles + i * 9u);
+    }
+    all_distances(triangles, m->kept_count, from, t->padded, t->squared, NULL);
+    return counted(t->surface, 0, largest(t->squared, t->count));
 }

@@ -5,10 +5,13 @@
  * neighbour's to become), turn a triangle over at rest, or leave a sliver. */
 #include "lod_internal.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #define TURN_COSINE 0.2588190451 /* 75 degrees at rest */
+#define FACET_NORMALS 0.25f      /* of a squared edge: what a difference of normals of 1 counts */
+#define FACET_REACH 0.5f         /* of the edge: attributes of more belong to another part of the texture */
 #define SLIVER 0.01f             /* the least ratio of a new triangle's height to its longest edge */
 
 void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, uint32_t pose, float *out)
@@ -18,33 +21,81 @@ void lod_move_triangle(const lod_surface *s, uint32_t corner, uint32_t point, ui
     memcpy(out + 6, lod_posed(&s->poses, lod_point(s, lod_previous(corner)), pose), 3u * sizeof *out);
 }
 
+static uint32_t find_wedge(const lod_move *m, uint32_t vertex)
+{
+    uint32_t w = 0;
+    while (w < m->wedge_count && m->wedge_from[w] != vertex) {
+        w++;
+    }
+    return w;
+}
+
+/* How ill a vertex of `to` would stand for one of `from`: the squared difference of attributes as lengths; then of
+ * normals, as shares of the edge. */
+static float facet_misfit(const lod_surface *s, uint32_t from, uint32_t to, float edge)
+{
+    const float *a = s->attribute + (size_t)from * LOD_ATTRIBUTES, *b = s->attribute + (size_t)to * LOD_ATTRIBUTES;
+    float sum = 0.0f;
+    for (uint32_t k = 0; k < LOD_ATTRIBUTES; k++) {
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    }
+    if (sum > edge * (FACET_REACH * FACET_REACH)) {
+        return FLT_MAX;
+    }
+    for (uint32_t k = 0; k < 3u; k++) {
+        const float d = s->mesh->normal[from * 3u + k] - s->mesh->normal[to * 3u + k];
+        sum += FACET_NORMALS * edge * d * d;
+    }
+    return sum;
+}
+
+/* A facet that stays has no vertex on the edge along which its point moves: it takes the one of `to` that is most like
+ * its own, in its submesh. 0: there is none. */
+static int add_facet(const lod_surface *s, lod_move *m, uint32_t corner)
+{
+    const uint32_t vertex = s->corner[corner], submesh = s->submesh[corner / 3u];
+    const float *p = lod_posed(&s->poses, m->from, 0), *q = lod_posed(&s->poses, m->to, 0);
+    const float edge = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]);
+    float least = FLT_MAX;
+    uint32_t best = LOD_NONE;
+    for (uint32_t c = s->first[m->to]; c != LOD_NONE; c = s->next[c]) {
+        const int fits = !s->dead[c / 3u] && s->submesh[c / 3u] == submesh;
+        const float misfit = fits ? facet_misfit(s, vertex, s->corner[c], edge) : FLT_MAX;
+        if (misfit < least) {
+            least = misfit;
+            best = s->corner[c];
+        }
+    }
+    if (best == LOD_NONE) {
+        return 0;
+    }
+    m->wedge_from[m->wedge_count] = vertex;
+    m->wedge_to[m->wedge_count++] = best;
+    return 1;
+}
+
 /* Find the wedge of `to` that each wedge of `from` becomes. 0 if one has none, or two. */
 static int map_wedges(const lod_surface *s, const lod_fan *fan, lod_move *m)
 {
+    const int faceted = s->faceted[m->from] && s->mesh->normal;
     m->wedge_count = m->kept_count = m->gone_count = 0;
     for (uint32_t i = 0; i < fan->count; i++) {
-        uint32_t c = fan->corner[i], other = lod_point(s, lod_next(c)) == m->to ? lod_next(c) : lod_previous(c), w = 0;
+        uint32_t c = fan->corner[i], other = lod_point(s, lod_next(c)) == m->to ? lod_next(c) : lod_previous(c), w;
         if (lod_point(s, other) != m->to) {
             m->kept[m->kept_count++] = c;
             continue;
         }
         m->gone[m->gone_count++] = c;
-        while (w < m->wedge_count && m->wedge_from[w] != s->corner[c]) {
-            w++;
-        }
+        w = find_wedge(m, s->corner[c]);
         if (w == m->wedge_count) {
             m->wedge_from[w] = s->corner[c];
             m->wedge_to[m->wedge_count++] = s->corner[other];
-        } else if (m->wedge_to[w] != s->corner[other]) {
+        } else if (m->wedge_to[w] != s->corner[other] && !faceted) {
             return 0;
         }
     }
     for (uint32_t i = 0; i < m->kept_count; i++) {
-        uint32_t w = 0;
-        while (w < m->wedge_count && m->wedge_from[w] != s->corner[m->kept[i]]) {
-            w++;
-        }
-        if (w == m->wedge_count) {
+        if (find_wedge(m, s->corner[m->kept[i]]) == m->wedge_count && (!faceted || !add_facet(s, m, m->kept[i]))) {
             return 0;
         }
     }
@@ -162,12 +213,13 @@ int lod_move_allowed(lod_surface *s, const lod_fan *fan, uint32_t to, lod_move *
     m->from = fan->point;
     m->to = to;
     return !s->locked[fan->point] && border_allows(fan, to) && map_wedges(s, fan, m) && link_allows(s, fan, m) &&
-           uv_allows(s, m) && shape_allows(s, m);
+           uv_allows(s, m) && shape_allows(s, m) && lod_cards_allow(s, m);
 }
 
 void lod_move_apply(lod_surface *s, const lod_move *m)
 {
     uint32_t *end = &s->first[m->to];
+    lod_cards_move(s, m);
     for (uint32_t i = 0; i < m->gone_count; i++) {
         uint32_t t = m->gone[i] / 3u;
         s->dead[t] = 1;

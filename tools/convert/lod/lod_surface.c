@@ -9,6 +9,8 @@
 
 #define MINOR_SHARE 8u /* a submesh with less than 1/8 of the triangles is a minor part */
 
+#define FACETS_LEAST 3u
+
 /* ---- points ---- */
 
 static int same_skin(const model_mesh *mesh, uint32_t a, uint32_t b)
@@ -132,12 +134,13 @@ static void number_submeshes(lod_surface *s)
     }
 }
 
-static void note_minor_parts(lod_surface *s)
+static void note_minor_parts(lod_surface *s, uint32_t total)
 {
-    uint32_t total = 0;
-    for (uint32_t i = 0; i < s->mesh->submesh_count; i++) {
-        total += s->live[i];
+    uint32_t live = 0;
+    for (uint32_t i = 0; !total && i < s->mesh->submesh_count; i++) {
+        live += s->live[i];
     }
+    total = total ? total : live;
     for (uint32_t i = 0; i < s->mesh->submesh_count; i++) {
         s->minor[i] = s->live[i] < total / MINOR_SHARE;
     }
@@ -154,6 +157,22 @@ static int edge_is_complex(lod_surface *s, const lod_fan *fan, uint32_t neighbou
         backwards += lod_point(s, lod_previous(fan->corner[i])) == neighbour;
     }
     return forwards > 1 || backwards > 1;
+}
+
+/* Flat shading splits a point into as many vertices as it has facets. */
+static int is_faceted(const lod_surface *s, const lod_fan *fan)
+{
+    uint32_t vertices[LOD_FAN_MAX], count = 0;
+    for (uint32_t i = 0; i < fan->count; i++) {
+        uint32_t k = 0;
+        while (k < count && vertices[k] != s->corner[fan->corner[i]]) {
+            k++;
+        }
+        if (k == count) {
+            vertices[count++] = s->corner[fan->corner[i]];
+        }
+    }
+    return count >= FACETS_LEAST && count * 2u >= fan->count;
 }
 
 static void lock_complex_points(lod_surface *s, uint8_t *border)
@@ -173,6 +192,7 @@ static void lock_complex_points(lod_surface *s, uint8_t *border)
             s->locked[p] |= (uint8_t)edge_is_complex(s, &fan, fan.ring[i]);
         }
         border[p] = borders > 0;
+        s->faceted[p] = (uint8_t)is_faceted(s, &fan);
         s->locked[p] |= borders > 2u; /* two fans meet in this point */
     }
 }
@@ -231,7 +251,7 @@ static int lock_points(lod_surface *s)
         return 1;
     }
     lock_complex_points(s, border);
-    failed = lock_touching_borders(s, border);
+    failed = lock_touching_borders(s, border) || lod_cards_make(s, border);
     free(border);
     return failed;
 }
@@ -255,8 +275,9 @@ static int allocate(lod_surface *s)
     s->minor = calloc((size_t)s->mesh->submesh_count + 1u, 1);
     s->part = calloc(vertices, sizeof *s->part);
     s->mark = calloc(vertices, sizeof *s->mark);
+    s->faceted = calloc(vertices, 1);
     return !s->point_of || !s->corner || !s->first || !s->next || !s->submesh || !s->island || !s->live || !s->dead ||
-           !s->locked || !s->removed || !s->face || !s->minor || !s->part || !s->mark;
+           !s->locked || !s->removed || !s->face || !s->minor || !s->part || !s->mark || !s->faceted;
 }
 
 int lod_surface_make(const model_mesh *mesh, const lod_options *o, lod_surface *s)
@@ -274,7 +295,7 @@ int lod_surface_make(const model_mesh *mesh, const lod_options *o, lod_surface *
     note_faces(s);
     number_submeshes(s);
     hang_corners(s);
-    note_minor_parts(s);
+    note_minor_parts(s, o->asset_triangles);
     s->edge = mean_edge(s);
     return lock_points(s) || lod_attributes_make(s, o) || lod_rims_mark(s);
 }
@@ -297,6 +318,9 @@ void lod_surface_free(lod_surface *s)
     free(s->shows);
     free(s->part);
     free(s->mark);
+    free(s->faceted);
+    free(s->card);
+    free(s->cards);
     free(s->attribute);
 }
 
