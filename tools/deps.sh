@@ -30,6 +30,7 @@ libmeshoptimizer-dev:reading compressed glTF
 packages_view='?libglfw3-dev:noh view
 ?libimgui-dev:noh view'
 packages_check='libcmocka-dev:unit tests
+?lld:linking them in a third of the time
 ?libglfw3:windows
 ?xvfb:a display for them
 ?assimp-testmodels:real BVH files
