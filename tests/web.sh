@@ -1,8 +1,9 @@
 #!/bin/sh
-# web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js, and
-# tests/web/figure.js, tests/web/load.js, with the mask tests/web/controls.js and tests/web/speech.js); its canvas is compared with `noh render`, its bytes with the plan that sized its
-# memory, and with `noh budget`. `make web-check` runs it; NOH_WEB_ONLY=lights,hair
-# runs these parts alone, without a comparison. The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright cannot be had.
+# web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js,
+# figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh). Its canvas is compared with
+# `noh render`, its bytes with the plan that sized its memory, and with `noh budget`. `make web-check` runs it;
+# NOH_WEB_ONLY=lights,hair runs these parts alone, without a comparison. The last line is as that of tests/run.sh. Skipped
+# with the reason if emscripten, Chromium or playwright cannot be had.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -120,16 +121,22 @@ END
     compare level
 }
 
+# A script that counts as this one does.
+add() {
+    said=$(NOH_BUILD="$build" sh "$@")
+    echo "$said" | sed '$d'
+    passed=$((passed + $(echo "$said" | sed -n 's/^\([0-9]*\) passed, .*/\1/p')))
+    failed=$((failed + $(echo "$said" | sed -n 's/^[0-9]* passed, \([0-9]*\) failed.*/\1/p')))
+}
+
 for pack in "$@"; do
     case $pack in /*) ;; *) pack=$PWD/$pack ;; esac
     name=$(basename "$pack" .noh) clip=smile time=0.5 all=1
     case $name in wig | puppet_falls | *_transfer) all=0 ;; esac
     [ "$name" != puppet ] || clip=dance time=3.25
     if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
+    [ "$name" != mask ] || add tests/web_package.sh "$pack"
 done
-said=$(NOH_BUILD="$build" sh tests/web_convert.sh)
-echo "$said" | sed '$d'
-passed=$((passed + $(echo "$said" | sed -n 's/^\([0-9]*\) passed, .*/\1/p')))
-failed=$((failed + $(echo "$said" | sed -n 's/^[0-9]* passed, \([0-9]*\) failed.*/\1/p')))
+add tests/web_convert.sh
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

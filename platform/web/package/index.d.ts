@@ -1,0 +1,188 @@
+// Types of noh-character.
+
+/** A pack, `.noh`, or its wire form, `.nohz`: an address, an answer of fetch, a file, or bytes. */
+export type PackSource = string | URL | Response | Promise<Response> | Blob | ArrayBuffer | ArrayBufferView;
+
+export type Layer = 'body' | 'face';
+export type Shadow = 'on' | 'off' | 'blob';
+export type Background = 'light' | 'gradient' | 'plain';
+/** How targets are added up: `auto` is what this context does best. */
+export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'cpu' | 'blend';
+
+export interface Clip { readonly name: string; readonly seconds: number }
+export interface PlayOptions {
+    layer?: Layer;
+    /** Seconds of transition from what is shown; default 0.3. With 0 the clip begins at `time`. */
+    fade?: number;
+    /** Seconds into the clip. */
+    time?: number;
+}
+export interface Light {
+    /** `plain`, `white`, `studio`, `room` or `sky`. */
+    light: string;
+    /** How far it is turned, -180 to 180. */
+    degrees: number;
+    shadow: Shadow;
+    tonemap: boolean;
+    background: Background;
+    /** Light that was worked out for each vertex when the pack was built. */
+    transfer: boolean;
+}
+/** In bytes. */
+export interface Memory {
+    /** The WebAssembly memory, which cannot grow: pack, block, static data and stack, in pages of 64 KiB. */
+    readonly all: number;
+    readonly pack: number;
+    /** The block of the stage. */
+    readonly room: number;
+    /** What of it is used. */
+    readonly cpu: number;
+    readonly gpu: number;
+    readonly parts: readonly { readonly name: string; readonly cpu: number; readonly gpu: number }[];
+}
+
+/** A callback key that a clip has passed. */
+export interface KeyDetail { readonly name: string; readonly clip: string; readonly layer: Layer; readonly weight: number; readonly character: number }
+/** `all`: 0 where the server tells no length. `shows`: 0 nothing yet, 1 the coarsest levels, 2 everything. */
+export interface ProgressDetail { readonly taken: number; readonly all: number; readonly shows: 0 | 1 | 2 }
+export interface CharacterEvents {
+    load: CustomEvent<{ whole: boolean }>;
+    progress: CustomEvent<ProgressDetail>;
+    key: CustomEvent<KeyDetail>;
+    pick: CustomEvent<{ mesh: string; joint: string }>;
+    push: CustomEvent<{ error: string }>;
+    speech: CustomEvent<{ words: string; speaks: boolean; source: string }>;
+    pause: CustomEvent<{ paused: boolean }>;
+    light: CustomEvent<Light>;
+    frame: CustomEvent<{ seconds: number }>;
+    lost: CustomEvent<null>;
+    restored: CustomEvent<null>;
+}
+
+export interface CharacterOptions extends Partial<Light> {
+    /** Where noh.wasm is; default: beside this module. */
+    program?: string | URL;
+    path?: MorphPath;
+    /** How many are shown beside each other, 1 to 16. */
+    characters?: number;
+    /** Whether faces and springs get memory of their own. */
+    alive?: boolean;
+    /** Pixels across, instead of the canvas's own size. */
+    size?: number;
+    /** Whether the camera follows who walks. */
+    follows?: boolean;
+    level?: number;
+    speed?: number;
+    paused?: boolean;
+    /** Nothing moves by itself. */
+    calm?: boolean;
+    emotion?: string | null;
+    amount?: number;
+    wrinkles?: number;
+    hair?: boolean;
+    wind?: number;
+}
+
+/** A character on a canvas of your own. */
+export class Character extends EventTarget {
+    constructor(canvas: HTMLCanvasElement, options?: CharacterOptions);
+    readonly canvas: HTMLCanvasElement;
+    readonly ready: boolean;
+    readonly whole: boolean;
+    readonly lost: boolean;
+    readonly clips: readonly Clip[];
+    readonly targets: readonly string[];
+    readonly emotions: readonly string[];
+    readonly lights: readonly string[];
+    readonly memory: Memory;
+    time: number;
+    speed: number;
+    paused: boolean;
+    level: number;
+    alive: boolean;
+    load(source: PackSource): Promise<void>;
+    play(name: string | null, options?: PlayOptions): void;
+    setWeight(target: string, weight: number): void;
+    releaseWeight(target: string): void;
+    releaseWeights(): void;
+    weight(target: string): number;
+    setLight(light: Partial<Light>): void;
+    turnLight(degrees: number): void;
+    setWrinkles(amount: number): void;
+    setHair(shown: boolean, wind: number): void;
+    shake(): void;
+    /** At a point of the page, in its pixels. */
+    lookAt(x: number, y: number): void;
+    lookAhead(): void;
+    feel(emotion: string | null, amount?: number): void;
+    /** Fifteen weights of mouth shapes, in the order of noh_viseme; null: nothing is said. */
+    setMouth(weights: ArrayLike<number> | null): void;
+    push(x?: number, y?: number): string;
+    fit(): void;
+    home(): void;
+    zoom(by: number): void;
+    turn(azimuth: number, elevation: number): void;
+    pan(x: number, y: number): void;
+    /** Move time on by seconds, and draw at once. */
+    advance(seconds: number): void;
+    redraw(): void;
+    dispose(): void;
+    readonly speech: { say(words: string): void; listen(): Promise<void>; play(file: Blob): Promise<void>; stop(): void; readonly speaks: boolean };
+    addEventListener<K extends keyof CharacterEvents>(type: K, listener: (event: CharacterEvents[K]) => void, options?: boolean | AddEventListenerOptions): void;
+    addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}
+
+export interface NohCharacterEvents extends CharacterEvents { error: CustomEvent<{ message: string }> }
+
+/** `<noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>` */
+export class NohCharacter extends HTMLElement {
+    src: string;
+    clip: string;
+    light: string;
+    paused: boolean;
+    time: number;
+    /** Where noh.wasm is, if not beside this module; set it before the element is in the page. */
+    program?: string | URL;
+    /** What is wrong, in words; '' if nothing. */
+    readonly error: string;
+    readonly ready: boolean;
+    readonly whole: boolean;
+    readonly clips: readonly Clip[];
+    readonly targets: readonly string[];
+    readonly emotions: readonly string[];
+    readonly memory: Memory | null;
+    /** null while the element is not in a page. */
+    readonly character: Character | null;
+    /** Resolves to whether it is shown. */
+    load(source: PackSource): Promise<boolean>;
+    play(name: string | null, options?: PlayOptions): void;
+    setWeight(target: string, weight: number): void;
+    releaseWeight(target: string): void;
+    releaseWeights(): void;
+    weight(target: string): number;
+    lookAt(x: number, y: number): void;
+    lookAhead(): void;
+    feel(emotion: string | null, amount?: number): void;
+    push(): string;
+    fit(): void;
+    say(words: string): void;
+    listen(): Promise<void>;
+    playSound(file: Blob): Promise<void>;
+    setMouth(weights: ArrayLike<number> | null): void;
+    hush(): void;
+    dispose(): void;
+    addEventListener<K extends keyof NohCharacterEvents>(type: K, listener: (event: NohCharacterEvents[K]) => void, options?: boolean | AddEventListenerOptions): void;
+    addEventListener<K extends keyof HTMLElementEventMap>(type: K, listener: (event: HTMLElementEventMap[K]) => void, options?: boolean | AddEventListenerOptions): void;
+    addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}
+
+/** The canvas moves the camera from now on. Returns a function that ends it. */
+export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;
+/** The faces look at the pointer while it is over the canvas. Returns a function that ends it. */
+export function addGaze(canvas: HTMLCanvasElement, character: Character, asked?: () => boolean): () => void;
+/** What a mouth shows of a text, letter by letter. */
+export function shapesOfText(words: string, rate: number): { at: number; ms: number; shape: number }[];
+
+declare global {
+    interface HTMLElementTagNameMap { 'noh-character': NohCharacter }
+}

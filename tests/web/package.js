@@ -1,0 +1,198 @@
+// package.js FOLDER CHROMIUM OUT PROJECT: the package as it was installed in PROJECT, an empty one but for its packs: the
+// page of the package's README, two elements at once, what goes when one is removed, attributes, keys, words, reduced
+// motion, a lost context, minutes without growth. Prints its checks as TAP.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const { folder, out, check, run, address } = require('./harness.js');
+
+const project = process.argv[5];
+const minute = { timeout: 60000 };
+const inside = path.join(project, 'node_modules/noh-character');
+
+// A page with this body. Elements of the page have their ids as names.
+async function show(browser, body, options) {
+    fs.writeFileSync(path.join(project, 'page.html'), `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>test</title><link rel="icon" href="data:,">
+<style>body { margin: 0 } noh-character { height: 200px }</style><script type="module" src="node_modules/noh-character/index.js"></script><main>${body}</main></html>`);
+    return visit(browser, 'page.html', options);
+}
+
+async function visit(browser, name, options) {
+    const page = await browser.newPage({ viewport: { width: 400, height: 500 }, ...options });
+    page.problems = [];
+    page.on('pageerror', (error) => page.problems.push(String(error)));
+    page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+    await page.goto(`${address()}/project/${name}`);
+    return page;
+}
+
+const whole = (page, ...ids) => page.waitForFunction((all) => all.every((id) => document.getElementById(id).whole || document.getElementById(id).error), ids, minute);
+const frames = (page, id, count) => page.evaluate(([i, n]) => new Promise((resolve) => {
+    const element = document.getElementById(i);
+    let left = n;
+    element.addEventListener('frame', () => { if (--left <= 0) resolve(); });
+    element.character.redraw();
+}), [id, count]);
+
+async function close(page, name, problems = 0) {
+    check(`${name}: the browser reports no problem`, page.problems.length === problems, page.problems.join(' | '));
+    await page.close();
+}
+
+// ---- the page of the README ----
+
+async function readme(browser) {
+    const html = /```html\n([^]*?)```/.exec(fs.readFileSync(path.join(inside, 'README.md'), 'utf8'))[1];
+    fs.writeFileSync(path.join(project, 'index.html'), html);
+    check('readme: it has ten lines at most', html.trim().split('\n').length <= 10);
+    const page = await visit(browser, 'index.html');
+    await page.waitForFunction(() => document.querySelector('noh-character').whole || document.querySelector('noh-character').error, null, minute);
+    check('readme: it is there', await page.evaluate(() => document.querySelector('noh-character').error) === '');
+    const blinks = await page.waitForFunction(() => document.querySelector('noh-character').weight('eyeBlinkLeft') > 0.5, null, minute).then(() => true, () => false);
+    check('readme: a face that blinks', blinks);
+    check('readme: the poster has gone', !await page.isVisible('[slot=poster]'));
+    await page.screenshot({ path: path.join(out, 'readme.png') });
+    await close(page, 'readme', 1); // a page without an icon of its own
+}
+
+// ---- several, and one less ----
+
+async function two(browser) {
+    const page = await show(browser, `<noh-character id="one" src="face.nohz" auto-life></noh-character>
+        <noh-character id="two" src="face.noh" characters="2" light="plain" clip="smile"></noh-character>`);
+    await whole(page, 'one', 'two');
+    const all = await page.evaluate(() => ['one', 'two'].map((id) => document.getElementById(id)).map((e) => ({
+        error: e.error, memory: e.memory, bytes: e.character.program.memory.buffer.byteLength,
+        grows: (() => { try { e.character.program.memory.grow(1); return true; } catch { return false; } })(),
+    })));
+    check('two: both are there', all.every((a) => a.error === ''), all.map((a) => a.error).join());
+    check('two: memory of their own, of what each takes', all[0].bytes !== all[1].bytes && all.every((a) => a.memory.all === a.bytes));
+    check('two: which cannot grow', all.every((a) => !a.grows));
+    check('two: the sum is the pack, its block and little more', all.every((a) => a.bytes - a.memory.pack - a.memory.room < 512 * 1024), JSON.stringify(all.map((a) => a.memory)));
+    await page.evaluate(() => document.getElementById('two').setWeight('smile', 1));
+    await frames(page, 'two', 2);
+    const smiles = await page.evaluate(() => ['one', 'two'].map((id) => document.getElementById(id).weight('smile')));
+    check('two: what is told to one is not told to the other', smiles[0] === 0 && smiles[1] === 1, smiles.join());
+    const globals = await page.evaluate(() => Object.keys(window).filter((name) => /noh|module|wasm|emscripten/i.test(name)));
+    check('two: no globals', globals.length === 0, globals.join());
+    await removed(page);
+    await close(page, 'two');
+}
+
+async function removed(page) {
+    const before = await page.evaluate(async () => {
+        const element = document.getElementById('one'), { character } = element;
+        window.kept = { gl: character.gl, memory: new WeakRef(character.program.memory.buffer), character: new WeakRef(character) };
+        element.parentNode.append(element); // moved, not removed
+        await new Promise((resolve) => setTimeout(resolve, 50));
+        const moved = element.ready && !kept.gl.isContextLost();
+        element.remove();
+        await new Promise((resolve) => setTimeout(resolve, 50));
+        return { moved, lost: kept.gl.isContextLost(), character: element.character };
+    });
+    check('removed: one that is only moved stays', before.moved);
+    check('removed: its context is released', before.lost && before.character === null);
+    const gone = await page.evaluate(async () => {
+        kept.gl = null;
+        for (let i = 0; i < 5; i++) { // what a WeakRef was asked for stays until the task ends
+            await new Promise((resolve) => setTimeout(resolve, 50));
+            gc();
+        }
+        return [kept.memory.deref() ? 'memory' : '', kept.character.deref() ? 'character' : ''].join(' ').trim();
+    });
+    check('removed: its memory is dropped', gone === '', gone);
+    check('removed: the other one goes on', await page.evaluate(() => document.getElementById('two').ready));
+}
+
+// ---- attributes, events, keys ----
+
+async function used(browser) {
+    const page = await show(browser, '<noh-character id="it" alt="a mask" camera-orbit light="room"><b slot="progress">wait</b></noh-character>');
+    await page.evaluate(() => {
+        const it = document.getElementById('it');
+        window.seen = [];
+        for (const type of ['progress', 'load', 'pick', 'pause', 'error']) it.addEventListener(type, () => seen.push(type));
+        it.src = 'face.nohz';
+    });
+    await whole(page, 'it');
+    const canvas = page.locator('noh-character canvas');
+    check('used: its name is said', (await canvas.getAttribute('aria-label')).startsWith('a mask;') && await canvas.getAttribute('role') === 'application');
+    await frames(page, 'it', 1);
+    const state = () => page.evaluate(() => { const { camera, chosen, paused } = document.getElementById('it').character; return { ...camera, light: chosen.light, paused }; });
+    const before = await state();
+    await page.keyboard.press('Tab');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('+');
+    await page.keyboard.press(' ');
+    const after = await state();
+    check('used: keys turn it, bring it closer, hold it', after.azimuth > before.azimuth && after.distance < 1 && after.paused, JSON.stringify(after));
+    await page.keyboard.press('Home');
+    await page.evaluate(() => { document.getElementById('it').light = 'sky'; });
+    check('used: an attribute changes the light', (await state()).light === 'sky');
+    const r = await canvas.boundingBox();
+    await page.mouse.click(r.x + r.width / 2, r.y + r.height / 2);
+    const seen = await page.evaluate(() => seen);
+    check('used: events tell', ['progress', 'load', 'pick', 'pause'].every((type) => seen.includes(type)) && !seen.includes('error'), seen.join());
+    await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
+    check('used: a clip that is not there is told in words', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
+    await page.evaluate(() => { document.getElementById('it').src = 'none.noh'; });
+    await page.waitForFunction(() => document.getElementById('it').error.includes('404'), null, minute);
+    check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').ready));
+    await close(page, 'used', 1);
+}
+
+// A visitor who asks for less motion; and a context that goes and comes back.
+async function still(browser) {
+    const page = await show(browser, '<noh-character id="it" src="face.nohz" clip="smile" auto-life></noh-character>', { reducedMotion: 'reduce' });
+    await whole(page, 'it');
+    const state = await page.evaluate(() => ({ paused: document.getElementById('it').character.paused, alive: document.getElementById('it').character.alive }));
+    check('still: nothing moves by itself', state.paused && !state.alive);
+    await page.emulateMedia({ reducedMotion: 'no-preference' });
+    await page.waitForFunction(() => document.getElementById('it').character.alive, null, minute);
+    check('still: until the visitor changes that', await page.evaluate(() => !document.getElementById('it').character.paused));
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    const gpu = () => page.evaluate(() => document.getElementById('it').memory.gpu);
+    const before = await gpu();
+    await page.evaluate(() => {
+        const it = document.getElementById('it'), taken = it.character.gl.getExtension('WEBGL_lose_context');
+        window.events = [];
+        for (const type of ['lost', 'restored']) it.addEventListener(type, () => events.push(type));
+        taken.loseContext();
+        setTimeout(() => taken.restoreContext(), 200);
+    });
+    await page.waitForFunction(() => events.length === 2, null, minute);
+    await frames(page, 'it', 1);
+    check('still: a lost context comes back, to the byte', await gpu() === before && await page.evaluate(() => document.getElementById('it').character.program._web_check()) === 0);
+    await close(page, 'still');
+}
+
+// A minute of a face that lives and a clip (NOH_LONG=1: ten minutes), in steps of a thirtieth of a second, every thirtieth
+// drawn.
+async function long(browser) {
+    const page = await show(browser, '<noh-character id="it" src="face.nohz" clip="smile" auto-life style="height: 64px; width: 64px"></noh-character>');
+    await whole(page, 'it');
+    const told = await page.evaluate(async (lasts) => {
+        const { character } = document.getElementById('it'), p = character.program;
+        character.stopped = true;
+        const minutes = (n) => {
+            for (let i = 0; i < n * 1800; i++) {
+                if (i % 30) p.check(p._web_step(1 / 30));
+                else character.advance(1 / 30);
+            }
+        };
+        const measure = async () => {
+            for (let i = 0; i < 4; i++) { gc(); await new Promise((resolve) => setTimeout(resolve, 20)); }
+            return { heap: performance.memory.usedJSHeapSize, wasm: p.memory.buffer.byteLength, gpu: p._web_gpu_bytes(), objects: p.textures.length + p.buffers.length };
+        };
+        minutes(lasts / 4);
+        const before = await measure();
+        minutes(lasts);
+        return { before, after: await measure(), error: p._web_check() };
+    }, process.env.NOH_LONG === '1' ? 10 : 1);
+    check('minutes: no byte of memory and no object more', ['wasm', 'gpu', 'objects'].every((key) => told.before[key] === told.after[key]), JSON.stringify(told));
+    check('minutes: nor of the heap of JavaScript', told.after.heap - told.before.heap < 128 * 1024, `${told.before.heap} to ${told.after.heap}`);
+    check('minutes: no GL error', told.error === 0);
+    await close(page, 'minutes');
+}
+
+run({ readme, two, used, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

@@ -1,0 +1,51 @@
+#!/bin/sh
+# web_package.sh PACK: the npm package of `make npm`, installed into an empty project beside PACK, as it is and in the wire
+# form: what is in the tarball, its types, the page of its README and the element in Chromium (tests/web/package.js). Part of
+# tests/web.sh; its last line is as that of tests/run.sh.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+build=${NOH_BUILD:-build}
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+out=$build/web-check/package
+project=$build/web-check/project
+tarball=$build/npm/noh-character-$(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/base/version.h).tgz
+passed=0 failed=0
+
+leave_out() {
+    echo "skipped: $1"
+    echo '0 passed, 0 failed, 1 skipped'
+    exit 0
+}
+. tests/web/find_browser.sh
+find_browser "$build/web-check" playwright-core typescript
+ok() { passed=$((passed + 1)); }
+not_ok() {
+    failed=$((failed + 1))
+    echo "package: $1"
+}
+check() { # WHAT COMMAND...: prints what it says if it fails
+    what=$1
+    shift
+    if said=$("$@" 2>&1); then ok; else not_ok "$what: $said"; fi
+}
+
+rm -rf "$project"
+mkdir -p "$project" "$out"
+echo '{ "private": true }' >"$project/package.json"
+cp "$1" "$project/face.noh"
+"$build/noh" pack "$1" -o "$project/face.nohz" --quiet || not_ok 'noh pack fails'
+check 'npm install' npm install --prefix "$project" --offline --no-audit --no-fund "$tarball"
+installed=$project/node_modules/noh-character
+for file in LICENSE README.md $(sed -n "s/.*from '\.\/\(.*\)'.*/\1/p" platform/web/package/*.js | sort -u) \
+    $(sed -n 's/.*: "\.\/\([a-z.]*\)".*/\1/p' "$installed/package.json"); do
+    check "the tarball has $file" test -s "$installed/$file"
+done
+cp tests/web/types.ts "$project"
+check 'types' node "$(node -p 'require.resolve("typescript/package.json")' | sed 's,package.json$,bin/tsc,')" --noEmit --strict \
+    --target es2022 --module nodenext --moduleResolution nodenext --skipLibCheck false "$project/types.ts"
+timeout -k 5 500 node tests/web/package.js "$project" "$chromium" "$out" "$project" >"$out/log.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/log.txt")" != 0 ] ||
+    not_ok "tests/web/package.js ends too early: $(tail -n 1 "$out/log.txt")"
+passed=$((passed + $(grep -c '^ok ' "$out/log.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/log.txt")))
+grep -v '^ok \|^1\.\.' "$out/log.txt"
+echo "$passed passed, $failed failed, 0 skipped"
+[ "$failed" = 0 ] && [ "$passed" != 0 ]
