@@ -459,8 +459,8 @@ WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js convert.js speech.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
-WEB_CONVERTER := $(addprefix $(WEB)/convert/,convert.js convert.wasm worker.js)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js speech.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
+WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm worker.js)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
@@ -472,7 +472,8 @@ web: deps-web
 # Of the mask and of the puppet; or of one pack, if it is named.
 WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(NPM)/noh-character-$(VERSION).tgz $(WEB_PACKS)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
+	@$(MAKE) --no-print-directory DEPS=0 npm
 	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
 
 # HOST=all: also to phones and others in the same network.
@@ -534,15 +535,6 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|height\|lost\|string\|width\)'
 
-# ---- the package ----
-
-# noh-character for npm: what platform/web/package has, the program, and the version of the library.
-NPM := $(BUILD)/npm
-npm: deps-web
-	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/base/version.h
-	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE
-
 # ---- the page's converter ----
 
 # `noh build` and `noh pack` as WebAssembly, which a page loads when a model is dropped on it (tools/web_convert). Headers
@@ -581,12 +573,23 @@ $(WEB_CONVERT)/convert.js: $(WEB_CONVERT_O) $(filter-out $(WEB_OBJECTS)/platform
 	$(Q)$(WEB_CC) $(WEB_CONVERT_FLAGS) $^ $(WEB_CONVERT_LINK) -o $@
 -include $(WEB_CONVERT_O:.o=.d)
 $(WEB_CONVERT)/convert.wasm: $(WEB_CONVERT)/convert.js
-$(WEB)/convert/worker.js: tools/web_convert/worker.js
+$(WEB)/package/convert/worker.js: tools/web_convert/worker.js
 	@mkdir -p $(@D)
 	@cp $< $@
-$(WEB)/convert/convert.%: $(WEB_CONVERT)/convert.%
+$(WEB)/package/convert/convert.%: $(WEB_CONVERT)/convert.%
 	@mkdir -p $(@D)
 	@cp $< $@
+
+# ---- the package ----
+
+# noh-character for npm: what platform/web/package has, the program, and the version of the library.
+NPM := $(BUILD)/npm
+npm: deps-web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
+	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/base/version.h \
+    tools/web_convert/worker.js $(wildcard $(WEB_CONVERT)/convert.wasm)
+	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE tools/web_convert/worker.js $(WEB_CONVERT)
 
 # FUZZ_SECONDS=60: how long, both at once. Skips where clang or its runtime is not.
 fuzz: deps-fuzz

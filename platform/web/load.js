@@ -3,7 +3,7 @@
 'use strict';
 
 const ownPack = query.get('pack') || 'page.nohz';
-const asked = fetch(ownPack);
+const asked = fetch(ownPack), ownText = byId('file-text').textContent;
 
 // What has arrived, in words and as a bar. Without a length that the server tells, only in words.
 function showProgress({ taken, all, shows }) {
@@ -14,6 +14,12 @@ function showProgress({ taken, all, shows }) {
     byId('progress-text').textContent = `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
 }
 
+function showWords(words) {
+    byId('progress').hidden = false;
+    byId('progress-bar').hidden = true;
+    byId('progress-text').textContent = words;
+}
+
 async function load(source) {
     await character.load(source);
     byId('progress').hidden = true;
@@ -22,37 +28,39 @@ async function load(source) {
 // ---- a file of the visitor's own ----
 
 // What is shown stays until there is something of it to show. If that turns out to be broken, the page's own pack is again.
-let opening = false;
-async function openFile(file) {
+let opening = false, visitor = null;
+async function openFiles(list) {
+    const files = [...list], { name } = files[0];
     if (opening || !window.noh.whole || character.lost) return;
     opening = true;
     say('');
     const before = character.program;
     try {
-        if (!/\.nohz?$/i.test(file.name)) fail('neither .noh nor .nohz: noh build makes a pack of it');
+        visitor = visitor || new (await import('./package/convert.js')).Visitor();
+        const pack = await visitor.pack(files, { tell: showWords });
         fresh = true;
-        await load(file);
-        byId('file-text').textContent = file.name;
+        await load(pack);
+        byId('file-text').textContent = files.map((file) => file.name).join(', ');
     } catch (error) {
         fresh = true;
         window.noh.error = '';
         byId('progress').hidden = true;
         if (character.program !== before) {
-            byId('file-text').textContent = 'or drop one here: .noh, .nohz';
+            byId('file-text').textContent = ownText;
             await load(fetch(ownPack)).catch(() => {});
         }
-        say(`${file.name} cannot be shown: ${error.message || error}`);
+        say(`${name} cannot be shown: ${error.message || error}`);
     }
     opening = false;
 }
 
 byId('open-file').addEventListener('click', () => byId('file').click());
 byId('file').addEventListener('change', () => {
-    if (byId('file').files[0]) openFile(byId('file').files[0]);
+    if (byId('file').files.length) openFiles(byId('file').files);
     byId('file').value = '';
 });
 document.addEventListener('dragover', (event) => event.preventDefault());
 document.addEventListener('drop', (event) => {
     event.preventDefault();
-    if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+    if (event.dataTransfer.files.length) openFiles(event.dataTransfer.files);
 });

@@ -141,6 +141,59 @@ async function used(browser) {
     await close(page, 'used', 1);
 }
 
+// Callback keys of a clip, where a pack that has some was built.
+async function keys(browser) {
+    if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
+    const page = await show(browser, '<noh-character id="it" src="walker.noh" clip="walk" light="plain" style="width: 64px; height: 64px"></noh-character>');
+    await whole(page, 'it');
+    const told = await page.evaluate(() => {
+        const it = document.getElementById('it'), seen = [];
+        it.addEventListener('key', ({ detail }) => seen.push(detail));
+        for (let i = 0; i < 15; i++) it.character.advance(0.1);
+        return seen;
+    });
+    check('keys: a step of a walk is an event', told.length > 0 && told.every(({ name, clip, layer, weight }) => name && clip === 'walk' && layer === 'body' && weight > 0), JSON.stringify(told));
+    await close(page, 'keys');
+}
+
+// What a visitor drops: a pack, a model, which is converted, clips for it, and what is none or broken.
+async function dropped(browser) {
+    const page = await show(browser, '<noh-character id="it" drop></noh-character>');
+    const drop = (...names) => page.evaluate(async (all) => {
+        const it = document.getElementById('it'), data = new DataTransfer(), over = new DragEvent('dragover', { bubbles: true, cancelable: true });
+        for (const name of all) data.items.add(new File([await (await fetch(name)).arrayBuffer()], name));
+        it.error = '';
+        it.dispatchEvent(over);
+        it.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+        return over.defaultPrevented;
+    }, names);
+    check('dropped: it takes files', await drop('face.nohz'));
+    await page.waitForFunction(() => document.getElementById('it').whole, null, minute);
+    check('dropped: a pack', await page.evaluate(() => document.getElementById('it').targets.includes('smile')));
+    const fails = async (name, words) => {
+        await drop(name);
+        await page.waitForFunction(() => document.getElementById('it').error, null, minute);
+        const said = await page.evaluate(() => document.getElementById('it').error);
+        check(`dropped: ${name} is refused in words, and the pack stays`, said.startsWith(`${name} cannot be shown: `) && said.includes(words)
+            && await page.evaluate(() => document.getElementById('it').targets.includes('smile')), said);
+    };
+    await fails('types.ts', 'none of .noh');
+    await fails('turn.bvh', 'motion alone');
+    if (!fs.existsSync(path.join(inside, 'convert'))) return close(page, 'dropped');
+    await fails('cut.glb', 'truncated');
+    const arrives = async (what, has) => {
+        await page.waitForFunction((name) => document.getElementById('it').error || document.getElementById('it').clips.some((clip) => clip.name === name), has, minute);
+        check(`dropped: ${what}`, await page.evaluate(() => document.getElementById('it').whole && document.getElementById('it').error) === '');
+    };
+    await drop('arm.glb');
+    await arrives('a model is converted and shown', 'bend');
+    await drop('turn.bvh');
+    await arrives('a clip joins the model before it', 'turn');
+    await frames(page, 'it', 1);
+    await page.screenshot({ path: path.join(out, 'dropped.png') });
+    return close(page, 'dropped');
+}
+
 // A visitor who asks for less motion; and a context that goes and comes back.
 async function still(browser) {
     const page = await show(browser, '<noh-character id="it" src="face.nohz" clip="smile" auto-life></noh-character>', { reducedMotion: 'reduce' });
@@ -195,4 +248,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

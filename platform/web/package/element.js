@@ -1,5 +1,6 @@
 // element.js: <noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>.
 import { Character } from './character.js';
+import { Visitor } from './convert.js';
 import { addGaze, addPointers } from './pointer.js';
 import { kilobytes } from './program.js';
 
@@ -24,7 +25,6 @@ const body = `<style>${style}</style>
 
 const byKeys = 'drag or arrow keys turn it, pinch, plus and minus bring it closer, two fingers or arrows with shift move it, home frames it, space plays and pauses';
 const ofLight = ['light', 'degrees', 'shadow', 'tonemap', 'background'];
-const files = /\.nohz?$/i;
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -39,6 +39,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.inside = (selector) => this.shadowRoot.querySelector(selector);
         this.character = null;
         this.error = '';
+        this.visitor = new Visitor();
     }
 
     // ---- in the page, and out of it ----
@@ -144,22 +145,34 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.character.fit();
     }
 
-    showProgress({ taken, all, shows }) {
+    showProgress({ taken, all, shows, words }) {
         const bar = this.inside('progress');
         this.inside('.progress').hidden = shows === 2;
         if (all) Object.assign(bar, { max: all, value: taken });
         else bar.removeAttribute('value');
         this.style.setProperty('--noh-progress', all ? String(taken / all) : '0');
-        this.inside('.bar span').textContent = `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
+        this.inside('.bar span').textContent = words || `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
     }
 
     dropped(event) {
-        const [file] = event.dataTransfer.files;
-        if (!this.hasAttribute('drop') || !file) return;
+        if (!this.hasAttribute('drop') || !event.dataTransfer.files.length) return;
         event.preventDefault();
         event.stopPropagation();
-        if (files.test(file.name)) this.load(file);
-        else this.fail(new Error(`${file.name} is neither .noh nor .nohz: noh build makes a pack of it`));
+        this.open(event.dataTransfer.files);
+    }
+
+    // Files of the visitor's own: a pack, or a model with what it names and clips, which is converted. As load.
+    async open(list) {
+        const files = [...list], { character } = this;
+        if (!character) return false;
+        this.tell('');
+        try {
+            const pack = await this.visitor.pack(files, { tell: (words) => { if (character === this.character) this.showProgress({ taken: 0, all: 0, shows: 0, words }); } });
+            return character === this.character && this.load(pack);
+        } catch (error) {
+            if (character === this.character) this.fail(new Error(`${files[0].name} cannot be shown: ${error.message || error}`));
+            return false;
+        }
     }
 
     // ---- words ----

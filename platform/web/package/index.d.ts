@@ -155,6 +155,8 @@ export class NohCharacter extends HTMLElement {
     readonly character: Character | null;
     /** Resolves to whether it is shown. */
     load(source: PackSource): Promise<boolean>;
+    /** A pack, or a model (.glb, .gltf, .vrm, .obj) with what it names and clips (.bvh), which is converted in a worker. */
+    open(files: Iterable<File>): Promise<boolean>;
     play(name: string | null, options?: PlayOptions): void;
     setWeight(target: string, weight: number): void;
     releaseWeight(target: string): void;
@@ -180,6 +182,8 @@ export class NohCharacter extends HTMLElement {
 export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;
 /** The faces look at the pointer while it is over the canvas. Returns a function that ends it. */
 export function addGaze(canvas: HTMLCanvasElement, character: Character, asked?: () => boolean): () => void;
+/** A model (.glb, .gltf, .vrm, .obj) with what it names and clips (.bvh) as a pack, made in a worker. `options` are those of `noh build`. */
+export function convert(files: readonly File[], settings?: { tell?: (words: string) => void; options?: readonly string[]; base?: URL }): Promise<Uint8Array>;
 /** What a mouth shows of a text, letter by letter. */
 export function shapesOfText(words: string, rate: number): { at: number; ms: number; shape: number }[];
 

@@ -1,0 +1,63 @@
+// convert.js: files of a visitor's own as packs. Models go through the converter, which is asked for when it is first
+// needed and runs in a worker of its own (tools/web_convert): the page goes on meanwhile. As `noh build` makes them, byte
+// for byte.
+
+const packs = /\.nohz?$/i;
+const figures = /\.(glb|gltf|vrm|obj)$/i;
+const motions = /\.bvh$/i;
+export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.obj', '.bvh'];
+
+// What cannot be shown, before anything is asked for. names: of files that are given together.
+export function refusal(names) {
+    const count = (pattern) => names.filter((name) => pattern.test(name)).length;
+    if (count(packs) === 1 && names.length === 1) return '';
+    if (count(packs)) return 'a pack is shown alone';
+    if (count(/\.fbx$/i)) return 'a page does not convert FBX: noh build does';
+    if (count(figures) > 1) return 'one model at a time, and any number of .bvh with it';
+    return count(figures) + count(motions) ? '' : `it is none of ${kinds.join(', ')}`;
+}
+
+// files: File objects, a model and what it names (.bin, pictures), or clips. tell(words) is called as it goes on.
+// options: as those of `noh build`. Resolves to the pack's bytes.
+export async function convert(files, { tell = () => {}, options = [], base = new URL('convert/', import.meta.url) } = {}) {
+    const refused = refusal(files.map(({ name }) => name));
+    if (refused) throw new Error(refused);
+    const order = [...files].sort((a, b) => Number(figures.test(b.name)) - Number(figures.test(a.name)));
+    tell('the converter is loaded');
+    const read = await Promise.all(order.map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) })));
+    const worker = new Worker(new URL('worker.js', base));
+    try {
+        return await new Promise((resolve, reject) => {
+            worker.onerror = () => reject(new Error('the converter cannot be loaded: the page was built without it, or the connection was lost'));
+            worker.onmessage = ({ data }) => {
+                if (data.progress) tell(data.progress);
+                else if (data.pack) resolve(data.pack);
+                else reject(new Error(data.error));
+            };
+            worker.postMessage({ files: read, options }, read.map(({ bytes }) => bytes.buffer));
+        });
+    } finally {
+        worker.terminate(); // its memory goes with it
+    }
+}
+
+// What a visitor gives, one time after another: a .bvh alone belongs to the model before it.
+export class Visitor {
+    constructor() {
+        this.model = []; // the files of the last model that was converted
+    }
+
+    // Resolves to what Character.load takes.
+    async pack(files, settings) {
+        const has = (pattern) => files.some(({ name }) => pattern.test(name)), refused = refusal(files.map(({ name }) => name));
+        if (refused) throw new Error(refused);
+        if (has(packs)) {
+            this.model = [];
+            return files[0];
+        }
+        if (!has(figures) && !this.model.length) throw new Error('a .bvh has motion alone: drop it together with its model, or after it');
+        const all = has(figures) ? files : [...this.model, ...files], pack = await convert(all, settings);
+        this.model = all;
+        return pack;
+    }
+}
