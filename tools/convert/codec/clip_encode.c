@@ -73,17 +73,22 @@ static int new_loop(encoder *e)
     l->global = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->global);
     l->raw_between = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX * (ENC_PARTS - 1), sizeof *l->raw_between);
     l->before = enc_alloc(e, e->joint_count, sizeof *l->before);
-    l->scratch = enc_alloc(e, e->joint_count, sizeof *l->scratch);
+    l->between = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX * (ENC_PARTS - 1), sizeof *l->between);
+    l->local_before = enc_alloc(e, ENC_FRAMES_MAX, sizeof *l->local_before);
+    l->global_before = enc_alloc(e, ENC_FRAMES_MAX, sizeof *l->global_before);
+    l->stale = enc_alloc(e, e->joint_count, sizeof *l->stale);
+    l->moved = enc_alloc(e, e->joint_count, sizeof *l->moved);
     l->end = enc_alloc(e, e->joint_count, sizeof *l->end);
-    l->errors = enc_alloc(e, (size_t)e->joint_count * (ENC_PARTS + 1), sizeof *l->errors);
+    l->errors = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX * ENC_PARTS, sizeof *l->errors);
     l->errors_before = enc_alloc(e, e->joint_count, sizeof *l->errors);
     l->errors_end = enc_alloc(e, e->joint_count, sizeof *l->errors);
     l->slack = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->slack);
     l->floor = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->floor);
-    l->turns = enc_alloc(e, e->joint_count, sizeof *l->turns);
+    l->turns = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->turns);
     l->raw = enc_alloc(e, e->joint_count, sizeof *l->raw);
     return !l->turns || !l->raw || !l->slack || !l->floor || !l->errors || !l->errors_before || !l->errors_end ||
-           !l->end || !l->local || !l->global || !l->raw_between || !l->before || !l->scratch;
+           !l->end || !l->local || !l->global || !l->raw_between || !l->before ||
+           !l->between || !l->local_before || !l->global_before || !l->stale || !l->moved;
 }
 
 static void free_segments(encoder *e)
@@ -104,7 +109,11 @@ static void free_encoder(encoder *e)
         free(e->loop->global);
         free(e->loop->raw_between);
         free(e->loop->before);
-        free(e->loop->scratch);
+        free(e->loop->between);
+        free(e->loop->local_before);
+        free(e->loop->global_before);
+        free(e->loop->stale);
+        free(e->loop->moved);
         free(e->loop->end);
         free(e->loop->errors);
         free(e->loop->errors_before);

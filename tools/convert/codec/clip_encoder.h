@@ -121,10 +121,13 @@ typedef struct enc_loop {
     space_global *raw_between; /* [frames][ENC_PARTS - 1][joint]: the raw clip between a frame and the one before */
     space_local *before;       /* [joint] last frame of the previous segment */
     space_local *end;          /* [joint] last frame of the best attempt so far */
-    space_global *scratch;     /* [joint] */
-    double *errors; /* [ENC_PARTS + 1][joint] of one interval, as shares of the bound; row 0: the frame before */
+    space_global *between;     /* as raw_between, as decoded */
+    space_local *local_before; /* [ENC_FRAMES_MAX] of the joint that is being fitted, before that */
+    space_global *global_before;
+    double *errors; /* [ENC_FRAMES_MAX][ENC_PARTS][joint] as shares of the bound: at each frame, then before it */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
-    double *turns;                      /* [joint] radians that it and its parents turn from one frame to the next */
+    double *turns; /* [ENC_FRAMES_MAX][joint] radians that it and its parents turn from the frame before */
+    uint8_t *stale, *moved; /* [joint] to be fitted again; what it does has changed since it was measured */
     double *slack;                      /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
     double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation\'s parents take, however exact it is */
     double rho_scale;

@@ -29,6 +29,9 @@
 
 enum { ROTATION, TRANSLATION, SCALE };
 
+/* Whether a joint has to be fitted again: its slack changed; or whatever was there before does not count. */
+enum { FRESH, STALE, STALE_ALL };
+
 static space_local *lossy(const encoder *e, uint32_t joint, uint32_t f)
 {
     return &e->loop->local[(size_t)joint * ENC_FRAMES_MAX + f];
@@ -496,28 +499,40 @@ static double peak(double before, double here, double after)
     return bend > 0.0 && fabs(slope) < 2.0 * bend ? here + slope * slope / (8.0 * bend) : here;
 }
 
-/* Errors of all joints between frame f - 1 and frame f, as shares of their bounds. */
-static void errors_between(const encoder *e, uint32_t f, uint32_t part, double *errors)
+/* Row `part` of a frame's errors: 0 at the frame, else so many eighths after the frame before. */
+static double *errors_of(const encoder *e, uint32_t f, uint32_t part)
 {
-    const space_global *raw = e->loop->raw_between + (size_t)(f * BETWEEN + part) * e->joint_count;
+    return e->loop->errors + (size_t)(f * ENC_PARTS + part) * e->joint_count;
+}
+
+/* Errors of the joints that have moved between frame f - 1 and frame f, as shares of their bounds. */
+static void errors_between(const encoder *e, uint32_t f, uint32_t part)
+{
+    const size_t at = (size_t)(f * BETWEEN + part - 1u) * e->joint_count;
+    const space_global *raw = e->loop->raw_between + at;
+    space_global *pose = e->loop->between + at;
+    double *errors = errors_of(e, f, part);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         const space_local *before = f ? lossy(e, j, f - 1u) : &e->loop->before[j];
         space_local l;
-        space_between(before, lossy(e, j, f), (double)(part + 1u) / ENC_PARTS, &l);
-        space_compose(enc_parent(e->loop->scratch, e->joints[j].parent), &l, &e->loop->scratch[j]);
-        errors[j] = enc_error(e, j, &raw[j], &e->loop->scratch[j]) / e->joints[j].bound;
+        if (!e->loop->moved[j]) continue;
+        space_between(before, lossy(e, j, f), (double)part / ENC_PARTS, &l);
+        space_compose(enc_parent(pose, e->joints[j].parent), &l, &pose[j]);
+        errors[j] = enc_error(e, j, &raw[j], &pose[j]) / e->joints[j].bound;
     }
 }
 
 /* How far each joint turns in the raw clip between frame f - 1 of the segment and frame f, its parents' turns added up,
  * by the chord of half the angle: at most a tenth too much. */
-static void find_turns(const encoder *e, const enc_segment *s, uint32_t f)
+static void find_turns(const encoder *e, const enc_segment *s)
 {
-    for (uint32_t j = 0; j < e->joint_count; j++) {
-        const uint32_t parent = e->joints[j].parent, frame = s->first + f;
-        const double dot = fabs(space_dot(enc_local(e, frame - 1u, j)->q, enc_local(e, frame, j)->q));
-        e->loop->turns[j] = (parent == ENC_NONE ? 0.0 : e->loop->turns[parent]) +
-                            2.2 * sqrt(2.0 * (dot < 1.0 ? 1.0 - dot : 0.0));
+    for (uint32_t f = s->first ? 0u : 1u; f < s->count; f++) {
+        double *turns = e->loop->turns + (size_t)f * e->joint_count;
+        for (uint32_t j = 0; j < e->joint_count; j++) {
+            const uint32_t parent = e->joints[j].parent, frame = s->first + f;
+            const double dot = fabs(space_dot(enc_local(e, frame - 1u, j)->q, enc_local(e, frame, j)->q));
+            turns[j] = (parent == ENC_NONE ? 0.0 : turns[parent]) + 2.2 * sqrt(2.0 * (dot < 1.0 ? 1.0 - dot : 0.0));
+        }
     }
 }
 
@@ -548,6 +563,7 @@ static void lower_slack(const encoder *e, uint32_t joint, uint32_t f, double vio
     while (e->loop->gives_up && is_raw(e, joint) && e->joints[joint].parent != ENC_NONE)
         joint = e->joints[joint].parent;
     if (e->loop->gives_up) e->loop->raw[joint] = 1;
+    if (!e->loop->stale[joint]) e->loop->stale[joint] = STALE;
     slack = &slack_of(e, joint)[f];
     *slack *= violation > 2.0 ? 0.5 : 0.97 / violation;
     if (!(*slack >= SLACK_MIN)) *slack = SLACK_MIN;
@@ -571,41 +587,76 @@ static void blame_between(const encoder *e, const enc_segment *s, uint32_t joint
     if (f) lower_slack(e, most, f - 1u, violation);
 }
 
-/* The largest error at frames and between, as a share of the joints' bounds. Between the points measured it is
- * interpolated by parabolas. blames: lower the slack of those who passed it. */
+/* Measure the joints that have moved since they were measured last. */
+static void measure_moved(const encoder *e, const enc_segment *s)
+{
+    for (uint32_t f = 0; f < s->count; f++) {
+        double *here = errors_of(e, f, 0);
+        for (uint32_t part = 1; part < ENC_PARTS && s->first + f > 0u; part++) errors_between(e, f, part);
+        for (uint32_t j = 0; j < e->joint_count; j++) {
+            if (e->loop->moved[j])
+                here[j] = enc_error(e, j, enc_global(e, s->first + f, j), placed(e, j, f)) / e->joints[j].bound;
+        }
+    }
+}
+
+/* The largest error of a joint between frame f - 1 and frame f: between the points measured it is interpolated by
+ * parabolas. */
+static double worst_between(const encoder *e, uint32_t f, uint32_t j)
+{
+    const size_t stride = e->joint_count;
+    const double *row = errors_of(e, f, 0) + j, spin = fast(e->loop->turns[(size_t)f * stride + j]);
+    double a = f ? errors_of(e, f - 1u, 0)[j] : e->loop->errors_before[j], b = row[stride], worst = 0.0;
+    for (uint32_t part = 1; part < ENC_PARTS; part++) {
+        const double c = part + 1u < ENC_PARTS ? row[(part + 1u) * stride] : row[0], v = spin * peak(a, b, c);
+        if (!(v <= worst)) worst = v;
+        a = b;
+        b = c;
+    }
+    return worst;
+}
+
+/* The largest error at frames and between, as a share of the joints' bounds. blames: lower the slack of those who
+ * passed it. */
 static double segment_error(const encoder *e, const enc_segment *s, int blames)
 {
-    double worst = 0.0, *rows[ENC_PARTS + 1];
-    for (uint32_t i = 0; i <= ENC_PARTS; i++) rows[i] = e->loop->errors + (size_t)i * e->joint_count;
-    if (s->first) memcpy(rows[0], e->loop->errors_before, e->joint_count * sizeof *rows[0]);
+    double worst = 0.0;
+    measure_moved(e, s);
     for (uint32_t f = 0; f < s->count; f++) {
-        for (uint32_t part = 0; part < BETWEEN && s->first + f > 0u; part++)
-            errors_between(e, f, part, rows[part + 1u]);
-        if (s->first + f > 0u) find_turns(e, s, f);
         for (uint32_t j = 0; j < e->joint_count; j++) {
-            rows[ENC_PARTS][j] = enc_error(e, j, enc_global(e, s->first + f, j), placed(e, j, f)) / e->joints[j].bound;
-            double between = 0.0;
-            if (!(rows[ENC_PARTS][j] <= worst)) worst = rows[ENC_PARTS][j];
-            if (blames && rows[ENC_PARTS][j] > SAFETY) lower_slack(e, j, f, rows[ENC_PARTS][j]);
-            for (uint32_t i = 1; i < ENC_PARTS && s->first + f > 0u; i++) {
-                const double v = fast(e->loop->turns[j]) * peak(rows[i - 1u][j], rows[i][j], rows[i + 1u][j]);
-                if (!(v <= between)) between = v;
-            }
+            const double here = errors_of(e, f, 0)[j], between = s->first + f > 0u ? worst_between(e, f, j) : 0.0;
+            if (!(here <= worst)) worst = here;
             if (!(between <= worst)) worst = between;
+            if (blames && here > SAFETY) lower_slack(e, j, f, here);
             if (blames) blame_between(e, s, j, f, between);
-            rows[0][j] = rows[ENC_PARTS][j];
         }
     }
     return worst;
 }
 
-static int fit_all(encoder *e, const enc_segment *s)
+static int fit_all_floats(encoder *e, const enc_segment *s)
 {
     for (uint32_t i = 0; i < e->track_count && e->tracks[i].track.kind == NOH_CLIP_FLOATS; i++) {
         if (fit_floats(e, s, &e->tracks[i], &s->pieces[i])) return 1;
     }
+    return 0;
+}
+
+/* Fit the joints that are `stale`, and those whose parents have moved by that. A fit that gives what was there before
+ * moves nothing, and what is below it stays. */
+static int fit_stale(encoder *e, const enc_segment *s)
+{
+    const size_t locals = s->count * sizeof(space_local), globals = s->count * sizeof(space_global);
     for (uint32_t j = 0; j < e->joint_count; j++) {
+        const uint32_t parent = e->joints[j].parent;
+        e->loop->moved[j] = 0;
+        if (!e->loop->stale[j] && (parent == ENC_NONE || !e->loop->moved[parent])) continue;
+        memcpy(e->loop->local_before, lossy(e, j, 0), locals);
+        memcpy(e->loop->global_before, placed(e, j, 0), globals);
         if (fit_joint(e, j, s)) return 1;
+        e->loop->moved[j] = e->loop->stale[j] == STALE_ALL || memcmp(e->loop->local_before, lossy(e, j, 0), locals) ||
+                            memcmp(e->loop->global_before, placed(e, j, 0), globals);
+        e->loop->stale[j] = 0;
     }
     return 0;
 }
@@ -636,6 +687,11 @@ void enc_free_pieces(const encoder *e, enc_piece *pieces)
  * blame, who are stored raw in the last tries. Each way is tried where those before it did not do. */
 enum { APART, TOGETHER, GIVING_UP, WAYS };
 
+static void all_stale(const encoder *e)
+{
+    memset(e->loop->stale, STALE_ALL, e->joint_count);
+}
+
 /* With the current tuning. */
 static int fit_tuned(encoder *e, const enc_segment *s, int way, double *worst)
 {
@@ -644,16 +700,20 @@ static int fit_tuned(encoder *e, const enc_segment *s, int way, double *worst)
     for (size_t i = 0; i < (size_t)e->joint_count * ENC_FRAMES_MAX; i++) e->loop->slack[i] = 1.0;
     memset(e->loop->raw, 0, e->joint_count);
     e->loop->rho_scale = 1.0;
+    all_stale(e);
     for (int i = 0; i <= TRIES; i++) {
         e->loop->all_raw = (i == TRIES && e->level == 1) || e->level >= 2;
         e->loop->gives_up = way == GIVING_UP && i >= TRIES - RAW_TRIES;
-        if (fit_all(e, s)) return 1;
+        if (e->loop->all_raw) all_stale(e);
+        if ((i == 0 || e->loop->all_raw) && fit_all_floats(e, s)) return 1;
+        if (fit_stale(e, s)) return 1;
         *worst = segment_error(e, s, apart);
         if (*worst <= SAFETY || e->loop->all_raw || i == TRIES) break;
         slack *= *worst > 2.0 ? 0.5 : *worst > 1.02 ? 0.995 / *worst : 0.97;
         if (slack < SLACK_MIN) slack = SLACK_MIN;
         for (size_t k = 0; k < (size_t)e->joint_count * ENC_FRAMES_MAX && !apart; k++) e->loop->slack[k] = slack;
         if (i > (apart ? 12 : 3)) e->loop->rho_scale *= 0.85;
+        if (i > (apart ? 12 : 3) || !apart) all_stale(e);
     }
     return 0;
 }
@@ -662,7 +722,7 @@ static int fit_tuned(encoder *e, const enc_segment *s, int way, double *worst)
 static void keep_end(encoder *e, const enc_segment *s, space_local *end)
 {
     for (uint32_t j = 0; j < e->joint_count; j++) end[j] = *lossy(e, j, s->count - 1u);
-    memcpy(e->loop->errors_end, e->loop->errors, e->joint_count * sizeof *e->loop->errors); /* of the last frame */
+    memcpy(e->loop->errors_end, errors_of(e, s->count - 1u, 0), e->joint_count * sizeof *e->loop->errors);
 }
 
 int enc_segment_fit(encoder *e, uint32_t index, double *worst)
@@ -676,6 +736,7 @@ int enc_segment_fit(encoder *e, uint32_t index, double *worst)
     failed = !best || !s->pieces;
     *worst = 2.0;
     if (!failed) raw_between(e, s);
+    if (!failed) find_turns(e, s);
     for (uint32_t t = 0; t < WAYS * e->tuning_count && !failed && (t == 0u || e->level < 2); t++) {
         const int way = (int)(t % WAYS);
         size_t bytes = 0;
