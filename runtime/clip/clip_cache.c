@@ -9,6 +9,7 @@ typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u
 #define GLIMPSE_FRAMES 16u      /* segments up to this are decoded whole, always */
+#define PLAY_FRAMES 8u          /* samples at most so far apart are play */
 #define SEGMENTS_MAX (1u << 28) /* of all clips of a cache: their table is within 32 bits of bytes */
 
 /* ---- sizes ---- */
@@ -206,6 +207,7 @@ static void add_clips(const noh_clip_cache_desc *desc, noh_clip_cache *cache)
         noh_cached_clip *e = &cache->clips[i];
         const uint32_t bytes = entry_bytes(&desc->clips[i]->info);
         e->clip = desc->clips[i];
+        e->frame = 0;
         e->first = segments;
         e->size = cache->size_count - 1u;
         while (cache->sizes[e->size].bytes < bytes) {
@@ -355,8 +357,8 @@ static void decode_late(noh_clip_cache *cache, uint32_t s, uint32_t tracks, uint
     const uint32_t segment = t->cursor.segment;
     noh_clip_basis basis = noh_clip_cache_basis(cache, clip, segment, ~quads);
     uint32_t spent;
-    if (t->glimpsed || t->wanted || basis.frames <= GLIMPSE_FRAMES || is_whole(cache, t->clip, segment - 1u, tracks) ||
-        is_whole(cache, t->clip, segment + 1u, tracks)) {
+    if (t->glimpsed || t->wanted || t->cursor.track > 0u || basis.frames <= GLIMPSE_FRAMES ||
+        is_whole(cache, t->clip, segment - 1u, tracks) || is_whole(cache, t->clip, segment + 1u, tracks)) {
         spent = decode_cached(cache, s, tracks);
     } else {
         noh_clip_cursor cursor = t->cursor;
@@ -388,6 +390,45 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
     t = &cache->cached[s];
     if (t->cursor.track < tracks && (t->glimpsed < tracks || t->skipped & quads)) decode_late(cache, s, tracks, quads);
     return s;
+}
+
+/* The segment that play without wants comes to next, and the samples until then; NOH_CLIP_NOT_CACHED where a clip is
+ * not played on: its sample before was more than PLAY_FRAMES away, or in the same frame. */
+static uint32_t next_segment(const noh_clip *clip, const noh_clip_place *p, uint32_t before, uint32_t *samples)
+{
+    const uint32_t first = noh_clip_segment_first(clip, p->segment), frame = first + p->frame;
+    const uint32_t step = frame > before ? frame - before : before - frame;
+    if (step == 0u || step > PLAY_FRAMES) return NOH_CLIP_NOT_CACHED;
+    if (frame < before) {
+        *samples = p->frame / step + 1u;
+        return p->segment ? p->segment - 1u : NOH_CLIP_NOT_CACHED;
+    }
+    *samples = (noh_clip_segment_first(clip, p->segment + 1u) - 1u - frame) / step + 1u;
+    if (p->segment + 1u < clip->info.segment_count) return p->segment + 1u;
+    return clip->info.flags & NOH_CLIP_FLAG_LOOP ? 0u : NOH_CLIP_NOT_CACHED;
+}
+
+/* Nobody wants what comes next: decode as much of it now as leaves the same for each sample until it is needed, where
+ * it would be decoded late, all at once. */
+static void go_on(noh_clip_cache *cache, uint32_t clip, const noh_clip_place *p, uint32_t here)
+{
+    noh_cached_clip *e = &cache->clips[clip];
+    const uint32_t before = e->frame;
+    uint32_t samples = 1, segment, s, done;
+    e->frame = noh_clip_segment_first(e->clip, p->segment) + p->frame;
+    if (cache->cached[here].wanted) return;
+    segment = next_segment(e->clip, p, before, &samples);
+    if (segment == NOH_CLIP_NOT_CACHED || segment == p->segment) return;
+    s = cache->cached_of[e->first + segment];
+    if (s == NOH_CLIP_NOT_CACHED) {
+        s = find_room(cache, clip, here, 0);
+        if (s == NOH_CLIP_NOT_CACHED) return;
+        take(cache, s, clip, segment);
+    }
+    touch(cache, s);
+    done = cache->cached[s].cursor.track;
+    if (done < p->tracks)
+        cache->stats.decoded += decode_cached(cache, s, done + (p->tracks - done + samples - 1u) / samples);
 }
 
 #if NOH_ASSERT_LEVEL >= 2
@@ -515,6 +556,7 @@ void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32
     const uint8_t *next = p.crosses ? cache->cached[ready(cache, clip, p.segment + 1u, p.tracks, 1u, s)].frames : NULL;
     cache->stats.samples++;
     noh_clip_blend_place(&p, cache->cached[s].frames, next, out, floats);
+    go_on(cache, clip, &p, s);
 }
 
 noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache)

@@ -7,7 +7,9 @@
  *   noh_clip_cache_work(cache, budget);                    once: decodes that much of what was wanted
  *   noh_clip_sample(cache, clip, ticks, joints, out, f);   per playing track
  * A sample whose segments are missing (they were not wanted, the budget was too small, the track jumped) decodes them
- * at once: the same bits, at the cost of up to two segments; `decoded_late` counts it.
+ * at once: the same bits, at the cost of up to two segments; `decoded_late` counts it. Where nothing is wanted and a
+ * clip is played on, forwards or backwards, each sample decodes a part of the segment that comes next, where there is
+ * room: no frame decodes all of it.
  *
  *   noh_clip_cache_size, _init                    for clips that are open
  *   noh_clip_cache_needs_add, _needs_size         the size for clips that are not open yet

@@ -34,6 +34,7 @@ typedef struct noh_cached_clip {
     const noh_clip *clip;
     uint32_t first; /* place of its first segment in `cached_of` */
     uint32_t size;  /* index of the smallest noh_clip_size_class that its segments fit in */
+    uint32_t frame; /* the frame of the sample before */
 } noh_cached_clip;
 
 struct noh_clip_cache {

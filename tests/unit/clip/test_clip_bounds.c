@@ -1,5 +1,5 @@
-/* A looser bound is never larger: bytes of made-up and real clips over bounds, from tight to loose. With NOH_LONG set
- * all real clips, over more bounds. */
+/* A looser bound is never larger, nor is more effort: bytes of made-up and real clips over bounds, from tight to loose.
+ * With NOH_LONG set all real clips, over more bounds. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static const bound quick_bounds[] = { { 0.01, 3.0 }, { 0.1, 10.0 }, { 1.0, 10.0 
 static const bound long_bounds[] = { { 0.001, 3.0 }, { 0.003, 3.0 }, { 0.01, 3.0 }, { 0.02, 3.0 }, { 0.1, 10.0 },
                                      { 0.2, 10.0 },  { 0.4, 10.0 },  { 1.0, 10.0 }, { 3.0, 10.0 }, { 10.0, 10.0 } };
 
-static size_t bytes_at(const raw_set *set, const bound *b)
+static size_t bytes_at(const raw_set *set, const bound *b, uint32_t effort)
 {
     model_error error;
     byte_buffer out;
@@ -31,6 +31,7 @@ static size_t bytes_at(const raw_set *set, const bound *b)
     memset(&out, 0, sizeof out);
     o.error_cm = b->error_cm;
     o.shell_cm = b->shell_cm;
+    o.effort = effort;
     if (clip_encode(&set->skeleton, &set->clips[0], &o, &out, NULL, &error)) fail_msg("%s", error.what);
     bytes = out.count;
     buffer_free(&out);
@@ -45,7 +46,7 @@ static void looser_is_never_larger(raw_set *set, const char *name, size_t bytes_
     const size_t count = is_long ? sizeof long_bounds / sizeof *bounds : sizeof quick_bounds / sizeof *bounds;
     size_t before = SIZE_MAX;
     for (size_t i = 0; i < count; i++) {
-        const size_t bytes = bytes_at(set, &bounds[i]);
+        const size_t bytes = bytes_at(set, &bounds[i], 0);
         if (bytes > before)
             fail_msg("%s: %u bytes at %g cm, %g cm from each joint, %u at the tighter bound before", name,
                      (unsigned)bytes, bounds[i].error_cm, bounds[i].shell_cm, (unsigned)before);
@@ -53,6 +54,28 @@ static void looser_is_never_larger(raw_set *set, const char *name, size_t bytes_
         before = bytes;
     }
     raw_set_free(set);
+}
+
+/* Takes the set. More effort is never larger, and by itself it is 2. */
+static void effort_is_never_larger(raw_set *set, const char *name)
+{
+    size_t bytes[4];
+    for (uint32_t effort = 0; effort < 4u; effort++) bytes[effort] = bytes_at(set, &quick_bounds[0], effort);
+    print_message("%s: %u, %u, %u bytes\n", name, (unsigned)bytes[1], (unsigned)bytes[2], (unsigned)bytes[3]);
+    assert_true(bytes[2] <= bytes[1] && bytes[3] <= bytes[2]);
+    assert_true(bytes[3] < bytes[1]);
+    assert_int_equal(bytes[0], bytes[2]);
+    raw_set_free(set);
+}
+
+static void efforts(void **state)
+{
+    raw_set *fast = fixture_swing(8, 90, 2, 15.0f, 0.5, 0.3);
+    (void)state;
+    test_skip_emulated("the encoder");
+    fast->clips[0].sample_rate_hz = 120.0; /* where longer segments are tried */
+    effort_is_never_larger(fast, "at 120 Hz");
+    effort_is_never_larger(fixture_swing(12, 40, 1, 12.0f, 0.8, 0.3), "at 30 Hz");
 }
 
 /* What comes into being: its root grows from (almost) nothing in some frames, or shrinks to it. */
@@ -116,6 +139,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clips_that_grow_from_nothing),
         cmocka_unit_test(known_clips),
+        cmocka_unit_test(efforts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

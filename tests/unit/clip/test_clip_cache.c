@@ -319,6 +319,40 @@ static void a_second_segment_spares_the_first(void **state)
     free(large);
 }
 
+/* Where nobody wants anything, each sample decodes its share of what comes next: whole segments in single frames were
+ * spikes. Only the first segment is decoded late: two frames of it, and the rest when play has left them. */
+static void play_without_wants_is_even(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 4u; i++) {
+        const int64_t backwards = i & 2u;
+        noh_clip_bank_desc desc = desc_of();
+        noh_transform pose[JOINTS];
+        const noh_clip *clip;
+        noh_clip_bank *set;
+        uint64_t late = 0, most = 0, segment;
+        desc.cached_segment_count = i & 1u ? 2u : 0u;
+        set = test_clip_bank(&desc);
+        clip = noh_clip_cache_clip(set->cache, 3);
+        segment = (uint64_t)clip->info.track_count * clip->info.segment_frames_max;
+        for (int64_t at = 0; at <= (int64_t)clip->info.duration_ticks; at += STEP) {
+            const noh_clip_cache_stats before = noh_clip_cache_stats_of(set->cache);
+            noh_clip_cache_stats after;
+            noh_clip_cache_begin_frame(set->cache);
+            noh_clip_sample(set->cache, 3, backwards ? (int64_t)clip->info.duration_ticks - at : at, JOINTS, pose,
+                            NULL);
+            after = noh_clip_cache_stats_of(set->cache);
+            if (at <= 12 * STEP) late = after.decoded_late;
+            if (at > 12 * STEP && after.decoded - before.decoded > most) most = after.decoded - before.decoded;
+        }
+        print_message("%s, %s: %u of %u track-frames in a frame at most\n", backwards ? "backwards" : "forwards",
+                      i & 1u ? "two segments" : "default", (unsigned)most, (unsigned)segment);
+        assert_true(most * 4u <= segment);
+        assert_int_equal(noh_clip_cache_stats_of(set->cache).decoded_late, late);
+        free(set);
+    }
+}
+
 /* What work spends is counted as decoded, and not as late. */
 static void work_is_counted(void **state)
 {
@@ -423,6 +457,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_one_touched_longest_ago_goes),
     cmocka_unit_test(wants_are_met_in_order),
     cmocka_unit_test(a_second_segment_spares_the_first),
+    cmocka_unit_test(play_without_wants_is_even),
     cmocka_unit_test(work_is_counted),
     cmocka_unit_test(a_cache_says_when_it_holds_all),
     cmocka_unit_test(frames_past_the_end_are_clamped),

@@ -32,21 +32,39 @@
 #define DEFAULT_FLOAT_ERROR 0.001
 #define SEGMENT_FRAMES_MIN 8u
 #define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
+#define LONG_SEGMENT 40u       /* frames: a few percent smaller where motion is smooth; a cache takes more for them */
+#define FAST_HZ 60.0
+#define EFFORT_USUAL 2u
+#define EFFORT_MAX 3u
 #define RAW_JOINT_BYTES 40u
 #define RAW_FLOAT_BYTES 4u
 
-/* In the order of enc_tuning. The first is the best for most segments. */
+/* In the order of enc_tuning: a search, the plain one, which now and then is smaller, and what else has been smaller
+ * for some segments. */
 static const enc_tuning tunings[] = {
-    { 0.82, 0.86, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
-    { 0.7, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8 },
-    { 0.9, 0.9, 0.05, 0.75, 0.1, 0.5, 0.06, 8 },
-    { 0.82, 0.82, 0.1, 0.5, 0.35, 0.5, 0.1, 8 },
+    { 0.86, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8, 1, 1 }, { 0.82, 0.86, 0.05, 0.65, 0.2, 0.5, 0.06, 8, 0, 0 },
+    { 0.82, 0.82, 0.1, 0.8, 0.35, 0.5, 0.1, 8, 1, 1 },  { 0.9, 0.94, 0.05, 0.75, 0.1, 0.5, 0.06, 8, 1, 1 },
+    { 0.7, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8, 1, 1 },
 };
+
+/* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
+typedef struct attempt {
+    uint32_t effort;
+    uint32_t first, count;   /* tunings */
+    uint32_t segment_frames; /* 0: the usual ones */
+} attempt;
+static const attempt attempts[] = {
+    { 1, 1, 1, 0 },
+    { 2, 0, 2, 0 },
+    { 3, 0, 5, 0 },
+    { 3, 0, 5, LONG_SEGMENT },
+};
+#define ATTEMPTS (sizeof attempts / sizeof *attempts)
 
 static int set_options(encoder *e, const clip_options *given)
 {
     clip_options *o = &e->options;
-    if (given) *o = *given;
+    *o = *given;
     if (o->error_cm == 0.0) o->error_cm = DEFAULT_ERROR_CM;
     if (o->shell_cm == 0.0) o->shell_cm = DEFAULT_SHELL_CM;
     if (o->float_error == 0.0) o->float_error = DEFAULT_FLOAT_ERROR;
@@ -59,8 +77,11 @@ static int set_options(encoder *e, const clip_options *given)
     e->unit_cm = e->skeleton->unit_cm;
     e->bound = o->error_cm * e->tight / e->unit_cm;
     e->shell = o->shell_cm / e->unit_cm;
-    e->tunings = tunings;
-    e->tuning_count = sizeof tunings / sizeof *tunings;
+    if (o->effort > EFFORT_MAX) return enc_fail(e, "effort: 1 to 3");
+    if (o->effort == 0u) o->effort = EFFORT_USUAL;
+    if (!o->segment_frames) o->segment_frames = e->attempt->segment_frames;
+    e->tunings = tunings + e->attempt->first;
+    e->tuning_count = e->attempt->count;
     return 0;
 }
 
@@ -87,8 +108,8 @@ static int new_loop(encoder *e)
     l->turns = enc_alloc(e, (size_t)e->joint_count * ENC_FRAMES_MAX, sizeof *l->turns);
     l->raw = enc_alloc(e, e->joint_count, sizeof *l->raw);
     return !l->turns || !l->raw || !l->slack || !l->floor || !l->errors || !l->errors_before || !l->errors_end ||
-           !l->end || !l->local || !l->global || !l->raw_between || !l->before ||
-           !l->between || !l->local_before || !l->global_before || !l->stale || !l->moved;
+           !l->end || !l->local || !l->global || !l->raw_between || !l->before || !l->between || !l->local_before ||
+           !l->global_before || !l->stale || !l->moved;
 }
 
 static void free_segments(encoder *e)
@@ -157,6 +178,15 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     return 0;
 }
 
+/* All attempts count alike, though the later ones take longer. */
+static void report_progress(const encoder *e, uint32_t segments)
+{
+    const uint32_t before = (uint32_t)(e->attempt - attempts) * e->segment_count;
+    uint32_t count = 0;
+    while (count < ATTEMPTS && attempts[count].effort <= e->options.effort) count++;
+    if (e->options.progress) e->options.progress(e->options.user, before + segments, count * e->segment_count);
+}
+
 /* One attempt. *worst_part is above 1 if the bound did not hold; `out` is then as before. *decoded says whether only
  * decoding showed it. */
 static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *decoded)
@@ -175,7 +205,7 @@ static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *de
             *worst_part = worst;
             return 0;
         }
-        if (e->options.progress) e->options.progress(e->options.user, s + 1u, e->segment_count);
+        report_progress(e, s + 1u);
     }
     *decoded = 1;
     failed = write_certified(e, out, worst_part);
@@ -183,26 +213,18 @@ static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *de
     return failed;
 }
 
-int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
-                clip_report *report, model_error *error)
+/* At the first level at which the bound holds. */
+static int encode_attempt(encoder *e, const encoder *from, byte_buffer *out, clip_report *report)
 {
     double worst_part = 2.0, tight = 1.0;
     int failed = 0, level = 0;
-    encoder *e = malloc(sizeof *e); /* its 64 bases are too large for some stacks */
-    if (!e) {
-        if (error) snprintf(error->what, sizeof error->what, "out of memory");
-        return 1;
-    }
     while (level < LEVELS && !failed && !(worst_part <= 1.0)) {
         int decoded = 0;
-        memset(e, 0, sizeof *e);
-        e->skeleton = skeleton;
-        e->clip = clip;
-        e->error = error;
+        *e = *from;
         e->level = level;
         e->tight = tight;
-        failed = set_options(e, options) || encode_once(e, out, &worst_part, &decoded);
-        if (!failed && worst_part <= 1.0 && report) {
+        failed = set_options(e, &from->options) || encode_once(e, out, &worst_part, &decoded);
+        if (!failed && worst_part <= 1.0) {
             *report = e->report;
             report->level = level;
         }
@@ -218,6 +240,53 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
         }
         free_encoder(e);
     }
-    free(e);
     return failed;
+}
+
+/* Whether an attempt may give something else than those before it. Long segments have paid at high rates only. */
+static int is_tried(const encoder *from, const attempt *a)
+{
+    const clip_options *o = &from->options;
+    const raw_clip *c = from->clip;
+    if (a->effort > (o->effort ? o->effort : EFFORT_USUAL)) return 0;
+    return !a->segment_frames ||
+           (!o->segment_frames && c->joint_count && c->sample_rate_hz > FAST_HZ && c->frame_count > LONG_SEGMENT);
+}
+
+int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
+                clip_report *report, model_error *error)
+{
+    encoder *e = calloc(2, sizeof *e); /* their bases are too large for some stacks */
+    encoder *from = e + 1;
+    byte_buffer best;
+    int failed = 0, found = 0;
+    if (!e) {
+        if (error) snprintf(error->what, sizeof error->what, "out of memory");
+        return 1;
+    }
+    memset(&best, 0, sizeof best);
+    from->skeleton = skeleton;
+    from->clip = clip;
+    from->error = error;
+    if (options) from->options = *options;
+    for (size_t i = 0; i < ATTEMPTS && !failed; i++) {
+        byte_buffer bytes;
+        clip_report r;
+        if (!is_tried(from, &attempts[i])) continue;
+        from->attempt = &attempts[i];
+        memset(&bytes, 0, sizeof bytes);
+        failed = encode_attempt(e, from, &bytes, &r);
+        if (!failed && (!found || bytes.count < best.count)) {
+            byte_buffer swap = best;
+            best = bytes;
+            bytes = swap;
+            if (report) *report = r;
+            found = 1;
+        }
+        buffer_free(&bytes);
+    }
+    if (!failed) buffer_append(out, best.bytes, best.count);
+    buffer_free(&best);
+    free(e);
+    return failed || out->failed;
 }

@@ -23,9 +23,10 @@ typedef struct clip_options {
     double shell_cm;              /* distance of the points from their joint; 0 = 3 */
     double float_error;           /* bound of floats without a radius, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
-    uint32_t segment_frames;      /* wanted length of a segment, 8..40; 0: a third of a second, 24 to 32 */
-    int axes;                     /* bound only the three points on each joint's axes, as other libraries measure */
-    int open_loop; /* joints do not correct their parents' errors, so that single joints can be masked out */
+    uint32_t effort;              /* 1 to 3: time for bytes, a higher one never larger; 0 = 2 */
+    uint32_t segment_frames; /* wanted length of a segment, 8..40; 0: a third of a second, 24 to 32 (effort 3: or 40) */
+    int axes;                /* bound only the three points on each joint's axes, as other libraries measure */
+    int open_loop;           /* joints do not correct their parents' errors, so that single joints can be masked out */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;
     struct clip_histogram *histogram; /* counts symbols, to train the tables; NULL = none */

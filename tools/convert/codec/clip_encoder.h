@@ -3,6 +3,7 @@
  * clip_prepare.c  raw clip to double, in one hemisphere; object space
  * clip_analyse.c  what is animated, levers, references, mixes
  * clip_basis.c    which transform
+ * clip_search.c   which way coefficients are rounded
  * clip_fit.c      one track of one segment: the largest step that holds the bound
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
@@ -22,6 +23,7 @@
 #define ENC_RIG_MAX 48u /* points of a joint's rigid descendants that are checked */
 #define ENC_DROP 0.15   /* a track whose effect stays below this share of the bound is constant */
 #define ENC_NONE 0xffffffffu
+#define ENC_PROBES 10u /* of a joint's points, how many a search looks at */
 
 /* A descendant that a joint carries rigidly. */
 typedef struct enc_point {
@@ -42,6 +44,7 @@ typedef struct enc_joint {
     double scale_lever;         /* units: the radius of all that its scale moves */
     double bound;               /* units */
     double shell[3];            /* how far from it its error is measured, in its own unit along each of its axes */
+    int turned;                 /* nothing scales it, in any frame: its linear part is a rotation */
     double depth;               /* 0 at the root of its longest chain of turning joints, 1 at the tip */
     enc_point *points;
     uint32_t point_count;
@@ -78,17 +81,35 @@ typedef struct enc_segment {
  *   correction         how much of a joint's position error its rotation makes up for
  *   shell_weight       weight of the shell's points in that correction
  *   dead_zone          widening of the quantiser's zero, in steps
- *   nudges             attempts to save a step that just fails */
+ *   nudges             attempts to save a step that just fails
+ *   searches           coefficients are searched for in place of nudging (clip_search.c), and then ...
+ *   thins              ... moved towards zero where there is room */
 typedef struct enc_tuning {
     double rho_root, rho_tip, headroom, linear_part, correction, shell_weight, dead_zone;
-    int nudges;
+    int nudges, searches, thins;
 } enc_tuning;
+
+/* A point that a rotation moves: where the rotation is off by the small vector w, it is off by base + w x arm, and all
+ * points of a sphere of radius `shell` about it by a little more. `weight`: 1 / (what is allowed)^2. */
+typedef struct enc_probe {
+    double base[3], arm[3], shell, weight;
+} enc_probe;
+
+/* A rotation track of a segment near its targets. */
+typedef struct enc_model {
+    uint32_t probe_count;
+    double weights[ENC_FRAMES_MAX];     /* 1 / (the frame's limit)^2 */
+    double turns[ENC_FRAMES_MAX][3];    /* what the target itself is off by: a vector about the axis, radians */
+    double turns_by[ENC_FRAMES_MAX][9]; /* 3 x 3: what a change of the components adds to that */
+    enc_probe probes[ENC_FRAMES_MAX * ENC_PROBES];
+} enc_model;
 
 typedef struct encoder {
     const raw_skeleton *skeleton;
     const raw_clip *clip;
     clip_options options;
-    enc_tuning tuning;         /* of the current attempt */
+    enc_tuning tuning; /* of the current attempt */
+    const struct attempt *attempt;
     const enc_tuning *tunings; /* [tuning_count] every segment is encoded with each; the smallest result is kept */
     uint32_t tuning_count;
     model_error *error;
@@ -126,9 +147,10 @@ typedef struct enc_loop {
     space_global *global_before;
     double *errors; /* [ENC_FRAMES_MAX][ENC_PARTS][joint] as shares of the bound: at each frame, then before it */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
-    double *turns; /* [ENC_FRAMES_MAX][joint] radians that it and its parents turn from the frame before */
+    double *turns;          /* [ENC_FRAMES_MAX][joint] radians that it and its parents turn from the frame before */
     uint8_t *stale, *moved; /* [joint] to be fitted again; what it does has changed since it was measured */
-    double *slack;                      /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
+    double *slack;          /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
+    enc_model model;
     double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation\'s parents take, however exact it is */
     double rho_scale;
     uint8_t *raw; /* [joint] its tracks are stored raw */
@@ -160,8 +182,9 @@ static inline const space_global *enc_parent(const space_global *pose, uint32_t 
 /* How far the points about a joint are from the raw clip's, units. */
 static inline double enc_error(const encoder *e, uint32_t joint, const space_global *raw, const space_global *lossy)
 {
-    return e->options.axes ? space_error_axes(raw, lossy, e->joints[joint].shell)
-                           : space_error_sphere(raw, lossy, e->joints[joint].shell);
+    const enc_joint *t = &e->joints[joint];
+    if (e->options.axes) return space_error_axes(raw, lossy, t->shell);
+    return t->turned ? space_error_turned(raw, lossy, e->shell) : space_error_sphere(raw, lossy, t->shell);
 }
 
 /* Each returns 0, or 1 with e->error filled. */
@@ -177,10 +200,15 @@ int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst
                 double *rms_error, uint32_t *joint, uint32_t *time_parts);
 
 /* Fit one track (clip_fit.c). `targets` [frames][3] components, relative to the reference. `check` judges the decoded
- * frames: for each its error over what is allowed. */
+ * frames: for each its error over what is allowed. `around`: what a search goes by; NULL: targets are nudged. */
 typedef double (*enc_check)(encoder *e, void *user, const uint8_t *frames, double *violations);
 int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
-            double (*targets)[3], enc_check check, void *user);
+            double (*targets)[3], enc_check check, void *user, const enc_model *around);
+
+/* Change quantised coefficients so that all frames hold (clip_search.c). Returns whether the model says that they do.
+ * `spectrum` [count][3]: what was quantised, with steps of `size`. */
+int enc_search(const encoder *e, const enc_model *m, uint32_t count, double (*spectrum)[3], enc_piece *piece,
+               double size);
 
 /* Smallest-three codes of a quaternion of either sign; codes[3] is the index of the omitted component. Returns 1 if q
  * was negated. */

@@ -15,6 +15,7 @@
 #define IDS_ABOVE 8 /* larger steps than the guess that are tried: two octaves */
 #define IDS_RAISE 4
 #define HOPELESS 1.8 /* a violation that nudging cannot repair */
+#define HOPELESS_SEARCH 3.0
 #define NEARLY 0.97
 #define PUSH 0.5
 /* a finer step that fails too must reduce the violation at least to this share per octave */
@@ -45,30 +46,55 @@ void enc_quat_value(const uint32_t codes[4], uint32_t width, float q[4])
     noh_clip_quat_expand(codes, codes[3], width, q);
 }
 
-/* The orthonormal DCT of three components, then into the track's mixed axes. */
+/* Components into the track's mixed axes. */
+static void into_axes(const enc_track *t, double v[3])
+{
+    const float *m = t->track.mix;
+    const double a = v[0], b = v[1], c = v[2];
+    if (t->track.kind == NOH_CLIP_FLOATS) {
+        for (int i = 0; i < 3; i++) v[i] /= (double)m[4 * i];
+    } else if (t->track.flags & NOH_CLIP_TRACK_MIX) {
+        for (int i = 0; i < 3; i++) v[i] = (double)m[i] * a + (double)m[3 + i] * b + (double)m[6 + i] * c;
+    }
+}
+
+/* Add what a change of one frame's components, in mixed axes, does to the spectrum. */
+static void add_frame(const encoder *e, uint32_t n, uint32_t f, const double x[3], double (*out)[3])
+{
+    const double *b = e->transforms[n] + f;
+    for (uint32_t k = 0; k < n; k++, b += n) {
+        out[k][0] += *b * x[0];
+        out[k][1] += *b * x[1];
+        out[k][2] += *b * x[2];
+    }
+}
+
+/* The orthonormal transform of three components, in the track's mixed axes. Rows are even and odd in turn. */
 static void forward(const encoder *e, const enc_track *t, uint32_t n, double (*x)[3], double (*out)[3])
 {
+    double sums[2][(ENC_FRAMES_MAX + 1u) / 2u][3];
+    const uint32_t half = n / 2u;
     const double *b = e->transforms[n];
-    const float *m = t->track.mix;
-    for (uint32_t k = 0; k < n; k++, b += n) {
-        double a0 = 0.0, a1 = 0.0, a2 = 0.0, a[3];
-        for (uint32_t f = 0; f < n; f++) {
-            a0 += b[f] * x[f][0];
-            a1 += b[f] * x[f][1];
-            a2 += b[f] * x[f][2];
-        }
-        a[0] = a0;
-        a[1] = a1;
-        a[2] = a2;
+    for (uint32_t f = 0; f < half; f++) {
         for (int c = 0; c < 3; c++) {
-            if (t->track.kind == NOH_CLIP_FLOATS) {
-                out[k][c] = a[c] / (double)m[4 * c];
-            } else if (t->track.flags & NOH_CLIP_TRACK_MIX) {
-                out[k][c] = (double)m[c] * a[0] + (double)m[3 + c] * a[1] + (double)m[6 + c] * a[2];
-            } else {
-                out[k][c] = a[c];
-            }
+            sums[0][f][c] = x[f][c] + x[n - 1u - f][c];
+            sums[1][f][c] = x[f][c] - x[n - 1u - f][c];
         }
+    }
+    for (int c = 0; c < 3 && n % 2u; c++) {
+        sums[0][half][c] = x[half][c];
+        sums[1][half][c] = 0.0;
+    }
+    for (uint32_t k = 0; k < n; k++, b += n) {
+        const double(*s)[3] = (const double(*)[3])sums[k % 2u];
+        double a[3] = { 0.0, 0.0, 0.0 };
+        for (uint32_t f = 0; f < half + n % 2u; f++) {
+            a[0] += b[f] * s[f][0];
+            a[1] += b[f] * s[f][1];
+            a[2] += b[f] * s[f][2];
+        }
+        into_axes(t, a);
+        memcpy(out[k], a, sizeof a);
     }
 }
 
@@ -94,19 +120,19 @@ typedef struct attempt {
     enc_piece *piece;
     uint32_t count;
     const float *reference;
+    const enc_model *model;
     double whole[ENC_FRAMES_MAX][3]; /* the spectrum of the targets before nudging, which does not depend on the step */
     float components[ENC_FRAMES_MAX][4];
     uint8_t frames[ENC_FRAMES_MAX * FRAME_BYTES];
 } attempt;
 
-/* Quantise and decode as the runtime does. */
-static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
+/* Decode the coefficients as the runtime does. */
+static void decode(attempt *a, int id)
 {
     const noh_clip_basis *basis = &a->e->bases[a->count];
     const float step = noh_clip_step((uint32_t)id);
     const int32_t(*coefs)[4] = (const int32_t(*)[4])a->piece->coefs;
     const float(*components)[4] = (const float(*)[4])a->components;
-    if (!quantise(a->e, spectrum, a->count, (double)step, a->piece)) return 0;
     noh_clip_dequantise(coefs, a->piece->last, step,
                         a->track->track.flags & NOH_CLIP_TRACK_MIX ? a->track->track.mix : NULL, a->components);
     if (a->track->track.kind == NOH_CLIP_ROTATION) {
@@ -115,11 +141,17 @@ static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
         noh_clip_synth_linear(basis, components, a->piece->last, a->reference, a->frames, FRAME_BYTES);
     }
     a->piece->step = (uint8_t)id;
+}
+
+static int try_spectrum(attempt *a, double (*spectrum)[3], int id)
+{
+    if (!quantise(a->e, spectrum, a->count, (double)noh_clip_step((uint32_t)id), a->piece)) return 0;
+    decode(a, id);
     return 1;
 }
 
 /* Push the targets of frames out of bounds against their error. */
-static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const double *violations)
+static void nudge(attempt *a, double (*targets)[3], double (*spectrum)[3], const double *violations)
 {
     const float zero[3] = { 0.0f, 0.0f, 0.0f };
     uint8_t decoded[ENC_FRAMES_MAX * FRAME_BYTES];
@@ -127,29 +159,45 @@ static void nudge(attempt *a, double (*targets)[3], double (*work)[3], const dou
                           FRAME_BYTES);
     for (uint32_t f = 0; f < a->count; f++) {
         float u[3];
+        double push[3];
         if (violations[f] <= NEARLY) continue;
         memcpy(u, decoded + f * FRAME_BYTES, sizeof u);
-        for (int c = 0; c < 3; c++) work[f][c] += PUSH * (targets[f][c] - (double)u[c]);
+        for (int c = 0; c < 3; c++) push[c] = PUSH * (targets[f][c] - (double)u[c]);
+        into_axes(a->track, push);
+        add_frame(a->e, a->count, f, push, spectrum);
     }
 }
 
 /* Returns whether the step holds; *first is the violation before any nudge. */
 static int try_nudged(attempt *a, double (*targets)[3], int id, enc_check check, void *user, double *first)
 {
-    double work[ENC_FRAMES_MAX][3], spectrum[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
+    double spectrum[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
     *first = INFINITY;
+    memcpy(spectrum, a->whole, a->count * sizeof *spectrum);
     for (int i = 0; i <= a->e->tuning.nudges; i++) {
         double v;
-        if (i) forward(a->e, a->track, a->count, work, spectrum);
-        if (!try_spectrum(a, i ? spectrum : a->whole, id)) return 0;
+        if (!try_spectrum(a, spectrum, id)) return 0;
         v = check(a->e, user, a->frames, violations);
         if (i == 0) *first = v;
         if (v <= 1.0) return 1;
         if (!(v <= HOPELESS) || i == a->e->tuning.nudges) return 0;
-        if (i == 0) memcpy(work, targets, a->count * sizeof *work);
-        nudge(a, targets, work, violations);
+        nudge(a, targets, spectrum, violations);
     }
     return 0;
+}
+
+/* The same with a search for coefficients. */
+static int try_searched(attempt *a, int id, enc_check check, void *user, double *first)
+{
+    double violations[ENC_FRAMES_MAX];
+    *first = INFINITY;
+    if (!try_spectrum(a, a->whole, id)) return 0;
+    *first = check(a->e, user, a->frames, violations);
+    if (!(*first <= HOPELESS_SEARCH)) return 0;
+    if (*first <= 1.0 && !a->e->tuning.thins) return 1;
+    if (!enc_search(a->e, a->model, a->count, a->whole, a->piece, (double)noh_clip_step((uint32_t)id))) return 0;
+    decode(a, id);
+    return check(a->e, user, a->frames, violations) <= 1.0;
 }
 
 static int clamp_id(int id)
@@ -174,7 +222,7 @@ static int search(attempt *a, double (*targets)[3], enc_check check, void *user,
     *best = clamp_id(guess);
     while (id < (int)NOH_CLIP_STEP_IDS) {
         double v;
-        if (try_nudged(a, targets, id, check, user, &v)) {
+        if ((a->model && try_searched(a, id, check, user, &v)) || try_nudged(a, targets, id, check, user, &v)) {
             if (id != start || start == 0 || a->piece->last == 0u)
                 return 1; /* no larger step holds, or none is needed */
             start = id = clamp_id(start - IDS_RAISE);
@@ -190,7 +238,7 @@ static int search(attempt *a, double (*targets)[3], enc_check check, void *user,
 }
 
 int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
-            double (*targets)[3], enc_check check, void *user)
+            double (*targets)[3], enc_check check, void *user, const enc_model *around)
 {
     double violations[ENC_FRAMES_MAX];
     attempt a;
@@ -200,6 +248,7 @@ int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, cons
     a.piece = piece;
     a.count = count;
     a.reference = reference;
+    a.model = around;
     forward(e, track, count, targets, a.whole);
     if (!search(&a, targets, check, user, &best) && !try_spectrum(&a, a.whole, best)) return 1;
     check(e, user, a.frames, violations);

@@ -118,6 +118,24 @@ static int prepare_shells(encoder *e)
     return 0;
 }
 
+static int is_one(const double scale[3])
+{
+    return scale[0] == 1.0 && scale[1] == 1.0 && scale[2] == 1.0;
+}
+
+/* Whether a joint is scaled by nothing above it and in no frame; the decoder then has its scale as it is. */
+static int is_turned(const encoder *e, uint32_t j)
+{
+    const uint32_t parent = e->joints[j].parent;
+    const float *scale = e->bind[j].scale;
+    if (parent != ENC_NONE && !e->joints[parent].turned) return 0;
+    if (scale[0] != 1.0f || scale[1] != 1.0f || scale[2] != 1.0f) return 0;
+    for (uint32_t f = 0; f < e->frame_count; f++) {
+        if (!is_one(enc_local(e, f, j)->s)) return 0;
+    }
+    return 1;
+}
+
 static int prepare_joints(encoder *e)
 {
     const size_t samples = (size_t)e->frame_count * e->joint_count;
@@ -144,6 +162,7 @@ static int prepare_joints(encoder *e)
             space_compose(enc_parent(pose, e->joints[j].parent), enc_local(e, f, j), &pose[j]);
         }
     }
+    for (uint32_t j = 0; j < e->joint_count; j++) e->joints[j].turned = is_turned(e, j);
     return 0;
 }
 

@@ -77,15 +77,20 @@ typedef struct judged {
 
 /* ---- rotations ---- */
 
+/* The part of the bound that a joint may spend on what it carries: less at the root of long chains. */
+static double rho_of(const encoder *e, uint32_t joint)
+{
+    const double depth = e->joints[joint].depth;
+    return (e->tuning.rho_root + (e->tuning.rho_tip - e->tuning.rho_root) * (depth < 1.0 ? depth : 1.0)) *
+           e->loop->rho_scale;
+}
+
 /* The distance of a joint's shell, and of what it carries, from the raw clip, as a share of what is allowed. */
 static double rotation_violation(const encoder *e, uint32_t joint, uint32_t frame, const space_global *g)
 {
     const enc_joint *t = &e->joints[joint];
     const space_global *raw = enc_global(e, frame, joint);
-    /* the part of the bound that a joint may spend on what it carries: less at the root of long chains */
-    const double rho = (e->tuning.rho_root +
-                        (e->tuning.rho_tip - e->tuning.rho_root) * (t->depth < 1.0 ? t->depth : 1.0)) *
-                       e->loop->rho_scale;
+    const double rho = rho_of(e, joint);
     double v = enc_error(e, joint, raw, g) / t->bound;
     for (uint32_t i = 0; i < t->point_count; i++) {
         const enc_point *point = &t->points[i];
@@ -248,6 +253,79 @@ static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
     }
 }
 
+/* ---- the model that a search for coefficients goes by ---- */
+
+static void set_probe(enc_probe *p, const double base[3], const double arm[3], double shell, double allowed)
+{
+    memcpy(p->base, base, sizeof p->base);
+    memcpy(p->arm, arm, sizeof p->arm);
+    p->shell = shell;
+    p->weight = 1.0 / (allowed * allowed);
+}
+
+/* A joint's shell and what it carries, as they would be with the raw rotation. */
+static uint32_t find_probes(const encoder *e, uint32_t joint, uint32_t frame, const double position[3], enc_probe *out)
+{
+    const enc_joint *t = &e->joints[joint];
+    const space_global *raw = enc_global(e, frame, joint);
+    const double none[3] = { 0.0, 0.0, 0.0 }, rho = rho_of(e, joint);
+    double x[3];
+    uint32_t count = 0;
+    for (int i = 0; i < 3; i++) x[i] = position[i] - raw->p[i];
+    for (int k = 0; k < 3 && e->options.axes; k++) {
+        const double arm[3] = { e->shell * raw->m[k], e->shell * raw->m[3 + k], e->shell * raw->m[6 + k] };
+        set_probe(&out[count++], x, arm, 0.0, t->bound);
+    }
+    if (!e->options.axes) set_probe(&out[count++], x, none, e->shell, t->bound);
+    for (uint32_t i = 0; i < t->point_count && count < ENC_PROBES; i++) {
+        const enc_point *point = &t->points[i];
+        const double *at = enc_global(e, frame, point->joint)->p, bound = e->joints[point->joint].bound;
+        double arm[3], base[3];
+        space_apply(raw->m, point->offset, arm);
+        for (int k = 0; k < 3; k++) base[k] = position[k] + arm[k] - at[k];
+        set_probe(&out[count++], base, arm, point->still ? e->shell : 0.0, point->still ? bound : bound * rho);
+    }
+    return count;
+}
+
+/* How a small change of the components u turns a joint in object space: its rotation times
+ * ((1 - s.s) I - 2 [s]x + 2 s s^T) / (1 + s.s)^2, s = u / 4. */
+static void turns_by(const double m[9], const double u[3], const enc_track *track, double out[9])
+{
+    const double x = u[0] / 4.0, y = u[1] / 4.0, z = u[2] / 4.0, n = x * x + y * y + z * z, k = 1.0 / (1.0 + n);
+    const double d = 1.0 - n;
+    double t[9] = { d + 2.0 * x * x,   2.0 * (x * y + z), 2.0 * (x * z - y), 2.0 * (x * y - z), d + 2.0 * y * y,
+                    2.0 * (y * z + x), 2.0 * (x * z + y), 2.0 * (y * z - x), d + 2.0 * z * z };
+    double mix[9], mixed[9];
+    for (int i = 0; i < 9; i++) {
+        t[i] *= k * k;
+        mix[i] = track->track.flags & NOH_CLIP_TRACK_MIX ? (double)track->track.mix[i] : i % 4 == 0 ? 1.0 : 0.0;
+    }
+    space_product(t, mix, mixed);
+    space_product(m, mixed, out);
+}
+
+/* Returns NULL where there is no model: a joint that something scales, or that hardly has to hold anything. */
+static const enc_model *model_of(encoder *e, const judged *j, double (*q)[4], double (*u)[3])
+{
+    enc_model *m = &e->loop->model;
+    if (!e->tuning.searches || !e->joints[j->joint].turned) return NULL;
+    for (uint32_t f = 0; f < j->segment->count; f++) {
+        const uint32_t frame = j->segment->first + f;
+        const space_global *raw = enc_global(e, frame, j->joint);
+        space_global g = *placed(e, j->joint, f);
+        double inverse[4], off[4];
+        space_turn(lossy_parent(e, j->joint, f), q[f], lossy(e, j->joint, f)->s, &g);
+        space_conj(raw->q, inverse);
+        space_mul(g.q, inverse, off);
+        for (int i = 0; i < 3; i++) m->turns[f][i] = off[3] < 0.0 ? -2.0 * off[i] : 2.0 * off[i];
+        turns_by(g.m, u[f], j->track, m->turns_by[f]);
+        m->weights[f] = 1.0 / (j->limits[f] * j->limits[f]);
+        m->probe_count = find_probes(e, j->joint, frame, g.p, m->probes + (size_t)f * ENC_PROBES);
+    }
+    return m;
+}
+
 static int raw_rotation(encoder *e, judged *j, enc_piece *piece, double (*q)[4])
 {
     uint8_t frames[ENC_FRAMES_MAX * 16u];
@@ -282,7 +360,8 @@ static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_tr
     }
     rotation_limits(e, &j, q);
     piece->raw = 0;
-    if (spins || is_raw(e, joint) || enc_fit(e, track, piece, s->count, single, u, check_rotation, &j))
+    if (spins || is_raw(e, joint) ||
+        enc_fit(e, track, piece, s->count, single, u, check_rotation, &j, model_of(e, &j, q, u)))
         return raw_rotation(e, &j, piece, q);
     return 0;
 }
@@ -340,7 +419,7 @@ static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece,
         for (int c = 0; c < 3; c++) relative[f][c] = targets[f][c] - (double)track->track.reference[c];
     }
     if (!(track->track.kind == NOH_CLIP_FLOATS ? e->loop->all_raw : is_raw(e, j->joint)) &&
-        !enc_fit(e, track, piece, count, track->track.reference, relative, check, j)) {
+        !enc_fit(e, track, piece, count, track->track.reference, relative, check, j, NULL)) {
         const noh_clip_basis *basis = &e->bases[count];
         float components[ENC_FRAMES_MAX][4];
         uint8_t frames[ENC_FRAMES_MAX * 16u];

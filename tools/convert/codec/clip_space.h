@@ -201,6 +201,22 @@ static inline double space_error_sphere(const space_global *a, const space_globa
     return sqrt(square) * (1.0 + 1e-7);
 }
 
+/* The same where both are rotations and the shell is the same along all axes: D's stretch across the turn's axis is
+ * then half of the sum of its squares. */
+static inline double space_error_turned(const space_global *a, const space_global *b, double shell)
+{
+    double x[3], d[9], g[3], squares = 0.0;
+    for (int i = 0; i < 3; i++) x[i] = a->p[i] - b->p[i];
+    for (int i = 0; i < 9; i++) {
+        d[i] = a->m[i] - b->m[i];
+        squares += d[i] * d[i];
+    }
+    for (int k = 0; k < 3; k++) g[k] = d[k] * x[0] + d[3 + k] * x[1] + d[6 + k] * x[2];
+    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + 2.0 * shell * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) +
+                0.5 * shell * shell * squares) *
+           (1.0 + 1e-7);
+}
+
 /* Between two frames: lerp, rotations normalised; signs as they are. */
 static inline void space_between(const space_local *a, const space_local *b, double f, space_local *o)
 {

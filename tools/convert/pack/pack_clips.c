@@ -112,10 +112,27 @@ static int check_markers(const raw_clip *clip, model_error *error)
 
 /* ---- encoding ---- */
 
+typedef struct progress {
+    FILE *out;
+    const char *name;
+    uint32_t percent;
+} progress;
+
+static void show_progress(void *user, uint32_t done, uint32_t of)
+{
+    progress *p = user;
+    const uint32_t percent = (uint32_t)((uint64_t)done * 100u / (of ? of : 1u));
+    if (percent == p->percent) return;
+    p->percent = percent;
+    fprintf(p->out, "\rencoding clip %s %u%%\033[K", p->name, percent);
+    fflush(p->out);
+}
+
 static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_settings *s, encoded_clip *out,
                           model_error *error)
 {
     clip_options options = s->clip;
+    progress shown = { s->progress, clip->name, 101 };
     const double own = named_error(&s->clip_errors, clip->name);
     int failed = 0;
     double *joints = named_joint_errors(&s->joint_errors, &set->skeleton, &failed);
@@ -125,6 +142,10 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_
     }
     options.error_cm = own > 0.0 ? own : options.error_cm;
     options.joint_error_cm = joints;
+    if (s->progress) {
+        options.progress = show_progress;
+        options.user = &shown;
+    }
     failed = clip_encode(&set->skeleton, clip, &options, &out->bytes, &out->report, error);
     free(joints);
     return failed;
