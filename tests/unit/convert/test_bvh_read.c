@@ -392,6 +392,23 @@ static void check_size_warning(const char *offset, double unit_cm, const char *e
     raw_set_free(set);
 }
 
+/* A root on the ground above hips, whose offset is where the person stood: the body's size counts. */
+static void check_led_size(const char *hips, const char *head, const char *expected)
+{
+    char text[512];
+    (void)snprintf(text, sizeof text,
+                   "HIERARCHY\nROOT ground\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nJOINT hips\n{\nOFFSET %s\n"
+                   "CHANNELS 0\nJOINT head\n{\nOFFSET %s\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n"
+                   "JOINT foot\n{\nOFFSET 0 -90 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n}\n}\nMOTION\n"
+                   "Frames: 1\nFrame Time: 0.1\n1\n",
+                   hips, head);
+    raw_set *set = load(text);
+    if (!expected) assert_null(set->warning);
+    if (expected && (!set->warning || !strstr(set->warning, expected)))
+        fail_msg("expected '%s', got '%s'", expected, set->warning ? set->warning : "no warning");
+    raw_set_free(set);
+}
+
 /* The format has no unit: a size that no person has is told, with the unit that would give one. */
 static void sizes_of_people(void **state)
 {
@@ -404,6 +421,8 @@ static void sizes_of_people(void **state)
     check_size_warning("0 0 28", 0.0, "--unit-cm 6.07");
     check_size_warning("0 170 0", 0.0, NULL);
     check_size_warning("0 0 0", 0.0, NULL);
+    check_led_size("1 94 -452", "0 80 0", NULL);
+    check_led_size("1 94 -452", "0 710 0", "the skeleton is 800 cm large, its unit taken as 1 cm");
 }
 
 static void bad_units_are_refused(void **state)

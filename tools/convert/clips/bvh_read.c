@@ -260,16 +260,33 @@ static int build_set(bvh_file *f, const char *path, double unit_cm)
     return skeleton->name && f->set->clips[0].name ? 0 : bvh_out_of_memory(f);
 }
 
-/* The largest side of a box round the joints as they rest, in the file's unit. */
+/* Whether a joint only leads to the body: it and all above it have one child. Some recorders put a root on the ground
+ * above the hips, and the hips' offset is then where the person stood. */
+static int leads(const bvh_file *f, uint32_t joint)
+{
+    for (uint32_t j = joint; j != MODEL_NONE; j = f->joints[j].parent) {
+        uint32_t children = 0;
+        for (uint32_t i = j + 1u; i < f->joint_count; ++i) children += f->joints[i].parent == j;
+        if (children != 1u) return 0;
+    }
+    return 1;
+}
+
+/* The largest side of a box round the joints as they rest, in the file's unit: of the body, where some joint has
+ * several children. */
 static double rest_size(const bvh_file *f)
 {
     double low[3] = { 0.0, 0.0, 0.0 }, high[3] = { 0.0, 0.0, 0.0 }, size = 0.0;
     double *places = model_zeros(f->joint_count, 3 * sizeof *places);
+    int branches = 0;
     if (!places) return 0.0;
+    for (uint32_t j = 2; j < f->joint_count; ++j)
+        branches |= f->joints[j].parent != MODEL_NONE && f->joints[j].parent + 1u < j;
     for (uint32_t j = 0; j < f->joint_count; ++j) {
         const bvh_joint *joint = &f->joints[j];
+        const int first = joint->parent == MODEL_NONE || (branches && leads(f, joint->parent));
         for (uint32_t k = 0; k < 3; ++k) {
-            const double from = joint->parent == MODEL_NONE ? 0.0 : places[joint->parent * 3 + k] + joint->offset[k];
+            const double from = first ? 0.0 : places[joint->parent * 3 + k] + joint->offset[k];
             const double tip = from + joint->end[k];
             places[j * 3 + k] = from;
             low[k] = fmin(low[k], fmin(from, tip));
