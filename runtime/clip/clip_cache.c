@@ -408,9 +408,21 @@ static uint32_t next_segment(const noh_clip *clip, const noh_clip_place *p, uint
     return clip->info.flags & NOH_CLIP_FLAG_LOOP ? 0u : NOH_CLIP_NOT_CACHED;
 }
 
-/* Nobody wants what comes next: decode as much of it now as leaves the same for each sample until it is needed, where
+/* An entry for what nobody has asked for yet: not one that was touched in this frame or the one before, because what
+ * plays beside this clip comes back to it. Where there is no room for two segments of all that plays, none: each clip
+ * that goes on to its next segment would evict one that plays. */
+static uint32_t find_spare(const noh_clip_cache *cache, uint32_t clip, uint32_t keep)
+{
+    uint32_t s;
+    if (cache->samples_before > cache->cached_count / 2u) return NOH_CLIP_NOT_CACHED;
+    s = find_room(cache, clip, keep, 0);
+    if (s == NOH_CLIP_NOT_CACHED || !cache->cached[s].used) return s;
+    return cache->stamp - cache->cached[s].stamp > 1u ? s : NOH_CLIP_NOT_CACHED;
+}
+
+/* Decode a share of the segment that comes next, if nobody wants it: the same for each sample until it is needed, where
  * it would be decoded late, all at once. */
-static void go_on(noh_clip_cache *cache, uint32_t clip, const noh_clip_place *p, uint32_t here)
+static void decode_ahead(noh_clip_cache *cache, uint32_t clip, const noh_clip_place *p, uint32_t here)
 {
     noh_cached_clip *e = &cache->clips[clip];
     const uint32_t before = e->frame;
@@ -421,7 +433,7 @@ static void go_on(noh_clip_cache *cache, uint32_t clip, const noh_clip_place *p,
     if (segment == NOH_CLIP_NOT_CACHED || segment == p->segment) return;
     s = cache->cached_of[e->first + segment];
     if (s == NOH_CLIP_NOT_CACHED) {
-        s = find_room(cache, clip, here, 0);
+        s = find_spare(cache, clip, here);
         if (s == NOH_CLIP_NOT_CACHED) return;
         take(cache, s, clip, segment);
     }
@@ -470,6 +482,8 @@ void noh_clip_cache_begin_frame(noh_clip_cache *cache)
 {
     NOH_VALIDATE(is_sound(cache));
     cache->stamp++;
+    cache->samples_before = (uint32_t)cache->stats.samples - cache->samples_begun;
+    cache->samples_begun = (uint32_t)cache->stats.samples;
 }
 
 /* Give a segment an entry, note up to which track it is wanted, and put it on the list if there is something to decode.
@@ -556,7 +570,7 @@ void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32
     const uint8_t *next = p.crosses ? cache->cached[ready(cache, clip, p.segment + 1u, p.tracks, 1u, s)].frames : NULL;
     cache->stats.samples++;
     noh_clip_blend_place(&p, cache->cached[s].frames, next, out, floats);
-    go_on(cache, clip, &p, s);
+    decode_ahead(cache, clip, &p, s);
 }
 
 noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache)

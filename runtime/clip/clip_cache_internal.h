@@ -45,6 +45,7 @@ struct noh_clip_cache {
     uint32_t clip_count, cached_count, size_count;
     uint32_t segment_bytes; /* of the largest segment of any clip */
     uint32_t stamp;
+    uint32_t samples_begun, samples_before; /* stats.samples when this frame began; samples of the frame before */
     uint16_t first_want, last_want;
     noh_clip_cache_stats stats;
     /* by transform and by frames of a segment; only those that the clips have */

@@ -353,6 +353,39 @@ static void play_without_wants_is_even(void **state)
     }
 }
 
+/* Every clip in turn, in a cache with room for `count` segments: what is decoded for 300 frames. */
+static noh_clip_cache_stats play_side_by_side(uint32_t count)
+{
+    noh_clip_bank_desc desc = desc_of();
+    noh_transform pose[JOINTS];
+    noh_clip_cache_stats stats;
+    noh_clip_bank *set;
+    desc.cached_segment_count = count;
+    set = test_clip_bank(&desc);
+    for (int64_t frame = 0; frame < 300; frame++) {
+        noh_clip_cache_begin_frame(set->cache);
+        for (uint32_t clip = 0; clip < CLIPS; clip++)
+            noh_clip_sample(set->cache, clip, frame * STEP, JOINTS, pose, NULL);
+    }
+    stats = noh_clip_cache_stats_of(set->cache);
+    free(set);
+    return stats;
+}
+
+/* Decoding ahead takes no entry that plays beside it: where only what is played has room, no more is decoded than with
+ * room for all. */
+static void decoding_ahead_evicts_nothing_that_plays(void **state)
+{
+    const noh_clip_cache_stats all = play_side_by_side(32768);
+    (void)state;
+    for (uint32_t count = CLIPS + 2u; count <= 2u * CLIPS; count += 3u) {
+        const noh_clip_cache_stats few = play_side_by_side(count);
+        print_message("room for %u: %llu track-frames decoded, for all %llu\n", (unsigned)count,
+                      (unsigned long long)few.decoded, (unsigned long long)all.decoded);
+        assert_true(few.decoded * 4u <= all.decoded * 5u);
+    }
+}
+
 /* What work spends is counted as decoded, and not as late. */
 static void work_is_counted(void **state)
 {
@@ -458,6 +491,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(wants_are_met_in_order),
     cmocka_unit_test(a_second_segment_spares_the_first),
     cmocka_unit_test(play_without_wants_is_even),
+    cmocka_unit_test(decoding_ahead_evicts_nothing_that_plays),
     cmocka_unit_test(work_is_counted),
     cmocka_unit_test(a_cache_says_when_it_holds_all),
     cmocka_unit_test(frames_past_the_end_are_clamped),

@@ -95,8 +95,7 @@ static void move(search *s, enc_piece *piece, uint32_t k, uint32_t c, int by)
 /* The cost of a set of errors: large powers, so that the largest count. */
 static double cost_of(double square)
 {
-    const double q = square * square;
-    return q;
+    return square * square;
 }
 
 static double cost_after(const search *s, uint32_t k, uint32_t c, int by, double most)
@@ -134,7 +133,7 @@ static uint32_t find_steps(const search *s, const enc_piece *piece, uint32_t f, 
             /* what makes a coefficient larger costs bits, and most where it was zero */
             const double gain = fabs(change) * (v == 0 ? 0.6 : (v < 0) == (by < 0) ? 0.9 : 1.1);
             uint32_t at = count < CANDIDATES ? count++ : CANDIDATES - 1u;
-            if (at == CANDIDATES - 1u && count == CANDIDATES && out[at].gain >= gain && k + c > 0u) continue;
+            if (out[at].gain >= gain) continue;
             for (; at > 0u && out[at - 1u].gain < gain; at--) out[at] = out[at - 1u];
             out[at].gain = gain;
             out[at].k = k;
@@ -157,7 +156,7 @@ static void trim(enc_piece *piece, uint32_t count)
 static int settle(search *s, enc_piece *piece)
 {
     for (int i = 0; i < SETTLE_MAX; i++) {
-        step steps[CANDIDATES] = { { -1.0, 0, 0, 0 } };
+        step steps[CANDIDATES] = { { 0.0, 0, 0, 0 } };
         uint32_t worst = 0, count, best = CANDIDATES;
         double cost = 0.0, least;
         for (uint32_t f = 0; f < s->count; f++) {
