@@ -459,7 +459,7 @@ WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js speech.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js speech.js tabs.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm worker.js)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 

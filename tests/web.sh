@@ -19,7 +19,7 @@ command -v emcc >/dev/null 2>&1 || leave_out 'no emcc here (emscripten)'
 . tests/web/find_browser.sh
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
-find_browser "$build/web-check" playwright-core axe-core
+find_browser "$build/web-check" playwright-core axe-core typescript
 
 ok() { passed=$((passed + 1)); }
 not_ok() {

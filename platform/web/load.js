@@ -29,6 +29,7 @@ async function load(source) {
 
 // What is shown stays until there is something of it to show. If that turns out to be broken, the page's own pack is again.
 let opening = false, visitor = null;
+let again = () => fetch(ownPack); // what is shown, once more
 async function openFiles(list) {
     const files = [...list], { name } = files[0];
     if (opening || !window.noh.whole || character.lost) return;
@@ -40,6 +41,7 @@ async function openFiles(list) {
         const pack = await visitor.pack(files, { tell: showWords });
         fresh = true;
         await load(pack);
+        again = () => pack;
         byId('file-text').textContent = files.map((file) => file.name).join(', ');
     } catch (error) {
         fresh = true;
@@ -47,7 +49,8 @@ async function openFiles(list) {
         byId('progress').hidden = true;
         if (character.program !== before) {
             byId('file-text').textContent = ownText;
-            await load(fetch(ownPack)).catch(() => {});
+            again = () => fetch(ownPack);
+            await load(again()).catch(() => {});
         }
         say(`${name} cannot be shown: ${error.message || error}`);
     }

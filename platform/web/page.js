@@ -2,7 +2,7 @@
 // The query: ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
 // the camera where it is; ?actors=3 shows so many characters; ?size=512 draws a canvas of so many pixels across. load.js,
-// light.js, hair.js, faces.js and speech.js have parts of the query of their own.
+// light.js, hair.js, faces.js, speech.js and tabs.js have parts of the query of their own.
 'use strict';
 
 const query = new URLSearchParams(location.search);
@@ -154,6 +154,7 @@ function showPack() {
     beginHair();
     beginFaces();
     beginSpeech();
+    listTabs();
     character.fit();
 }
 

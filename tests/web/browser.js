@@ -9,7 +9,7 @@ const zlib = require('zlib');
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
 // A file alone is served as itself.
-const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, name || 'index.html') : place;
+const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, !name || name.endsWith('/') ? `${name}index.html` : name) : place;
 
 // What is text or program goes over the wire with gzip, as servers send it.
 function send(request, answer, name, bytes) {

@@ -53,11 +53,38 @@ async function grouped(browser) {
     await close(page, 'groups');
 }
 
+// A tab shows its panel alone, by a click and by keys; characters beside each other.
+async function tabbed(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&size=128&tab=face&alive=on');
+    const shown = () => page.locator('[role=tabpanel]:visible').evaluateAll((panels) => panels.map((panel) => panel.id).join());
+    const names = await page.locator('[role=tab]:visible').allTextContents();
+    check('tabs: one for each panel', names.join() === 'Motion,Face,Speech,Look,Several,Crowd,Pack', names.join());
+    check('tabs: the query begins with one', await shown() === 'panel-face');
+    await page.click('#tab-look');
+    check('tabs: a click shows another', await shown() === 'panel-look' && await page.isVisible('#light') && !await page.isVisible('#search'));
+    await page.keyboard.press('ArrowRight');
+    check('tabs: as do arrows', await shown() === 'panel-several' && await page.evaluate(() => document.activeElement.id) === 'tab-several');
+    await page.keyboard.press('Home');
+    check('tabs: home is the first', await shown() === 'panel-motion');
+    await page.click('#tab-several');
+    const before = await page.evaluate(() => window.noh.memory.all);
+    await keep(page, 'one.png');
+    await page.selectOption('#several', '3');
+    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all > n, before, { timeout: 60000 });
+    await keep(page, 'three.png');
+    check('tabs: three characters, in memory of their own', !same('one.png', 'three.png'));
+    check('tabs: which cannot grow', await page.evaluate(() => { try { Module.memory.grow(1); return false; } catch { return true; } }));
+    await page.selectOption('#several', '1');
+    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all === n, before, { timeout: 60000 });
+    await page.screenshot({ path: path.join(out, 'tabs.png') });
+    await close(page, 'tabs');
+}
+
 // What axe finds wrong: nothing, in both colour schemes, wide and narrow.
 async function access(browser) {
     const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
-    for (const [colorScheme, width, height] of [['dark', 1440, 900], ['light', 1440, 900], ['light', 390, 844], ['dark', 844, 390]]) {
-        const page = await open(browser, { viewport: { width, height }, colorScheme, hasTouch: width < 1000, isMobile: width < 1000 }, 'clip=none&size=256');
+    for (const [colorScheme, width, height, tab] of [['dark', 1440, 900, 'all'], ['light', 1440, 900, 'face'], ['light', 390, 844, 'motion'], ['dark', 844, 390, 'several']]) {
+        const page = await open(browser, { viewport: { width, height }, colorScheme, hasTouch: width < 1000, isMobile: width < 1000 }, `clip=none&size=256&tab=${tab}`);
         await page.evaluate(axe);
         const found = await page.evaluate(() => window.axe.run().then((r) => r.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`)));
         check(`access: axe finds nothing, ${colorScheme}, ${width} x ${height}`, found.length === 0, found.join(' | '));
@@ -100,4 +127,4 @@ async function served() {
     check('served: no page, no port, no such host', refused('/nowhere') && refused(folder, 'x') && refused(folder, '70000') && refused(folder, '0', 'everybody'));
 }
 
-run({ served, keyboard, grouped, access });
+run({ served, keyboard, grouped, tabbed, access });

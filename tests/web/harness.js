@@ -33,13 +33,13 @@ const slide = (page, selector, value) => drawn(page, () => page.locator(selector
 }, value));
 const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
 
-// In plain light and without faces that live, unless the search says otherwise.
+// In plain light, without faces that live and with all panels, unless the search says otherwise.
 async function open(browser, options, search) {
     const page = await browser.newPage(options);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-    await page.goto(`${address}/?${search}&light=plain&alive=off`);
+    await page.goto(`${address}/?${search}&light=plain&alive=off&tab=all`);
     await page.waitForFunction(() => window.noh.whole || window.noh.error, null, { timeout: 60000 });
     return page;
 }

@@ -68,7 +68,7 @@ async function open(browser, options, prepare) {
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     if (prepare) await page.addInitScript(prepare);
-    await page.goto(`${address}/?clip=none&light=plain&size=256`);
+    await page.goto(`${address}/?clip=none&light=plain&size=256&tab=all`);
     await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
     await page.click('#alive'); // a mouth that moves is then the speech's
     return page;
