@@ -98,7 +98,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -541,7 +541,7 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 # of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco and
 # Assimp are left out: what needs them is refused.
 WEB_CONVERT   := $(BUILD)/web-convert
-WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename tools/web_convert/main.c tools/web_convert/libraries.cpp \
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c stb.c libraries.cpp) \
                  tools/noh/build/cmd_build.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
                  $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) \
                  $(filter-out tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%,$(CONVERT_CC)))) \
@@ -577,6 +577,41 @@ $(WEB)/package/convert/worker.js: tools/web_convert/worker.js
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/package/convert/convert.%: $(WEB_CONVERT)/convert.%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+# ---- the page's crowd ----
+
+# `noh crowd --place` as a page of its own (platform/web/festival), of files of the tool and of what `make demo-crowd` shows.
+# Its memory does not grow: a thousand people fit.
+WEB_FESTIVAL   := $(WEB)/festival
+WEB_FESTIVAL_O := $(patsubst %.c,$(WEB_OBJECTS)/%.o,platform/web/festival/festival.c platform/web/context.c platform/file.c \
+                  $(addprefix tools/noh/crowd/,place_scene.c place_life.c place_people.c place_file.c crowd_measure.c crowd_hair.c) \
+                  tools/noh/draw/lighting.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
+                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error nearest image_file input_file text_scan))
+WEB_FESTIVAL_FILES := $(addprefix $(WEB_FESTIVAL)/,index.html festival.js people.nohz festival.nohz festival.place)
+
+web-festival: web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_FESTIVAL)/program.js $(WEB_FESTIVAL_FILES)
+$(WEB_FESTIVAL)/program.js: $(WEB_FESTIVAL_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) -O1 $^ -msse2 --no-entry -s ALLOW_MEMORY_GROWTH=0 -s INITIAL_MEMORY=64MB -s TOTAL_STACK=1MB -s ENVIRONMENT=web \
+	    -s MODULARIZE=1 -s EXPORT_NAME=nohFestival -s EXPORTED_RUNTIME_METHODS=UTF8ToString,FS -s FORCE_FILESYSTEM=1 \
+	    -s INCOMING_MODULE_JS_API=instantiateWasm -s ERROR_ON_UNDEFINED_SYMBOLS=0 -o $@ 2>$(WEB_OBJECTS)/festival.log || { cat $(WEB_OBJECTS)/festival.log; exit 1; }
+	$(Q)! grep 'undefined symbol' $(WEB_OBJECTS)/festival.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|height\|lost\|string\|width\)'
+$(WEB_FESTIVAL)/people.nohz: $(BUILD)/demo/puppet_levels.noh $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh pack $< -o $@ --error-um 10 --quiet
+$(WEB_FESTIVAL)/festival.nohz: $(BUILD)/demo_assets $(BUILD)/noh
+	@mkdir -p $(@D) $(WEB_OBJECTS)/festival
+	$(Q)$(BUILD)/demo_assets --festival $(WEB_OBJECTS)/festival/festival
+	$(Q)$(BUILD)/noh build $(WEB_OBJECTS)/festival/festival.obj -o $(WEB_OBJECTS)/festival/festival.noh --unit-cm 100 --quiet
+	$(Q)$(BUILD)/noh pack $(WEB_OBJECTS)/festival/festival.noh -o $@ --error-um 10 --quiet
+$(WEB_FESTIVAL)/festival.place: tools/demo_assets/festival/festival.place
+	@mkdir -p $(@D)
+	@cp $< $@
+$(WEB_FESTIVAL)/%: platform/web/festival/%
 	@mkdir -p $(@D)
 	@cp $< $@
 

@@ -138,5 +138,12 @@ for pack in "$@"; do
     [ "$name" != mask ] || add tests/web_package.sh "$pack"
 done
 add tests/web_convert.sh
+if [ "${NOH_LONG:-0}" = 1 ] && [ -f "$build/web/mask/index.html" ]; then # the crowd: its pack takes a minute
+    name=festival out=$build/web-check/festival
+    mkdir -p "$out"
+    make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web-festival WEB_PACK="$build/mask.noh" >/dev/null || not_ok 'the crowd does not build'
+    timeout -k 5 500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
+    count $? "$out/log.txt"
+fi
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

@@ -1,7 +1,6 @@
-/* libraries.cpp: what Debian's libtinygltf and libstb are made of, for another processor. Their headers are the source.
- */
+/* libraries.cpp: what Debian's libtinygltf is made of, and the writer of libstb, for another processor; stb.c has the
+ * reader. Their headers are the source. */
 #define TINYGLTF_IMPLEMENTATION
-#define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image.h>
 #include <stb/stb_image_write.h>

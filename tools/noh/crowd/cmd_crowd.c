@@ -185,10 +185,10 @@ static void print_place(const place_drawn *d, const crowd_args *a)
 
 static int draw_place_of(const pack_file *file, const place_file *place, const crowd_args *a)
 {
-    const place_draw_options options = { (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels,
-                                         a->time_s,           a->pictures,       a->apart_s,
-                                         a->camera,           a->scenery,        a->light,
-                                         a->size[0],          a->size[1],        a->push };
+    const place_draw_options options = {
+        (uint32_t)a->agents, (uint32_t)a->seed, (float)a->pixels, a->time_s,  a->pictures, a->apart_s, a->camera,
+        a->scenery,          a->light,          a->size[0],       a->size[1], a->push,     0
+    };
     place_drawn d;
     gpu g;
     uint8_t *rgba = malloc((size_t)a->size[0] * a->pictures * a->size[1] * 4);

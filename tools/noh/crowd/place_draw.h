@@ -2,34 +2,7 @@
 #ifndef NOH_NOH_CROWD_PLACE_DRAW_H
 #define NOH_NOH_CROWD_PLACE_DRAW_H
 
-#include "draw/camera.h"
-#include "draw/lighting.h"
-#include "file/pack_file.h"
-#include "gpu/gpu.h"
-#include "place_life.h"
-#include "place_people.h"
-#include "stage_gl/backdrop.h"
-#include "stage_gl/stage_terrain.h"
-#include "stage_gl/stage_gl.h"
-
-/* A push: who is within `radius` metres of x, z then falls, away from there. */
-typedef struct place_hit {
-    int is_given;
-    float time_s, at[2], radius, impulse; /* newton seconds */
-} place_hit;
-
-typedef struct place_draw_options {
-    uint32_t agents, seed;
-    float pixels;        /* the largest error of LOD levels */
-    double time_s;       /* when the first picture is taken */
-    uint32_t count;      /* of pictures, 1 or more, */
-    double apart_s;      /* so many seconds apart */
-    const char *camera;  /* "AZ,EL,DIST[,X,Z]": about the place's middle, or about X, Z; NULL: over the whole place */
-    const char *scenery; /* a pack drawn where it is; NULL: none */
-    light_options light;
-    uint32_t width, height;
-    place_hit hit;
-} place_draw_options;
+#include "place_scene.h"
 
 /* What was drawn. */
 typedef struct place_drawn {

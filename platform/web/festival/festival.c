@@ -1,0 +1,131 @@
+/* festival.c: the page's crowd: a place that lives (crowd/place_scene.h), drawn on a canvas. festival.js calls the
+ * festival_* functions; those that return an int return 0, or else festival_error says what is wrong. What is shown is
+ * the tool's `noh crowd --place`, in memory that was taken when the page began and does not grow. */
+#include <emscripten.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "context.h"
+#include "crowd/place_scene.h"
+#include "stage/view.h"
+
+static struct {
+    gpu g;
+    pack_file people;
+    place_file *place;
+    place_draw_options options;
+    place_scene scene;
+    noh_stage_view view;
+} festival;
+
+static int open_context(gpu *g)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    g->platform = &noh_platform_web;
+    if (noh_platform_web.create(NULL, &g->context, NULL, 0)) {
+        return tool_fail("canvas", "this browser gives no WebGL 2 context");
+    }
+    if (noh_gl_api_load(&g->gl, noh_platform_web.get_proc, g->context, &error) ||
+        noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
+        return tool_fail_error("canvas", &error);
+    }
+    g->gl.decode = noh_etc2_decode;
+    return 0;
+}
+
+/* The files people.nohz, festival.nohz and festival.place are there. shadow: 1: everybody has one */
+EMSCRIPTEN_KEEPALIVE int festival_open(uint32_t agents, uint32_t width, uint32_t height, int shadow)
+{
+    place_draw_options *o = &festival.options;
+    int status = open_context(&festival.g);
+    memset(o, 0, sizeof *o);
+    o->agents = agents;
+    o->seed = 1;
+    o->pixels = 1.0f;
+    o->scenery = "festival.nohz";
+    o->light = (light_options){ "sky", NULL, shadow ? "on" : "off", NULL, "light", 0.0 };
+    o->width = width;
+    o->height = height;
+    o->encode_srgb = 1; /* a canvas does not */
+    if (!status) status = pack_file_open(&festival.people, "people.nohz");
+    if (!status) status = place_read("festival.place", &festival.place);
+    if (!status) status = place_scene_open(&festival.scene, &festival.g, &festival.people, festival.place, o);
+    return status;
+}
+
+EMSCRIPTEN_KEEPALIVE const char *festival_error(void)
+{
+    return tool_last_failure();
+}
+
+/* So many thirtieths of a second pass. */
+EMSCRIPTEN_KEEPALIVE void festival_step(uint32_t steps)
+{
+    for (uint32_t i = 0; i < steps; i++) place_scene_step(&festival.scene);
+}
+
+/* Radians, metres; about x, z. */
+EMSCRIPTEN_KEEPALIVE void festival_look(float azimuth, float elevation, float distance, float x, float z,
+                                        uint32_t width, uint32_t height)
+{
+    const float target[3] = { x, 1.0f, z };
+    noh_view_orbit(&festival.view, target, azimuth, elevation, distance, width, height);
+    memcpy(festival.view.light, festival.scene.light.told.key_direction, sizeof festival.view.light);
+}
+
+static void begin(uint32_t width, uint32_t height)
+{
+    static const float black[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, far = 1.0f;
+    const noh_gl_api *gl = &festival.g.gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+    gl->DepthMask(GL_TRUE);
+    gl->ClearBufferfv(GL_COLOR, 0, black);
+    gl->ClearBufferfv(GL_DEPTH, 0, &far);
+}
+
+/* A frame of what festival_look looks at. In a lost context nothing is drawn. */
+EMSCRIPTEN_KEEPALIVE int festival_draw(void)
+{
+    uint32_t width, height;
+    int status;
+    if (noh_platform_web.present(festival.g.context)) return 0;
+    noh_platform_web.size(festival.g.context, &width, &height);
+    status = place_scene_show(&festival.scene, &festival.view);
+    if (!status) status = place_scene_shadow(&festival.scene, &festival.view);
+    if (!status) begin(width, height);
+    return status ? status : place_scene_draw(&festival.scene, &festival.view);
+}
+
+/* Of the last frame: how many were seen; the figures at a level. */
+EMSCRIPTEN_KEEPALIVE uint32_t festival_seen(void)
+{
+    return noh_stage_stats_of(festival.scene.stage)->seen;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t festival_gpu_bytes(void)
+{
+    return (uint32_t)noh_gl_ledger_bytes(&festival.scene.ledger);
+}
+EMSCRIPTEN_KEEPALIVE uint32_t festival_stage_bytes(void)
+{
+    return (uint32_t)(festival.scene.plan.cpu_bytes + festival.scene.walkers_bytes +
+                      place_life_bytes(festival.scene.life));
+}
+
+/* Make every GL object again, after the browser restored a lost context. */
+EMSCRIPTEN_KEEPALIVE int festival_restore(void)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    gpu *g = &festival.g;
+    noh_web_enable_extensions(g->context);
+    if (noh_gl_api_load(&g->gl, noh_platform_web.get_proc, g->context, &error) ||
+        noh_stage_restore(festival.scene.stage, &error) ||
+        noh_backdrop_restore(&festival.scene.backdrop, NULL, 0, &error)) {
+        return tool_fail_error("canvas", &error);
+    }
+    return 0;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t festival_error_of_gl(void)
+{
+    return noh_gl_error_take(&festival.g.gl);
+}

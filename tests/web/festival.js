@@ -1,0 +1,82 @@
+// festival.js FOLDER CHROMIUM OUT: the crowd's page: it is drawn, goes on, turns by keys, survives a lost context; people
+// are where `noh crowd` has them, since the steps are the same. Prints its checks as TAP, and, with NOH_WEB_RATES=1, as
+// "#" lines, what a frame takes at 640 x 360 for several counts.
+'use strict';
+const path = require('path');
+const { out, check, keep, same, run, address } = require('./harness.js');
+
+const minute = { timeout: 120000 };
+
+async function open(browser, search) {
+    const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
+    page.problems = [];
+    page.on('pageerror', (error) => page.problems.push(String(error)));
+    page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
+    await page.goto(`${address()}/festival/?${search}`);
+    await page.waitForFunction(() => (window.noh.ready && window.noh.frames > 0) || window.noh.error, null, minute);
+    return page;
+}
+
+async function close(page, name) {
+    check(`${name}: no GL error`, await page.evaluate(() => Module._festival_error_of_gl()) === 0);
+    check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
+    await page.close();
+}
+
+async function crowd(browser) {
+    const page = await open(browser, 'agents=40&size=320x180&still=2');
+    check('crowd: it is there', await page.evaluate(() => window.noh.error) === '' && await page.evaluate(() => Module._festival_seen()) > 20);
+    await keep(page, 'festival_still.png');
+    const again = await open(browser, 'agents=40&size=320x180&still=2');
+    await keep(again, 'festival_again.png');
+    check('crowd: the same picture again', same('festival_still.png', 'festival_again.png'));
+    await close(again, 'crowd, again');
+    const frame = async (act) => {
+        const frames = await page.evaluate(() => window.noh.frames);
+        await act();
+        await page.waitForFunction((n) => window.noh.frames > n && !wanted, frames, minute);
+    };
+    await page.focus('#canvas');
+    await frame(() => page.keyboard.press('ArrowLeft'));
+    await keep(page, 'festival_turned.png');
+    check('crowd: a key turns it', !same('festival_still.png', 'festival_turned.png'));
+    await frame(() => page.keyboard.press('Home'));
+    await keep(page, 'festival_home.png');
+    check('crowd: and home is home', same('festival_still.png', 'festival_home.png'));
+    await page.evaluate(() => { window.taken = canvas.getContext('webgl2').getExtension('WEBGL_lose_context'); window.taken.loseContext(); });
+    await page.waitForFunction(() => window.noh.lost === 1);
+    const restored = page.evaluate(() => window.noh.frames);
+    await page.evaluate(() => window.taken.restoreContext());
+    await page.waitForFunction((n) => window.noh.restored === 1 && window.noh.frames > n && !wanted, await restored, minute);
+    await keep(page, 'festival_restored.png');
+    check('crowd: after a lost context it is the same picture', same('festival_still.png', 'festival_restored.png'));
+    const before = await page.evaluate(() => [window.noh.steps, window.noh.memory.buffer.byteLength]);
+    await page.click('#play');
+    await page.waitForFunction((n) => window.noh.steps > n + 10, before[0], minute);
+    check('crowd: it goes on', true);
+    check('crowd: its memory does not grow', await page.evaluate(() => window.noh.memory.buffer.byteLength) === before[1]);
+    await page.screenshot({ path: path.join(out, 'festival_page.png') });
+    await close(page, 'crowd');
+}
+
+// CPU seconds of all of the browser's processes a frame, by their own clocks: what others do does not count.
+async function rates(browser) {
+    if (process.env.NOH_WEB_RATES !== '1') return;
+    for (const agents of (process.env.NOH_WEB_AGENTS || '100,200,300,400,600,1000').split(',')) {
+        const page = await open(browser, `agents=${agents}&size=640x360`), client = await browser.newBrowserCDPSession();
+        const read = async () => {
+            const { processInfo } = await client.send('SystemInfo.getProcessInfo');
+            return { frames: await page.evaluate(() => window.noh.frames), at: Date.now(), cpu: Object.fromEntries(processInfo.map((p) => [p.id, [p.type, p.cpuTime]])) };
+        };
+        await page.waitForTimeout(4000);
+        const a = await read();
+        await page.waitForFunction((n) => window.noh.frames > n + 40, a.frames, minute);
+        const b = await read(), frames = b.frames - a.frames, per = (type) => Object.entries(b.cpu).filter(([, p]) => p[0] === type)
+            .reduce((sum, [id, p]) => sum + p[1] - (a.cpu[id] ? a.cpu[id][1] : 0), 0) * 1000 / frames;
+        console.log(`# ${agents} people at 640 x 360: page ${per('renderer').toFixed(1)} ms, GPU process ${per('GPU').toFixed(1)} ms of CPU time a frame; ${((b.at - a.at) / frames).toFixed(1)} ms passed; ${await page.textContent('#said')}`);
+        await page.screenshot({ path: path.join(out, `festival_${agents}.png`) });
+        await page.close();
+    }
+}
+
+run({ crowd, rates });
