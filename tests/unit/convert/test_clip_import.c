@@ -657,6 +657,42 @@ static void keys_are_taken_as_they_are(void **state)
     loaded_free(&l);
 }
 
+/* Editors count frames from 1: what begins a frame late begins at 0, its events with it; who waits longer, waits. */
+static void a_first_frame_late_is_cut_off(void **state)
+{
+    (void)state;
+    static const struct {
+        float first_s;
+        uint32_t frames;
+        const char *warning;
+    } starts[] = { { 1.0f / 30.0f, 31, "its first key is at 0.0333 s; the clip begins there" },
+                   { 1.0f / 24.0f, 31, "its first key is at 0.0417 s" },
+                   { 0.0f, 31, NULL },
+                   { 0.5f, 46, NULL } };
+    for (size_t i = 0; i < TEST_COUNT(starts); ++i) {
+        float times[31], moves[93] = { 0 };
+        for (size_t k = 0; k < 31; ++k) {
+            times[k] = starts[i].first_s + (float)k / 30.0f;
+            moves[3 * k] = 0.01f * (float)k;
+        }
+        scene *s = scene_new("{},{}");
+        s->animation_rest = ",\"extras\":{\"events\":[{\"time\":0,\"name\":\"a\"},{\"time\":1,\"name\":\"b\"}]}";
+        add_move(s, 0, "LINEAR", times, 31, moves, 93);
+        add_move(s, 1, "LINEAR", times, 31, moves, 93);
+        loaded l = load(s, 0.0);
+        const raw_clip *clip = only_clip(&l);
+        const double cut = starts[i].warning ? (double)starts[i].first_s : 0.0;
+        assert_int_equal(has_warning(l.m, "the clip begins there"), starts[i].warning != NULL);
+        assert_true(!starts[i].warning || has_warning(l.m, starts[i].warning));
+        assert_int_equal(clip->frame_count, starts[i].frames);
+        assert_true(clip->events[0].time_s == 0.0 && fabs(clip->events[1].time_s - (1.0 - cut)) < 1e-6);
+        for (uint32_t f = 0; f < 31; ++f) /* of both nodes */
+            for (uint32_t j = 0; j < 2 && starts[i].frames == 31; ++j)
+                assert_true(fabsf(clip->translations[(f * 2 + j) * 3] - 0.01f * (float)f) < 1e-5f);
+        loaded_free(&l);
+    }
+}
+
 static void rates_rise_where_playing_strays(void **state)
 {
     (void)state;
@@ -1049,6 +1085,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(missing_targets_are_a_warning),
     cmocka_unit_test(key_rates_are_found),
     cmocka_unit_test(keys_are_taken_as_they_are),
+    cmocka_unit_test(a_first_frame_late_is_cut_off),
     cmocka_unit_test(rates_rise_where_playing_strays),
     cmocka_unit_test(held_steps_and_fast_turns_keep_the_rate),
     cmocka_unit_test(keys_off_any_grid),

@@ -281,6 +281,31 @@ static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &u
     }
 }
 
+/* --- what lies before the first key --- */
+
+static float first_key_s(const model_clip &clip)
+{
+    float first = clip.duration_s;
+    for (uint32_t i = 0; i < clip.channel_count; ++i)
+        if (clip.channels[i].key_count) first = std::fmin(first, clip.channels[i].times[0]);
+    return first;
+}
+
+/* Editors that count frames from 1 put the first key one frame after 0: each loop would stand still for that time. A
+ * longer wait may be meant. */
+static void trim_start(model &m, model_clip &clip)
+{
+    const float first = first_key_s(clip), most = 0.1f;
+    if (!(first > 0.0f && first <= most && first < clip.duration_s)) return;
+    for (uint32_t i = 0; i < clip.channel_count; ++i)
+        for (uint32_t k = 0; k < clip.channels[i].key_count; ++k) clip.channels[i].times[k] -= first;
+    for (uint32_t i = 0; i < clip.event_count; ++i)
+        clip.events[i].time_s = std::fmax(clip.events[i].time_s - static_cast<double>(first), 0.0);
+    clip.duration_s -= first;
+    check_memory(model_warn(&m, "animation '%s': its first key is at %.3g s; the clip begins there",
+                            printable(clip.name).c_str(), static_cast<double>(first)));
+}
+
 /* --- sets --- */
 
 static void make_set(const model &m, const skeleton_plan &plan, model_clips &made)
@@ -324,6 +349,7 @@ static clips_pointer make_sets(const model &m, const std::vector<skeleton_plan> 
 
 static model_clips *make_model_clips(model &m, double sample_rate_hz)
 {
+    for (uint32_t c = 0; c < m.clip_count; ++c) trim_start(m, m.clips[c]);
     std::vector<skeleton_plan> plans = plan_skeletons(m);
     clips_pointer made = make_sets(m, plans);
     std::vector<bool> used(m.clip_count, false);
