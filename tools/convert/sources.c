@@ -1,5 +1,6 @@
 #include "sources.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,8 @@
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
 #include "convert/skin/eye_split.h"
+
+#define BONES_RATIO 2.0 /* bones so much longer or shorter are no other person's, but another unit's */
 
 static int out_of_memory(model_error *error)
 {
@@ -363,12 +366,64 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
     return match == JOINTS_FAILED;
 }
 
+/* ---- warnings ---- */
+
+/* How much longer a clip's bones are than the skeleton's that it is to move, the clip in the unit of `from`: the sum of
+ * all. 1 where there is nothing to compare. */
+static double bones_ratio(const raw_set *from, const raw_clip *clip, const raw_skeleton *to)
+{
+    double own = 0.0, theirs = 0.0;
+    if (clip->joint_count != to->joint_count || clip->frame_count == 0u) return 1.0;
+    for (uint32_t j = 0; j < to->joint_count; j++) {
+        const float *a = clip->translations + 3u * (size_t)j, *b = to->joints[j].translation;
+        if (to->joints[j].parent == MODEL_NONE || to->joints[to->joints[j].parent].parent == MODEL_NONE) continue;
+        own += sqrt((double)a[0] * (double)a[0] + (double)a[1] * (double)a[1] + (double)a[2] * (double)a[2]);
+        theirs += sqrt((double)b[0] * (double)b[0] + (double)b[1] * (double)b[1] + (double)b[2] * (double)b[2]);
+    }
+    return own > 0.0 && theirs > 0.0 ? own * from->skeleton.unit_cm / (theirs * to->unit_cm) : 1.0;
+}
+
+/* Nothing is retargeted: clips of a body of another size make the mesh as large as that. Before clips are moved. */
+static int warn_of_bones(source *base, const char *base_path, const raw_set *from, const char *path)
+{
+    for (uint32_t i = 0; i < base->set_count && from->clip_count; i++) {
+        const raw_skeleton *to = &base->sets[i]->skeleton;
+        const double ratio = to->joint_count && raw_skeleton_hash(to) == raw_skeleton_hash(&from->skeleton)
+                                 ? bones_ratio(from, &from->clips[0], to)
+                                 : 1.0;
+        if (ratio >= 1.0 / BONES_RATIO && ratio <= BONES_RATIO) continue;
+        return model_warn(base->m,
+                          "%s: its bones are %.3g times as long as those of %s, and the clips make the body as large; "
+                          "with --unit-cm %.3g (now %.3g) they are as long",
+                          path, ratio, base_path, from->skeleton.unit_cm / ratio, from->skeleton.unit_cm);
+    }
+    return 0;
+}
+
+/* What reading the other file had to say. A size is told beside the base's. */
+static int keep_warnings(source *base, const char *base_path, const source *other, const char *path)
+{
+    for (uint32_t i = 0; i < other->m->warning_count; i++) {
+        if (model_warn(base->m, "%s: %s", path, other->m->warnings[i])) return 1;
+    }
+    for (uint32_t i = 0; i < other->set_count; i++) {
+        const raw_set *set = other->sets[i];
+        if ((set->warning && model_warn(base->m, "%s: %s", path, set->warning)) ||
+            warn_of_bones(base, base_path, set, path))
+            return 1;
+    }
+    return 0;
+}
+
 int source_join(source *base, const char *base_path, source *other, const char *other_path,
                 const joint_match_options *options, model_error *error)
 {
     uint32_t joined = 0;
     for (uint32_t i = 0; i < other->set_count; i++) {
         if (match_joints(base, other->sets[i], other_path, options, error)) return 1;
+    }
+    if (keep_warnings(base, base_path, other, other_path)) return out_of_memory(error);
+    for (uint32_t i = 0; i < other->set_count; i++) {
         for (uint32_t c = 0; c < other->sets[i]->clip_count; c++) {
             if (join_clip(base, base_path, other->sets[i], &other->sets[i]->clips[c], other_path, &joined, error)) {
                 return 1;

@@ -331,6 +331,30 @@ static void strangers_are_refused_in_part_too(void **state)
     source_free(&other);
 }
 
+/* What a file of clips has to say is not lost beside a model's, nor is a unit that is not the model's. */
+static void warnings_of_joined_files_are_kept(void **state)
+{
+    static const double units[] = { 1.0, 0.6, 1.9, 0.01, 100.0 };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(units); i++) {
+        source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES));
+        model_error error;
+        char advice[64];
+        other.sets[0]->skeleton.unit_cm = units[i];
+        other.sets[0]->warning = model_string("the skeleton is odd");
+        assert_int_equal(model_warn(other.m, "a sentence"), 0);
+        assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
+        assert_true(has_warning(base.m, "run.bvh: the skeleton is odd"));
+        assert_true(has_warning(base.m, "run.bvh: a sentence"));
+        snprintf(advice, sizeof advice, "its bones are %.3g times as long as those of walk.bvh", units[i]);
+        assert_int_equal(has_warning(base.m, "its bones"), units[i] < 0.5 || units[i] > 2.0);
+        assert_int_equal(has_warning(base.m, advice), units[i] < 0.5 || units[i] > 2.0);
+        assert_int_equal(has_warning(base.m, "with --unit-cm 1 "), units[i] < 0.5 || units[i] > 2.0);
+        source_free(&base);
+        source_free(&other);
+    }
+}
+
 /* The clips of all, the same bytes in whatever order. */
 static void the_pack_of_several_files(void **state)
 {
@@ -362,6 +386,7 @@ static void the_pack_of_several_files(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_of_one_skeleton_are_joined),
+    cmocka_unit_test(warnings_of_joined_files_are_kept),
     cmocka_unit_test(a_name_that_is_taken_gets_that_of_the_file),
     cmocka_unit_test(a_name_that_is_taken_twice_is_refused),
     cmocka_unit_test(the_first_difference_is_told),
