@@ -191,9 +191,11 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, const
     for (uint32_t j = 0; j < least; j++) {
         const char *here = joint_name(other, j), *there = joint_name(base, j);
         if (strcmp(here, there) != 0) {
-            return model_fail(error, "",
-                              "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there",
-                              base_path, j, here, there);
+            return model_fail(
+                error, "",
+                "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there; --partial takes "
+                "what both have, --rename FILE gives other names",
+                base_path, j, here, there);
         }
         if (other->joints[j].parent != base->joints[j].parent) {
             return model_fail(
