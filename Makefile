@@ -93,10 +93,10 @@ EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
 # The library as three files, and the tests that are linked with it, too.
 AMALGAM    := $(BUILD)/amalgam
-AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
+AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_morph_finish.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
 
-# The accumulation and skinning kernels built for other instruction sets, for `noh bench` and the tests.
-KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/morph_$(set).o $(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
+# Skinning kernels and lanes built for other instruction sets, for `noh bench` and the tests.
+KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
 .PHONY: FORCE check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
@@ -207,11 +207,6 @@ $(BUILD)/gen/with_assimp: FORCE
 
 # One file of the library, wherever it lies, for an instruction set, its entry renamed.
 kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))
-$(BUILD)/kernel/morph_%.o: $(call kernel_c,morph)
-	@mkdir -p $(@D)
-	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_MORPH_ACCUMULATE=noh_morph_accumulate_$* -MMD -MP -c $< -o $@
-
 $(BUILD)/kernel/clip_sample_%.o: $(call kernel_c,clip_sample)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)

@@ -71,6 +71,7 @@
 #include "anim/controller_pose.h"   /* poses of a controller */
 #include "pose/local_to_model.h"    /* poses to matrices and palettes */
 #include "deform/morph.h"           /* targets on the CPU: the reference and the fallback */
+#include "deform/morph_finish.h"    /* morphed vertices in the formats of vertex buffers */
 #include "deform/skin.h"            /* skins on the CPU, likewise */
 #include "deform/skin_list.h"       /* vertices that more than eight joints move, on the CPU */
 #include "deform/bounds.h"          /* a box round what is deformed */

@@ -1,14 +1,14 @@
 #!/bin/sh
 # check_plain_c.sh: the library needs a C99 compiler and no more.
-#   - no builtin, attribute, pragma or compiler's macro outside base/compiler.h and base/math_internal.h
+#   - no builtin, attribute, pragma or compiler's macro outside three headers of base/
 #   - built without any of them (NOH_PLAIN_C) it passes the tests of bits: hashes, square roots, quaternions,
 #     trigonometry, meshes, bounds, poses, clips
 #   - on i386 without SSE it asks for nothing of libm
 . "$(dirname "$0")/cli/lib.sh"
 
 grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |
-    grep -v '^runtime/base/\(compiler\|math_internal\)\.h:' >"$work/words"
-check 'what depends on the compiler is in base/compiler.h and base/math_internal.h' sh -c '! grep . "$1"' - "$work/words"
+    grep -v '^runtime/base/\(compiler\|math_internal\|processor_internal\)\.h:' >"$work/words"
+check 'what depends on the compiler is in base/compiler.h, math_internal.h and processor_internal.h' sh -c '! grep . "$1"' - "$work/words"
 
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'plain C gives the same bits' 'the build without sanitizers says it'

@@ -16,6 +16,10 @@
 #include <immintrin.h>
 #define NOH_LANES 8
 typedef __m256 lanes;
+static inline void lanes_store(float *to, lanes v)
+{
+    _mm256_storeu_ps(to, v);
+}
 static inline lanes lanes_set(float v)
 {
     return _mm256_set1_ps(v);
@@ -64,6 +68,21 @@ static inline lanes lanes_field(lanes bits, int left, int right)
 {
     __m256i w = _mm256_sll_epi32(_mm256_castps_si256(bits), _mm_cvtsi32_si128(left));
     return _mm256_cvtepi32_ps(_mm256_sra_epi32(w, _mm_cvtsi32_si128(right)));
+}
+static inline lanes lanes_larger(lanes a, lanes b) /* of two zeros any */
+{
+    return _mm256_max_ps(a, b);
+}
+/* the sign of a turned where that of `sign` is set */
+static inline lanes lanes_with_sign(lanes a, lanes sign)
+{
+    return _mm256_xor_ps(a, _mm256_and_ps(sign, _mm256_set1_ps(-0.0f)));
+}
+/* the lowest 16 bits of x, and above them those of y */
+static inline lanes lanes_halves(lanes x, lanes y)
+{
+    const __m256i low = _mm256_and_si256(_mm256_castps_si256(x), _mm256_set1_epi32(0xffff));
+    return _mm256_castsi256_ps(_mm256_or_si256(low, _mm256_slli_epi32(_mm256_castps_si256(y), 16)));
 }
 static inline void lanes_turn(const lanes pairs[4], lanes out[4]) /* two 4 x 4 matrices side by side, transposed */
 {
@@ -182,6 +201,19 @@ static inline lanes lanes_field(lanes bits, int left, int right)
     __m128i w = _mm_sll_epi32(_mm_castps_si128(bits), _mm_cvtsi32_si128(left));
     return _mm_cvtepi32_ps(_mm_sra_epi32(w, _mm_cvtsi32_si128(right)));
 }
+static inline lanes lanes_larger(lanes a, lanes b)
+{
+    return _mm_max_ps(a, b);
+}
+static inline lanes lanes_with_sign(lanes a, lanes sign)
+{
+    return _mm_xor_ps(a, _mm_and_ps(sign, _mm_set1_ps(-0.0f)));
+}
+static inline lanes lanes_halves(lanes x, lanes y)
+{
+    const __m128i low = _mm_and_si128(_mm_castps_si128(x), _mm_set1_epi32(0xffff));
+    return _mm_castsi128_ps(_mm_or_si128(low, _mm_slli_epi32(_mm_castps_si128(y), 16)));
+}
 static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
 {
     NOH_UNROLL
@@ -277,6 +309,19 @@ static inline lanes lanes_field(lanes bits, int left, int right)
 {
     int32x4_t w = vshlq_s32(vreinterpretq_s32_f32(bits), vdupq_n_s32(left));
     return vcvtq_f32_s32(vshlq_s32(w, vdupq_n_s32(-right)));
+}
+static inline lanes lanes_larger(lanes a, lanes b)
+{
+    return vmaxq_f32(a, b);
+}
+static inline lanes lanes_with_sign(lanes a, lanes sign)
+{
+    const uint32x4_t bit = vandq_u32(vreinterpretq_u32_f32(sign), vdupq_n_u32(0x80000000u));
+    return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), bit));
+}
+static inline lanes lanes_halves(lanes x, lanes y)
+{
+    return vreinterpretq_f32_u32(vsliq_n_u32(vreinterpretq_u32_f32(x), vreinterpretq_u32_f32(y), 16));
 }
 static inline void lanes_turn(const lanes in[4], lanes out[4])
 {

@@ -5,26 +5,8 @@
 #include <string.h>
 
 #include "base/math_internal.h"
-#include "deform/morph_kernel_internal.h"
-
-static morph_field make_field(unsigned before, unsigned bits, float weight)
-{
-    morph_field f = { before, 32u - bits, weight };
-    return f;
-}
-
-/* A delta texel is three words, one for each axis; each word holds the position, the normal and the tangent difference
- * of that axis as two's complement integers, from the top bit down. Shifted left to the top and then right
- * arithmetically, a field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round
- * the same products. */
-static void target_fields(const noh_target *t, float weight, morph_field f[3])
-{
-    f[0] = make_field(0, t->position_bits, t->position_scale * weight);
-    f[1] = make_field(t->position_bits, t->normal_bits, t->normal_scale * weight);
-    f[2] = make_field((unsigned)t->position_bits + t->normal_bits, t->tangent_bits, t->tangent_scale * weight);
-}
-
-typedef void (*run_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
+#include "deform/morph_accumulate_internal.h"
+#include "deform/morph_finish_internal.h"
 
 NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
@@ -35,66 +17,16 @@ NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, const morph
     }
 }
 
-/* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
- * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams.
- */
-NOH_ALWAYS_INLINE void accumulate_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
-                                         const noh_morph_layers *layers, run_function run)
+void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    const noh_rect *rect = mesh->rects + t->first_rect;
-    const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
-    for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
-        size_t row = 3u * (((size_t)rect->y << mesh->header->morph_width_log2) + rect->x);
-        size_t count = 3u * (size_t)rect->w;
-        for (unsigned y = 0; y < rect->h; y++) {
-            float *at[3] = { layers->position + row, layers->normal + row,
-                             layers->tangent ? layers->tangent + row : NULL };
-            run(words, count, f, at);
-            words += count;
-            row += (size_t)3u << mesh->header->morph_width_log2;
-        }
-    }
+    noh_accumulate_targets(mesh, weights, layers, NULL, run_simd);
 }
 
-#if NOH_ASSERT_LEVEL >= 2
-static int all_finite(const float *values, uint32_t count)
+static void accumulate_some(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                            const uint8_t *groups)
 {
-    uint32_t finite = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        finite += values[i] - values[i] == 0.0f;
-    }
-    return finite == count;
+    noh_accumulate_targets(mesh, weights, layers, groups, run_simd);
 }
-#endif
-
-NOH_ALWAYS_INLINE void accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
-                                  run_function run)
-{
-    NOH_ASSERT(mesh && weights && layers);
-    NOH_ASSERT(layers->position || !mesh->header->touched_count);
-    NOH_VALIDATE(all_finite(weights, mesh->header->target_count));
-    for (uint32_t i = 0; i < mesh->header->target_count; i++) {
-        morph_field f[3];
-        if (weights[i] != 0.0f) {
-            target_fields(&mesh->targets[i], weights[i], f);
-            accumulate_target(mesh, &mesh->targets[i], f, layers, run);
-        }
-    }
-}
-
-/* The benches and tests build this file again for other instruction sets, under other names. */
-#ifndef NOH_MORPH_ACCUMULATE
-#define NOH_MORPH_ACCUMULATE noh_morph_accumulate
-#define NOH_MORPH_ALL 1
-#endif
-
-void NOH_MORPH_ACCUMULATE(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-void NOH_MORPH_ACCUMULATE(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
-{
-    accumulate(mesh, weights, layers, run_simd);
-}
-
-#ifdef NOH_MORPH_ALL
 
 static size_t layer_texels(const noh_mesh *mesh)
 {
@@ -140,7 +72,73 @@ static void run_scalar(const uint32_t *words, size_t count, const morph_field f[
 
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    accumulate(mesh, weights, layers, run_scalar);
+    noh_accumulate_targets(mesh, weights, layers, NULL, run_scalar);
+}
+
+static void accumulate_some_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                                   const uint8_t *groups)
+{
+    noh_accumulate_targets(mesh, weights, layers, groups, run_scalar);
+}
+
+/* ---- kernels by name ---- */
+
+/* Functions of this file that call those of others: where code is independent of its place, the address of a function
+ * of another file is looked up in a table that the linker must be able to write. */
+
+static void finish(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out)
+{
+    noh_morph_finish(mesh, layers, first, count, out);
+}
+
+static void finish_scalar(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count,
+                          void *out)
+{
+    noh_morph_finish_scalar(mesh, layers, first, count, out);
+}
+
+#ifdef NOH_AVX2_AT_RUN_TIME
+static void accumulate_wide(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
+{
+    noh_morph_accumulate_wide(mesh, weights, layers);
+}
+
+static void accumulate_some_wide(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                                 const uint8_t *groups)
+{
+    noh_morph_accumulate_some_wide(mesh, weights, layers, groups);
+}
+
+static void finish_wide(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out)
+{
+    noh_morph_finish_wide(mesh, layers, first, count, out);
+}
+#endif
+
+static int is_name(const char *a, const char *b)
+{
+    while (*a && *a == *b) a++, b++;
+    return *a == *b;
+}
+
+noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh_error *error)
+{
+    const noh_morph_kernel kernels[] = {
+#ifdef NOH_AVX2_AT_RUN_TIME
+        { "avx2", noh_processor_has_avx2() ? accumulate_wide : NULL, accumulate_some_wide, finish_wide },
+#endif
+        { NOH_MORPH_SIMD, noh_morph_accumulate, accumulate_some, finish },
+        { "scalar", noh_morph_accumulate_scalar, accumulate_some_scalar, finish_scalar },
+    };
+    NOH_ASSERT(kernel);
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
+        if (kernels[i].accumulate && (!name || is_name(name, kernels[i].name))) {
+            *kernel = kernels[i];
+            return NOH_OK;
+        }
+    }
+    return noh_fail(error, NOH_ERR_UNSUPPORTED,
+                    "this processor, or this build of the library, has no such kernel: avx2, sse2, neon, scalar", 0, 0);
 }
 
 static float round_half(float value, noh_half_mode mode)
@@ -169,7 +167,7 @@ static void run_f16_rtz(const uint32_t *words, size_t count, const morph_field f
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
                               const noh_morph_layers *layers)
 {
-    accumulate(mesh, weights, layers, mode == NOH_HALF_RTZ ? run_f16_rtz : run_f16_rne);
+    noh_accumulate_targets(mesh, weights, layers, NULL, mode == NOH_HALF_RTZ ? run_f16_rtz : run_f16_rne);
 }
 
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)
@@ -242,7 +240,7 @@ void noh_morph_position_by(const noh_mesh *mesh, const float *weights, uint32_t 
     for (uint32_t t = 0; texel < mesh->header->touched_count && t < mesh->header->target_count; t++) {
         const noh_target *target = &mesh->targets[t];
         const uint32_t *words = weights[t] != 0.0f ? delta_at(mesh, target, x, y) : NULL;
-        const morph_field f = make_field(0, target->position_bits, target->position_scale * weights[t]);
+        const morph_field f = noh_make_field(0, target->position_bits, target->position_scale * weights[t]);
         for (int i = 0; words && i < 3; i++) sum[i] = sum[i] + noh_field_value(words[i], f);
     }
     memcpy(out, mesh->positions + 3u * (size_t)index, 3 * sizeof *out);
@@ -263,5 +261,3 @@ noh_morph_cost noh_morph_cost_of(const noh_mesh *mesh, const float *weights)
     }
     return cost;
 }
-
-#endif

@@ -4,8 +4,8 @@
  * Only differences are accumulated, in three layers (position, normal, tangent), one accumulation texel for each vertex
  * that any target moves. For each target, in index order, and each of its delta texels:
  *   layer += weight * delta
- * with one product and one sum per value, never fused. The SIMD path is chosen when the library is compiled (AVX2,
- * SSE2, NEON, else scalar); each gives the scalar bits.
+ * with one product and one sum per value, never fused. noh_morph_accumulate is what the library was compiled for (AVX2,
+ * SSE2, NEON, else scalar); noh_morph_kernel_find asks the processor for more. Each gives the scalar bits.
  *
  * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
  * targets. There the accumulator begins as the mesh; here it begins at 0, so that half floats round the small
@@ -47,6 +47,27 @@ void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_
 
 /* The same in plain C: the reference of the SIMD paths. */
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
+
+#define NOH_MORPH_GROUP 16u /* accumulation texels that follow each other, from a multiple of it on */
+
+/* The inner loops, for one set of instructions. All give the same bits. */
+typedef struct noh_morph_kernel {
+    const char *name; /* "avx2", "sse2", "neon" or "scalar" */
+    void (*accumulate)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
+    /* The same for groups of NOH_MORPH_GROUP texels that are not 0 in groups[]; what others hold is undefined after it,
+     * but never read */
+    void (*accumulate_some)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                            const uint8_t *groups);
+    /* noh_morph_finish (deform/morph_finish.h) */
+    void (*finish)(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out);
+} noh_morph_kernel;
+
+/* The fastest kernel of this processor, or the one of a name, for tests and benches. AVX2 is asked of the processor,
+ * even where the library was compiled without it: ask once and keep the answer, since that takes microseconds on a
+ * virtual machine.
+ * name    NULL: the fastest
+ * errors  UNSUPPORTED this processor, or this build, has none of that name; *kernel is untouched. Never for NULL */
+noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh_error *error);
 
 /* The contents of a half-float accumulator that a GPU blends into: the sum is rounded to half after each target. */
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,

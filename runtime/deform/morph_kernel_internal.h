@@ -12,10 +12,12 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/compiler.h"
+#include "base/processor_internal.h"
 
-#if defined(NOH_AVX2)
+#if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
 #include <immintrin.h>
+#endif
+#if defined(NOH_AVX2)
 #define NOH_MORPH_SIMD "avx2"
 #elif defined(NOH_SSE2)
 #include <emmintrin.h>
@@ -49,13 +51,13 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, morph
 }
 
 #if defined(NOH_SSE2) /* AVX2 has it too */
-static inline __m128 noh_add_four(__m128i q, morph_field f, __m128 layer)
+NOH_ALWAYS_INLINE __m128 noh_add_four(__m128i q, morph_field f, __m128 layer)
 {
     q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
 }
 
-static inline void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
+NOH_ALWAYS_INLINE void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
 {
     __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
     _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
@@ -63,8 +65,7 @@ static inline void noh_add_step4(const uint32_t *words, morph_field f, float *la
 
 /* The last one to three words of a run, in one register. Runs are rows of rectangles, so they end often: this saves a
  * sixth of the whole time with AVX2. Nothing past the run is read or written. */
-#define NOH_MORPH_TAIL 1
-static inline __m128i noh_load_tail(const void *from, size_t count)
+NOH_ALWAYS_INLINE __m128i noh_load_tail(const void *from, size_t count)
 {
     __m128i low = count >= 2 ? _mm_loadl_epi64((const __m128i *)from) : _mm_setzero_si128();
     int32_t last;
@@ -75,7 +76,7 @@ static inline __m128i noh_load_tail(const void *from, size_t count)
     return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
 }
 
-static inline void noh_add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
+NOH_ALWAYS_INLINE void noh_add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
 {
     __m128 sum = noh_add_four(noh_load_tail(words, count), f, _mm_castsi128_ps(noh_load_tail(layer, count)));
     if (count == 1) {
@@ -89,24 +90,16 @@ static inline void noh_add_tail(const uint32_t *words, size_t count, morph_field
 }
 #endif
 
-#if defined(NOH_AVX2)
-#define NOH_MORPH_STEP 8u
-static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
+#if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_add_step8(const uint32_t *words, morph_field f, float *layer)
 {
     __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
     q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     _mm256_storeu_ps(
         layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
 }
-#elif defined(NOH_SSE2)
-#define NOH_MORPH_STEP 4u
-static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
-{
-    noh_add_step4(words, f, layer);
-}
 #elif defined(NOH_NEON)
-#define NOH_MORPH_STEP 4u
-static inline void noh_add_step(const uint32_t *words, morph_field f, float *layer)
+NOH_ALWAYS_INLINE void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
 {
     int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
     q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
@@ -114,33 +107,50 @@ static inline void noh_add_step(const uint32_t *words, morph_field f, float *lay
 }
 #endif
 
-/* A run into all layers, of which there are two or three: a constant wherever this is inlined. Steps are as wide as the
- * processor's vectors; what remains is done four words at a time, then as a tail. Left to itself gcc calls it, and
- * looks shifts and weights up in every step: with SSE2 that takes half as long again. */
-NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
-                                   int layer_count)
+#if defined(NOH_SSE2)
+/* What is left of a run behind its wide steps: four words at a time, then a tail. */
+NOH_ALWAYS_INLINE void noh_add_rest(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
+                                    int layer_count, size_t i)
 {
-    size_t i = 0;
-#ifdef NOH_MORPH_STEP
-    for (; i + NOH_MORPH_STEP <= count; i += NOH_MORPH_STEP) {
-        noh_add_step(words + i, f[0], layers[0] + i);
-        noh_add_step(words + i, f[1], layers[1] + i);
-        if (layer_count == 3) {
-            noh_add_step(words + i, f[2], layers[2] + i);
-        }
-    }
-#endif
-#ifdef NOH_MORPH_TAIL
-    if (NOH_MORPH_STEP > 4u && i + 4u <= count) {
-        for (int l = 0; l < layer_count; l++) {
-            noh_add_step4(words + i, f[l], layers[l] + i);
-        }
-        i += 4u;
+    for (; i + 4u <= count; i += 4u) {
+        for (int l = 0; l < layer_count; l++) noh_add_step4(words + i, f[l], layers[l] + i);
     }
     for (int l = 0; l < layer_count && i < count; l++) {
         noh_add_tail(words + i, count - i, f[l], layers[l] + i);
     }
+}
+#endif
+
+#if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_add_run_wide(const uint32_t *words, size_t count, const morph_field f[3],
+                                                        float *const layers[3], int layer_count)
+{
+    size_t i = 0;
+    for (; i + 8u <= count; i += 8u) {
+        noh_add_step8(words + i, f[0], layers[0] + i);
+        noh_add_step8(words + i, f[1], layers[1] + i);
+        if (layer_count == 3) noh_add_step8(words + i, f[2], layers[2] + i);
+    }
+    noh_add_rest(words, count, f, layers, layer_count, i);
+}
+#endif
+
+/* A run into all layers, of which there are two or three: a constant wherever this is inlined. Left to itself gcc calls
+ * it, and looks shifts and weights up in every step: with SSE2 that takes half as long again. */
+NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
+                                   int layer_count)
+{
+#if defined(NOH_AVX2)
+    noh_add_run_wide(words, count, f, layers, layer_count);
+#elif defined(NOH_SSE2)
+    noh_add_rest(words, count, f, layers, layer_count, 0);
 #else
+    size_t i = 0;
+#if defined(NOH_NEON)
+    for (; i + 4u <= count; i += 4u) {
+        for (int l = 0; l < layer_count; l++) noh_add_step4(words + i, f[l], layers[l] + i);
+    }
+#endif
     for (int l = 0; l < layer_count; l++) {
         noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
     }

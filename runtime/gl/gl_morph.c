@@ -104,6 +104,9 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
     m->plan = plan;
     m->mesh_count = desc->mesh_count;
     m->wide = noh_gl_morph_wide(&plan);
+    if (!desc->simd || noh_morph_kernel_find(desc->simd, &m->kernel, NULL) != NOH_OK) {
+        (void)noh_morph_kernel_find(NULL, &m->kernel, NULL);
+    }
     noh_gl_morph_carve(&arena, desc, &plan, m);
     memset(m->meshes, 0, sizeof *m->meshes * m->table_count);
     memset(m->weights, 0, sizeof *m->weights * plan.weight_count);

@@ -86,6 +86,8 @@ typedef struct noh_gl_morph_desc {
      * which must stay. Until noh_gl_morph_use says otherwise, this coarser level of the same mesh,
      * which may lie in another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is there */
     const noh_mesh *coarse;
+    const char *simd; /* kernel of the path cpu by its name (deform/morph.h), for tests. NULL, or one that is not here:
+                       * the fastest */
 } noh_gl_morph_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */

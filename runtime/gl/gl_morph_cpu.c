@@ -45,7 +45,7 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_sta
     layers.position = (float *)m->staging;
     layers.normal = layers.position + floats;
     layers.tangent = m->plan.layer_count == 3u ? layers.normal + floats : NULL;
-    noh_morph_accumulate(&mesh, weights, &layers);
+    m->kernel.accumulate(&mesh, weights, &layers);
     if (m->plan.occlusion) {
         if (mesh.transfer) noh_transfer_accumulate(&mesh, weights, layers.position + 4u * m->plan.layer_count * texels);
         widen(layers.position, m->plan.layer_count, texels);

@@ -42,6 +42,7 @@ struct noh_gl_morph {
     uint32_t *records; /* [weight_count][4] of the active targets: staging of the record table */
     void *staging;     /* rect records, gather's tiles, or the CPU's layers; at load, chunks of the tables */
     size_t staging_bytes;
+    noh_morph_kernel kernel; /* of the path cpu */
     int wide; /* a rect record, the indices of a rectangle and a target's record, is 2 x 32 bits instead of 2 x 16 */
 
     noh_gl_texture layers;

@@ -333,7 +333,7 @@ static int included_name(const char *line, char *name, size_t room)
 
 static void write_file(FILE *out, int index, int depth);
 
-/* The file's lines: includes of the library's own headers are replaced by them, once. */
+/* The file's lines: includes of the library's own headers are replaced by them, once; templates each time. */
 static void write_lines(FILE *out, int index, int depth)
 {
     const input *in = &inputs[index];
@@ -376,7 +376,7 @@ static void write_undefs(FILE *out, const char *file, const char *text)
 
 static void write_file(FILE *out, int index, int depth)
 {
-    if (inputs[index].is_written) return;
+    if (inputs[index].is_written && !strstr(inputs[index].name, "_template.h")) return;
     if (depth > 64) fail("%s: includes itself", inputs[index].name);
     inputs[index].is_written = 1;
     fprintf(out, "/* ---- %s ---- */\n\n", inputs[index].name);

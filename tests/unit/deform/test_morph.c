@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The kernel compiled for other instruction sets (Makefile, KERNELS). */
-void noh_morph_accumulate_sse2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-void noh_morph_accumulate_avx2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-
 typedef void (*accumulate_function)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
 /* ---- meshes of rectangles, made without the converter: any width, any bits ---- */
@@ -130,26 +126,78 @@ static void compiled_in_equals_scalar(void **state)
     compare_with_scalar(noh_morph_accumulate, noh_morph_simd());
 }
 
+/* A kernel by its name; a test skips where there is none. */
+static void named_equals_scalar(const char *name)
+{
+    noh_morph_kernel kernel;
+    if (noh_morph_kernel_find(name, &kernel, NULL) != NOH_OK) {
+        test_skip("this processor, or this build, has no such kernel");
+    }
+    assert_string_equal(kernel.name, name);
+    compare_with_scalar(kernel.accumulate, name);
+}
+
 static void sse2_equals_scalar(void **state)
 {
     (void)state;
-#if defined(__x86_64__)
-    compare_with_scalar(noh_morph_accumulate_sse2, "sse2");
-#else
-    test_skip("this processor is not an x86-64");
-#endif
+    named_equals_scalar("sse2");
 }
 
 static void avx2_equals_scalar(void **state)
 {
     (void)state;
-#if defined(__x86_64__)
-    if (!__builtin_cpu_supports("avx2")) {
-        test_skip("this processor has no AVX2");
+    named_equals_scalar("avx2");
+}
+
+/* Of groups of texels that are asked for each has the bits of all. */
+static void some_groups_equal_all(void **state)
+{
+    static const char *const names[] = { "scalar", "sse2", "avx2", "neon" };
+    test_random r = test_random_from(27);
+    (void)state;
+    for (uint32_t round = 0; round < 200; round++) {
+        const uint32_t texels = 7u << 5, group_count = texels / NOH_MORPH_GROUP;
+        noh_morph_kernel kernel;
+        uint8_t groups[(7u << 5) / NOH_MORPH_GROUP];
+        loose_mesh m;
+        float weights[TARGETS];
+        noh_morph_layers all, some;
+        if (noh_morph_kernel_find(names[round % 4u], &kernel, NULL) != NOH_OK) continue;
+        random_loose(&m, &r);
+        random_loose_weights(&r, weights);
+        all = test_layers(&m.mesh);
+        some = test_layers(&m.mesh);
+        for (uint32_t g = 0; g < group_count; g++) groups[g] = test_random_below(&r, 4) == 0;
+        noh_morph_accumulate_scalar(&m.mesh, weights, &all);
+        kernel.accumulate_some(&m.mesh, weights, &some, groups);
+        for (size_t l = 0; l < 3; l++) {
+            for (size_t g = 0; g < group_count; g++) {
+                const size_t at = 3u * (l * texels + g * NOH_MORPH_GROUP);
+                if (groups[g])
+                    test_same_floats(some.position + at, all.position + at, 3u * NOH_MORPH_GROUP, kernel.name);
+            }
+        }
+        free(all.position);
+        free(some.position);
+        free(m.texels);
     }
-    compare_with_scalar(noh_morph_accumulate_avx2, "avx2");
-#else
-    test_skip("this processor is not an x86-64");
+}
+
+/* What the processor has is found, and nothing else. */
+static void the_fastest_kernel_is_found(void **state)
+{
+    noh_morph_kernel kernel = { "untouched", NULL, NULL, NULL };
+    noh_error error;
+    (void)state;
+    assert_int_equal(noh_morph_kernel_find("no such", &kernel, &error), NOH_ERR_UNSUPPORTED);
+    assert_string_equal(kernel.name, "untouched");
+    assert_int_equal(noh_morph_kernel_find("scalar", &kernel, NULL), NOH_OK);
+    assert_true(kernel.accumulate == noh_morph_accumulate_scalar);
+    assert_int_equal(noh_morph_kernel_find(NULL, &kernel, NULL), NOH_OK);
+    print_message("# the fastest: %s\n", kernel.name);
+    compare_with_scalar(kernel.accumulate, kernel.name);
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(NOH_PLAIN_C)
+    assert_string_equal(kernel.name, __builtin_cpu_supports("avx2") ? "avx2" : "sse2");
 #endif
 }
 
@@ -581,6 +629,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(compiled_in_equals_scalar),
     cmocka_unit_test(sse2_equals_scalar),
     cmocka_unit_test(avx2_equals_scalar),
+    cmocka_unit_test(some_groups_equal_all),
+    cmocka_unit_test(the_fastest_kernel_is_found),
     cmocka_unit_test(scalar_follows_the_definition),
     cmocka_unit_test(half_floats_to_nearest_follow_the_definition),
     cmocka_unit_test(half_floats_toward_zero_follow_the_definition),

@@ -9,14 +9,6 @@
 #define SAMPLE_NS 5e6
 #define ATTRIBUTES 9u /* position, normal, tangent */
 
-#if defined(__x86_64__)
-/* runtime/deform/morph.c built again for other instruction sets (Makefile, KERNELS) */
-void noh_morph_accumulate_sse2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-void noh_morph_accumulate_avx2(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-#endif
-
-typedef void (*kernel)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
-
 typedef struct cpu_bench {
     const noh_mesh *mesh;
     bench_weights weights;
@@ -31,7 +23,7 @@ typedef struct cpu_bench {
 
 typedef struct cpu_work {
     cpu_bench *bench;
-    kernel run;
+    noh_morph_kernel kernel;
 } cpu_work;
 
 static void run_kernel(void *self, uint32_t frame)
@@ -39,7 +31,7 @@ static void run_kernel(void *self, uint32_t frame)
     const cpu_work *w = (const cpu_work *)self;
     cpu_bench *b = w->bench;
     memset(b->layer_memory, 0, b->layer_bytes);
-    w->run(b->mesh, bench_weights_of(&b->weights, frame), &b->layers);
+    w->kernel.accumulate(b->mesh, bench_weights_of(&b->weights, frame), &b->layers);
     b->seen = b->layer_memory;
 }
 
@@ -145,7 +137,7 @@ static int cpu_check(cpu_bench *b, const cpu_work *kernel_work, const char *name
 {
     const noh_mesh_header *h = b->mesh->header;
     float worst = 0.0f, largest = 0.0f;
-    cpu_work dense = { b, NULL };
+    cpu_work dense = { b, { "dense-scalar", NULL, NULL, NULL } };
     run_dense(&dense, 0);
     run_kernel((void *)(uintptr_t)kernel_work, 0);
     for (uint32_t v = 0; v < h->touched_count; v++) {
@@ -162,33 +154,20 @@ static int cpu_check(cpu_bench *b, const cpu_work *kernel_work, const char *name
 
 /* ---- rows ---- */
 
-typedef struct kernel_entry {
-    const char *name;
-    kernel run;
-} kernel_entry;
-
 #define KERNELS_MAX 4
 
-static uint32_t list_kernels(kernel_entry *k)
+/* Those that run here. */
+static uint32_t list_kernels(noh_morph_kernel *kernels)
 {
+    static const char *const names[KERNELS_MAX] = { "scalar", "sse2", "avx2", "neon" };
     uint32_t count = 0;
-    k[count].name = "scalar";
-    k[count++].run = noh_morph_accumulate_scalar;
-#if defined(__x86_64__)
-    k[count].name = "sse2";
-    k[count++].run = noh_morph_accumulate_sse2;
-    if (__builtin_cpu_supports("avx2")) {
-        k[count].name = "avx2";
-        k[count++].run = noh_morph_accumulate_avx2;
+    for (uint32_t i = 0; i < KERNELS_MAX; i++) {
+        count += noh_morph_kernel_find(names[i], &kernels[count], NULL) == NOH_OK;
     }
-#else
-    k[count].name = noh_morph_simd();
-    k[count++].run = noh_morph_accumulate;
-#endif
     return count;
 }
 
-static void add_rows(bench_job *job, const cpu_bench *b, const bench_cells *cells, const kernel_entry *kernels,
+static void add_rows(bench_job *job, const cpu_bench *b, const bench_cells *cells, const noh_morph_kernel *kernels,
                      uint32_t count, const char *prefix)
 {
     double pairs = b->weights.pairs > 0.0 ? b->weights.pairs : 1.0;
@@ -204,7 +183,7 @@ static void add_rows(bench_job *job, const cpu_bench *b, const bench_cells *cell
 
 static int measure(bench_job *job, uint32_t active, const char *prefix)
 {
-    kernel_entry kernels[KERNELS_MAX];
+    noh_morph_kernel kernels[KERNELS_MAX];
     cpu_work works[KERNELS_MAX + 2];
     uint32_t count = list_kernels(kernels);
     bench_cells cells;
@@ -215,7 +194,7 @@ static int measure(bench_job *job, uint32_t active, const char *prefix)
     status = cpu_open(&b, &job->mesh, active);
     for (uint32_t k = 0; k < count + 2u && !status; k++) {
         works[k].bench = &b;
-        works[k].run = k < count ? kernels[k].run : NULL;
+        if (k < count) works[k].kernel = kernels[k];
         bench_add_cell(&cells, k < count ? run_kernel : k == count ? run_dense : run_memcpy, &works[k]);
         status = k < count ? cpu_check(&b, &works[k], kernels[k].name) : 0;
     }

@@ -1,0 +1,29 @@
+/* morph_avx2.c: noh_morph_accumulate with AVX2, where the compiler makes single functions of it. The processor is asked
+ * before it is called: noh_morph_kernel_find. */
+#include "deform/morph_accumulate_internal.h"
+
+#ifdef NOH_AVX2_AT_RUN_TIME
+
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void run_wide(const uint32_t *words, size_t count, const morph_field f[3],
+                                                float *const layers[3])
+{
+    if (layers[2]) {
+        noh_add_run_wide(words, count, f, layers, 3);
+    } else {
+        noh_add_run_wide(words, count, f, layers, 2);
+    }
+}
+
+NOH_TARGET_AVX2 void noh_morph_accumulate_wide(const noh_mesh *mesh, const float *weights,
+                                               const noh_morph_layers *layers)
+{
+    noh_accumulate_targets(mesh, weights, layers, NULL, run_wide);
+}
+
+NOH_TARGET_AVX2 void noh_morph_accumulate_some_wide(const noh_mesh *mesh, const float *weights,
+                                                    const noh_morph_layers *layers, const uint8_t *groups)
+{
+    noh_accumulate_targets(mesh, weights, layers, groups, run_wide);
+}
+
+#endif
