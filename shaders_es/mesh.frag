@@ -6,10 +6,18 @@ uniform vec3 noh_bounds_size;
 
 in vec3 v_world;
 in vec3 v_normal;
-in vec4 v_tangent;
 in vec2 v_uv;
 in vec4 v_color;
+/* What is not read is not declared: then it is neither interpolated nor, with all that leads to it, computed. */
+#if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES) || NOH_DEBUG_VIEW == 3
+in vec4 v_tangent;
+#define TANGENT v_tangent
+#else
+#define TANGENT vec4(0.0)
+#endif
+#if NOH_DEBUG_VIEW == 1
 in vec3 v_model;
+#endif
 
 #ifndef NOH_DEPTH_ONLY
 layout(location = 0) out vec4 o_color;
@@ -60,7 +68,7 @@ void main()
 #else
     vec4 base = noh_base(v_uv, v_color);
 #endif
-    noh_surface s = noh_surface_of(base, v_world, v_normal, v_tangent, v_uv);
+    noh_surface s = noh_surface_of(base, v_world, v_normal, TANGENT, v_uv);
 #if NOH_DEBUG_VIEW == 1
     o_color = vec4(pow((v_model - noh_bounds_min) / max(noh_bounds_size, vec3(1e-9)), vec3(2.2)), 1.0);
 #elif NOH_DEBUG_VIEW == 2

@@ -423,7 +423,7 @@ static noh_result restore(noh_stage *stage, noh_error *error)
 
 /* ---- upload ---- */
 
-static int any_weight(const float *weights, uint32_t count)
+int noh_gl_any_weight(const float *weights, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         if (weights[i] != 0.0f) return 1;
@@ -453,7 +453,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
     if (noh_gl_has_tile(item, shown)) {
         const uint32_t tile = noh_gl_item_tile(item, shown);
-        moved = any_weight(weights, mesh->mesh.header->target_count);
+        moved = noh_gl_any_weight(weights, mesh->mesh.header->target_count);
         (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }

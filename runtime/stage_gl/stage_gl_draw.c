@@ -63,12 +63,15 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     const noh_gl_lod lod = { mesh_level(d, mesh, level), from, to };
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
     const noh_gl_skin_binding skin = skin_of(item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
+    const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
     const int is_morphed = noh_gl_has_tile(item, shown);
     noh_gl_morph_binding morph;
     float world[12];
     memcpy(world, shown->world, sizeof world);
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
+    if (is_morphed && !noh_gl_any_weight(weights, m->mesh.header->target_count))
+        morph.touched = 0; /* nothing is there */
     noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
     set_wrinkles(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,

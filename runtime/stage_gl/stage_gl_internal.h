@@ -34,6 +34,9 @@ static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown
     return item->model->morph && shown->slot.pool != NOH_NONE;
 }
 
+/* 0: nothing of a mesh is morphed: its vertices need not look deltas up, which are 0. */
+int noh_gl_any_weight(const float *weights, uint32_t count);
+
 /* The instance of model->morph that an actor's slot is. */
 static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage_shown *shown)
 {
