@@ -67,7 +67,7 @@ count='
     }'
 
 # These begin first where no times are known; without sanitizers they take most of all.
-long='gl/view check_install gl/test_gl_load cli/graph cli/light check_stack check_headers cli/zoom cli/strip cli/lighting
+long='gl/view gl/view_figure gl/view_tools check_install gl/test_gl_load cli/graph cli/light check_stack check_headers cli/zoom cli/strip cli/lighting
     gl/verify gl/matrix check_amalgam check_plain_c cli/crowd cli/springs cli/wrinkles unit/clip/test_clip_codec
     unit/face/test_identity unit/stage/test_stage'
 # Of what draws, and of the program as a whole, these run under sanitizers: they read files of others, call in any order,

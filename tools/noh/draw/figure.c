@@ -422,7 +422,7 @@ int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
 static void draw_backdrop(const figure *f)
 {
     const lighting *l = f->desc.light;
-    if (!f->backdrop.gl || l->background == BACKGROUND_PLAIN) {
+    if (!f->backdrop.gl || l->background == BACKGROUND_PLAIN || f->desc.view != NOH_VIEW_LIT) {
         return;
     }
     noh_backdrop_draw(&f->backdrop, l->background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,

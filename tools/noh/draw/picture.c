@@ -46,9 +46,24 @@ int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, u
 void picture_close(picture *p)
 {
     for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) bones_close(&p->bones[k]);
+    overlay_close(&p->overlay);
     if (p->has_canvas) canvas_close(&p->canvas);
     if (p->figure.stage) figure_close(&p->figure);
     memset(p, 0, sizeof *p);
+}
+
+int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint)
+{
+    if (kind < DEBUG_WIREFRAME) return 0;
+    p->debug = kind;
+    if (kind == DEBUG_BONES) {
+        return p->figure.desc.file->pack.skeleton_count
+                   ? open_bones(p, g)
+                   : tool_fail(p->figure.desc.file->path, "the pack has no skeleton to draw");
+    }
+    p->joint = NOH_NONE;
+    const int status = kind == DEBUG_WEIGHTS ? overlay_joint(&p->figure, joint, &p->joint) : 0;
+    return status ? status : overlay_open(&p->overlay, g);
 }
 
 bounds picture_bounds(const picture *p, int face)
@@ -76,6 +91,24 @@ static void draw_bones(picture *p, const noh_gl_camera *camera)
     }
 }
 
+/* The figure, with what --debug shows over it or in its place. */
+static int paint_debug(picture *p, const noh_gl_camera *camera)
+{
+    const int instead = p->debug == DEBUG_JOINTS || p->debug == DEBUG_WEIGHTS;
+    int status = instead ? 0 : figure_draw(&p->figure);
+    if (status) return status;
+    switch (p->debug) {
+    case DEBUG_WIREFRAME: return overlay_draw(&p->overlay, &p->figure, OVERLAY_WIREFRAME, NOH_NONE, camera);
+    case DEBUG_JOINTS: return overlay_draw(&p->overlay, &p->figure, OVERLAY_JOINTS, NOH_NONE, camera);
+    case DEBUG_WEIGHTS: return overlay_draw(&p->overlay, &p->figure, OVERLAY_WEIGHTS, p->joint, camera);
+    case DEBUG_BONES:
+        canvas_clear_depth(&p->canvas); /* they show through the body */
+        draw_bones(p, camera);
+        return 0;
+    default: return 0;
+    }
+}
+
 int picture_paint(picture *p, const noh_gl_camera *camera)
 {
     const int status = p->shows_bones ? figure_pose(&p->figure) : figure_look(&p->figure, camera, p->canvas.height);
@@ -84,7 +117,7 @@ int picture_paint(picture *p, const noh_gl_camera *camera)
     }
     canvas_begin(&p->canvas);
     if (!p->shows_bones) {
-        return figure_draw(&p->figure);
+        return paint_debug(p, camera);
     }
     draw_bones(p, camera);
     return 0;

@@ -3,13 +3,18 @@
 #define NOH_NOH_DRAW_PICTURE_H
 
 #include "bones.h"
+#include "debug_kind.h"
 #include "figure.h"
 #include "gpu/canvas.h"
+#include "overlay.h"
 
 typedef struct picture {
     figure figure;
     int shows_bones;
     bones bones[NOH_STAGE_KINDS_MAX]; /* of kinds with joints */
+    debug_kind debug;                 /* of picture_debug */
+    overlay overlay;
+    uint32_t joint; /* of DEBUG_WEIGHTS */
     canvas canvas;
     int has_canvas;
 } picture;
@@ -22,6 +27,8 @@ int picture_shows_bones(const pack_file *file, int asked_for);
  * success. */
 int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, uint32_t width, uint32_t height);
 void picture_close(picture *p);
+/* What --debug shows beside the views of figure_desc, once it is open. joint: as overlay_joint */
+int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint);
 
 /* The world bounds of what is drawn, as posed. */
 bounds picture_bounds(const picture *p, int face);

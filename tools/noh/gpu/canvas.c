@@ -82,6 +82,12 @@ void canvas_begin(canvas *c)
     gl->ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
+void canvas_clear_depth(const canvas *c)
+{
+    static const float far = 1.0f;
+    c->g->gl.ClearBufferfv(GL_DEPTH, 0, &far);
+}
+
 void canvas_resolve(canvas *c)
 {
     const noh_gl_api *gl = &c->g->gl;

@@ -22,6 +22,8 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height);
 void canvas_close(canvas *c);
 /* Bind, set the viewport, clear to the background. */
 void canvas_begin(canvas *c);
+/* What is drawn from now on hides what was drawn before. */
+void canvas_clear_depth(const canvas *c);
 /* Resolve into the texture. Leaves framebuffer 0 bound. */
 void canvas_resolve(canvas *c);
 /* Resolve and read: rgba[height][width][4], top row first. */

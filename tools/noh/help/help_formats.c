@@ -248,6 +248,17 @@ const char *const help_formats_text[] = {
     "   FRAME hit ACTOR X Y Z IX IY IZ              a push of newton seconds at a point",
     "   FRAME view 0 YAW PITCH DISTANCE             radians, metres; FRAME ticks 0 TICKS: of each frame from now on (800)",
     "   hashes PART...                              then FRAME and a CRC-32C of each part, for every frame",
+    "# scripts (noh view --script)",
+    "A hand that does what lines say, frame by frame of 1/60 s, however long each takes; the window closes after the last. A line that "
+    "fails ends it with exit code 1. # begins a comment, names with blanks stand in double quotes:",
+    "   frames N                                    draw N frames",
+    "   click WHAT; click X Y; alt-click X Y        a control, as it is written in the window: \"walk/play\"; or a point of it",
+    "   drag WHAT SHARE; drag X Y X Y [right]       a slider's handle to 0 (left) to 1; or from one point to another",
+    "   wheel X Y STEPS; key NAME; type TEXT        nearer; space, f, F11, escape, ctrl+z and so on",
+    "   drop FILE; loaded                           as if dropped; wait until a conversion is done",
+    "   state; expect TEXT; expect-not TEXT         print the state; a line of it has this text, or none has",
+    "   until TEXT N                                draw frames until a line has it, N at most",
+    "   save FILE; window FILE                      a picture of the figure, of the window",
     "# outputs (-o)",
     "A file is replaced as a whole or left as it was. Of a symbolic link the target is replaced; devices, FIFOs and /dev/stdout are "
     "written to directly. An input is never overwritten.",

@@ -13,10 +13,11 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *path, *accumulate, *driver, *debug, *face, *springs, *hair, *wind;
+    const char *pack, *output, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind;
     uint32_t size[2];
     double time_s, lod, turn, swing;
     int show_bones;
+    debug_kind shows;
     option_list weights, clips, anims, emotions, decals;
     figure_mark marks[NOH_DECALS_MAX];
     view_options view;
@@ -25,23 +26,6 @@ typedef struct render_args {
     figure_desc figure;
     figure_body body;
 } render_args;
-
-static int parse_debug(const char *text, noh_debug_view *view)
-{
-    static const char *const names[] = {
-        "none", "position", "normal", "tangent", "lod", "light", "occlusion", "wrinkle"
-    };
-    *view = NOH_VIEW_LIT;
-    for (int i = 0; text && i < 8; i++) {
-        if (strcmp(text, names[i]) == 0) {
-            *view = (noh_debug_view)i;
-            return 0;
-        }
-    }
-    return text ? tool_usage(
-                      "--debug wants none, position, normal, tangent, lod, light, occlusion or wrinkle, not '%s'", text)
-                : 0;
-}
 
 static int check_body(render_args *a)
 {
@@ -68,7 +52,9 @@ static int check_args(render_args *a)
     int springs = 1;
     int status = parse_path(a->path, &a->figure.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
-    if (!status) status = parse_debug(a->debug, &a->figure.view);
+    if (!status) status = debug_parse(a->debug, &a->shows);
+    if (!status && a->joint && a->shows != DEBUG_WEIGHTS) status = tool_usage("--joint wants --debug weights");
+    a->figure.view = debug_view_of(a->shows);
     if (!status) status = parse_level(a->lod, &a->figure.level);
     if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
     if (!status) status = tool_switch("--springs", a->springs, &springs);
@@ -139,7 +125,8 @@ static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
                       : tool_fail(a->output, "out of memory");
     if (!status) {
         const figure *f = &p.figure;
-        status = draw(&p, a, rgba);
+        status = picture_debug(&p, g, a->shows, a->joint);
+        if (!status) status = draw(&p, a, rgba);
         if (!shows_bones) (void)noh_stage_morph_plan(&f->stage_desc, &g->caps, &f->plan, &plan, NULL);
         picture_close(&p);
     }
@@ -155,8 +142,9 @@ static int render(render_args *a, const pack_file *file)
     lighting light;
     gpu g;
     const int shows_bones = picture_shows_bones(file, a->show_bones);
+    const int lit = a->figure.view == NOH_VIEW_LIT && a->shows != DEBUG_JOINTS && a->shows != DEBUG_WEIGHTS;
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
-    if (!status && lighting_wanted(&a->light, !shows_bones && a->figure.view == NOH_VIEW_LIT)) {
+    if (!status && lighting_wanted(&a->light, !shows_bones && lit)) {
         status = lighting_open(&light, &a->light);
         if (status) return status;
         a->figure.light = &light;
@@ -258,10 +246,18 @@ static const option options[] = {
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, debug),
-      .value = "none|position|normal|tangent|lod|light|occlusion|wrinkle",
+      .value = DEBUG_VALUES,
       .initial = "none",
-      .what = "show this as colours instead of lighting",
+      .what =
+          "show this as colours instead of lighting: joints: those that move each vertex, weights: how much one of them does. wireframe and bones are drawn over the lit figure",
       .excludes = "--bones" },
+    { .name = "--joint",
+      .kind = OPTION_TEXT,
+      .at = offsetof(render_args, joint),
+      .value = "NAME",
+      .what = "the joint of --debug weights; default: the one that moves the most vertices",
+      .example = "Head",
+      .needs = "--debug" },
     OPTION_PATH(render_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(render_args, accumulate, .initial = "auto", .excludes = "--bones"),
     OPTION_DRIVER(render_args, driver, .initial = "egl"),

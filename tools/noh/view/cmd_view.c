@@ -9,7 +9,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *lod, *camera, *face, *springs;
+    const char *path, *accumulate, *driver, *lod, *camera, *face, *springs, *play;
     double frames;
     uint32_t size[2];
     light_options light;
@@ -30,6 +30,12 @@ static int check_args(view_args *a)
     }
     if (a->run.screenshot && a->frames < 1.0) {
         return tool_usage("--screenshot wants --frames N, after which it is taken");
+    }
+    if (a->run.film && a->frames < 1.0) {
+        return tool_usage("--film wants --frames N, which it shows");
+    }
+    if (a->run.script && a->frames > 0.0) {
+        return tool_usage("--script draws as many frames as it says: it has no --frames");
     }
     if (strcmp(a->driver, "egl") != 0 && strcmp(a->driver, "native") != 0) {
         return tool_usage("--driver wants egl or native, not '%s'", a->driver);
@@ -52,9 +58,9 @@ static int run(void *args)
         return status;
     }
     a->run.frames = (uint32_t)a->frames;
-    a->run.desc.alive = !a->run.frames;
+    a->run.desc.alive = a->run.plays = !a->run.frames;
     if ((a->face && tool_switch("--face", a->face, &a->run.desc.alive)) ||
-        tool_switch("--springs", a->springs, &springs)) {
+        (a->play && tool_switch("--play", a->play, &a->run.plays)) || tool_switch("--springs", a->springs, &springs)) {
         return EXIT_USAGE;
     }
     a->run.desc.without_springs = !springs;
@@ -79,6 +85,12 @@ static const option options[] = {
       .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
     OPTION_SPRINGS(view_args, springs),
     OPTION_WEIGHT_RULES(view_args, run.desc.weight_rules),
+    { .name = "--play",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, play),
+      .value = "on|off",
+      .what =
+          "whether it opens playing: idle, or the first clip that moves joints; default: on, off with --frames or --clip" },
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),
@@ -140,13 +152,35 @@ static const option options[] = {
       .value = "OUT.png",
       .what = "write a picture of the last frame",
       .example = "window.png" },
+    { .name = "--film",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(view_args, run.film),
+      .value = "OUT.gif",
+      .what =
+          "write the figure of every second frame as a film, 30 pictures a second: .gif, .mp4, .webm or .apng by ffmpeg, or .png, numbered",
+      .example = "walk.gif",
+      .needs = "--frames" },
+    { .name = "--presets",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, run.presets),
+      .value = "FILE",
+      .what = "where presets of your own are kept, as text; default: the model's name and .presets",
+      .example = "faces.presets" },
+    { .name = "--script",
+      .kind = OPTION_INPUT,
+      .at = offsetof(view_args, run.script),
+      .value = "FILE",
+      .what =
+          "lines that move the mouse, press keys, save pictures and check the state, frame by frame (noh help FORMATS); then it ends",
+      .example = "hand.txt" },
 };
 
 const verb verb_view = {
     .name = "view",
     .files = "PACK|MODEL",
-    .what = "open a window: sliders, clips, callback keys, memory and times; files dropped on it are shown",
-    .example = "head.glb\nbody.noh --clip walk\nbody.noh --frames 60 --screenshot window.png",
+    .what = "open a window: sliders, presets, clips, detail, light, films; files dropped on it are shown",
+    .example =
+        "head.glb\nbody.noh --clip walk\nbody.noh --frames 60 --screenshot window.png\nbody.noh --clip walk --frames 120 --film walk.gif",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

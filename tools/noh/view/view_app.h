@@ -1,27 +1,45 @@
 /* view_app.h: the viewer's state: camera, playback, times, requests of the panels. No window and no panels.
  *
+ *   view_app_begin, view_app_blank    a window without a model yet
  *   view_app_open / view_app_close
  *   view_app_lost, view_app_restore   everything on the GPU again, after a lost context
- *   view_app_show        a pack or a model instead of what is shown
+ *   view_app_show        a pack, or a model once it is converted, instead of what is shown
+ *   view_app_load        begin to convert a model, or show a pack at once; view_app_poll: show it when it is done, and
+ *                        again when the file has changed on disk
  *   view_app_frame       advance time, draw the figure into the window
  *   view_app_moves       whether the next frame will differ
  *   view_app_after       carry out what the panels asked for
- *   view_turn, view_pan, view_zoom, view_frame_all   the camera
- *   view_play            a clip
+ *   view_play            a clip; view_play_first the one that it opens with
  *   view_pick_window     what is under a point of the window
  *   view_push_window, view_push   push what is under a point, or the figure at its chest
  *   view_walk            root motion on and off; view_walk_home back to the origin
  *   view_toggle_play     play and pause; starts the first clip where none is on
+ *   view_tell            the last error, into the window
  *   view_print           the state, as lines of text
- *   view_save            a picture */
+ *   view_save            a picture
+ *
+ * The camera (view_camera.c):
+ *   view_turn, view_pan, view_zoom   by hand
+ *   view_frame_all       all that plays in the picture, from the front
+ *   view_follow          goes with the figure, and turns about it; frames other clips, until it was moved by hand */
 #ifndef NOH_NOH_VIEW_VIEW_APP_H
 #define NOH_NOH_VIEW_VIEW_APP_H
 
+#include <stdio.h>
+
+#include "draw/framing.h"
 #include "gl/gl_timer.h"
+#include "view/view_compare.h"
+#include "view/view_export.h"
 #include "view/view_fall.h"
+#include "view/view_lights.h"
+#include "view/view_load.h"
 #include "view/view_lod.h"
 #include "view/view_marks.h"
+#include "view/view_presets.h"
 #include "view/view_screen.h"
+#include "view/view_undo.h"
+#include "view/view_watch.h"
 
 #define VIEW_LINES 64
 #define VIEW_HISTORY 120
@@ -29,7 +47,9 @@
 /* Layout, points of the window. */
 #define VIEW_LEFT 300
 #define VIEW_RIGHT 360
-#define VIEW_BOTTOM 132
+#define VIEW_BOTTOM 116
+#define VIEW_TURNTABLE_S 12.0 /* a turn */
+#define VIEW_FRAMED_MAX 64u   /* clips that are framed together */
 
 /* Milliseconds, smoothed over some frames; below 0: unknown. */
 typedef struct view_times {
@@ -54,6 +74,10 @@ typedef struct view_path {
     uint32_t next, count;
 } view_path;
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum view_data { VIEW_DATA_SUMS, VIEW_DATA_BASE, VIEW_DATA_DELTA } view_data;
 
 typedef struct view_app {
@@ -62,9 +86,17 @@ typedef struct view_app {
     view_model *model;    /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
     orbit orbit;
-    double anchor[3]; /* where the figure stood in the last frame */
-    int follow;       /* the orbit's centre goes with it */
-    int cut;          /* the next frame shows something else: nothing fades */
+    double anchor[3];     /* where the figure stood in the last frame */
+    int follow;           /* the orbit's centre goes with it */
+    int turntable;        /* it turns about the figure */
+    bounds framed_box;    /* what view_frame_all framed */
+    double framed_aspect; /* of the picture in which everything was framed */
+    int by_hand;          /* it was moved: other clips are not framed */
+    framing *framing;     /* of the model; NULL: not needed yet */
+    uint8_t *framed;      /* [clip_count] 1: in the picture; NULL likewise */
+    bounds *boxes;        /* [clip_count] of framing_clip */
+    uint8_t *boxed;       /* [clip_count] 1: boxes has it, 2: it has none */
+    int cut;              /* the next frame shows something else: nothing fades */
     view_lod lod;
     view_how how; /* the next clip */
     view_pad pad;
@@ -73,6 +105,26 @@ typedef struct view_app {
     float pointer[2]; /* pixels of the canvas that faces look at */
     int has_pointer;
     view_marks marks;
+    overlay overlay;
+    view_over over;
+    view_compare compare;
+    view_export filming;
+    char export_path[256];
+    int export_hz, export_turns;
+    view_lights lights;
+    view_undo_list undo;
+    view_presets presets;
+    const char *presets_path; /* NULL: beside the model */
+    view_load load;
+    view_watch watch;
+    int lazy;         /* frames are drawn when their picture is asked for: a script looks at few */
+    int is_drawn;     /* the last frame */
+    int autoplay;     /* a model that is opened plays its first clip */
+    int show_help;    /* the list of keys */
+    int hand_busy;    /* a slider is held, or a list open: no step to go back to yet */
+    uint32_t reloads; /* of files that changed on disk */
+    int quit_asked;   /* Esc was pressed: the panels ask whether it was meant */
+    int quits;
     int show_floor;
     double floor; /* its height */
     view_path walked;
@@ -99,12 +151,27 @@ int view_data_mesh(const view_model *m, noh_mesh *mesh);
  * code. */
 int view_show_data(view_app *a, const char *name);
 
-/* g: an open context, and the window's size. Prints an error and returns an exit code; 0 on success. */
+/* Before a model is there, with an open context in a->gpu: for panels over a blank window. Prints an error and returns
+ * an exit code; 0 on success. view_app_close in any case. */
+int view_app_begin(view_app *a);
+void view_app_blank(view_app *a, float scale);
+
+/* After it. desc: with the window's size; desc->converted for a model. Prints an error and returns an exit code; 0 on
+ * success. */
 int view_app_open(view_app *a, const view_model_desc *desc);
 void view_app_close(view_app *a);
 
-/* On failure the current model stays. */
-int view_app_show(view_app *a, const char *path);
+/* converted: of a model, taken over; NULL: the file is a pack. On failure the current model stays. */
+int view_app_show(view_app *a, const char *path, byte_buffer *converted);
+/* Shown at once where it is a pack, else by view_app_poll when its conversion is done. */
+int view_app_load(view_app *a, const char *path);
+/* The same file again: weights, tracks of the same names, light and camera stay. */
+void view_app_poll(view_app *a);
+void view_tell(view_app *a);
+/* status  0: it takes the last error away; else as view_tell */
+void view_keep(view_app *a, int status);
+/* What belongs to a model, once it is shown: presets, camera, the first clip. */
+void view_begin_model(view_app *a);
 
 /* The context was lost: forget its object names. Then fill a->gpu for another context and restore, or close. */
 void view_app_lost(view_app *a);
@@ -114,28 +181,45 @@ int view_app_restore(view_app *a);
  * Prints an error and returns an exit code; 0 on success. */
 int view_app_frame(view_app *a, float scale, double seconds);
 void view_app_after(view_app *a);
+/* Where a->lazy: draw the figure as it was posed last, unless that was done. Prints an error and returns an exit code;
+ * 0 on success. */
+int view_app_picture(view_app *a);
+/* The pictures into the window. */
+void view_app_present(view_app *a);
 /* 1 while clips play, change or fade: the next frame will differ. */
 int view_app_moves(const view_app *a);
 
 /* The figure's part of the window: left, top, right, bottom in points. */
 void view_app_stage(const view_app *a, float box[4]);
+/* Of the figure's picture, of the first where several are side by side: its lower left corner, its size. */
+void view_figure_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint32_t *height);
 
 /* dx, dy in points, y down. */
 void view_turn(view_app *a, double dx, double dy);
 void view_pan(view_app *a, double dx, double dy);
 void view_zoom(view_app *a, double steps);
 void view_frame_all(view_app *a);
+/* seconds: of the turntable. */
+void view_follow(view_app *a, double seconds);
+/* Another model: measure nothing of the old one. */
+void view_forget_frames(view_app *a);
 /* Turn the light, where there is one. */
 void view_turn_light(view_app *a, double degrees);
 void view_toggle_play(view_app *a);
 /* Start a clip as a->how says, in place of what plays on its layer or beside it. */
 void view_play(view_app *a, uint32_t clip, int beside);
+/* One whose name begins with idle, else the first that moves joints, else the first. */
+void view_play_first(view_app *a);
+/* A film of the picture: one turn, or the longest clip that plays, once, from its start. */
+void view_export_begin(view_app *a);
 void view_graph_start(view_app *a, uint32_t n);
 /* Put a clip on the pad or take it off; play the pad, or stop. */
 void view_pad_choose(view_app *a, uint32_t clip);
 void view_pad_switch(view_app *a);
 /* Where the mouse is over the picture, for faces that look at it. inside: 0: it is elsewhere */
 void view_point_window(view_app *a, float x, float y, int inside);
+
+void view_look_at_pointer(const view_app *a, const noh_gl_camera *camera);
 
 /* Pick, or let go where nothing is: prints what was picked. */
 void view_pick_window(view_app *a, float x, float y);
@@ -145,10 +229,14 @@ void view_push(view_app *a);
 /* Takes effect with view_app_after. */
 void view_walk(view_app *a, int root_motion);
 void view_walk_home(view_app *a);
-/* Tracks, pad, place, level and pick to stdout. */
-void view_print(const view_app *a);
+/* Tracks, pad, place, level, what is held, what is under way. */
+void view_print(const view_app *a, FILE *out);
 
 /* The figure without the panels, or the whole window, to a file. */
 int view_save(view_app *a, const char *path, int with_panels);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

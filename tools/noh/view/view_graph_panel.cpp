@@ -1,25 +1,21 @@
 // view_graph_panel.cpp: the graphs of a pack: one plays on the body, its parameters are moved, its states are told.
 #include "view/view_panels.h"
-#include "view/view_imgui.h"
+#include "view/view_widgets.h"
 
 namespace
 {
-
-float initial_width()
-{
-    return ImGui::GetContentRegionAvail().x - 110.0f;
-}
 
 void value_combo(view_app *a, const noh_pack_graph *g, const noh_pack_graph_param *p, uint32_t index)
 {
     const char *name = noh_pack_string(g->pack, p->name);
     const uint32_t now = static_cast<uint32_t>(view_graph_parameter(a->model, index) + 0.5f);
     const char *shown = now < p->value_count ? noh_pack_string(g->pack, g->names[p->first_value + now].name) : "";
-    if (!ImGui::BeginCombo(name, shown)) {
+    if (!ui::begin_combo(name, shown)) {
         return;
     }
+    const ui::in within(name);
     for (uint32_t v = 0; v < p->value_count; v++) {
-        if (ImGui::Selectable(noh_pack_string(g->pack, g->names[p->first_value + v].name), v == now)) {
+        if (ui::selectable(noh_pack_string(g->pack, g->names[p->first_value + v].name), v == now)) {
             view_graph_set(a->model, index, static_cast<float>(v));
         }
     }
@@ -32,13 +28,12 @@ void parameter(view_app *a, const noh_pack_graph *g, const noh_pack_graph_param 
     const uint32_t index = noh_stage_find(a->model->figure->stage, 0, NOH_NAME_PARAMETER, name);
     float value = view_graph_parameter(a->model, index);
     if (p->kind == NOH_PARAM_TRIGGER) {
-        if (ImGui::Button(name)) {
+        if (ui::button(name)) {
             view_graph_set(a->model, index, 1.0f);
         }
     } else if (p->kind == NOH_PARAM_ENUM) {
         value_combo(a, g, p, index);
-    } else if (ImGui::SliderFloat(name, &value, p->minimum, p->maximum, p->kind == NOH_PARAM_INTEGER ? "%.0f" : "%.2f",
-                                  ImGuiSliderFlags_AlwaysClamp)) {
+    } else if (ui::slider(name, &value, p->minimum, p->maximum, p->kind == NOH_PARAM_INTEGER ? "%.0f" : "%.2f")) {
         view_graph_set(a->model, index, value);
     }
 }
@@ -60,12 +55,13 @@ void graph_section(view_app *a)
 {
     noh_pack_graph g;
     const uint32_t playing = view_graph_playing(a->model);
-    if (!a->model->has_graphs || !ImGui::CollapsingHeader("Graph")) {
+    if (!a->model->has_graphs || !ui::section("Graph", false)) {
         return;
     }
     for (uint32_t i = 0; noh_pack_graph_at(&a->model->clips_of->pack, i, &g, nullptr) == NOH_OK; i++) {
+        const ui::in row(g.name);
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::SmallButton("play")) {
+        if (ui::small_button("play")) {
             view_graph_start(a, i);
         }
         ImGui::SameLine();
@@ -75,10 +71,12 @@ void graph_section(view_app *a)
     if (noh_pack_graph_at(&a->model->clips_of->pack, playing, &g, nullptr) != NOH_OK) {
         return;
     }
-    ImGui::PushItemWidth(initial_width());
-    for (uint32_t p = 0; p < g.header->param_count; p++) {
-        parameter(a, &g, &g.params[p]);
+    {
+        const ui::in within("graph");
+        const ui::labelled width;
+        for (uint32_t p = 0; p < g.header->param_count; p++) {
+            parameter(a, &g, &g.params[p]);
+        }
     }
-    ImGui::PopItemWidth();
     states(a);
 }

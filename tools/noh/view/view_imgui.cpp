@@ -39,6 +39,10 @@ const key_pair keys[] = {
     { ImGuiKey_Enter, GLFW_KEY_ENTER },
     { ImGuiKey_Escape, GLFW_KEY_ESCAPE },
     { ImGuiKey_A, GLFW_KEY_A },
+    { ImGuiKey_C, GLFW_KEY_C },
+    { ImGuiKey_V, GLFW_KEY_V },
+    { ImGuiKey_X, GLFW_KEY_X },
+    { ImGuiKey_Z, GLFW_KEY_Z },
 };
 
 #if IMGUI_VERSION_NUM >= 18900 // input as events
@@ -149,6 +153,7 @@ void set_style()
     style.ItemSpacing = ImVec2(6.0f, 4.0f);
     style.Colors[ImGuiCol_WindowBg] = ImVec4(0.13f, 0.13f, 0.14f, 1.0f);
     style.Colors[ImGuiCol_PopupBg] = ImVec4(0.16f, 0.16f, 0.17f, 1.0f);
+    style.Colors[ImGuiCol_TextDisabled] = ImVec4(0.64f, 0.64f, 0.66f, 1.0f);
     style.Colors[ImGuiCol_FrameBg] = ImVec4(0.22f, 0.22f, 0.24f, 1.0f);
     style.Colors[ImGuiCol_FrameBgHovered] = ImVec4(0.30f, 0.30f, 0.32f, 1.0f);
     style.Colors[ImGuiCol_FrameBgActive] = ImVec4(0.34f, 0.34f, 0.36f, 1.0f);
@@ -168,6 +173,15 @@ void set_style()
 ImTextureID imgui_texture(GLuint name)
 {
     return (ImTextureID)(intptr_t)name; // a pointer or an integer, by version
+}
+
+ImU32 imgui_color(const float rgb[3])
+{
+    float bytes[3];
+    for (int i = 0; i < 3; i++) {
+        bytes[i] = rgb[i] > 0.0031308f ? 1.055f * std::pow(rgb[i], 1.0f / 2.4f) - 0.055f : 12.92f * rgb[i];
+    }
+    return ImGui::ColorConvertFloat4ToU32(ImVec4(bytes[0], bytes[1], bytes[2], 1.0f));
 }
 
 int imgui_open()
@@ -200,5 +214,12 @@ void imgui_begin(view_app *a, const view_input *input, double seconds)
 void imgui_end(view_app *a)
 {
     ImGui::Render();
+    if (!a->lazy) {
+        draw(a);
+    }
+}
+
+void view_panels_draw(view_app *a)
+{
     draw(a);
 }

@@ -20,13 +20,31 @@ void imgui_close();
 void imgui_begin(view_app *a, const view_input *input, double seconds);
 void imgui_end(view_app *a);
 
-// Sections of the right panel: of packs with LOD levels; what plays, how the next clip plays; the blend space; the
-// floor.
-void lod_section(view_app *a);
+// Linear light to a colour of the panels.
+ImU32 imgui_color(const float rgb[3]);
+
+bool begin_panel(const char *name, float x, float y, float width, float height);
+
+// The left panel; what lies over the picture.
+void targets_panel(view_app *a);
+void targets_forget();
+void dialogs(view_app *a);
+
+// Sections of the right panel, from its top: the clips; what plays of them; how the next one plays; a blend space; a
+// graph; LOD levels; what is drawn; its light; camera and floor; a second figure; films; what it costs.
+void clips_section(view_app *a);
 void tracks_list(view_app *a);
 void how_section(view_app *a);
 void pad_section(view_app *a);
 void graph_section(view_app *a);
-void floor_section(view_app *a);
+void lod_section(view_app *a);
+void drawing_section(view_app *a);
+void light_section(view_app *a);
+void camera_section(view_app *a);
+void compare_section(view_app *a);
+void film_section(view_app *a);
+void times_section(view_app *a);
+void layers_section(view_app *a);
+void memory_section(view_app *a);
 
 #endif

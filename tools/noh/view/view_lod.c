@@ -31,20 +31,33 @@ void view_lod_next(view_lod *d, const view_model *m)
 
 /* ---- a frame ---- */
 
-void view_lod_begin(const view_lod *d, view_model *m)
+static void set_look(const figure *f, const noh_look *look)
+{
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        (void)noh_actor_set_look(f->stage, f->actors[k], look, NULL);
+    }
+}
+
+void view_lod_look(const view_lod *d, const figure *f)
 {
     noh_look look = { 0 };
     look.wrinkle_models = (uint8_t)d->wrinkle_models;
     look.smoothed = (uint8_t)(255.5f - 255.0f * d->wrinkles);
-    if (m->show_bones) {
-        look.posed = 1;
-    } else if (d->by_pixels) {
+    if (d->by_pixels) {
         look.pixels = d->pixels;
     } else {
         look.level = 1u + d->level;
     }
-    for (uint32_t k = 0; k < m->figure->stage_desc.kind_count; k++) {
-        (void)noh_actor_set_look(m->figure->stage, m->figure->actors[k], &look, NULL);
+    set_look(f, &look);
+}
+
+void view_lod_begin(const view_lod *d, view_model *m)
+{
+    const noh_look posed = { .posed = 1 };
+    if (m->show_bones) {
+        set_look(m->figure, &posed);
+    } else {
+        view_lod_look(d, m->figure);
     }
 }
 

@@ -2,6 +2,7 @@
  *
  *   view_lod_level, view_lod_pixels   the switch
  *   view_lod_next                     cycles through its positions
+ *   view_lod_look                     told to a figure
  *   view_lod_begin, view_lod_end      before and after a frame of the model
  *   view_lod_text                     what the frame showed, in words
  *
@@ -32,6 +33,8 @@ void view_lod_level(view_lod *d, uint32_t level);
 void view_lod_pixels(view_lod *d);
 void view_lod_next(view_lod *d, const view_model *m);
 
+/* How a figure with meshes is drawn. */
+void view_lod_look(const view_lod *d, const figure *f);
 void view_lod_begin(const view_lod *d, view_model *m);
 void view_lod_end(view_lod *d, const view_model *m);
 

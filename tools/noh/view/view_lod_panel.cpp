@@ -1,6 +1,6 @@
 // view_lod_panel.cpp: the switch for LOD levels, with the cost of each.
 #include "view/view_panels.h"
-#include "view/view_imgui.h"
+#include "view/view_widgets.h"
 
 #include <cstdio>
 
@@ -32,7 +32,7 @@ void level_row(view_app *a, uint32_t level)
     if (shown) {
         ImGui::PushStyleColor(ImGuiCol_Text, amber);
     }
-    if (ImGui::Selectable(name, !d->by_pixels && d->level == level, ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ui::selectable(name, !d->by_pixels && d->level == level, ImGuiSelectableFlags_SpanAllColumns)) {
         view_lod_level(d, level);
     }
     const unsigned long long numbers[] = { cost.triangles, cost.texels, cost.pairs, cost.gpu_bytes };
@@ -66,7 +66,7 @@ void level_table(view_app *a)
     }
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    if (ImGui::Selectable("by pixels", a->lod.by_pixels != 0, ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ui::selectable("by pixels", a->lod.by_pixels != 0, ImGuiSelectableFlags_SpanAllColumns)) {
         view_lod_pixels(&a->lod);
     }
     ImGui::EndTable();
@@ -78,13 +78,13 @@ void lod_section(view_app *a)
 {
     view_lod *d = &a->lod;
     char text[96];
-    if (a->model->costs.count < 2 || !ImGui::CollapsingHeader("Detail", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (a->model->costs.count < 2 || !ui::section("Detail", true)) {
         return;
     }
     level_table(a);
     ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::SliderFloat("##pixels", &d->pixels, VIEW_PIXELS_LEAST, VIEW_PIXELS_MOST, "%.2f pixels allowed",
-                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    if (ui::slider("##pixels", &d->pixels, VIEW_PIXELS_LEAST, VIEW_PIXELS_MOST, "%.2f pixels allowed",
+                   ImGuiSliderFlags_Logarithmic)) {
         view_lod_pixels(d);
     }
     view_lod_text(d, text, sizeof text);

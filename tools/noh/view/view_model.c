@@ -1,46 +1,23 @@
 #include "view/view_model.h"
+#include "view/view_setting.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "convert/convert.h"
 #include "anim/controller_pose.h"
 #include "gl/gl_lost.h"
 #include "cli/message.h"
 
 /* ---- the file ---- */
 
-static int is_model(const char *path)
+/* A model's pack, as view_load made it; its bytes are the model's from now on. */
+static int open_converted(view_model *m, byte_buffer *converted)
 {
-    static const char *const endings[] = { ".gltf", ".glb", ".vrm", ".fbx", ".obj", ".bvh", ".rcl" };
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++) {
-        if (strcmp(dot, endings[i]) == 0) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-static int convert_model(view_model *m, const lod_settings *levels)
-{
-    const char *inputs[1];
-    convert_options options;
-    convert_failure failure;
     noh_error error = { NOH_OK, "", 0, 0 };
-    inputs[0] = m->path;
-    memset(&options, 0, sizeof options);
-    options.morph.error_um = 10.0f; /* as `noh build` without options */
-    options.clip.clip.error_cm = 0.01;
-    options.clip.clip.shell_cm = 3.0;
-    options.clip.unit_cm = 1.0;
-    options.lod = *levels;
-    if (convert_files(inputs, 1, &options, &m->converted, &failure)) {
-        return failure.error.where[0] ? tool_fail(m->path, "%s (%s)", failure.error.what, failure.error.where)
-                                      : tool_fail(m->path, "%s", failure.error.what);
-    }
+    m->converted = *converted;
+    memset(converted, 0, sizeof *converted);
     m->file.path = m->path;
     return noh_pack_open(m->converted.bytes, m->converted.count, &m->file.pack, &error)
                ? tool_fail_error(m->path, &error)
@@ -132,113 +109,7 @@ static void measure_targets(view_model *m)
     }
 }
 
-/* ---- a stage ---- */
-
-/* A figure, and what it borrows. */
-typedef struct staged {
-    figure figure;
-    noh_layer_desc layers[VIEW_LAYERS];
-    char part[NOH_NAME_BYTES_MAX];
-} staged;
-
-static staged *make_staged(const char *part)
-{
-    staged *s = calloc(1, sizeof *s); /* a figure must not move */
-    if (s) {
-        const noh_layer_desc layers[VIEW_LAYERS] = {
-            { view_layer_names[VIEW_BODY], NOH_LAYER_BASE, NULL, NULL, VIEW_BODY_TRACKS },
-            { view_layer_names[VIEW_PART], NOH_LAYER_OVER, s->part, "", VIEW_OTHER_TRACKS },
-            { view_layer_names[VIEW_FACE], NOH_LAYER_OVER, "", NULL, VIEW_OTHER_TRACKS },
-            { view_layer_names[VIEW_ADD], NOH_LAYER_ADD, NULL, NULL, VIEW_OTHER_TRACKS },
-        };
-        memcpy(s->layers, layers, sizeof layers);
-        snprintf(s->part, sizeof s->part, "%s", part ? part : "");
-    }
-    return s;
-}
-
-/* What a stage of these options is, and what it has for the panels. */
-typedef struct setting {
-    figure *figure; /* the first member of a `staged` */
-    int show_bones;
-    bones *bones[NOH_STAGE_KINDS_MAX];
-} setting;
-
-static void close_setting(setting *s)
-{
-    for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) {
-        if (s->bones[k]) bones_close(s->bones[k]);
-        free(s->bones[k]);
-    }
-    if (s->figure && s->figure->stage) figure_close(s->figure);
-    free(s->figure);
-    memset(s, 0, sizeof *s);
-}
-
-static int has_joints(const noh_pack *pack)
-{
-    return pack->skeleton_count > 0;
-}
-
-static int open_bones(setting *s, gpu *g, const char *path)
-{
-    int status = 0;
-    for (uint32_t k = 0; k < s->figure->stage_desc.kind_count && !status; k++) {
-        const uint32_t joints = s->figure->plan.kinds[k].joint_count;
-        if (!s->show_bones || !joints) continue;
-        s->bones[k] = calloc(1, sizeof *s->bones[k]);
-        status = s->bones[k] ? bones_open(s->bones[k], g, joints) : tool_fail(path, "out of memory");
-    }
-    return status;
-}
-
-static int open_setting(view_model *m, gpu *g, const view_model_desc *desc, setting *s)
-{
-    staged *own = NULL;
-    const noh_pack *pack = &m->file.pack;
-    figure_desc d;
-    int status;
-    memset(s, 0, sizeof *s);
-    s->show_bones = desc->show_bones || !pack->mesh_count;
-    if (s->show_bones && !has_joints(pack)) {
-        return tool_fail(m->path,
-                         desc->show_bones ? "the pack has no skeleton to draw" : "the pack has nothing to draw");
-    }
-    own = make_staged(desc->part);
-    if (!own) {
-        return tool_fail(m->path, "out of memory");
-    }
-    s->figure = &own->figure;
-    memset(&d, 0, sizeof d);
-    d.file = &m->file;
-    d.clips = m->clips_of;
-    d.level = figure_level_first(pack);
-    d.by_error = 1;
-    d.layers = own->layers;
-    d.layer_count = VIEW_LAYERS;
-    d.held_float_count = FIGURE_HELD_ALL;
-    d.inertia = d.pickable = d.tangents = 1;
-    d.alive = desc->alive && !s->show_bones;
-    d.without_springs = desc->without_springs;
-    d.weight_rules = desc->weight_rules;
-    d.hair = !s->show_bones;
-    d.falls = !m->cannot_fall.result;
-    d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
-    d.path = desc->morph_path;
-    d.accumulate = desc->accumulate;
-    d.view = desc->view;
-    d.light = desc->light;
-    d.graphs = m->clips_of->pack.graph_count && pack->skeleton_count == 1 ? "*" : NULL;
-    status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
-    if (status && d.graphs) { /* such as graphs of clips that the pack of clips lacks: it has been told */
-        d.graphs = NULL;
-        status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
-    }
-    if (!status) status = open_bones(s, g, m->path);
-    if (!status && d.light) status = figure_pose(s->figure); /* its shadow falls by the last pose */
-    if (status) close_setting(s);
-    return status;
-}
+/* ---- what a stage costs ---- */
 
 static int find_costs(view_costs *out, const figure *f, const noh_gl_caps *caps)
 {
@@ -297,7 +168,7 @@ static int open_model(view_model *m, gpu *g, const view_model_desc *desc)
     setting s;
     int status = figure_open_clips(&m->anim_file, desc->anim, &m->file, &m->clips_of);
     (void)figure_can_fall(&m->file.pack, &m->cannot_fall);
-    if (!status) status = open_setting(m, g, desc, &s);
+    if (!status) status = setting_open(m, g, desc, &s);
     if (status) {
         return status;
     }
@@ -320,7 +191,7 @@ int view_model_open(gpu *g, const view_model_desc *desc, view_model **out)
         return tool_fail(desc->path, m ? "the path is too long" : "out of memory");
     }
     strcpy(m->path, desc->path);
-    status = is_model(m->path) ? convert_model(m, &desc->lod) : pack_file_open(&m->file, m->path);
+    status = desc->converted ? open_converted(m, desc->converted) : pack_file_open(&m->file, m->path);
     if (!status) status = open_model(m, g, desc);
     if (status) {
         view_model_close(m);
@@ -337,7 +208,7 @@ void view_model_close(view_model *m)
         return;
     }
     s = setting_of(m);
-    close_setting(&s);
+    setting_close(&s);
     if (m->has_canvas) canvas_close(&m->canvas);
     if (m->clips_of) figure_close_clips(&m->anim_file, m->clips_of);
     if (m->file.file.data) {
@@ -350,57 +221,22 @@ void view_model_close(view_model *m)
     free(m);
 }
 
-/* A graph begins anew, with the parameters that it had. */
-static void carry_graph(const figure *from, figure *to)
-{
-    const noh_graph_pack *made;
-    const noh_play at_once = { .fade_ticks = 1 };
-    if (!noh_actor_graph(from->stage, from->actors[0], &made)) {
-        return;
-    }
-    (void)noh_actor_play_graph(to->stage, to->actors[0], VIEW_BODY, made->source.name, &at_once, NULL);
-    for (uint32_t i = 0; noh_stage_name(to->stage, 0, NOH_NAME_PARAMETER, i); i++) {
-        (void)noh_actor_set_parameter(to->stage, to->actors[0], i, noh_actor_parameter(from->stage, from->actors[0], i),
-                                      NULL);
-    }
-}
-
-/* Tracks, changes and places of one stage to another with the same clips and layers. */
-static void carry_over(const figure *from, figure *to)
-{
-    const noh_graph_pack *made;
-    carry_graph(from, to);
-    for (uint32_t k = 0; k < to->stage_desc.kind_count; k++) {
-        const noh_controller *was = noh_actor_controller(from->stage, from->actors[k], NULL);
-        noh_controller *is = noh_actor_controller(to->stage, to->actors[k], NULL);
-        const int has_graph = noh_actor_graph(from->stage, from->actors[k], &made) != NULL;
-        noh_place place;
-        if (!has_graph && was->bytes == is->bytes && was->clip_count == is->clip_count) memcpy(is, was, was->bytes);
-        for (uint32_t t = 0; t < is->track_count; t++) {
-            noh_track *track = &noh_controller_tracks(is)[t];
-            track->root_position = track->position; /* only what is walked from here on moves it */
-        }
-        (void)noh_actor_place(from->stage, from->actors[k], &place, NULL);
-        (void)noh_actor_set_place(to->stage, to->actors[k], &place, NULL);
-    }
-}
-
 int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
 {
     setting is, was = setting_of(m);
-    int status = open_setting(m, g, desc, &is);
+    int status = setting_open(m, g, desc, &is);
     if (!status && is.figure->stage_desc.kind_count != was.figure->stage_desc.kind_count) {
         status = tool_fail(m->path, "the same pack is planned with other kinds");
     }
     if (!status) status = count_setting(m, g, &is);
     if (status) {
-        close_setting(&is);
+        setting_close(&is);
         (void)count_setting(m, g, &was);
         return status;
     }
-    carry_over(was.figure, is.figure);
+    setting_carry(was.figure, is.figure);
     use_setting(m, &is, desc);
-    close_setting(&was);
+    setting_close(&was);
     return 0;
 }
 
@@ -426,7 +262,8 @@ static int restore_bones(view_model *m, gpu *g)
 
 int view_model_restore(view_model *m, gpu *g)
 {
-    int status = m->show_bones ? restore_bones(m, g) : figure_restore(m->figure);
+    int status = restore_bones(m, g);
+    if (!status && !m->show_bones) status = figure_restore(m->figure);
     if (!status) {
         status = canvas_open(&m->canvas, g, m->canvas.width, m->canvas.height);
         m->has_canvas = !status;
@@ -560,7 +397,7 @@ int view_model_pose(view_model *m, const noh_gl_camera *camera, int cut)
     return 0;
 }
 
-static void draw_bones(view_model *m, const noh_gl_camera *camera)
+void view_model_draw_bones(view_model *m, const noh_gl_camera *camera)
 {
     for (uint32_t k = 0; k < kind_count(m); k++) {
         noh_skeleton skeleton;
@@ -570,17 +407,34 @@ static void draw_bones(view_model *m, const noh_gl_camera *camera)
     }
 }
 
-int view_model_draw(view_model *m, const noh_gl_camera *camera)
+/* The surface, or what stands in for it. */
+static int draw_surface(view_model *m, overlay *o, const view_over *over, const noh_gl_camera *camera)
+{
+    switch (over->skin) {
+    case VIEW_SKIN_JOINTS: return overlay_draw(o, m->figure, OVERLAY_JOINTS, NOH_NONE, camera);
+    case VIEW_SKIN_WEIGHTS: return overlay_draw(o, m->figure, OVERLAY_WEIGHTS, over->joint, camera);
+    default: return figure_draw(m->figure);
+    }
+}
+
+int view_model_draw(view_model *m, canvas *c, overlay *o, const view_over *over, const noh_gl_camera *camera)
 {
     int status = m->show_bones ? 0 : figure_update_hair(m->figure);
     if (!status && !m->show_bones) status = figure_shade(m->figure);
     if (status) {
         return status;
     }
-    canvas_begin(&m->canvas);
+    canvas_begin(c);
     if (m->show_bones) {
-        draw_bones(m, camera);
+        view_model_draw_bones(m, camera);
         return 0;
     }
-    return figure_draw(m->figure);
+    status = draw_surface(m, o, over, camera);
+    if (!status && over->wireframe) status = overlay_draw(o, m->figure, OVERLAY_WIREFRAME, NOH_NONE, camera);
+    if (!status && over->normals) status = overlay_draw(o, m->figure, OVERLAY_NORMALS, NOH_NONE, camera);
+    if (!status && over->bones) {
+        canvas_clear_depth(c);
+        view_model_draw_bones(m, camera);
+    }
+    return status;
 }

@@ -13,6 +13,7 @@
 #include "convert/lod/lod_levels.h"
 #include "draw/bones.h"
 #include "draw/figure.h"
+#include "draw/overlay.h"
 #include "gpu/canvas.h"
 
 /* ---- what is shown ---- */
@@ -39,9 +40,10 @@ enum { VIEW_BODY, VIEW_PART, VIEW_FACE, VIEW_ADD, VIEW_LAYERS };
 extern const char *const view_layer_names[VIEW_LAYERS];
 
 typedef struct view_model_desc {
-    const char *path; /* a pack, or .gltf, .glb, .bvh, .rcl */
-    const char *anim; /* a pack whose clips are played instead; NULL: none */
-    lod_settings lod; /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
+    const char *path;       /* a pack, or a model that was converted */
+    byte_buffer *converted; /* the pack of a model (view_load.h), taken over; NULL: the file is one */
+    const char *anim;       /* a pack whose clips are played instead; NULL: none */
+    lod_settings lod;       /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
     noh_morph_path morph_path;
     noh_accumulate accumulate;
     noh_debug_view view;
@@ -61,6 +63,14 @@ typedef struct view_costs {
     uint32_t first, count; /* the levels first to count - 1 are there */
 } view_costs;
 
+/* What is drawn over the surface, or in its place. */
+typedef enum view_skin { VIEW_SKIN_OFF, VIEW_SKIN_JOINTS, VIEW_SKIN_WEIGHTS } view_skin;
+typedef struct view_over {
+    view_skin skin;
+    uint32_t joint; /* of VIEW_SKIN_WEIGHTS, of the first kind */
+    int wireframe, normals, bones;
+} view_over;
+
 #define VIEW_PARTS_MAX 64u
 
 typedef struct view_model {
@@ -74,7 +84,7 @@ typedef struct view_model {
     noh_frame_clock clock;             /* what is left over of the seconds of frames */
     noh_error cannot_fall;             /* OK: the first skeleton can */
     int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
-    bones *bones[NOH_STAGE_KINDS_MAX]; /* where bones are drawn: of each kind with joints */
+    bones *bones[NOH_STAGE_KINDS_MAX]; /* of each kind with joints */
     int show_bones;
     canvas canvas;
     int has_canvas;
@@ -122,8 +132,8 @@ void view_model_hold(view_model *m);
 /* All of a frame but what happens on the GPU: prints an error and returns an exit code; 0 on success. Then
  * noh_stage_frame_end. */
 int view_model_pose(view_model *m, const noh_gl_camera *camera, int cut);
-/* Into the canvas. */
-int view_model_draw(view_model *m, const noh_gl_camera *camera);
+int view_model_draw(view_model *m, canvas *c, overlay *o, const view_over *over, const noh_gl_camera *camera);
+void view_model_draw_bones(view_model *m, const noh_gl_camera *camera);
 
 /* ---- its clips ---- */
 
@@ -156,6 +166,8 @@ void view_set_speed(view_model *m, uint32_t kind, uint32_t track, float speed);
 void view_set_mode(view_model *m, uint32_t kind, uint32_t track, noh_track_mode mode);
 /* Seek a track to a time of its clip without firing callbacks. */
 void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds);
+/* The track of a layer that was started last. */
+void view_seek_newest(view_model *m, uint32_t kind, uint32_t layer, double seconds);
 /* Where a track is in its clip. */
 double view_position(const view_model *m, uint32_t kind, uint32_t track);
 /* Over to another weight or speed in so many seconds. */

@@ -1,6 +1,6 @@
 // view_pad_panel.cpp: a blend space to drag a point in.
 #include "view/view_panels.h"
-#include "view/view_imgui.h"
+#include "view/view_widgets.h"
 
 #include <cstdio>
 
@@ -84,6 +84,7 @@ void square_of(view_app *a)
 {
     const square box = { ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x * 0.7f };
     ImGui::InvisibleButton("pad", ImVec2(box.side, box.side));
+    ui::note("pad");
     drag(a, box);
     draw(a, box);
     ImGui::SameLine();
@@ -101,17 +102,18 @@ void square_of(view_app *a)
 void choose(view_app *a)
 {
     char name[256];
-    if (!ImGui::BeginCombo("clips", a->pad.count ? "..." : "choose some")) {
+    if (!ui::begin_combo("clips", a->pad.count ? "..." : "choose some")) {
         return;
     }
+    const ui::in within("clips");
     for (uint32_t i = 0; i < a->model->clip_count; i++) {
-        bool on = view_pad_has(&a->pad, i) != 0;
-        if (ImGui::Selectable(a->model->clips[i].name, &on, ImGuiSelectableFlags_DontClosePopups)) {
+        if (ui::selectable(a->model->clips[i].name, view_pad_has(&a->pad, i) != 0,
+                           ImGuiSelectableFlags_DontClosePopups)) {
             view_pad_choose(a, i);
         }
     }
     for (uint32_t n = 0; view_pad_space(a->model, n, name, sizeof name); n++) {
-        if (ImGui::Selectable(name)) {
+        if (ui::selectable(name, false)) {
             view_pad_take(&a->pad, a->model, n);
         }
     }
@@ -122,18 +124,20 @@ void choose(view_app *a)
 
 void pad_section(view_app *a)
 {
-    if (a->model->clip_count < 2 || !ImGui::CollapsingHeader("Blend space")) {
+    if (a->model->clip_count < 2 || !ui::section("Blend space", false)) {
         return;
     }
-    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
-    choose(a);
-    ImGui::PopItemWidth();
+    const ui::in within("blend");
+    {
+        const ui::labelled width;
+        choose(a);
+    }
     if (!a->pad.count) {
         ImGui::TextDisabled("three or more; drag the point, or the clips");
         return;
     }
     square_of(a);
-    if (ImGui::Button(a->pad.plays ? "stop##pad" : "play##pad", ImVec2(60.0f, 0.0f))) {
+    if (ui::button(a->pad.plays ? "stop##pad" : "play##pad", 60.0f)) {
         view_pad_switch(a);
     }
 }

@@ -19,7 +19,8 @@ typedef struct view_input {
 } view_input;
 
 /* 0, or an exit code after printing. */
-int view_panels_open(void);
+/* scripted  1: controls are found by name */
+int view_panels_open(int scripted);
 void view_panels_close(void);
 
 /* Take the input, lay out the panels, draw them over the window. */
@@ -27,6 +28,16 @@ void view_panels_frame(view_app *a, const view_input *input, double seconds);
 
 /* Whether a slider is dragged or a list open: then the panels own the mouse everywhere. */
 int view_panels_hold_mouse(void);
+/* Once more what was laid out last, where frames are not drawn (view_app.lazy). */
+void view_panels_draw(view_app *a);
+
+/* A control by its name, as it is written; one of several of a name by what it is in: "walk/play". box: left, top,
+ * right, bottom. Returns 0: there was none in the last frame, 1: it is in the window, 2: it has to be scrolled to. */
+int view_panels_find(const char *name, float box[4]);
+/* Scroll to it, in the next frame. */
+void view_panels_want(const char *name);
+/* Whether a list is open, which Esc closes. */
+int view_panels_has_list(void);
 /* Whether a text is being typed. */
 int view_panels_want_keys(void);
 

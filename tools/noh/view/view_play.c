@@ -140,6 +140,15 @@ void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds)
     m->touched = 1;
 }
 
+void view_seek_newest(view_model *m, uint32_t kind, uint32_t layer, double seconds)
+{
+    const noh_controller *c = view_controller(m, kind, NULL);
+    const noh_track *newest = noh_actor_track(m->figure->stage, m->figure->actors[kind], layer);
+    for (uint32_t t = 0; t < c->track_count; t++) {
+        if (noh_controller_track(c, t) == newest) view_seek(m, kind, t, seconds);
+    }
+}
+
 double view_position(const view_model *m, uint32_t kind, uint32_t track)
 {
     const noh_clip_set *set;

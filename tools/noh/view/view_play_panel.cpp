@@ -1,6 +1,6 @@
-// view_play_panel.cpp: what plays, layer by layer; how the next clip plays; the floor.
+// view_play_panel.cpp: what plays, layer by layer; how the next clip plays.
 #include "view/view_panels.h"
-#include "view/view_imgui.h"
+#include "view/view_widgets.h"
 
 #include <cstdio>
 #include <cstring>
@@ -18,9 +18,7 @@ void track_slider(view_app *a, uint32_t kind, uint32_t track, noh_change_kind wh
     static ImGuiID ramped;
     const ImGuiID id = ImGui::GetID(label);
     float value = ramped == id ? wanted : now;
-    const bool moved = ImGui::SliderFloat(label, &value, least, most,
-                                          what == NOH_CHANGE_WEIGHT ? "weight %.2f" : "speed %.2f",
-                                          ImGuiSliderFlags_AlwaysClamp);
+    const bool moved = ui::slider(label, &value, least, most, what == NOH_CHANGE_WEIGHT ? "weight %.2f" : "speed %.2f");
     if (moved && a->ramps) {
         wanted = value;
         ramped = id;
@@ -43,14 +41,12 @@ bool track_head(view_app *a, uint32_t kind, uint32_t track)
     ImGui::TextColored(muted ? ImVec4(0.5f, 0.5f, 0.5f, 1.0f) : amber, "%s %s", view_layer_names[view_layer_of(track)],
                        view_clip_name(a->model, kind, t->clip));
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 84.0f);
-    if (ImGui::SmallButton(muted ? "pose" : "mute")) {
+    if (ui::small_button(muted ? "pose" : "mute")) {
         view_set_mode(a->model, kind, track, muted ? NOH_TRACK_ON : NOH_TRACK_TIME_ONLY);
     }
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("muted: its time goes on and its keys fire, but it is not in the pose");
-    }
+    ui::hint("muted: its time goes on and its keys fire, but it is not in the pose");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
-    return ImGui::SmallButton("stop");
+    return ui::small_button("stop");
 }
 
 void track_sliders(view_app *a, uint32_t kind, uint32_t track)
@@ -60,7 +56,7 @@ void track_sliders(view_app *a, uint32_t kind, uint32_t track)
     float at = static_cast<float>(view_position(a->model, kind, track));
     const float end = static_cast<float>(set->clips[t->clip].duration_ticks) / NOH_TICKS_PER_SECOND;
     ImGui::SetNextItemWidth(-1.0f);
-    if (ImGui::SliderFloat("##at", &at, 0.0f, end, "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ui::slider("##at", &at, 0.0f, end, "%.3f s")) {
         view_seek(a->model, kind, track, static_cast<double>(at));
     }
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.5f - 4.0f);
@@ -74,6 +70,10 @@ void track_sliders(view_app *a, uint32_t kind, uint32_t track)
 void track_row(view_app *a, uint32_t kind, uint32_t track)
 {
     const noh_track *t = noh_controller_track(view_controller(a->model, kind, nullptr), track);
+    char name[NOH_NAME_BYTES_MAX];
+    snprintf(name, sizeof name, "%s %s", view_layer_names[view_layer_of(track)],
+             view_clip_name(a->model, kind, t->clip));
+    const ui::in row(name);
     ImGui::PushID(static_cast<int>(kind * NOH_TRACKS_MAX + track));
     const bool stop = track_head(a, kind, track);
     if (view_clip_of(a->model, kind, t)) {
@@ -89,17 +89,13 @@ void track_row(view_app *a, uint32_t kind, uint32_t track)
 
 void layer_combo(view_app *a)
 {
-    uint32_t *layer = &a->how.layer;
-    if (ImGui::BeginCombo("layer", *layer ? view_layer_names[*layer - 1] : "auto")) {
-        if (ImGui::Selectable("auto", !*layer)) {
-            *layer = 0;
-        }
-        for (uint32_t i = 0; i < VIEW_LAYERS; i++) {
-            if (ImGui::Selectable(view_layer_names[i], *layer == i + 1)) {
-                *layer = i + 1;
-            }
-        }
-        ImGui::EndCombo();
+    const char *names[VIEW_LAYERS + 1] = { "auto" };
+    for (uint32_t i = 0; i < VIEW_LAYERS; i++) {
+        names[i + 1] = view_layer_names[i];
+    }
+    int at = static_cast<int>(a->how.layer);
+    if (ui::choose("layer", &at, names, VIEW_LAYERS + 1)) {
+        a->how.layer = static_cast<uint32_t>(at);
     }
 }
 
@@ -113,15 +109,16 @@ void set_part(view_app *a, const char *joint)
 void part_combo(view_app *a)
 {
     noh_stage *stage = a->model->figure->stage;
-    if (!a->model->file.pack.skeleton_count || !ImGui::BeginCombo("part, from", a->part[0] ? a->part : "no joint")) {
+    if (!a->model->file.pack.skeleton_count || !ui::begin_combo("part, from", a->part[0] ? a->part : "no joint")) {
         return;
     }
-    if (ImGui::Selectable("no joint", !a->part[0])) {
+    const ui::in within("part, from");
+    if (ui::selectable("no joint", !a->part[0])) {
         set_part(a, "");
     }
     for (uint32_t i = 0; const char *name = noh_stage_name(stage, 0, NOH_NAME_JOINT, i); i++) {
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Selectable(name, std::strcmp(name, a->part) == 0)) {
+        if (ui::selectable(name, std::strcmp(name, a->part) == 0)) {
             set_part(a, name);
         }
         ImGui::PopID();
@@ -134,12 +131,13 @@ void layer_rows(view_app *a)
     static const char *const masks[VIEW_LAYERS] = { "all joints and floats", "these joints, over the body",
                                                     "floats, over the body", "added to what is below" };
     for (uint32_t i = 0; i < VIEW_LAYERS; i++) {
+        const ui::in row(view_layer_names[i]);
         ImGui::PushID(static_cast<int>(i));
         ImGui::Text("%s", view_layer_names[i]);
         ImGui::SameLine(50.0f);
         ImGui::TextDisabled("%s", masks[i]);
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 64.0f);
-        if (ImGui::SmallButton("fade out")) {
+        if (ui::small_button("fade out")) {
             view_stop_layer(a->model, i, a->how.fade_s);
         }
         ImGui::PopID();
@@ -165,58 +163,26 @@ void how_section(view_app *a)
     static const char *const loops[] = { "the clip's own", "once", "repeat", "ping-pong" };
     view_how *how = &a->how;
     int loop = static_cast<int>(how->loop), group = static_cast<int>(how->sync_group);
-    bool inertia = how->inertia != 0, ramps = a->ramps != 0;
-    if (!a->model->clip_count || !ImGui::CollapsingHeader("Layers")) {
+    if (!a->model->clip_count || !ui::section("Layers", false)) {
         return;
     }
+    const ui::in within("next");
     layer_rows(a);
     ImGui::TextDisabled("the next clip:");
-    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - 110.0f);
+    const ui::labelled width;
     layer_combo(a);
     part_combo(a);
-    ImGui::SliderFloat("fade", &how->fade_s, 0.0f, 2.0f, "%.2f s", ImGuiSliderFlags_AlwaysClamp);
-    ImGui::SliderFloat("weight", &how->weight, 0.01f, 1.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    ImGui::SliderFloat("speed", &how->speed, -2.0f, 2.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    if (ImGui::Combo("loop", &loop, loops, 4)) {
+    ui::slider("fade", &how->fade_s, 0.0f, 2.0f, "%.2f s");
+    ui::slider("weight", &how->weight, 0.01f, 1.0f, "%.2f");
+    ui::slider("speed", &how->speed, -2.0f, 2.0f, "%.2f");
+    if (ui::choose("loop", &loop, loops, 4)) {
         how->loop = static_cast<noh_loop>(loop);
     }
-    if (ImGui::SliderInt("sync group", &group, 0, NOH_SYNC_GROUPS_MAX, group ? "%d" : "none")) {
+    if (ui::slider("sync group", &group, 0, NOH_SYNC_GROUPS_MAX, group ? "%d" : "none")) {
         how->sync_group = static_cast<uint32_t>(group);
     }
-    ImGui::PopItemWidth();
-    if (ImGui::Checkbox("by inertia", &inertia)) {
-        how->inertia = inertia;
-    }
+    ui::checkbox("by inertia", &how->inertia);
     ImGui::SameLine();
-    if (ImGui::Checkbox("ramps", &ramps)) {
-        a->ramps = ramps;
-    }
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("sliders of tracks are followed smoothly, within the time of a fade");
-    }
-}
-
-void floor_section(view_app *a)
-{
-    const noh_place place = view_model_place(a->model);
-    bool floor = a->show_floor != 0, walks = a->model->root_motion != 0;
-    if (!a->model->file.pack.skeleton_count || !ImGui::CollapsingHeader("Floor")) {
-        return;
-    }
-    if (ImGui::Checkbox("floor", &floor)) {
-        a->show_floor = floor;
-    }
-    ImGui::SameLine();
-    if (ImGui::Checkbox("root motion", &walks)) {
-        view_walk(a, walks);
-    }
-    ImGui::SameLine();
-    if (ImGui::Button("back to the start", ImVec2(-1.0f, 0.0f))) {
-        view_walk_home(a);
-    }
-    if (ImGui::Button("push")) {
-        view_push(a);
-    }
-    ImGui::SameLine();
-    ImGui::Text("at %.3f %.3f", static_cast<double>(place.position[0]), static_cast<double>(place.position[2]));
+    ui::checkbox("ramps", &a->ramps);
+    ui::hint("sliders of tracks are followed smoothly, within the time of a fade");
 }

@@ -11,8 +11,9 @@
 /* ---- making it ---- */
 
 static int make_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, const char *defines,
-                        const char *sampler, GLuint *program)
+                        const char *sampler, const char *second, GLuint *program)
 {
+    const char *samplers[2] = { sampler, second };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
@@ -21,8 +22,8 @@ static int make_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source
     desc.vertex = vertex;
     desc.fragment = fragment;
     desc.defines = defines;
-    desc.samplers = &sampler;
-    desc.sampler_count = 1;
+    desc.samplers = samplers;
+    desc.sampler_count = second ? 2 : 1;
     if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
         fputs(log, stderr);
         return tool_fail_error("view", &error);
@@ -34,14 +35,17 @@ static int make_programs(view_screen *s)
 {
     static const char uint_layers[] = "#define NOH_LAYERS_UINT\n";
     gpu *g = s->g;
-    int status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_picture_frag, NULL, "u_picture",
+    int status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_picture_frag, NULL, "u_picture", NULL,
                               &s->picture_program);
     if (!status)
-        status = make_program(g, &noh_shader_view_panel_vert, &noh_shader_view_panel_frag, NULL, "u_picture",
+        status = make_program(g, &noh_shader_view_panel_vert, &noh_shader_view_panel_frag, NULL, "u_picture", NULL,
                               &s->panel_program);
+    if (!status)
+        status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_difference_frag, NULL, "u_picture",
+                              "u_other", &s->difference_program);
     for (int i = 0; i < 2 && !status; i++) {
         status = make_program(g, &noh_shader_full_screen_vert, &noh_shader_view_layer_frag, i ? uint_layers : NULL,
-                              "noh_layers", &s->layer_programs[i]);
+                              "noh_layers", NULL, &s->layer_programs[i]);
     }
     return status;
 }
@@ -98,6 +102,7 @@ void view_screen_close(view_screen *s)
     gl = &s->g->gl;
     noh_gl_program_delete(gl, NULL, &s->picture_program);
     noh_gl_program_delete(gl, NULL, &s->panel_program);
+    noh_gl_program_delete(gl, NULL, &s->difference_program);
     noh_gl_program_delete(gl, NULL, &s->layer_programs[0]);
     noh_gl_program_delete(gl, NULL, &s->layer_programs[1]);
     gl->DeleteVertexArrays(1, &s->empty_array);
@@ -141,21 +146,45 @@ static void cover(view_screen *s)
     gl->UseProgram(0);
 }
 
-void view_screen_picture(view_screen *s, canvas *c, int x, int y)
+void view_screen_begin(view_screen *s)
 {
     static const float black[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     const noh_gl_api *gl = &s->g->gl;
-    canvas_resolve(c);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     if (!s->g->caps.is_es) {
         gl->Disable(DESKTOP_FRAMEBUFFER_SRGB);
     }
     gl->ClearBufferfv(GL_COLOR, 0, black);
+}
+
+void view_screen_picture(view_screen *s, canvas *c, int x, int y)
+{
+    const noh_gl_api *gl = &s->g->gl;
+    canvas_resolve(c);
     gl->Viewport(x, y, (GLsizei)c->width, (GLsizei)c->height);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D, c->resolved);
     gl->UseProgram(s->picture_program);
     gl->Uniform2i(gl->GetUniformLocation(s->picture_program, "u_corner"), x, y);
     cover(s);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+}
+
+void view_screen_difference(view_screen *s, const canvas *a, const canvas *b, float gain, int x, int y)
+{
+    const noh_gl_api *gl = &s->g->gl;
+    gl->Viewport(x, y, (GLsizei)a->width, (GLsizei)a->height);
+    gl->ActiveTexture(GL_TEXTURE0 + 1);
+    gl->BindTexture(GL_TEXTURE_2D, b->resolved);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D, a->resolved);
+    gl->UseProgram(s->difference_program);
+    gl->Uniform2i(gl->GetUniformLocation(s->difference_program, "u_corner"), x, y);
+    gl->Uniform1f(gl->GetUniformLocation(s->difference_program, "u_gain"), gain);
+    cover(s);
+    gl->ActiveTexture(GL_TEXTURE0 + 1);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D, 0);
 }
 

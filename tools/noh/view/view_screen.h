@@ -1,7 +1,8 @@
 /* view_screen.h: the viewer's drawing: the canvas, accumulator layers as pictures, the panels.
  *
  *   view_screen_open / view_screen_close
- *   view_screen_picture     the canvas into a rectangle of the window
+ *   view_screen_begin       clears the window
+ *   view_screen_picture     a canvas into a rectangle of it; view_screen_difference how two differ
  *   view_screen_layers      the accumulators' three layers into textures
  *   view_screen_data        a page of data textures there instead
  *   view_triangles_begin, view_triangles_list, view_triangles_draw, view_triangles_end   triangles of the panels
@@ -21,7 +22,8 @@ typedef struct view_vertex {
 
 typedef struct view_screen {
     gpu *g;
-    GLuint picture_program, panel_program, layer_programs[2]; /* of float layers, of RGBA32UI ones */
+    GLuint picture_program, difference_program, panel_program,
+        layer_programs[2]; /* of float layers, of RGBA32UI ones */
     GLuint empty_array, panel_array, vertex_buffer, index_buffer;
     GLuint font;
     GLuint layers[3], layers_framebuffer;
@@ -36,8 +38,12 @@ void view_screen_close(view_screen *s);
 /* Replace the panels' font: rgba[height][width][4]. */
 void view_screen_font(view_screen *s, uint32_t width, uint32_t height, const uint8_t *rgba);
 
+void view_screen_begin(view_screen *s);
 /* x, y: of the lower left corner, pixels. */
 void view_screen_picture(view_screen *s, canvas *c, int x, int y);
+
+/* Of the same size, both shown before: black where they are alike. */
+void view_screen_difference(view_screen *s, const canvas *a, const canvas *b, float gain, int x, int y);
 
 /* gains[layer]: the share of the range from black to white for a delta of 1. */
 void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh_gl_morph_binding *binding,

@@ -1,0 +1,63 @@
+# view.sh: what the tests of `noh view` share: a virtual display, and a hand that does what a script says. Each begins
+# with `. tests/cli/lib.sh` and `. tests/support/view.sh`.
+#
+#   start_display            ends the test, as skipped, where there is none
+#   hand NAME ARGUMENTS <<.. noh view with a script (tools/noh/view/view_script.h) in $work, where it saves pictures;
+#                            what it expects and what it finds is checked frame by frame, whatever time that takes
+#   last STATE-LINE          what follows these words in the last state that was printed
+#   same, differ, alike A B  pictures in $work
+#   check_near A B WITHIN    numbers
+
+start_display() {
+    for program in Xvfb xdotool; do
+        command -v $program >/dev/null 2>&1 && continue
+        skip 'windows' "$program is not installed"
+        finish
+    done
+    # -noreset: else it resets between two programs, and refuses one that connects meanwhile.
+    Xvfb -noreset -displayfd 3 -screen 0 1800x1000x24 3>"$work/display" >"$work/xvfb" 2>&1 &
+    xvfb=$!
+    trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT
+    tries=0
+    while [ ! -s "$work/display" ] && [ $tries -lt 150 ]; do sleep 0.2; tries=$((tries + 1)); done
+    if [ ! -s "$work/display" ]; then
+        skip 'windows' 'Xvfb does not start here'
+        finish
+    fi
+    DISPLAY=:$(cat "$work/display")
+    export DISPLAY
+    noh view "$build/mask.noh" --frames 1 --size 700x400
+    if [ $code != 0 ] && grep -q 'built without\|no window with OpenGL ES' "$work/err"; then
+        skip 'windows' "$(sed 's/^noh: [^:]*: //' "$work/err" | head -n 1)"
+        finish
+    fi
+}
+
+hand() {
+    name=$1
+    shift
+    cat >"$work/hand.txt"
+    (cd "$work" && "$build/noh" view "$@" --face off --size "${view_size:-900x600}" --script hand.txt) \
+        >"$work/out" 2>"$work/err"
+    code=$?
+    expect 0 "$name"
+    check 'and GL has nothing to say' sh -c '! grep "^noh: GL" "$1"' - "$work/err"
+}
+last() {
+    sed -n "s/^$1//p" "$work/out" | tail -n 1
+}
+same() { cmp -s "$work/$1" "$work/$2"; }
+differ() { [ -f "$work/$1" ] && [ -f "$work/$2" ] && ! cmp -s "$work/$1" "$work/$2"; }
+# But for a rounding: creases and skin are lit by derivatives, and other programs round them otherwise.
+alike() { "$build/tests/gl/picture_diff" "$work/$1" "$work/$2" "${3:-0.02}" "${4:-0.01}"; }
+check_near() {
+    awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a != "" && b != "" && a - b <= most && b - a <= most) }'
+}
+png_size() { # FILE: "640x480"
+    od -An -tu1 -j16 -N8 "$work/$1" | awk '{ print ($1 * 256 + $2) * 65536 + $3 * 256 + $4 "x" ($5 * 256 + $6) * 65536 + $7 * 256 + $8 }'
+}
+draw() { # OUT LIKE FILE OPTIONS: as noh render has it, of the size of the picture LIKE
+    drawn=$1 like=$2 drawn_file=$3
+    shift 3
+    "$build/noh" render "$drawn_file" -o "$work/$drawn" --size "$(png_size "$like")" "$@" >/dev/null
+}

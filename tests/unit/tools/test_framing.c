@@ -1,0 +1,215 @@
+/* A camera that follows keeps a figure in the picture (tools/noh/draw/framing.h): at every frame of every clip of a
+ * body, at least 95 % of its silhouette. The silhouette is what the triangles of the skinned mesh cover, in the picture
+ * and up to two pictures beside it. Without NOH_LONG every fourth frame is looked at. */
+#include "draw/framing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/convert.h"
+#include "support/support.h"
+
+#define CELLS 320    /* of the raster's side */
+#define PICTURES 5.0 /* the raster's side, in pictures */
+#define SEEN_LEAST 0.95
+
+typedef struct scene {
+    byte_buffer bytes;
+    pack_file file;
+    figure figure;
+    framing *framing;
+    uint8_t raster[CELLS][CELLS];
+} scene;
+
+static void open_scene(scene *s, const char *asset)
+{
+    const char *inputs[1] = { test_asset(asset) };
+    const convert_options options = { .morph = { .error_um = 100.0f },
+                                      .clip = { .clip = { .error_cm = 0.1, .shell_cm = 3.0 }, .unit_cm = 1.0 } };
+    figure_desc desc = { .file = &s->file, .clips = &s->file };
+    convert_failure failure;
+    memset(&s->bytes, 0, sizeof s->bytes);
+    assert_int_equal(convert_files(inputs, 1, &options, &s->bytes, &failure), 0);
+    s->file.path = inputs[0];
+    assert_int_equal(noh_pack_open(s->bytes.bytes, s->bytes.count, &s->file.pack, NULL), NOH_OK);
+    assert_int_equal(figure_open(&s->figure, &desc, NULL), 0);
+    s->framing = framing_open(&desc);
+    assert_non_null(s->framing);
+}
+
+static void close_scene(scene *s)
+{
+    framing_close(s->framing);
+    figure_close(&s->figure);
+    buffer_free(&s->bytes);
+    free(s);
+}
+
+/* ---- the silhouette ---- */
+
+static void cover(scene *s, float corners[3][2])
+{
+    const float *a = corners[0], *b = corners[1], *c = corners[2];
+    const int left = (int)fmaxf(floorf(fminf(a[0], fminf(b[0], c[0]))), 0.0f);
+    const int right = (int)fminf(ceilf(fmaxf(a[0], fmaxf(b[0], c[0]))), CELLS - 1.0f);
+    const int low = (int)fmaxf(floorf(fminf(a[1], fminf(b[1], c[1]))), 0.0f);
+    const int high = (int)fminf(ceilf(fmaxf(a[1], fmaxf(b[1], c[1]))), CELLS - 1.0f);
+    for (int y = low; y <= high; y++) {
+        for (int x = left; x <= right; x++) {
+            const float px = (float)x + 0.5f, py = (float)y + 0.5f;
+            const float u = (b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0]);
+            const float v = (c[0] - b[0]) * (py - b[1]) - (c[1] - b[1]) * (px - b[0]);
+            const float w = (a[0] - c[0]) * (py - c[1]) - (a[1] - c[1]) * (px - c[0]);
+            if ((u >= 0.0f && v >= 0.0f && w >= 0.0f) || (u <= 0.0f && v <= 0.0f && w <= 0.0f)) s->raster[y][x] = 1;
+        }
+    }
+}
+
+/* Where a vertex is in the raster, and 0 where it is behind the camera. */
+static int project(const float m[16], const float world[12], const float p[3], float out[2])
+{
+    float at[3], clip[4];
+    for (int r = 0; r < 3; r++)
+        at[r] = world[4 * r] * p[0] + world[4 * r + 1] * p[1] + world[4 * r + 2] * p[2] + world[4 * r + 3];
+    for (int r = 0; r < 4; r++) clip[r] = m[r] * at[0] + m[4 + r] * at[1] + m[8 + r] * at[2] + m[12 + r];
+    for (int i = 0; i < 2; i++) out[i] = (float)(CELLS / 2.0 * (1.0 + (double)clip[i] / (double)clip[3] / PICTURES));
+    return clip[3] > 0.0f;
+}
+
+static void rasterise(scene *s, uint32_t kind, uint32_t index, const noh_gl_camera *camera)
+{
+    noh_mesh mesh;
+    noh_actor_mesh shown;
+    noh_vertex *vertices = figure_deform(&s->figure, kind, index, 0, &mesh, &shown);
+    assert_non_null(vertices);
+    for (uint32_t i = 0; i < mesh.header->index_count; i += 3) {
+        float corners[3][2];
+        for (uint32_t c = 0; c < 3; c++) {
+            const float *p = vertices[noh_mesh_index(&mesh, i + c)].position;
+            assert_true(project(camera->view_projection, shown.world, p, corners[c]));
+        }
+        cover(s, corners);
+    }
+    free(vertices);
+}
+
+/* The share of the silhouette that is inside the picture. */
+static double share_inside(scene *s, const noh_gl_camera *camera)
+{
+    const int margin = (int)(CELLS * (0.5 - 0.5 / PICTURES));
+    uint32_t all = 0, inside = 0;
+    memset(s->raster, 0, sizeof s->raster);
+    for (uint32_t k = 0; k < s->figure.stage_desc.kind_count; k++) {
+        for (uint32_t i = 0; i < s->figure.plan.kinds[k].mesh_count; i++) rasterise(s, k, i, camera);
+    }
+    for (int y = 0; y < CELLS; y++) {
+        for (int x = 0; x < CELLS; x++) {
+            all += s->raster[y][x];
+            inside += s->raster[y][x] && x >= margin && x < CELLS - margin && y >= margin && y < CELLS - margin;
+        }
+    }
+    assert_true(all > 10);
+    return (double)inside / (double)all;
+}
+
+/* ---- clips ---- */
+
+static double watch(scene *s, const char *clip, double azimuth, double aspect, double *largest)
+{
+    const noh_play play = { .loop = NOH_LOOP_ONCE };
+    const uint32_t step = getenv("NOH_LONG") ? 1u : 4u;
+    orbit o = { azimuth, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
+    double anchor[3], before[3] = { 0.0, 0.0, 0.0 }, seconds, worst = 1.0;
+    bounds box;
+    assert_int_equal(framing_clip(s->framing, clip, &box), 1);
+    orbit_frame(&o, &box, ORBIT_MARGIN);
+    assert_int_equal(figure_reset(&s->figure), 0);
+    assert_int_equal(figure_play(&s->figure, clip, &play), 0);
+    assert_int_equal(figure_clip_seconds(&s->figure, clip, &seconds), 0);
+    for (uint32_t frame = 0; frame <= (uint32_t)(seconds * 30.0); frame += step) {
+        noh_gl_camera camera;
+        const uint32_t ticks = frame ? step * (uint32_t)(NOH_TICKS_PER_SECOND / 30) : 1u;
+        assert_int_equal(noh_stage_step(s->figure.stage, ticks, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(figure_pose(&s->figure), 0);
+        figure_anchor(&s->figure, anchor);
+        for (int c = 0; c < 3; c++) o.center[c] += anchor[c] - before[c];
+        memcpy(before, anchor, sizeof before);
+        orbit_camera(&o, &camera);
+        const double share = share_inside(s, &camera);
+        worst = fmin(worst, share);
+        /* of the picture's height, so that a camera from too far away does not pass */
+        uint32_t low = CELLS, high = 0;
+        for (uint32_t y = 0; y < CELLS; y++) {
+            for (uint32_t x = 0; x < CELLS; x++) {
+                if (s->raster[y][x]) low = y < low ? y : low, high = y > high ? y : high;
+            }
+        }
+        *largest = fmax(*largest, (high - low + 1.0) / (CELLS / PICTURES));
+    }
+    return worst;
+}
+
+static void every_clip_stays_in_the_picture(void **state)
+{
+    scene *s = calloc(1, sizeof *s);
+    uint32_t clips = 0;
+    (void)state;
+    assert_non_null(s);
+    open_scene(s, "hero/body.glb");
+    for (uint32_t i = 0; i < s->file.pack.clip_count; i++) {
+        const double azimuths[] = { 0.0, 0.0, 2.2 }, aspects[] = { 620.0 / 668.0, 390.0 / 844.0, 16.0 / 9.0 };
+        noh_pack_clip clip;
+        assert_int_equal(noh_pack_clip_at(&s->file.pack, i, &clip, NULL), NOH_OK);
+        if (!clip.header->joint_count) { /* of a face: there is nothing to follow */
+            bounds box;
+            assert_int_equal(framing_clip(s->framing, clip.name, &box), 0);
+            continue;
+        }
+        for (int view = 0; view < (getenv("NOH_LONG") ? 3 : 1); view++) {
+            const int at = getenv("NOH_LONG") ? view : (int)(i % 3u);
+            double largest = 0.0;
+            const double worst = watch(s, clip.name, azimuths[at], aspects[at], &largest);
+            print_message("%s, aspect %.2f: at least %.1f %% of the silhouette is inside, it is up to %.0f %% high\n",
+                          clip.name, aspects[at], 100.0 * worst, 100.0 * largest);
+            if (worst < SEEN_LEAST) fail_msg("%s: %.3f of the silhouette", clip.name, worst);
+            assert_true(largest > (aspects[at] < 0.6 ? 0.3 : 0.55));
+        }
+        clips++;
+    }
+    assert_true(clips >= 7);
+    close_scene(s);
+}
+
+static void all_corners_of_a_box_are_seen(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        const bounds box = { { -0.3 * (i % 5), 0.1, -2.0 + 0.01 * i }, { 0.4, 1.0 + 0.2 * (i % 3), -1.5 + 0.02 * i } };
+        orbit o = { 0.3 * i, -1.0 + 0.01 * i, 0.0, { 9.0, 9.0, 9.0 }, 0.0, 0.4 + 0.01 * i };
+        noh_gl_camera camera;
+        float most = 0.0f;
+        orbit_frame(&o, &box, ORBIT_MARGIN);
+        orbit_camera(&o, &camera);
+        for (int corner = 0; corner < 8; corner++) {
+            const double *side[3];
+            float clip[4];
+            for (int c = 0; c < 3; c++) side[c] = corner >> c & 1 ? &box.high[c] : &box.low[c];
+            for (int r = 0; r < 4; r++) {
+                const float *m = camera.view_projection;
+                clip[r] = m[r] * (float)*side[0] + m[4 + r] * (float)*side[1] + m[8 + r] * (float)*side[2] + m[12 + r];
+            }
+            assert_true(clip[3] > 0.0f && fabsf(clip[2]) < clip[3]);
+            most = fmaxf(most, fmaxf(fabsf(clip[0]), fabsf(clip[1])) / clip[3]);
+        }
+        assert_true(most < 0.953f && most > 0.6f);
+    }
+}
+
+int main(int argument_count, char **arguments)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(every_clip_stays_in_the_picture),
+                                        cmocka_unit_test(all_corners_of_a_box_are_seen) };
+    if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,36 @@
+/* framing.h: where a clip takes a figure, so that a camera that follows it keeps it in the picture.
+ *
+ *   framing_open / framing_close
+ *   framing_clip    the box that a clip fills around what the camera follows
+ *   orbit_frame     the nearest distance from which an orbit sees a box, from where it looks
+ *   orbit_sees      the share of a figure's vertices that a camera sees
+ *
+ * A figure is measured by outline points: of each joint, the vertices that it moves most and that lie farthest out in
+ * 26 directions, moved by that joint alone. This is within some millimetres of the skinned surface, and a clip of ten
+ * seconds is measured in some milliseconds. */
+#ifndef NOH_NOH_DRAW_FRAMING_H
+#define NOH_NOH_DRAW_FRAMING_H
+
+#include "figure.h"
+
+#define FRAMING_RATE_HZ 15.0 /* how often a clip is measured */
+
+typedef struct framing framing;
+
+/* Of a figure's pack and clips, on a stage of its own without a driver. Prints an error and returns NULL. */
+framing *framing_open(const figure_desc *desc);
+void framing_close(framing *f);
+
+/* The box of all of a clip, relative to figure_anchor at each moment. Returns 0 where the clip moves no joint, or
+ * cannot be played. */
+int framing_clip(framing *f, const char *clip, bounds *box);
+
+/* margin: the share of the picture that stays free at each border; as orbit_fit: 0.024 */
+#define ORBIT_MARGIN 0.024
+/* Look at the middle of the box from where the orbit looks; all of it is in the picture. */
+void orbit_frame(orbit *o, const bounds *box, double margin);
+
+/* 0..1, of the vertices of the coarsest levels. */
+double orbit_sees(const figure *f, const noh_gl_camera *camera);
+
+#endif

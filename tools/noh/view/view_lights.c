@@ -1,0 +1,53 @@
+#include "view/view_lights.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "view/view_app.h"
+
+const char *const view_light_names[VIEW_LIGHT_COUNT] = { "none", "studio", "room", "sky", "white" };
+
+/* As the light before it, but for its name. */
+static int open_as(lighting *l, const char *name, const lighting *before)
+{
+    static const char *const backgrounds[] = { "plain", "gradient", "light" };
+    light_options o = { .light = name };
+    if (before) {
+        o.rotate = before->degrees;
+        o.background = backgrounds[before->background];
+        o.tonemap = before->told.tonemap == NOH_TONEMAP_FILMIC ? "filmic" : "none";
+        o.shadow = before->has_shadow ? "on" : before->has_blobs ? "blob" : "off";
+        o.transfer = before->without_transfer ? "off" : "on";
+    }
+    return lighting_open(l, &o);
+}
+
+void view_light_choose(view_app *a, const char *name)
+{
+    view_lights *lights = &a->lights;
+    const int slot = a->desc.light == &lights->slots[0];
+    lighting *chosen = lights->first;
+    if (strcmp(name, "none") == 0) {
+        chosen = NULL;
+    } else if (name[0]) {
+        if (lights->opened[slot]) lighting_close(&lights->slots[slot]);
+        lights->opened[slot] = open_as(&lights->slots[slot], name, a->desc.light) == 0;
+        if (!lights->opened[slot]) {
+            view_tell(a);
+            return;
+        }
+        chosen = &lights->slots[slot];
+    }
+    snprintf(lights->name, sizeof lights->name, "%s", name);
+    a->wish.light = chosen;
+    a->wants_reload = 1;
+}
+
+void view_lights_close(view_lights *l)
+{
+    for (int i = 0; i < 2; i++) {
+        if (l->opened[i]) lighting_close(&l->slots[i]);
+    }
+    memset(l, 0, sizeof *l);
+}

@@ -1,0 +1,31 @@
+/* view_lights.h: which light the figure stands in: that of the command line, or one of those built in. */
+#ifndef NOH_NOH_VIEW_VIEW_LIGHTS_H
+#define NOH_NOH_VIEW_VIEW_LIGHTS_H
+
+#include "draw/lighting.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define VIEW_LIGHT_NAME 16u
+#define VIEW_LIGHT_COUNT 5u
+extern const char *const view_light_names[VIEW_LIGHT_COUNT]; /* "none" and four environments */
+
+typedef struct view_lights {
+    lighting slots[2];
+    int opened[2];
+    lighting *first;            /* of the command line; NULL: none */
+    char name[VIEW_LIGHT_NAME]; /* "": first */
+} view_lights;
+
+struct view_app;
+/* name: of view_light_names, or "". Turned, with shadow and background as the one before. Takes effect with
+ * view_app_after. */
+void view_light_choose(struct view_app *a, const char *name);
+void view_lights_close(view_lights *l);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,206 @@
+#define _POSIX_C_SOURCE 200809L
+#include "view/view_load.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/message.h"
+#include "convert/convert.h"
+
+int view_is_model(const char *path)
+{
+    static const char *const endings[] = { ".gltf", ".glb", ".vrm", ".fbx", ".obj", ".bvh", ".rcl" };
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++) {
+        if (strcmp(dot, endings[i]) == 0) return 1;
+    }
+    return 0;
+}
+
+/* ---- the process that converts ---- */
+
+/* As `noh build` without options. */
+static convert_options options_of(const lod_settings *levels, FILE *words)
+{
+    convert_options o;
+    memset(&o, 0, sizeof o);
+    o.morph.error_um = 10.0f;
+    o.clip.clip.error_cm = 0.01;
+    o.clip.clip.shell_cm = 3.0;
+    o.clip.unit_cm = 1.0;
+    o.lod = *levels;
+    o.progress = words;
+    return o;
+}
+
+static int write_all(int file, const uint8_t *bytes, size_t count)
+{
+    while (count) {
+        const ssize_t written = write(file, bytes, count);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return 0;
+        bytes += written;
+        count -= (size_t)written;
+    }
+    return 1;
+}
+
+/* Ends with 0 where the pack is whole; else its last words are the reason. */
+static void convert(const view_load *l, const lod_settings *levels, int words)
+{
+    const char *inputs[1] = { l->path };
+    FILE *says = fdopen(words, "w");
+    byte_buffer pack = { NULL, 0, 0, 0 };
+    convert_failure failure;
+    if (!says) _exit(EXIT_FAILED);
+    const convert_options options = options_of(levels, says);
+    fprintf(says, "\rreading");
+    fflush(says);
+    if (convert_files(inputs, 1, &options, &pack, &failure)) {
+        fprintf(says, "\r!%s%s%s%s", failure.error.what, failure.error.where[0] ? " (" : "", failure.error.where,
+                failure.error.where[0] ? ")" : "");
+        fflush(says);
+        _exit(EXIT_FAILED);
+    }
+    if (!write_all(l->bytes, pack.bytes, pack.count)) {
+        fprintf(says, "\r!there is no room for the converted file");
+        fflush(says);
+        _exit(EXIT_FAILED);
+    }
+    fflush(says);
+    _exit(0);
+}
+
+/* ---- the viewer ---- */
+
+static void close_files(view_load *l)
+{
+    if (l->words > 0) close(l->words);
+    if (l->bytes > 0) close(l->bytes);
+    l->words = l->bytes = 0;
+}
+
+/* A file without a name. */
+static int open_nameless(void)
+{
+    FILE *stream = tmpfile();
+    const int file = stream ? dup(fileno(stream)) : -1;
+    if (stream) fclose(stream);
+    return file;
+}
+
+int view_load_start(view_load *l, const char *path, const lod_settings *levels)
+{
+    int ends[2];
+    view_load_cancel(l);
+    if (strlen(path) >= sizeof l->path) return tool_fail(path, "the path is too long");
+    if (l->path != path) strcpy(l->path, path);
+    strcpy(l->does, "starting");
+    l->bytes = open_nameless();
+    if (l->bytes < 0 || pipe(ends)) {
+        close_files(l);
+        return tool_fail(path, "no temporary file or pipe can be made: %s", strerror(errno));
+    }
+    fflush(NULL); /* or the other process writes it again */
+    l->process = fork();
+    if (l->process == 0) {
+        close(ends[0]);
+        convert(l, levels, ends[1]);
+    }
+    close(ends[1]);
+    l->words = ends[0];
+    if (l->process < 0) {
+        l->process = 0;
+        close_files(l);
+        return tool_fail(path, "no process can be started to convert it: %s", strerror(errno));
+    }
+    (void)fcntl(l->words, F_SETFL, O_NONBLOCK);
+    l->started_ns = noh_clock_ns();
+    l->state = VIEW_LOAD_RUNS;
+    return 0;
+}
+
+/* Keep what follows the last carriage return, without a terminal's signs. */
+static void hear(view_load *l)
+{
+    char heard[1024];
+    ssize_t count;
+    while ((count = read(l->words, heard, sizeof heard)) > 0 || (count < 0 && errno == EINTR)) {
+        size_t length = strlen(l->does);
+        for (ssize_t i = 0; i < count; i++) {
+            if (heard[i] == '\r') length = 0;
+            if (heard[i] == '\033' && i + 2 < count)
+                i += 2;
+            else if (heard[i] >= ' ' && length + 1u < sizeof l->does)
+                l->does[length++] = heard[i];
+        }
+        if (length || !l->does[0]) l->does[length] = 0;
+    }
+}
+
+view_load_state view_load_poll(view_load *l)
+{
+    int status = 0;
+    pid_t ended;
+    if (l->state != VIEW_LOAD_RUNS) return l->state;
+    hear(l);
+    ended = waitpid(l->process, &status, WNOHANG);
+    if (ended == 0 || (ended < 0 && errno == EINTR)) return l->state;
+    hear(l);
+    l->process = 0;
+    if (ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+        l->state = VIEW_LOAD_DONE;
+        return l->state;
+    }
+    if (l->does[0] == '!') {
+        tool_fail(l->path, "%s", l->does + 1);
+    } else {
+        tool_fail(l->path, "the conversion broke off while %s", l->does);
+    }
+    close_files(l);
+    l->state = VIEW_LOAD_FAILED;
+    return l->state;
+}
+
+int view_load_take(view_load *l, byte_buffer *out)
+{
+    const off_t end = l->state == VIEW_LOAD_DONE ? lseek(l->bytes, 0, SEEK_END) : -1;
+    int status = 0;
+    memset(out, 0, sizeof *out);
+    if (end <= 0 || lseek(l->bytes, 0, SEEK_SET) || !buffer_append(out, NULL, (size_t)end)) {
+        status = tool_fail(l->path, "the converted file cannot be read back");
+    }
+    for (size_t at = 0; !status && at < out->count;) {
+        const ssize_t count = read(l->bytes, out->bytes + at, out->count - at);
+        if (count > 0)
+            at += (size_t)count;
+        else if (count == 0 || errno != EINTR)
+            status = tool_fail(l->path, "the converted file cannot be read back");
+    }
+    close_files(l);
+    l->state = VIEW_LOAD_NONE;
+    if (status) buffer_free(out);
+    return status;
+}
+
+void view_load_cancel(view_load *l)
+{
+    if (l->process > 0) {
+        kill(l->process, SIGKILL);
+        while (waitpid(l->process, NULL, 0) < 0 && errno == EINTR) {}
+    }
+    l->process = 0;
+    close_files(l);
+    l->state = VIEW_LOAD_NONE;
+}
+
+double view_load_seconds(const view_load *l)
+{
+    return (double)(noh_clock_ns() - l->started_ns) * 1e-9;
+}

@@ -1,0 +1,42 @@
+/* view_load.h: the conversion of a model beside the window, in a process of its own: it can be called off at any time,
+ * and a file that breaks the converter does not break the viewer.
+ *
+ *   view_is_model                  whether a file has to be converted
+ *   view_load_start, view_load_poll, view_load_cancel
+ *   view_load_take                 the pack, once it is there */
+#ifndef NOH_NOH_VIEW_VIEW_LOAD_H
+#define NOH_NOH_VIEW_VIEW_LOAD_H
+
+#include "convert/base/byte_buffer.h"
+#include "convert/lod/lod_levels.h"
+#include "platform.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum view_load_state { VIEW_LOAD_NONE, VIEW_LOAD_RUNS, VIEW_LOAD_DONE, VIEW_LOAD_FAILED } view_load_state;
+
+typedef struct view_load {
+    view_load_state state;
+    char path[1024];
+    char does[256];   /* what it does now, in words */
+    int process;      /* 0: none */
+    int words, bytes; /* files: what it says, and the pack */
+    uint64_t started_ns;
+} view_load;
+
+int view_is_model(const char *path);
+
+/* One at a time: another is called off. Prints an error and returns an exit code; 0 on success. */
+int view_load_start(view_load *l, const char *path, const lod_settings *levels);
+/* Hear what it says. VIEW_LOAD_FAILED: after an error was printed. */
+view_load_state view_load_poll(view_load *l);
+int view_load_take(view_load *l, byte_buffer *out);
+void view_load_cancel(view_load *l);
+double view_load_seconds(const view_load *l);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

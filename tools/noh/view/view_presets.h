@@ -1,0 +1,63 @@
+/* view_presets.h: faces by name: what the pack's recipes make of its targets, and one's own, kept in a text file
+ * (file/weights_text.h).
+ *
+ *   view_presets_read       those of a model, and those of the file
+ *   view_presets_use        hold a preset's targets, and let go of the others
+ *   view_presets_keep       what is held as a preset of one's own, written at once
+ *   view_presets_drop       take one's own away again
+ *   view_weights_copy, view_weights_paste   what is held, as text
+ *
+ * Those that return int print an error and return an exit code; 0 on success. */
+#ifndef NOH_NOH_VIEW_VIEW_PRESETS_H
+#define NOH_NOH_VIEW_VIEW_PRESETS_H
+
+#include "view/view_model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define VIEW_PRESETS_MAX 256u
+#define VIEW_PRESET_NAME 64u
+
+typedef struct view_preset {
+    char name[VIEW_PRESET_NAME];
+    int own;
+    uint32_t first, count; /* of view_presets.weights */
+} view_preset;
+
+typedef struct view_preset_weight {
+    char name[NOH_NAME_BYTES_MAX];
+    float value;
+} view_preset_weight;
+
+typedef struct view_presets {
+    char path[1100]; /* of one's own */
+    view_preset list[VIEW_PRESETS_MAX];
+    uint32_t count;
+    view_preset_weight *weights;
+    uint32_t weight_count, weight_room;
+} view_presets;
+
+/* path  NULL: the model's, with .presets behind it. A file that is not there has none */
+int view_presets_read(view_presets *p, const view_model *m, const char *path);
+void view_presets_free(view_presets *p);
+
+void view_presets_use(const view_presets *p, uint32_t index, view_model *m);
+int view_presets_keep(view_presets *p, const view_model *m, const char *name);
+int view_presets_drop(view_presets *p, uint32_t index);
+
+/* The held weights: zero-terminated, by malloc; NULL: nothing is held, or there is no memory. */
+char *view_weights_copy(const view_model *m);
+/* Hold these and let go of the others. Names that no target has are told, all others are taken; of a text without any
+ * nothing is. */
+int view_weights_paste(view_model *m, const char *text);
+
+/* Hold a target, let go of it. */
+void view_target_hold(view_target *t, float value);
+void view_target_let_go(view_target *t);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
