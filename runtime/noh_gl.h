@@ -35,6 +35,7 @@
 #include "stage_gl/backdrop.h"      /* what is behind it, where it is lit */
 #include "stage_gl/stage_blob.h"    /* soft spots under them, where there is no shadow map */
 #include "stage_gl/stage_decal.h"   /* marks on them */
+#include "stage_gl/stage_patch.h"   /* as triangles that were grown */
 #include "stage_gl/stage_hair.h"    /* hair of its actors */
 #include "stage_gl/stage_hairs.h"   /* hair of a crowd */
 #include "stage_gl/stage_terrain.h" /* a height field as their ground */

@@ -1,9 +1,12 @@
 /* decal_fragment.glsl: the marks on a surface, looked up by where a pixel is at rest. Behind #version goes noh_gl_shader_prefix.
  *
  * A mark is a row of u_decals: centre and size; right and tile; normal and alpha; sRGB colour and roughness. It is a
- * square about its centre, within a sphere, on what faces as it does. Later rows lie over earlier ones. */
+ * square about its centre, within a sphere, on what faces as it does. Later rows lie over earlier ones. With u_corners,
+ * a mark is on its own triangles alone: those whose last corner is among its own there. */
 uniform highp sampler2D u_decals;
 uniform sampler2D u_picture;
+uniform highp usampler2D u_corners; /* where each mark's corners begin; each mark's corners, rising */
+uniform highp int u_corner_row;     /* of the first mark; -1: none, marks are wherever they are near */
 uniform highp vec3 u_marks; /* how many rows; columns and rows of tiles of the picture, 0: round spots */
 
 in vec3 v_world;
@@ -13,6 +16,7 @@ in vec2 v_uv;
 in vec4 v_color;
 in highp vec3 v_rest;
 in vec3 v_rest_normal;
+flat in highp int v_corner;
 
 #ifdef NOH_DEPTH_ONLY
 void main()
@@ -25,6 +29,26 @@ layout(location = 0) out vec4 o_color;
 vec3 linear_of(vec3 c)
 {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
+}
+
+highp uint corner_at(int i)
+{
+    return texelFetch(u_corners, ivec2(i & 255, i >> 8), 0).x; /* NOH_PATCH_WIDTH texels wide */
+}
+
+bool is_own(int row)
+{
+    if (u_corner_row < 0) return true;
+    int low = int(corner_at(u_corner_row + row)), end = int(corner_at(u_corner_row + row + 1)), high = end;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (corner_at(middle) < uint(v_corner)) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < end && corner_at(low) == uint(v_corner);
 }
 
 /* A round spot with a soft edge; or a tile. at: -1 to 1 */
@@ -51,6 +75,7 @@ void main()
         highp vec3 up = cross(normal.xyz, right.xyz);
         vec2 at = vec2(dot(to, right.xyz), dot(to, up));
         if (max(abs(at.x), abs(at.y)) >= 1.0 || dot(facing, normal.xyz) < 0.2) continue;
+        if (!is_own(i)) continue;
         vec4 color = texelFetch(u_decals, ivec2(3, i), 0);
         vec2 dx = vec2(dot(along_x, right.xyz), -dot(along_x, up)) / centre.w;
         vec2 dy = vec2(dot(along_y, right.xyz), -dot(along_y, up)) / centre.w;

@@ -7,6 +7,7 @@ out vec2 v_uv;
 out vec4 v_color;
 out highp vec3 v_rest;
 out vec3 v_rest_normal;
+flat out highp int v_corner; /* the last of a triangle's */
 
 void main()
 {
@@ -17,6 +18,7 @@ void main()
     v_uv = v.uv;
     v_color = v.color * v.tint;
     v_rest = noh_a_position;
+    v_corner = gl_VertexID;
 #ifdef NOH_DEPTH_ONLY
     v_rest_normal = vec3(0.0);
 #else

@@ -150,7 +150,7 @@
 #define NOH_CONCESSIONS_MAX 32u             /* of a plan */
 #define NOH_BLOBS_MAX 24u                   /* of an actor: parts that darken the ground */
 #define NOH_DECALS_MAX 64u                  /* of a ring */
-#define NOH_DECAL_TRIANGLES_MAX 96u         /* of a mark that is grown (stage/decal_grow.h) */
+#define NOH_DECAL_TRIANGLES 96u             /* of a mark that is grown, in the mean, where a game asks for no room */
 
 /* ---- light ---- */
 

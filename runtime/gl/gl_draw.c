@@ -26,6 +26,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     r->camera = *camera;
     noh_gl_draw_tint(r, NULL);
     noh_gl_draw_wrinkles(r, NULL);
+    noh_gl_draw_triangles(r, NULL);
     for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
     noh_gl_draw_wrinkle_look(r, 0, 0);
 }
@@ -35,6 +36,12 @@ void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
     static const uint8_t white[4] = { 255, 255, 255, 255 };
     NOH_ASSERT(r);
     memcpy(r->tint, tint ? tint : white, sizeof r->tint);
+}
+
+void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles)
+{
+    NOH_ASSERT(r);
+    r->triangles = triangles;
 }
 
 void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_REGIONS])
@@ -118,6 +125,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
     r->gl->BindVertexArray(mesh->vertex_array);
+    if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);
     if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
 }
 
@@ -273,10 +281,52 @@ static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint8
     return noh_gl_renderer_variant(j->r, key);
 }
 
+/* The first of the renderer's own triangles that is not below a number. */
+static uint32_t first_from(const noh_gl_triangles *t, uint32_t number)
+{
+    uint32_t low = 0, high = t->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2u;
+        if (t->numbers[middle] < number) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* How many indices a submesh draws. *first: where they begin, of the renderer's own triangles */
+static uint32_t own_count(const noh_gl_triangles *t, const noh_submesh *s, uint32_t *first)
+{
+    const uint32_t end = first_from(t, (s->first_index + s->index_count) / 3u);
+    *first = first_from(t, s->first_index / 3u);
+    return 3u * (end - *first);
+}
+
+static int draws_nothing(const draw_job *j, const noh_submesh *s)
+{
+    uint32_t first;
+    return !s->index_count || (j->r->triangles && !own_count(j->r->triangles, s, &first));
+}
+
+static void draw_own(const draw_job *j, const noh_submesh *s)
+{
+    const noh_gl_triangles *t = j->r->triangles;
+    uint32_t first;
+    const uint32_t count = own_count(t, s, &first);
+    j->r->gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
+                           (const void *)((uintptr_t)(t->first + first) * 12u));
+}
+
 static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_first)
 {
     const noh_gl_api *gl = j->r->gl;
     const void *first = (const void *)(level_first + (uintptr_t)s->first_index * j->mesh->room->index_bytes);
+    if (j->r->triangles) {
+        draw_own(j, s);
+        return;
+    }
     if (j->count == 1u) {
         gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first);
     } else {
@@ -319,7 +369,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
         const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
         const uint8_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
-        if (!s->index_count || !is_in_part(m, part)) {
+        if (draws_nothing(j, s) || !is_in_part(m, part)) {
             continue;
         }
         if (!v || v->key.features != features) {
@@ -335,6 +385,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
         }
         draw_material(j, v, s, first, part);
     }
+    if (v && j->r->triangles) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
 }
 
 static void draw_pass(const draw_job *j, int pass)
@@ -377,6 +428,7 @@ void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl
 {
     NOH_ASSERT(!morph || !morph->stream_buffer);
     const draw_job job = { r, mesh, NULL, morph, first, count, lod ? lod : &whole, pictures };
+    NOH_ASSERT(!r->triangles);
     draw_pass(&job, pass);
 }
 

@@ -9,7 +9,8 @@
  *   noh_gl_draw_begin        begin to draw; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
- *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next; noh_gl_draw_wrinkles, its wrinkles
+ *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next; noh_gl_draw_wrinkles, its wrinkles;
+ *                            noh_gl_draw_triangles, which triangles of it
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the
  * textures of glTF's materials.
@@ -133,6 +134,14 @@ typedef struct noh_gl_camera {
     float key[3];              /* unit vector towards the key light, world */
 } noh_gl_camera;
 
+/* Some triangles of a mesh's level, in an index buffer of your own. */
+typedef struct noh_gl_triangles {
+    GLuint buffer;           /* of uint32_t, three for each triangle, in the order of `numbers` */
+    uint32_t first;          /* triangle of the buffer */
+    const uint32_t *numbers; /* [count] rising: of the level */
+    uint32_t count;
+} noh_gl_triangles;
+
 typedef struct noh_gl_renderer {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
@@ -146,6 +155,7 @@ typedef struct noh_gl_renderer {
     uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
     uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
+    const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
     uint32_t variant_count;
     noh_gl_variant *variants; /* [variant_count] in the memory that create was given */
 } noh_gl_renderer;
@@ -217,6 +227,9 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
  * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
  *         NULL: white */
 void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
+
+/* Which triangles noh_gl_draw_mesh draws next; noh_gl_draw_begin makes it all. Borrowed until then. NULL: all. */
+void noh_gl_draw_triangles(noh_gl_renderer *renderer, const noh_gl_triangles *triangles);
 
 /* How much the regions of the meshes are wrinkled that noh_gl_draw_mesh draws next; noh_gl_draw_begin smooths them out.
  * Instances of a crowd have their own (noh_gl_skin_set_wrinkles).

@@ -6,8 +6,8 @@
 #include "sim/vector_internal.h"
 
 #define FACING 0.2f        /* as shaders_es/decal_fragment.glsl has it */
-#define NEAR_MAX 384u      /* triangles that are looked at */
 #define SPHERE_SQUARE 2.0f /* of sizes: through the corners of the square */
+#define SHRINKS_MAX 24     /* of the square of the reach, by half, where there is no room */
 
 void noh_decal_uv(const noh_decal *decal, const float bind_position[3], float uv[2])
 {
@@ -59,6 +59,18 @@ static float near_square(const noh_decal *decal, const float *const p[3])
     return inside ? noh_dot3(to[0], normal) * noh_dot3(to[0], normal) / length : least;
 }
 
+/* Whether a triangle's box meets that of a sphere about the centre: most do not, and need no distance. */
+static int is_about(const noh_decal *decal, float radius, const float *const p[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const float low = decal->centre[k] - radius, high = decal->centre[k] + radius;
+        if ((p[0][k] < low && p[1][k] < low && p[2][k] < low) || (p[0][k] > high && p[1][k] > high && p[2][k] > high)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 /* ---- what hangs together ---- */
 
 static int is_same_place(const float *a, const float *b)
@@ -79,51 +91,101 @@ static int share_edge(const noh_mesh *mesh, uint32_t a, uint32_t b)
     return shared >= 2;
 }
 
-/* Move what hangs together with the first triangle to the patch, in the order of steps from it. */
-static void spread(const noh_mesh *mesh, uint32_t *near, uint32_t near_count, noh_decal_patch *out)
+/* Move what hangs together with the first triangle behind it, in the order of steps from it. near_count: of
+ * out->triangles */
+static void spread(const noh_mesh *mesh, uint32_t near_count, noh_decal_patch *out)
 {
+    uint32_t *t = out->triangles;
     for (uint32_t at = 0; at < out->count; at++) {
-        for (uint32_t i = 0; i < near_count;) {
-            if (!share_edge(mesh, out->triangles[at], near[i])) {
-                i++;
-            } else if (out->count == NOH_DECAL_TRIANGLES_MAX) {
-                out->left_out++;
-                near[i] = near[--near_count];
-            } else {
-                out->triangles[out->count++] = near[i];
-                near[i] = near[--near_count];
+        for (uint32_t i = out->count; i < near_count; i++) {
+            if (share_edge(mesh, t[at], t[i])) {
+                const uint32_t found = t[i];
+                t[i] = t[out->count];
+                t[out->count++] = found;
             }
         }
     }
-    out->lone = near_count;
+    out->lone = near_count - out->count;
+}
+
+/* What comes as near as `reach`, as far as there is room, the triangle to grow from first. Returns how many come near;
+ * 0: none to grow from. */
+static uint32_t collect(const noh_decal *decal, const noh_mesh *mesh, uint32_t triangle, float reach,
+                        noh_decal_patch *out)
+{
+    const float radius = noh_sqrt(reach);
+    uint32_t near_count = 1, first = triangle;
+    float best = reach;
+    for (uint32_t t = 0; t < mesh->header->index_count / 3u; t++) {
+        const float *p[3];
+        float square;
+        uint32_t other;
+        corners_of(mesh, t, p);
+        if (t == triangle || !is_about(decal, radius, p)) continue;
+        square = near_square(decal, p);
+        if (!(square >= 0.0f && square <= reach)) continue;
+        other = t;
+        if (triangle == NOH_NONE && (first == NOH_NONE || square < best)) { /* the first is one of the others now */
+            other = first;
+            first = t, best = square;
+        }
+        if (other == NOH_NONE) continue;
+        if (near_count < out->room) out->triangles[near_count] = other;
+        near_count++;
+    }
+    if (first == NOH_NONE) return 0;
+    if (out->room) out->triangles[0] = first;
+    return near_count;
 }
 
 void noh_decal_grow(const noh_decal *decal, const noh_mesh *mesh, uint32_t triangle, noh_decal_patch *out)
 {
-    const float reach = SPHERE_SQUARE * decal->size * decal->size;
-    const uint32_t count = mesh->header->index_count / 3u;
-    uint32_t near[NEAR_MAX], near_count = 0, first = NOH_NONE;
-    float best = reach;
-    NOH_ASSERT(decal && mesh && out && (triangle == NOH_NONE || triangle < count));
-    memset(out, 0, sizeof *out);
-    for (uint32_t t = 0; t < count; t++) {
+    float reach = SPHERE_SQUARE * decal->size * decal->size;
+    uint32_t all, near_count;
+    NOH_ASSERT(decal && mesh && out && (out->triangles || !out->room));
+    NOH_ASSERT(triangle == NOH_NONE || triangle < mesh->header->index_count / 3u);
+    out->count = out->left_out = out->lone = 0;
+    all = near_count = collect(decal, mesh, triangle, reach, out);
+    for (int i = 0; i < SHRINKS_MAX && near_count > out->room; i++) {
+        reach *= 0.5f;
+        near_count = collect(decal, mesh, triangle, reach, out);
+    }
+    if (near_count > out->room) near_count = out->room;
+    out->left_out = all - near_count;
+    if (!near_count) return;
+    out->count = 1;
+    spread(mesh, near_count, out);
+}
+
+/* ---- at another level ---- */
+
+static int has_corner(const noh_decal_patch *patch, const noh_mesh *mesh, uint32_t vertex)
+{
+    for (uint32_t i = 0; i < 3u * patch->count; i++) {
+        if (noh_mesh_index(mesh, 3u * patch->triangles[i / 3u] + i % 3u) == vertex) return 1;
+    }
+    return 0;
+}
+
+uint32_t noh_decal_again(const noh_decal *decal, const noh_decal_patch *before, const noh_mesh *mesh_before,
+                         const noh_mesh *mesh)
+{
+    const float reach = SPHERE_SQUARE * decal->size * decal->size, radius = noh_sqrt(reach);
+    uint32_t best = NOH_NONE;
+    float least = reach;
+    NOH_ASSERT(decal && before && mesh_before && mesh);
+    for (uint32_t t = 0; t < mesh->header->index_count / 3u; t++) {
         const float *p[3];
         float square;
+        int shared = 0;
         corners_of(mesh, t, p);
+        if (!is_about(decal, radius, p)) continue;
         square = near_square(decal, p);
-        if (t == triangle) first = near_count;
-        if (t != triangle && !(square >= 0.0f && square <= reach)) continue;
-        if (near_count == NEAR_MAX) {
-            out->left_out++;
-            if (t != triangle) continue;
-            near_count--;
-            first = near_count;
+        if (!(square >= 0.0f && square <= least) || (square == least && best != NOH_NONE)) continue;
+        for (uint32_t i = 0; i < 3 && !shared; i++) {
+            shared = has_corner(before, mesh_before, noh_mesh_index(mesh, 3u * t + i));
         }
-        if (triangle == NOH_NONE && (first == NOH_NONE || square < best)) best = square, first = near_count;
-        near[near_count++] = t;
+        if (shared) best = t, least = square;
     }
-    if (first == NOH_NONE) return;
-    out->triangles[out->count++] = near[first];
-    near[first] = near[near_count - 1u];
-    spread(mesh, near, near_count - 1u, out);
+    return best;
 }

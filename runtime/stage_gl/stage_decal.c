@@ -4,7 +4,7 @@
 
 #include "gl/gl_lost.h"
 #include "shaders.gen.h"
-#include "stage_gl/stage_gl_internal.h"
+#include "stage_gl/stage_patch_internal.h"
 
 #define ROW_TEXELS 4u
 #define ROWS_SENT 16u /* at once: what fits on the stack */
@@ -18,6 +18,9 @@ static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_ma
     api->Uniform3f(api->GetUniformLocation(program, "u_marks"), (float)d->count,
                    d->picture.texture ? (float)d->picture.columns : 0.0f,
                    d->picture.texture ? (float)d->picture.rows : 0.0f);
+    api->Uniform1i(api->GetUniformLocation(program, "u_corner_row"), d->corners ? (GLint)d->corner_row : -1);
+    api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 2u);
+    api->BindTexture(GL_TEXTURE_2D, d->corners);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);
     api->BindTexture(GL_TEXTURE_2D, d->picture.texture ? d->picture.texture : d->shader->renderer.white.name);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
@@ -42,7 +45,7 @@ size_t noh_stage_decals_size(const noh_stage *stage)
 noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device, void *memory, size_t bytes,
                                    const noh_decal_picture *picture, noh_stage_decals *out, noh_error *error)
 {
-    static const char *const samplers[] = { "u_decals", "u_picture" };
+    static const char *const samplers[] = { "u_decals", "u_picture", "u_corners" };
     noh_gl_shader_desc desc;
     noh_result result;
     NOH_ASSERT(stage && device && out);
@@ -56,7 +59,7 @@ noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device
     desc.vertex = noh_shader_decal_vertex_glsl;
     desc.fragment = noh_shader_decal_fragment_glsl;
     desc.samplers = samplers;
-    desc.sampler_count = 2;
+    desc.sampler_count = 3;
     desc.bind = bind;
     desc.user = out;
     result = noh_stage_shader_create(stage, memory, bytes, &desc, device->log, device->log_bytes, &out->shader, error);
@@ -107,35 +110,71 @@ static void send_rows(const noh_stage_decals *d, float rows[ROWS_SENT][ROW_TEXEL
     d->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)first, ROW_TEXELS, (GLsizei)count, GL_RGBA, GL_FLOAT, rows);
 }
 
-/* The marks of one mesh of the pack, the oldest first. */
+uint32_t noh_gl_decals_of(const noh_decals *ring, uint32_t mesh, uint8_t marks[NOH_DECALS_MAX])
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < ring->capacity; i++) {
+        const uint32_t at = (ring->next + i) % ring->capacity;
+        if (ring->decals[at].mesh == mesh && noh_decal_alpha(ring, at) > 0.0f) marks[count++] = (uint8_t)at;
+    }
+    return count;
+}
+
 static void upload_rows(noh_stage_decals *d, const noh_decals *ring, uint32_t mesh)
 {
     float rows[ROWS_SENT][ROW_TEXELS][4];
-    uint32_t sent = 0;
-    d->count = 0;
+    uint8_t marks[NOH_DECALS_MAX];
+    d->count = noh_gl_decals_of(ring, mesh, marks);
     d->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
     d->gl->BindTexture(GL_TEXTURE_2D, d->rows.name);
-    for (uint32_t i = 0; i < ring->capacity; i++) {
-        const uint32_t at = (ring->next + i) % ring->capacity;
-        if (ring->decals[at].mesh != mesh || noh_decal_alpha(ring, at) <= 0.0f) continue;
-        set_row(ring, at, rows[d->count - sent]);
-        if (++d->count - sent < ROWS_SENT) continue;
-        send_rows(d, rows, sent, ROWS_SENT);
-        sent = d->count;
+    for (uint32_t first = 0; first < d->count; first += ROWS_SENT) {
+        const uint32_t now = d->count - first < ROWS_SENT ? d->count - first : ROWS_SENT;
+        for (uint32_t i = 0; i < now; i++) set_row(ring, marks[first + i], rows[i]);
+        send_rows(d, rows, first, now);
     }
-    if (d->count > sent) send_rows(d, rows, sent, d->count - sent);
 }
 
 static void unbind(const noh_stage_decals *d)
 {
-    for (uint32_t i = 2; i-- > 0;) {
+    for (uint32_t i = 3; i-- > 0;) {
         d->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + i);
         d->gl->BindTexture(GL_TEXTURE_2D, 0);
     }
 }
 
+/* The triangles that have marks, or all. */
+static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh,
+                       const noh_gl_share *share, const noh_decals *ring)
+{
+    noh_gl_triangles triangles;
+    decals->corners = 0;
+    if (patches) {
+        if (!noh_gl_patches_grow(patches, alone, mesh, share->level, ring, &triangles, &decals->corner_row)) return;
+        decals->corners = patches->corners.name;
+        noh_gl_draw_triangles(&decals->shader->renderer, &triangles);
+    }
+    noh_gl_draw_alone(alone, mesh, share);
+    noh_gl_draw_triangles(&decals->shader->renderer, NULL);
+    decals->draws++;
+}
+
+static void draw_mesh(noh_stage_decals *decals, noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh,
+                      const noh_decals *ring)
+{
+    noh_gl_share shares[2];
+    const uint32_t count = noh_gl_alone_shares(alone, mesh, shares);
+    upload_rows(decals, ring, noh_gl_alone_mesh(alone, mesh));
+    for (uint32_t i = 0; i < count && decals->count; i++) draw_share(decals, patches, alone, mesh, &shares[i], ring);
+}
+
 noh_result noh_stage_decals_draw(noh_stage_decals *decals, uint32_t view, noh_actor actor, const noh_decals *ring,
                                  noh_error *error)
+{
+    return noh_gl_decals_draw(decals, NULL, view, actor, ring, error);
+}
+
+noh_result noh_gl_decals_draw(noh_stage_decals *decals, noh_stage_patches *patches, uint32_t view, noh_actor actor,
+                              const noh_decals *ring, noh_error *error)
 {
     noh_gl_alone alone;
     noh_result result;
@@ -144,12 +183,8 @@ noh_result noh_stage_decals_draw(noh_stage_decals *decals, uint32_t view, noh_ac
     if (result) return result;
     decals->gl->Enable(GL_BLEND);
     decals->gl->DepthMask(GL_FALSE);
-    for (uint32_t m = 0; m < alone.mesh_count; m++) {
-        upload_rows(decals, ring, noh_gl_alone_mesh(&alone, m));
-        if (!decals->count) continue;
-        noh_gl_draw_alone(&alone, m);
-        decals->draws++;
-    }
+    if (patches) noh_gl_patches_begin(patches, &alone);
+    for (uint32_t m = 0; m < alone.mesh_count; m++) draw_mesh(decals, patches, &alone, m, ring);
     unbind(decals);
     decals->gl->DepthMask(GL_TRUE);
     decals->gl->Disable(GL_BLEND);

@@ -4,6 +4,9 @@
  *                                                    _delete, _restore
  *   noh_stage_decals_draw                            the marks of an actor
  *
+ * Whatever rests within a mark's sphere and faces as it does has it, also a fold that only touches there;
+ * stage_gl/stage_patch.h draws the same marks without.
+ *
  * The meshes that have marks are drawn once more, all marks of one in one draw: pixels without a mark are discarded,
  * the others are blended over the surface, lit as it is, with its normal map and wrinkles. Levels may fade meanwhile.
  *
@@ -34,6 +37,8 @@ typedef struct noh_stage_decals {
     noh_gl_texture rows; /* GL_RGBA32F, 4 x NOH_DECALS_MAX */
     noh_decal_picture picture;
     uint32_t count; /* of the draw that is under way */
+    GLuint corners; /* of stage_patch.h, likewise; 0: marks are looked up alone */
+    uint32_t corner_row;
     uint32_t draws; /* of all meshes so far */
 } noh_stage_decals;
 

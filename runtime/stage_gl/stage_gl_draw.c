@@ -78,18 +78,24 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
                      &lod, pictures_of(d, place), d->pass);
 }
 
-/* A fading actor: the new level and the old one, each with its share of the pixels. */
-static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
+/* Of a fading actor: the new level and the old one, each with its share of the pixels. */
+static uint32_t shares_of(const drawing *d, uint32_t mesh, uint32_t place, noh_gl_share shares[2])
 {
     const noh_stage_shown *shown = shown_at(d, place);
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
     const float part = noh_lod_fade(&ch->lod, ch->time.clock);
-    if (!d->renderer->fades || mesh_level(d, mesh, shown->level) == mesh_level(d, mesh, shown->level_before)) {
-        draw_alone(d, mesh, place, shown->level, 0.0f, 1.0f);
-        return;
-    }
-    draw_alone(d, mesh, place, shown->level, 0.0f, part);
-    draw_alone(d, mesh, place, shown->level_before, part, 1.0f);
+    const int fades = d->renderer->fades &&
+                      mesh_level(d, mesh, shown->level) != mesh_level(d, mesh, shown->level_before);
+    shares[0] = (noh_gl_share){ shown->level, 0.0f, fades ? part : 1.0f };
+    shares[1] = (noh_gl_share){ shown->level_before, part, 1.0f };
+    return fades ? 2u : 1u;
+}
+
+static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    noh_gl_share shares[2];
+    const uint32_t count = shares_of(d, mesh, place, shares);
+    for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, place, shares[i].level, shares[i].from, shares[i].to);
 }
 
 /* Streams are of one instance: no other can be drawn with it. */
@@ -242,9 +248,21 @@ uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index)
     return alone->drawing.k->meshes[index].item.mesh;
 }
 
-void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index)
+uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_gl_share shares[2])
 {
-    draw_fading(&alone->drawing, index, alone->place);
+    return shares_of(&alone->drawing, index, alone->place, shares);
+}
+
+noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t level)
+{
+    const drawing *d = &alone->drawing;
+    size_t first;
+    return noh_gl_mesh_lod(&d->on_gl->items[index].model->mesh, mesh_level(d, index, level), &first);
+}
+
+void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share)
+{
+    draw_alone(&alone->drawing, index, alone->place, share->level, share->from, share->to);
 }
 
 void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting)

@@ -84,9 +84,18 @@ typedef struct noh_gl_alone {
 } noh_gl_alone;
 noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view, noh_actor actor,
                               noh_gl_alone *alone, noh_error *error);
-/* The index-th mesh: its number in the pack; drawn, with whatever render state was set since. */
+/* A level of an actor, and its share of the pixels (noh_gl_lod). */
+typedef struct noh_gl_share {
+    uint32_t level;
+    float from, to;
+} noh_gl_share;
+
+/* The index-th mesh: its number in the pack; the levels that it shows, 1, or 2 while it fades; the mesh at one of the
+ * actor's levels, as it is drawn; drawn, with whatever render state was set since. */
 uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index);
-void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index);
+uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_gl_share shares[2]);
+noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t level);
+void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share);
 
 /* Kinds of one actor are drawn by the programs of single instances. */
 static inline int noh_gl_is_crowd(const noh_stage_kind *kind)

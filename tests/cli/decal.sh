@@ -17,6 +17,16 @@ for more in '--weight smile=1' '--lod 3' '--light none' '--debug light' '--path 
 done
 noh render "$build/demo/puppet_levels.noh" -o "$work/walk.png" --size 128x128 --decal 0.5,0.4 --clip walk --time 0.4
 expect 0 'on a figure that walks'
+for kind in rest grown; do
+    noh sheet "$pack" -o "$work/$kind.png" --tile 96 --target smile --decal 0.5,0.35,0.02,22aa44 --decal-kind $kind
+    expect 0 "a sheet with --decal-kind $kind"
+    noh render "$pack" -o "$work/one_$kind.png" --size 128x128 --camera 0,0 --decal 0.5,0.35,0.02,22aa44 --decal-kind $kind
+    expect 0 "a picture with --decal-kind $kind"
+done
+check 'a mark without folds is the same, grown' cmp "$work/one_rest.png" "$work/one_grown.png"
+noh render "$pack" -o "$work/bad.png" --decal 0.5,0.35 --decal-kind other
+expect 2 'an unknown kind of mark'
+says 'rest or grown'
 noh render "$pack" -o "$work/miss.png" --size 128x128 --camera 0,0 --decal 0.01,0.01
 expect 1 'beside the figure'
 says 'nothing is at 0.01,0.01 of the picture'

@@ -43,6 +43,15 @@ static void sheet_add(sheet *s, uint32_t n, float z)
     }
 }
 
+/* With room for so many triangles, up to ROOM. Of one patch at a time. */
+#define ROOM 400u
+static noh_decal_patch with_room(uint32_t room)
+{
+    static uint32_t triangles[ROOM];
+    const noh_decal_patch patch = { triangles, room, 0, 0, 0 };
+    return patch;
+}
+
 static const noh_decal at_front = {
     .centre = { 0.05f, 0.1f, 0.0f }, .normal = { 0.0f, 0.0f, 1.0f }, .right = { 1.0f, 0.0f, 0.0f }, .size = 0.1f
 };
@@ -52,7 +61,7 @@ static const noh_decal at_front = {
 static void errata_C14_4_a_mark_within_a_large_triangle_is_there(void **state)
 {
     static sheet s;
-    noh_decal_patch patch;
+    noh_decal_patch patch = with_room(ROOM);
     noh_decal mark = at_front;
     uint32_t book = 0;
     (void)state;
@@ -100,7 +109,7 @@ static void errata_C14_5_coordinates_for_any_size(void **state)
 static void the_square_is_covered_once(void **state)
 {
     static sheet s;
-    noh_decal_patch patch;
+    noh_decal_patch patch = with_room(ROOM);
     (void)state;
     sheet_open(&s);
     sheet_add(&s, SIDE, 0.0f);
@@ -131,7 +140,7 @@ static void the_square_is_covered_once(void **state)
 static void a_fold_that_touches_stays_clean(void **state)
 {
     static sheet s;
-    noh_decal_patch patch;
+    noh_decal_patch patch = with_room(ROOM);
     (void)state;
     sheet_open(&s);
     sheet_add(&s, SIDE, 0.0f);
@@ -142,20 +151,67 @@ static void a_fold_that_touches_stays_clean(void **state)
     for (uint32_t i = 0; i < patch.count; i++) assert_true(patch.triangles[i] < SIDE * SIDE * 2u);
 }
 
-/* A mark that is too large for a patch says so, and has the triangles next to the one that was hit. */
-static void what_has_no_room_is_told(void **state)
+/* Two sheets that cross as levels do: at the coarse one the other sheet is nearer to the middle of the mark. The
+ * corners that both levels have say which sheet it is on. */
+static void a_mark_keeps_its_fold_when_levels_change(void **state)
 {
     static sheet s;
-    noh_decal_patch patch;
+    noh_decal_patch before = with_room(ROOM);
+    uint32_t fine[ROOM], other, again;
+    noh_mesh_header coarse_header;
+    noh_mesh coarse;
     noh_decal mark = at_front;
     (void)state;
     sheet_open(&s);
     sheet_add(&s, SIDE, 0.0f);
+    sheet_add(&s, SIDE, -0.001f);
+    before.triangles = fine;
+    noh_decal_grow(&mark, &s.mesh, NOH_NONE, &before);
+    assert_true(before.count > 20 && before.triangles[0] < SIDE * SIDE * 2u);
+    coarse = s.mesh; /* the same vertices, of which the first sheet's have moved on */
+    coarse_header = s.header;
+    coarse.header = &coarse_header;
+    for (uint32_t v = 0; v < (SIDE + 1u) * (SIDE + 1u); v++) s.positions[3u * v + 2u] = -0.003f;
+    {
+        noh_decal_patch nearest = with_room(ROOM);
+        noh_decal_grow(&mark, &coarse, NOH_NONE, &nearest);
+        other = nearest.triangles[0];
+    }
+    again = noh_decal_again(&mark, &before, &s.mesh, &coarse);
+    assert_true(other >= SIDE * SIDE * 2u);
+    assert_true(again < SIDE * SIDE * 2u);
+    before.count = 0;
+    assert_int_equal(noh_decal_again(&mark, &before, &s.mesh, &coarse), NOH_NONE);
+}
+
+/* A mark that is too large for its room says so, and is smaller. */
+static void what_has_no_room_is_told(void **state)
+{
+    static sheet s;
+    noh_decal_patch patch = with_room(96);
+    noh_decal mark = at_front;
+    double farthest = 0.0;
+    (void)state;
+    sheet_open(&s);
+    sheet_add(&s, SIDE, 0.0f);
     mark.size = 0.4f;
+    noh_decal_grow(&mark, &s.mesh, NOH_NONE, &patch);
+    assert_true(patch.count > 30 && patch.count <= 96);
+    assert_true(patch.left_out > 100);
+    for (uint32_t i = 0; i < patch.count; i++) { /* round about the middle, not a strip of the first that came */
+        const float *p = s.positions + 3u * noh_mesh_index(&s.mesh, 3u * patch.triangles[i]);
+        farthest = fmax(farthest, hypot((double)(p[0] - mark.centre[0]), (double)(p[1] - mark.centre[1])));
+    }
+    assert_true(farthest < 0.4);
     noh_decal_grow(&mark, &s.mesh, 300, &patch);
-    assert_int_equal(patch.count, NOH_DECAL_TRIANGLES_MAX);
     assert_int_equal(patch.triangles[0], 300);
-    assert_true(patch.left_out > 0);
+    patch.room = 1;
+    noh_decal_grow(&mark, &s.mesh, 300, &patch);
+    assert_int_equal(patch.count, 1);
+    patch.room = 0;
+    noh_decal_grow(&mark, &s.mesh, 300, &patch);
+    assert_int_equal(patch.count, 0);
+    patch.room = 96;
     mark.normal[2] = -1.0f;
     noh_decal_grow(&mark, &s.mesh, NOH_NONE, &patch);
     assert_int_equal(patch.count, 0);
@@ -165,7 +221,7 @@ static void what_has_no_room_is_told(void **state)
  * texel of 256, and its corners are vertices of that level. */
 static void levels_carry_the_mark(void **state)
 {
-    noh_decal_patch finest;
+    noh_decal_patch finest = with_room(ROOM);
     cast c;
     noh_mesh mesh;
     uint32_t grown = 0;
@@ -195,7 +251,7 @@ static void levels_carry_the_mark(void **state)
         for (uint32_t k = 0; k < mesh.header->level_count; k++) {
             const noh_mesh level = noh_mesh_at_lod(&mesh, k);
             float low[2] = { 1e9f, 1e9f }, high[2] = { -1e9f, -1e9f };
-            noh_decal_patch patch;
+            noh_decal_patch patch = with_room(ROOM);
             noh_decal_grow(&mark, &level, NOH_NONE, &patch);
             if (!patch.count) continue;
             for (uint32_t n = 0; n < 3; n++) {
@@ -220,6 +276,7 @@ int main(void)
         cmocka_unit_test(errata_C14_5_coordinates_for_any_size),
         cmocka_unit_test(the_square_is_covered_once),
         cmocka_unit_test(a_fold_that_touches_stays_clean),
+        cmocka_unit_test(a_mark_keeps_its_fold_when_levels_change),
         cmocka_unit_test(what_has_no_room_is_told),
         cmocka_unit_test(levels_carry_the_mark),
     };

@@ -49,6 +49,23 @@
         .what = "whether the hair of the pack is drawn and moves, where it has some"                     \
     }
 
+/* Marks and how they are drawn. */
+#define OPTIONS_DECALS(T, m, k, others)                                                                                                                                            \
+    { .name = "--decal",                                                                                                                                                           \
+      .kind = OPTION_LIST,                                                                                                                                                         \
+      .at = offsetof(T, m),                                                                                                                                                        \
+      .value = "X,Y[,SIZE[,RRGGBB]]",                                                                                                                                              \
+      .what =                                                                                                                                                                      \
+          "a mark on the figure, struck at rest: where in the picture, 0 to 1 from its upper left corner; half its width, in model units; its colour. May repeat, up to 64 times", \
+      .example = "0.5,0.4,0.01,aa2211",                                                                                                                                            \
+      .excludes = (others) },                                                                                                                                                      \
+    {                                                                                                                                                                              \
+        .name = "--decal-kind", .kind = OPTION_TEXT, .at = offsetof(T, k), .value = "rest|grown", .initial = "rest",                                                               \
+        .what =                                                                                                                                                                    \
+            "how marks are drawn: looked up by where a pixel is at rest, also on a fold that only touches there; or grown as triangles, from the one that was hit",                \
+        .example = "grown", .needs = "--decal"                                                                                                                                     \
+    }
+
 #define OPTION_FEEL(T, m)                                                                                              \
     {                                                                                                                  \
         .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT",                        \

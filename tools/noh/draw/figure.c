@@ -312,8 +312,7 @@ void figure_close(figure *f)
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
     if (f->blob.gl) noh_stage_blob_delete(&f->blob);
-    if (f->decals.gl) noh_stage_decals_delete(&f->decals);
-    free(f->decal_memory);
+    figure_close_decals(f);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->hair.gl) noh_stage_hair_delete(&f->hair);
     if (f->stage) noh_stage_delete(f->stage);
@@ -331,7 +330,7 @@ int figure_restore(figure *f)
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
     if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
     if (!result && f->blob.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
-    if (!result && f->decals.gl) result = noh_stage_decals_restore(&f->decals, NULL, log, sizeof log, &error);
+    if (!result && f->decals.gl) result = figure_restore_decals(f, log, sizeof log, &error);
     if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);

@@ -30,6 +30,7 @@
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_blob.h"
 #include "stage_gl/stage_decal.h"
+#include "stage_gl/stage_patch.h"
 #include "stage_gl/stage_hair.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
@@ -75,6 +76,7 @@ typedef struct figure_desc {
     float wind[3];            /* that blows in it, as in noh_hair_carrier */
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
     uint32_t mark_count;
+    int grown;       /* 1: marks are grown as triangles */
     lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
@@ -103,6 +105,8 @@ typedef struct figure {
     noh_stage_decals decals;  /* zeros: none */
     noh_decals rings[NOH_STAGE_KINDS_MAX];
     void *decal_memory;
+    noh_stage_patches patches[NOH_STAGE_KINDS_MAX]; /* of desc.grown; zeros: none */
+    void *patch_memory[NOH_STAGE_KINDS_MAX];
     noh_blob_rig blob_rigs[NOH_STAGE_KINDS_MAX];
     float floor;         /* y of the ground where the body has none */
     noh_stage_hair hair; /* zeros: none */
@@ -183,10 +187,13 @@ int figure_live(figure *f, double seconds, double turn);
 int figure_open_blobs(figure *f);
 void figure_draw_blobs(figure *f);
 
-/* --decal X,Y[,SIZE[,RRGGBB]]: marks[NOH_DECALS_MAX]. */
-int figure_read_marks(const option_list *texts, figure_mark *marks);
-/* The marks of a figure: opened with it; struck as it stands, seen by a camera; drawn over what is opaque. */
+/* --decal X,Y[,SIZE[,RRGGBB]] and --decal-kind rest|grown. marks: [NOH_DECALS_MAX], that desc has afterwards */
+int figure_read_marks(const option_list *texts, const char *kind, figure_mark *marks, figure_desc *desc);
+/* The marks of a figure: opened with it, closed, restored; struck as it stands, seen by a camera; drawn over what is
+ * opaque. */
 int figure_open_decals(figure *f);
+void figure_close_decals(figure *f);
+noh_result figure_restore_decals(figure *f, char *log, size_t log_bytes, noh_error *error);
 int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32_t height);
 int figure_draw_decals(figure *f);
 

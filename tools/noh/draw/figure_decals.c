@@ -1,6 +1,7 @@
 /* figure_decals.c: marks on a figure (--decal). */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/args.h"
 #include "cli/message.h"
@@ -8,6 +9,7 @@
 
 #define SIZE_OF_HEIGHT 0.03 /* half a side, where none is given */
 #define FAR_AWAY 1e6f
+#define TRIANGLES 65536u /* of all grown marks: pictures have time for large ones */
 
 /* X,Y[,SIZE[,RRGGBB]] */
 static int parse(const char *text, figure_mark *mark)
@@ -27,11 +29,33 @@ static int parse(const char *text, figure_mark *mark)
     return tool_usage("--decal wants X,Y[,SIZE[,RRGGBB]]: 0 to 1 from the upper left corner, a length, not '%s'", text);
 }
 
-int figure_read_marks(const option_list *texts, figure_mark *marks)
+int figure_read_marks(const option_list *texts, const char *kind, figure_mark *marks, figure_desc *desc)
 {
     int status = texts->count > (int)NOH_DECALS_MAX ? tool_usage("more than %u times --decal", NOH_DECALS_MAX) : 0;
     for (int i = 0; i < texts->count && !status; i++) status = parse(texts->items[i], &marks[i]);
+    desc->grown = strcmp(kind, "grown") == 0;
+    if (!status && !desc->grown && strcmp(kind, "rest") != 0) {
+        status = tool_usage("--decal-kind wants rest or grown, not '%s'", kind);
+    }
+    desc->marks = texts->count ? marks : NULL;
+    desc->mark_count = (uint32_t)texts->count;
     return status;
+}
+
+static int open_patches(figure *f)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    for (uint32_t k = 0; k < f->stage_desc.kind_count && f->desc.grown; k++) {
+        const size_t bytes = noh_stage_patches_size(f->desc.mark_count, TRIANGLES);
+        f->patch_memory[k] = malloc(bytes);
+        if (!f->patch_memory[k]) return tool_fail("--decal", "out of memory");
+        if (noh_stage_patches_create(&f->decals, f->desc.mark_count, TRIANGLES, f->patch_memory[k], bytes,
+                                     &f->patches[k], &error)) {
+            f->patches[k].decals = NULL;
+            return tool_fail_error("--decal", &error);
+        }
+    }
+    return 0;
 }
 
 int figure_open_decals(figure *f)
@@ -41,7 +65,9 @@ int figure_open_decals(figure *f)
     noh_gl_device device;
     size_t bytes;
     if (!f->g || !f->desc.marks) return 0;
-    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) noh_decals_init(&f->rings[k], 0, 0, 0);
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+        noh_decals_init(&f->rings[k], f->desc.mark_count, 0, 0);
+    }
     bytes = noh_stage_decals_size(f->stage);
     f->decal_memory = malloc(bytes);
     device = (noh_gl_device){ &f->g->gl, &f->g->caps, &f->g->ledger, log, sizeof log };
@@ -51,7 +77,26 @@ int figure_open_decals(figure *f)
         f->decals.gl = NULL;
         return tool_fail_error("--decal", &error);
     }
-    return 0;
+    return open_patches(f);
+}
+
+void figure_close_decals(figure *f)
+{
+    for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) {
+        if (f->patches[k].decals) noh_stage_patches_delete(&f->patches[k]);
+        free(f->patch_memory[k]);
+    }
+    if (f->decals.gl) noh_stage_decals_delete(&f->decals);
+    free(f->decal_memory);
+}
+
+noh_result figure_restore_decals(figure *f, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_result result = noh_stage_decals_restore(&f->decals, NULL, log, log_bytes, error);
+    for (uint32_t k = 0; k < f->stage_desc.kind_count && !result && f->desc.grown; k++) {
+        result = noh_stage_patches_restore(&f->patches[k], error);
+    }
+    return result;
 }
 
 static int strike(figure *f, const figure_mark *mark, const noh_stage_view *view, uint32_t width, uint32_t height,
@@ -62,7 +107,8 @@ static int strike(figure *f, const figure_mark *mark, const noh_stage_view *view
     float origin[3], direction[3];
     noh_stage_hit hit;
     for (int i = 0; i < 4; i++) desc.color[i] = mark->color[i];
-    if (!noh_view_ray(view, (float)(mark->x * width), (float)(mark->y * height), width, height, origin, direction) ||
+    if (!noh_view_ray(view, (float)(mark->x * width - 0.5), (float)(mark->y * height - 0.5), width, height, origin,
+                      direction) ||
         noh_stage_pick(f->stage, origin, direction, FAR_AWAY, &hit, NULL)) {
         return tool_fail("--decal", "nothing is at %g,%g of the picture, as the figure is at rest", mark->x, mark->y);
     }
@@ -89,7 +135,9 @@ int figure_draw_decals(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t k = 0; k < f->stage_desc.kind_count && f->decals.gl && !f->shader; k++) {
-        const noh_result result = noh_stage_decals_draw(&f->decals, 0, f->actors[k], &f->rings[k], &error);
+        const noh_result result = f->desc.grown
+                                      ? noh_stage_patches_draw(&f->patches[k], 0, f->actors[k], &f->rings[k], &error)
+                                      : noh_stage_decals_draw(&f->decals, 0, f->actors[k], &f->rings[k], &error);
         if (result && result != NOH_ERR_NOT_FOUND) return tool_fail_error("--decal", &error);
     }
     return 0;

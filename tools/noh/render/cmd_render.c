@@ -13,7 +13,7 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind;
+    const char *pack, *output, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind, *decal_kind;
     uint32_t size[2];
     double time_s, lod, turn, swing;
     int show_bones;
@@ -61,9 +61,7 @@ static int check_args(render_args *a)
     a->figure.without_springs = !springs;
     if (!status) status = check_body(a);
     if (!status) status = tool_switch("--hair", a->hair, &a->figure.hair);
-    if (!status) status = figure_read_marks(&a->decals, a->marks);
-    a->figure.marks = a->decals.count ? a->marks : NULL;
-    a->figure.mark_count = (uint32_t)a->decals.count;
+    if (!status) status = figure_read_marks(&a->decals, a->decal_kind, a->marks, &a->figure);
     if (!status && a->wind) status = parse_wind(a->wind, a->figure.wind);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
@@ -228,14 +226,7 @@ static const option options[] = {
       .initial = "2",
       .what = "how long hair has moved before the picture, seconds, where no clip plays",
       .example = "0.5" },
-    { .name = "--decal",
-      .kind = OPTION_LIST,
-      .at = offsetof(render_args, decals),
-      .value = "X,Y[,SIZE[,RRGGBB]]",
-      .what =
-          "a mark on the figure, struck at rest: where in the picture, 0 to 1 from its upper left corner; half its width, in model units; its colour. May repeat, up to 64 times",
-      .example = "0.5,0.4,0.01,aa2211",
-      .excludes = "--bones" },
+    OPTIONS_DECALS(render_args, decals, decal_kind, "--bones"),
     OPTION_CAMERA(render_args, view.camera, "body"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),

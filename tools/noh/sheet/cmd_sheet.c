@@ -31,7 +31,9 @@ typedef struct sheet {
 } sheet;
 
 typedef struct sheet_args {
-    const char *path, *accumulate, *transition, *face, *springs, *hair;
+    const char *path, *accumulate, *transition, *face, *springs, *hair, *decal_kind;
+    option_list decals;
+    figure_mark marks[NOH_DECALS_MAX];
     double tile, tiles, columns, faces, seed;
     sheet s;
 } sheet_args;
@@ -92,6 +94,17 @@ static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
     return view_camera(&o, &box, camera);
 }
 
+/* On the figure at rest, as the camera of all tiles would see it. */
+static int strike(const sheet *s, picture *p)
+{
+    noh_gl_camera camera;
+    int status = s->figure.mark_count ? figure_reset(&p->figure) : 0;
+    if (status || !s->figure.mark_count) return status;
+    status = figure_pose(&p->figure);
+    if (!status) status = tile_camera(s, p, &camera);
+    return status ? status : figure_strike(&p->figure, &camera, s->tile, s->tile);
+}
+
 static int draw_tiles(sheet *s, picture *p)
 {
     uint8_t *rgba = malloc((size_t)s->tile * s->tile * 4);
@@ -122,6 +135,7 @@ static int draw_sheet(sheet *s, const pack_file *file)
     if (!status) {
         status = sheet_tiles_measure(&s->tiles, &p.figure);
         if (!status) status = measure_tiles(s, &p, view_wants_face(&o));
+        if (!status) status = strike(s, &p);
         if (!status) status = draw_tiles(s, &p);
         picture_close(&p);
     }
@@ -221,6 +235,7 @@ static int check_args(sheet_args *a)
     if (!status) status = check_body(s);
     s->tiles.lives = s->figure.alive || s->body.has_ground;
     if (!status) status = tool_switch("--hair", a->hair, &s->figure.hair);
+    if (!status) status = figure_read_marks(&a->decals, a->decal_kind, a->marks, &s->figure);
     s->tiles.alive = s->figure.alive;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
@@ -418,6 +433,7 @@ static const option options[] = {
       .what = "tiles per row, 1 to 64; default: nearly square",
       .example = "8",
       .excludes = "--lods --blend" },
+    OPTIONS_DECALS(sheet_args, decals, decal_kind, "--lods --data --bones"),
     OPTIONS_BODY(sheet_args, s.body_wants),
     OPTION_CAMERA(sheet_args, s.camera, "face"),
     OPTIONS_LIGHT(sheet_args, s.light, "auto", .excludes = "--bones"),
