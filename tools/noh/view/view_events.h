@@ -7,7 +7,7 @@
 #define NOH_NOH_VIEW_VIEW_EVENTS_H
 
 #include "view/view_context.h"
-#include "view/view_panels.h"
+#include "view/panels/view_panels.h"
 
 #define AWAKE_FRAMES 4 /* drawn after an input before an unchanging picture idles */
 

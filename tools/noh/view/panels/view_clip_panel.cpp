@@ -1,6 +1,6 @@
 // view_clip_panel.cpp: the clips of a pack, what plays of them, how fast.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 namespace
 {

@@ -1,4 +1,4 @@
-#include "view/view_widgets.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstdio>
 #include <cstring>

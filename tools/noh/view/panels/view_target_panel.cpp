@@ -1,6 +1,6 @@
 // view_target_panel.cpp: the figure's name, undo and clipboard, presets, a slider for each target.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstring>
 

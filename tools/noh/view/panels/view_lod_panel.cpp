@@ -1,6 +1,6 @@
 // view_lod_panel.cpp: the switch for LOD levels, with the cost of each.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstdio>
 

@@ -1,6 +1,6 @@
 // view_graph_panel.cpp: the graphs of a pack: one plays on the body, its parameters are moved, its states are told.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 namespace
 {

@@ -1,6 +1,6 @@
 // view_play_panel.cpp: what plays, layer by layer; how the next clip plays.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstdio>
 #include <cstring>

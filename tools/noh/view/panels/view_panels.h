@@ -1,6 +1,6 @@
 /* view_panels.h: the panels, by Dear ImGui. All C++ of the viewer is behind this header. */
-#ifndef NOH_NOH_VIEW_VIEW_PANELS_H
-#define NOH_NOH_VIEW_VIEW_PANELS_H
+#ifndef NOH_NOH_VIEW_PANELS_VIEW_PANELS_H
+#define NOH_NOH_VIEW_PANELS_VIEW_PANELS_H
 
 #ifdef __cplusplus
 extern "C" {

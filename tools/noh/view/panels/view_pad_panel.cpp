@@ -1,6 +1,6 @@
 // view_pad_panel.cpp: a blend space to drag a point in.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstdio>
 

@@ -1,6 +1,6 @@
 // view_dialogs.cpp: what lies over the picture: how far a conversion is, the keys, whether to quit, what is compared.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstdio>
 #include <cstring>

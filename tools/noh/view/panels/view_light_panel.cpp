@@ -1,6 +1,6 @@
 // view_light_panel.cpp: light and background, the camera, the floor, films.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cstring>
 

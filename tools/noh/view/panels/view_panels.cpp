@@ -1,6 +1,6 @@
 // view_panels.cpp: where the panels are. They read and change view_app, and request what needs the GPU through `wish`.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

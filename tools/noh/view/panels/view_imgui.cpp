@@ -1,5 +1,5 @@
 // view_imgui.cpp: Dear ImGui's input, letters, style and triangles.
-#include "view/view_imgui.h"
+#include "view/panels/view_imgui.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,9 +1,9 @@
 /* view_imgui.h: feeds Dear ImGui with the window's input and draws it with view_screen. Differences between its
  * versions are handled here alone. */
-#ifndef NOH_NOH_VIEW_VIEW_IMGUI_H
-#define NOH_NOH_VIEW_VIEW_IMGUI_H
+#ifndef NOH_NOH_VIEW_PANELS_VIEW_IMGUI_H
+#define NOH_NOH_VIEW_PANELS_VIEW_IMGUI_H
 
-#include "view/view_panels.h"
+#include "view/panels/view_panels.h"
 
 #include <imgui.h>
 

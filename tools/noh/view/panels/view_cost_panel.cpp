@@ -1,6 +1,6 @@
 // view_cost_panel.cpp: times, memory, and the data textures.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 #include <cfloat>
 #include <cstdio>

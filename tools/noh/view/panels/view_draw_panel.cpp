@@ -1,6 +1,6 @@
 // view_draw_panel.cpp: what is drawn of the figure and over it, by which path, and a second one beside it.
-#include "view/view_panels.h"
-#include "view/view_widgets.h"
+#include "view/panels/view_panels.h"
+#include "view/panels/view_widgets.h"
 
 namespace
 {

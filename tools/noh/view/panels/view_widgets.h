@@ -1,9 +1,9 @@
 /* view_widgets.h: Dear ImGui's controls as the panels use them. Each is known by its name, so that a script can find it
  * (view_script.h): the text in front of "##", or behind it where there is none. */
-#ifndef NOH_NOH_VIEW_VIEW_WIDGETS_H
-#define NOH_NOH_VIEW_VIEW_WIDGETS_H
+#ifndef NOH_NOH_VIEW_PANELS_VIEW_WIDGETS_H
+#define NOH_NOH_VIEW_PANELS_VIEW_WIDGETS_H
 
-#include "view/view_imgui.h"
+#include "view/panels/view_imgui.h"
 
 namespace ui
 {
