@@ -5,14 +5,19 @@ precision highp float;
 precision highp int;
 precision highp usampler2D;
 
-/* The left and right shift of a layer's field. bits: the widths of the fields, position | normal << 8 |
- * tangent << 16. */
-uvec2 delta_shifts(uint bits, int layer)
+/* The fourth word of an entry, whose first three are weight * scale of position, normal, tangent: the place of its tile
+ * in blocks x | y << 9, the widths of the first two fields << 18 and << 23. That of the tangent is what they leave of a
+ * word (runtime/gl/gl_morph_tiles.c). */
+ivec2 entry_tile(uint entry)
 {
-    uint position = bits & 255u, normal = (bits >> 8) & 255u, tangent = (bits >> 16) & 255u;
-    uint left = layer == 0 ? 0u : layer == 1 ? position : position + normal;
-    uint width = layer == 0 ? position : layer == 1 ? normal : tangent;
-    return uvec2(left, 32u - width);
+    return ivec2(entry << 2 & 2044u, entry >> 7 & 2044u);
+}
+
+/* The left and right shift of a layer's field. */
+uvec2 entry_shifts(uint entry, int layer)
+{
+    uint position = entry >> 18 & 31u, normal = entry >> 23 & 31u, both = position + normal;
+    return layer == 0 ? uvec2(0u, 32u - position) : layer == 1 ? uvec2(position, 32u - normal) : uvec2(both);
 }
 
 vec3 delta_field(uvec3 words, uvec2 shifts, float weight)
@@ -20,12 +25,12 @@ vec3 delta_field(uvec3 words, uvec2 shifts, float weight)
     return vec3(ivec3(words << shifts.x) >> shifts.y) * weight;
 }
 
-/* What a fragment that writes one layer needs, in one varying: its place (common_place.glsl), the layer's shifts, the
- * layer's weight. Rectangles are many and small, so the varyings of a triangle cost as much as its pixels. */
-uvec4 place_of_layer(uvec3 place, vec3 weights, int layer)
+/* What a fragment that writes one layer needs, in one varying: the entry's fourth word, the layer's shifts and weight.
+ * Primitives are many and small, so their varyings cost as much as their pixels. */
+uvec3 entry_of_layer(uvec4 entry, int layer)
 {
-    uvec2 shifts = delta_shifts(place.z, layer);
-    return uvec4(place.xy, shifts.x | shifts.y << 8, floatBitsToUint(layer == 0 ? weights.x : layer == 1 ? weights.y : weights.z));
+    uvec2 shifts = entry_shifts(entry.w, layer);
+    return uvec3(entry.w, shifts.x | shifts.y << 8, layer == 0 ? entry.x : layer == 1 ? entry.y : entry.z);
 }
 
 /* Where texel i of a table lies, which is folded into rows of 1 << width_log2 texels. */

@@ -1,11 +1,9 @@
-/* common_place.glsl: the delta texel under a fragment of a rectangle. */
+/* common_place.glsl: the delta texel under a fragment of a block. */
 uniform usampler2D u_deltas;
-uniform ivec3 u_tables;
 
-/* Three words, and with OCCLUSION the bits of what it changes of occlusion, over the scale of positions. place: the index of the delta texel that would lie under fragment (0, 0) if the rectangle reached that far, and the
- * rectangle's width. The index may be negative, that is wrap; adding the fragment's own offset wraps it back. */
-uvec4 delta_words(uvec2 place)
+/* Three words, and with OCCLUSION the bits of what it changes of occlusion, over the scale of positions. entry: its tile's
+ * place is told from the fragment's block on, and wraps where the texture of 2048 x 2048 ends that it may lie in. */
+uvec4 delta_words(uint entry)
 {
-    uvec2 at = uvec2(gl_FragCoord.xy);
-    return texelFetch(u_deltas, table_texel(place.x + at.y * place.y + at.x, u_tables.z), 0);
+    return texelFetch(u_deltas, ivec2(gl_FragCoord.xy) + entry_tile(entry) & 2047, 0);
 }

@@ -1,16 +1,15 @@
 #version 300 es
-/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once, with TWO_LAYERS two.
- * It needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the bits of the
- * floats. */
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once, with
+ * TWO_LAYERS two. It needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the
+ * bits of the floats. All fragments of a block of 4 x 4 walk the same list: one entry for each active target. */
 #include "common_delta.glsl"
 
-uniform usampler2D u_entries;  /* delta words, target; with OCCLUSION, in its high byte, what it changes of that */
-uniform usampler2D u_starts;   /* where each touched vertex's entries begin; one more at the end. With OCCLUSION in front
-                                * of them, backwards by target, what that is over the scale of positions */
-uniform usampler2D u_records;  /* weight * scale of position, normal, tangent; bits */
-uniform ivec3 u_tables;        /* width log2 of starts, records, entries */
+uniform usampler2D u_deltas;   /* delta words in tiles of 4 x 4; with OCCLUSION, what it changes of that, a float's bits */
+uniform usampler2D u_lists;    /* entries (common_delta.glsl); the top bit of a fourth word: the list ends here */
+uniform usampler2D u_starts;   /* where each block's list begins */
+#define WIDTH_LOG2 8           /* of both */
 
-flat in uvec4 f_tile;
+flat in uvec3 f_tile;
 
 #ifdef LAYERS_UINT
 #define LAYER uvec4
@@ -27,31 +26,27 @@ layout(location = 2) out LAYER o_tangent;
 
 void main()
 {
-    uint touched = f_tile.w & 0xffffffu;
     uvec2 local = uvec2(gl_FragCoord.xy) - uvec2(f_tile.x & 0xffffu, f_tile.x >> 16);
-    uint vertex = min((local.y << (f_tile.w >> 24)) + local.x, touched); /* behind the last vertex: an empty list */
-    uint from = texelFetch(u_starts, table_texel(f_tile.z + vertex, u_tables.x), 0).x;
-    uint to = vertex < touched ? texelFetch(u_starts, table_texel(f_tile.z + vertex + 1u, u_tables.x), 0).x : from;
+    uint block = f_tile.y + (local.y >> 2 << f_tile.z) + (local.x >> 2);
+    uint i = texelFetch(u_starts, table_texel(block, WIDTH_LOG2), 0).x;
+    ivec2 inside = ivec2(local & 3u);
     vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);
     float occlusion = 0.0;
-    for (uint i = from; i < to; i++) {
-        uvec4 entry = texelFetch(u_entries, table_texel(i, u_tables.z), 0);
+    uvec4 entry;
+    do { /* a list is never empty */
+        entry = texelFetch(u_lists, table_texel(i, WIDTH_LOG2), 0);
+        uvec4 texel = texelFetch(u_deltas, entry_tile(entry.w) + inside, 0);
+        vec3 weights = uintBitsToFloat(entry.xyz);
 #ifdef OCCLUSION
-        uint target = entry.w & 0xffffffu;
-#else
-        uint target = entry.w;
+        occlusion += uintBitsToFloat(texel.w) * weights.x;
 #endif
-        uvec4 record = texelFetch(u_records, table_texel(f_tile.y + target, u_tables.y), 0);
-#ifdef OCCLUSION
-        uint ratio = texelFetch(u_starts, table_texel(f_tile.z - 1u - target, u_tables.x), 0).x;
-        occlusion += float(int(entry.w) >> 24) * uintBitsToFloat(ratio) * uintBitsToFloat(record.x);
-#endif
-        position += delta_field(entry.xyz, delta_shifts(record.w, 0), uintBitsToFloat(record.x));
-        normal += delta_field(entry.xyz, delta_shifts(record.w, 1), uintBitsToFloat(record.y));
+        position += delta_field(texel.xyz, entry_shifts(entry.w, 0), weights.x);
+        normal += delta_field(texel.xyz, entry_shifts(entry.w, 1), weights.y);
 #ifndef TWO_LAYERS
-        tangent += delta_field(entry.xyz, delta_shifts(record.w, 2), uintBitsToFloat(record.z));
+        tangent += delta_field(texel.xyz, entry_shifts(entry.w, 2), weights.z);
 #endif
-    }
+        i++;
+    } while (int(entry.w) >= 0);
     o_position = LAYER_VALUE(position, occlusion);
     o_normal = LAYER_VALUE(normal, 0.0);
 #ifndef TWO_LAYERS

@@ -10,17 +10,16 @@ layout(triangles, invocations = 3) in;
 #endif
 layout(triangle_strip, max_vertices = 3) out;
 
-flat in uvec3 v_place[];
-flat in vec3 v_weights[];
+flat in uvec4 v_entry[];
 
-flat out uvec4 f_place;
+flat out uvec3 f_entry;
 
 void main()
 {
     int layer = gl_InvocationID;
-    uvec4 place = place_of_layer(v_place[0], v_weights[0], layer);
+    uvec3 entry = entry_of_layer(v_entry[0], layer);
     for (int i = 0; i < 3; i++) {
-        f_place = place;
+        f_entry = entry;
         gl_Layer = layer;
         gl_Position = gl_in[i].gl_Position;
         EmitVertex();

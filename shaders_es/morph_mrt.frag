@@ -3,8 +3,7 @@
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec3 f_place;     /* place (common_place.glsl), widths of the fields */
-flat in vec3 f_weights;
+flat in uvec4 f_entry;     /* common_delta.glsl */
 
 layout(location = 0) out vec4 o_position;
 layout(location = 1) out vec4 o_normal;
@@ -14,15 +13,16 @@ layout(location = 2) out vec4 o_tangent;
 
 void main()
 {
-    uvec4 texel = delta_words(f_place.xy);
+    uvec4 texel = delta_words(f_entry.w);
     uvec3 words = texel.xyz;
+    vec3 weights = uintBitsToFloat(f_entry.xyz);
 #ifdef OCCLUSION
-    o_position = vec4(delta_field(words, delta_shifts(f_place.z, 0), f_weights.x), uintBitsToFloat(texel.w) * f_weights.x);
+    o_position = vec4(delta_field(words, entry_shifts(f_entry.w, 0), weights.x), uintBitsToFloat(texel.w) * weights.x);
 #else
-    o_position = vec4(delta_field(words, delta_shifts(f_place.z, 0), f_weights.x), 0.0);
+    o_position = vec4(delta_field(words, entry_shifts(f_entry.w, 0), weights.x), 0.0);
 #endif
-    o_normal = vec4(delta_field(words, delta_shifts(f_place.z, 1), f_weights.y), 0.0);
+    o_normal = vec4(delta_field(words, entry_shifts(f_entry.w, 1), weights.y), 0.0);
 #ifndef TWO_LAYERS
-    o_tangent = vec4(delta_field(words, delta_shifts(f_place.z, 2), f_weights.z), 0.0);
+    o_tangent = vec4(delta_field(words, entry_shifts(f_entry.w, 2), weights.z), 0.0);
 #endif
 }

@@ -3,15 +3,15 @@
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec4 f_place;     /* place, left and right shift, weight */
+flat in uvec3 f_entry;     /* entry_of_layer */
 
 layout(location = 0) out vec4 o_delta;
 
 void main()
 {
-    uvec2 shifts = uvec2(f_place.z & 255u, f_place.z >> 8);
-    uvec4 texel = delta_words(f_place.xy);
-    float weight = uintBitsToFloat(f_place.w), fourth = 0.0;
+    uvec2 shifts = uvec2(f_entry.y & 255u, f_entry.y >> 8);
+    uvec4 texel = delta_words(f_entry.x);
+    float weight = uintBitsToFloat(f_entry.z), fourth = 0.0;
 #ifdef OCCLUSION
     fourth = uintBitsToFloat(texel.w) * weight; /* in other layers than that of positions it is not read */
 #endif

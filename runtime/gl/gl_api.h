@@ -24,6 +24,9 @@
 extern "C" {
 #endif
 
+/* Of desktop OpenGL: the vertex shader says how large points are. In OpenGL ES it always does. */
+#define NOH_GL_PROGRAM_POINT_SIZE 0x8642u
+
 /* What the library itself calls: all of it is OpenGL ES 3.0 core, and noh_gl_api_load refuses a context that lacks any.
  * tests/check_gl_calls.sh compares the list with the calls in runtime/; platform/README.md prints it for porters.
  * X(field, the name as Khronos spells it in the type PFNGL...PROC) */
@@ -41,6 +44,7 @@ extern "C" {
     X(ColorMask, COLORMASK)                                           \
     X(FrontFace, FRONTFACE)                                           \
     X(ClearBufferfv, CLEARBUFFERFV)                                   \
+    X(Flush, FLUSH)                                                   \
     /* questions */                                                   \
     X(GetError, GETERROR)                                             \
     X(GetString, GETSTRING)                                           \
@@ -138,7 +142,6 @@ extern "C" {
     X(ClearBufferuiv, CLEARBUFFERUIV)                     \
     X(ClearBufferiv, CLEARBUFFERIV)                       \
     X(ClearBufferfi, CLEARBUFFERFI)                       \
-    X(Flush, FLUSH)                                       \
     X(Finish, FINISH)                                     \
     /* questions */                                       \
     X(GetInteger64v, GETINTEGER64V)                       \

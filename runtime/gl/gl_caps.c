@@ -319,6 +319,60 @@ static int probe_layered(const probe *p)
     return right;
 }
 
+static void draw_points(const probe *p, GLuint program, uint8_t pixels[4 * 16 * 16])
+{
+    static const GLfloat clear[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    const noh_gl_api *gl = p->api;
+    gl->Viewport(0, 0, 16, 16);
+    gl->ClearBufferfv(GL_COLOR, 0, clear);
+    gl->BindVertexArray(p->vertex_array);
+    gl->UseProgram(program);
+    gl->BlendEquation(GL_FUNC_ADD);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    gl->Enable(GL_BLEND);
+    if (!gl->is_es) gl->Enable(NOH_GL_PROGRAM_POINT_SIZE);
+    gl->DrawArraysInstanced(GL_POINTS, 0, 8, 1);
+    if (!gl->is_es) gl->Disable(NOH_GL_PROGRAM_POINT_SIZE);
+    gl->Disable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ZERO);
+    gl->ReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+}
+
+/* Points over half of the 4 x 4 blocks of a layer, each added once: a texel that is covered twice, not at all, or from
+ * the block beside it shows. */
+static int probe_points(const probe *p)
+{
+    const noh_gl_api *gl = p->api;
+    GLuint program = 0, texture = 0;
+    noh_gl_program_desc desc;
+    uint8_t pixels[4 * 16 * 16];
+    memset(&desc, 0, sizeof desc);
+    desc.name = "noh probe points";
+    desc.vertex = &noh_shader_probe_points_vert;
+    desc.fragment = &noh_shader_probe_points_frag;
+    if (noh_gl_program_create(gl, &desc, &program, NULL, 0, NULL) != NOH_OK) {
+        noh_gl_error_take(gl);
+        return 0;
+    }
+    gl->GenTextures(1, &texture);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RGBA8, 16, 16, 1);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    memset(pixels, 0, sizeof pixels);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, p->framebuffer);
+    attach(p, texture, 0, 0);
+    int right = gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    if (right) draw_points(p, program, pixels);
+    for (uint32_t i = 0; i < 16 * 16; i++) {
+        const uint32_t on = (i % 16 / 4 + i / 16 / 4) % 2, got = pixels[4 * i];
+        right = right && (on ? got >= 50u && got <= 52u : got == 0u);
+    }
+    detach_layers(p);
+    gl->DeleteTextures(1, &texture);
+    noh_gl_program_delete(gl, NULL, &program);
+    return noh_gl_error_take(gl) == GL_NO_ERROR && right;
+}
+
 /* A driver that lists the extension but cannot measure time has a counter of 0 bits. */
 static int probe_timer(const noh_gl_api *gl)
 {
@@ -475,6 +529,7 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
     caps->render_u32 = probe_u32(p);
     caps->mrt3 = caps->render_f32 || caps->render_f16 || caps->render_u32;
     caps->layered = probe_layered(p);
+    caps->block_points = probe_points(p);
     caps->timer_query = probe_timer(p->api);
     caps->etc2 = p->api->etc2;
 }

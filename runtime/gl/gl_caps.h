@@ -46,6 +46,7 @@ typedef struct noh_gl_caps {
     int blend_f16;       /* the same into RGBA16F */
     int blend_f32_exact; /* blend_f32, with the bits of C's float addition */
     int layered;         /* a geometry shader reaches all three layers by gl_Layer */
+    int block_points;    /* a point of size 4 covers the 4 x 4 texels around its centre once, and no other */
     int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
     int etc2;            /* not tried: that of noh_gl_api, for plans of textures */
 

@@ -31,8 +31,8 @@ static void label_objects(const noh_gl_morph *m)
         GLuint name;
         const char *what;
     } textures[] = { { m->layers.name, "morph layers" },
-                     { m->deltas.texture.name, "morph deltas" },
-                     { m->rects.texture.name, "morph table" },
+                     { m->tiles.name, "morph deltas" },
+                     { m->starts.texture.name, "morph starts" },
                      { m->record_table.texture.name, "morph records" } };
     for (unsigned i = 0; i < sizeof textures / sizeof textures[0]; i++) {
         if (textures[i].name) {
@@ -46,7 +46,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     const int streams = m->plan.path == NOH_MORPH_STREAMS;
     noh_result result = streams ? noh_gl_morph_init_streams(m, error) : create_layers(m, error);
     if (!result && m->plan.path != NOH_MORPH_CPU && !streams) {
-        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->record_table, error);
+        result = noh_gl_morph_make_tiles(m, error);
         if (!result && m->plan.path == NOH_MORPH_GATHER) {
             result = noh_gl_morph_init_gather(m, log, log_bytes, error);
         } else if (!result) {
@@ -102,8 +102,8 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
     m->gl = device->api;
     m->ledger = device->ledger;
     m->plan = plan;
+    m->flushes = plan.points && memcmp(device->caps->renderer, "llvmpipe", 8) == 0;
     m->mesh_count = desc->mesh_count;
-    m->wide = noh_gl_morph_wide(&plan);
     if (!desc->simd || noh_morph_kernel_find(desc->simd, &m->kernel, NULL) != NOH_OK) {
         (void)noh_morph_kernel_find(NULL, &m->kernel, NULL);
     }
@@ -160,9 +160,10 @@ static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
         m->vertex_array = 0;
     }
     noh_gl_buffer_delete(gl, m->ledger, &m->stream);
+    noh_gl_buffer_delete(gl, m->ledger, &m->indices);
     noh_gl_texture_delete(gl, m->ledger, &m->record_table.texture);
-    noh_gl_texture_delete(gl, m->ledger, &m->rects.texture);
-    noh_gl_texture_delete(gl, m->ledger, &m->deltas.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->starts.texture);
+    noh_gl_texture_delete(gl, m->ledger, &m->tiles);
     noh_gl_texture_delete(gl, m->ledger, &m->layers);
 }
 
@@ -273,10 +274,8 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
     int done = 1;
     NOH_ASSERT(morph && morph->table_count > morph->mesh_count && from && at && bytes);
     finest = noh_mesh_at_lod(from, morph->meshes[morph->meshes[0].owner].mesh.header->level);
-    if (morph->plan.path == NOH_MORPH_GATHER) {
-        done = noh_gl_morph_fill_gather(morph, &finest, at, bytes);
-    } else if (morph->plan.path != NOH_MORPH_CPU) {
-        done = noh_gl_morph_fill_blend(morph, &finest, at, bytes);
+    if (morph->plan.path != NOH_MORPH_CPU) {
+        done = noh_gl_morph_fill_tiles(morph, &morph->meshes[morph->meshes[0].owner], &finest, at, bytes);
     }
     morph->gl->ActiveTexture(GL_TEXTURE0);
     morph->gl->BindTexture(GL_TEXTURE_2D, 0);
@@ -293,7 +292,6 @@ void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh)
         noh_gl_morph_mesh *own = &morph->meshes[i];
         const uint32_t of_pool = own->mesh.header->level;
         const uint8_t level = (uint8_t)(of_pool > finest ? of_pool : finest);
-        if (own->owner == i) own->mesh.targets = morph->source.targets; /* while `mesh` is coarser they are not read */
         for (uint32_t k = own->first_instance; k < own->first_instance + own->instance_count; k++) {
             if (morph->levels[k] == level) continue;
             morph->levels[k] = level;

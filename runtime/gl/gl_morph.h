@@ -1,6 +1,10 @@
 /* gl_morph.h: morph targets accumulated on the GPU, for many instances at once.
  *
+ *   noh_gl_morph_blocks       blocks of 4 x 4 accumulation texels that the targets of a mesh touch
+ *   noh_gl_morph_strips       rows of such blocks
  *   noh_gl_morph_plan_make    which path, why, and every byte that it takes; touches no GL
+ *   noh_gl_morph_calibrate    measure instead of choosing by a model, at start-up
+ *   noh_gl_morph_calibrate_size
  *   noh_gl_morph_init         build it in your memory and make its GL objects
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make them again after a lost context
@@ -26,7 +30,7 @@
  *   layered    geometry shader, blending  one additive pass into three layers
  *   mrt        ES 3.0, blending           one additive pass with three outputs
  *   per-layer  ES 3.0, blending           three additive passes
- *   gather     ES 3.0                     no blending: each fragment sums the deltas of one vertex
+ *   gather     ES 3.0                     no blending: each fragment sums what active targets add to one vertex
  *   cpu        nothing                    SIMD on the CPU; the sums are uploaded
  *   streams    ES 3.0                     nothing is accumulated: the draw adds up to four targets as vertex streams
  *
@@ -80,15 +84,30 @@ typedef struct noh_gl_morph_desc {
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_morph_path path;             /* 0: the cheapest on this GPU; or the policy blend, or one path */
     noh_accumulate accumulate;       /* 0: f32 */
-    float expected_active;           /* for auto: the share of targets that are active at once, 0..1; 0: 0.5 */
-    int without_tangents;            /* 1: two layers, a third less memory, where no shader reads morphed tangents */
+    float
+        expected_active;  /* for auto and for calibration: the share of targets that are active at once, 0..1; 0: 0.5 */
+    int without_tangents; /* 1: two layers, a third less memory, where no shader reads morphed tangents */
     /* For levels that come later: `meshes` are levels of one mesh, and of them only headers are read,
      * which must stay. Until noh_gl_morph_use says otherwise, this coarser level of the same mesh,
      * which may lie in another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is there */
     const noh_mesh *coarse;
     const char *simd; /* kernel of the path cpu by its name (deform/morph.h), for tests. NULL, or one that is not here:
                        * the fastest */
+    /* With `coarse`: noh_gl_morph_blocks and noh_gl_morph_strips of the finest mesh, counted where that is whole */
+    uint32_t later_blocks, later_strips;
 } noh_gl_morph_desc;
+
+/* What `auto` weighs, for one update of one instance of each mesh with the expected share of its targets active. The
+ * costs of paths are in texels blended into three layers of RGBA32F; a path has one also where it cannot run. Factors
+ * for software rasterisers were measured, those for GPUs reasoned (gl_morph_cost.c); noh_gl_morph_calibrate measures */
+typedef struct noh_gl_morph_costs {
+    float texels, quads, blocks, pairs; /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
+    float touched;                      /* vertices that any target moves */
+    float upload_bytes;                 /* of gather's lists */
+    uint32_t pixel_bytes;               /* of a texel in all layers */
+    uint32_t tile_bytes;                /* that the tile memory of this GPU has for it; 0: none, or not known */
+    float mrt, per_layer, gather, cpu;  /* cpu: its work beside what is uploaded is done by another processor */
+} noh_gl_morph_costs;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
@@ -101,13 +120,19 @@ typedef struct noh_gl_morph_plan {
                                          * occlusion is summed, too: the fourth component beside positions */
     uint32_t atlas_width, atlas_height; /* of the texture array that holds the tiles, in texels */
     uint32_t instance_count, weight_count;
-    uint32_t rect_count, texel_count, pair_count; /* in the tables, which LOD levels of one mesh share */
-    uint64_t cpu_bytes;                           /* the block that noh_gl_morph_init needs */
-    uint64_t delta_bytes;                         /* GPU: delta texels, by rectangle or (gather) by vertex */
-    uint64_t table_bytes;                         /* GPU: rectangles, or (gather) where each vertex's deltas begin */
-    uint64_t stream_bytes;                        /* GPU: what is sent at each update */
-    uint64_t layer_bytes;                         /* GPU: the accumulation texels */
-    uint64_t gpu_bytes;                           /* the sum of these four */
+    uint32_t rect_count, texel_count, pair_count; /* of the tables, which LOD levels of one mesh share */
+    uint32_t block_count;                         /* of these: blocks of 4 x 4 delta texels, noh_gl_morph_blocks */
+    uint32_t wide;         /* 1: a delta texel has 16 bytes, for occlusion or a software rasteriser, which fetches them
+                            * faster; 0: 12 */
+    uint32_t points;       /* 1: blocks are blended as points; 0: as strips, each a quad */
+    uint64_t cpu_bytes;    /* the block that noh_gl_morph_init needs */
+    uint64_t delta_bytes;  /* GPU: delta texels, in blocks, or the streams */
+    uint64_t table_bytes;  /* GPU: 0; no path has a table beside its deltas */
+    uint64_t stream_bytes; /* GPU: what is sent for one draw of an update: weights, with vertices or lists */
+    uint64_t layer_bytes;  /* GPU: the accumulation texels */
+    uint64_t gpu_bytes;    /* the sum of these four */
+    uint64_t update_bytes; /* that one update sends at most: all targets of all instances active */
+    noh_gl_morph_costs costs;
 } noh_gl_morph_plan;
 
 typedef struct noh_gl_morph noh_gl_morph;
@@ -136,11 +161,45 @@ typedef struct noh_gl_morph_binding {
     float streams[NOH_MORPH_STREAMS_MAX][4]; /* weight x scale of position, normal, tangent; the widths of the fields */
 } noh_gl_morph_binding;
 
+/* Blocks of 4 x 4 accumulation texels that each target's rectangles touch, summed over targets: what the GPU's paths
+ * work on. */
+uint32_t noh_gl_morph_blocks(const noh_mesh *mesh);
+
+/* Rows of such blocks, summed over rectangles: each is a quad of the blended paths. */
+uint32_t noh_gl_morph_strips(const noh_mesh *mesh);
+
 /* Choose the path and measure it, without touching GL.
  * errors  ARG a desc field is out of range; UNSUPPORTED the path of the desc cannot run here, `what` says what is
  *         missing; LIMIT the atlas or a table is larger than textures can be */
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                                   noh_error *error);
+
+/* Nanoseconds, once the GPU has done all that it was given: call glFinish first, or where that returns at once, as in
+ * browsers, read a pixel back. The library has no clock of its own. */
+typedef uint64_t (*noh_gl_clock)(void *user);
+
+/* What was measured. */
+typedef struct noh_gl_morph_times {
+    noh_morph_path path;               /* the fastest */
+    uint64_t ns[NOH_MORPH_PATH_COUNT]; /* by path: the fastest update of all instances; 0: not tried */
+    uint32_t rounds[NOH_MORPH_PATH_COUNT];
+} noh_gl_morph_times;
+
+/* The memory that noh_gl_morph_calibrate needs. The same errors as noh_gl_morph_plan_make. */
+noh_result noh_gl_morph_calibrate_size(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, uint64_t *bytes,
+                                       noh_error *error);
+
+/* Measure gather, mrt and cpu, as far as they run here, on the driver itself and with the meshes that will be shown:
+ * give desc.path = times->path to noh_gl_morph_init. Weights change in each round, with the share desc.expected_active
+ * of the targets active; a round is an update and the wait for it. desc.path is not read, and desc.coarse must be NULL.
+ * shapes  memory[bytes], at least noh_gl_morph_calibrate_size; free again afterwards
+ * ranges  budget_ns: rounds begin as long as it lasts, and each path has at least one; 50,000,000 is enough. Making
+ *         the objects, and with them the driver's compiler, comes on top
+ * state   as after noh_gl_morph_update; all GL objects that it made are deleted
+ * errors  as noh_gl_morph_init */
+noh_result noh_gl_morph_calibrate(void *memory, size_t bytes, const noh_gl_device *device,
+                                  const noh_gl_morph_desc *desc, noh_gl_clock clock, void *user, uint64_t budget_ns,
+                                  noh_gl_morph_times *times, noh_error *error);
 
 /* Build it in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make its GL objects,
  * counted in the device's ledger. All weights are 0 at first. On error no GL object is left.
@@ -185,7 +244,7 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
 /* With desc.coarse: upload the next piece of what the finest of `meshes` is accumulated from, which is not in use yet.
  * ranges   from: the mesh, whole, at the finest level of `meshes` or a finer one; *at: 0 at first, then as the call
- *          before left it; *bytes: at most so many, at least 64 for any progress; what was sent is subtracted
+ *          before left it; *bytes: at most so many, at least 256 for any progress; what was sent is subtracted
  * state    texture 0 of unit 0, the active one
  * returns  1 once all is there */
 int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes);

@@ -1,22 +1,27 @@
 /* gl_morph_gather.c: the path gather, which sums without blending.
  *
- * Each vertex that any target moves has a list of its delta texels in target order. The lists lie one behind another,
- * as the rows of a sparse matrix in compressed-row form: those of vertex v are entries starts[v] to starts[v + 1] - 1.
- * One fragment per vertex walks its list, adds delta * weight in registers, and writes the three layers once. The
- * additions are those of the CPU in the same order, so the bits are the same. Every entry is read whatever its weight
- * is, so the cost does not depend on how many targets are active. */
+ * Each block of 4 x 4 accumulation texels has a list of the active targets that move any of them, in target order. One
+ * fragment per vertex walks its block's list, adds delta * weight in registers, and writes the three layers once. The
+ * additions are those of the CPU in the same order, so the bits are the same; of a target that does not move a vertex
+ * the delta is 0, and adding a zero changes no sum that began at +0.
+ *
+ * The lists are made anew for each update, by a counting sort of the blocks of the active targets, so that the cost
+ * depends on what is active, and an entry brings its weights with it. They are what an update sends: 16 bytes for each
+ * block of each active target and 4 for each block, at most NOH_BATCH_ENTRIES entries at once unless one instance has
+ * more. */
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
 #include "gl/gl_program.h"
-#include "light/transfer_internal.h"
 #include "shaders.gen.h"
+
+#define LAST 0x80000000u /* in an entry's fourth word: the list ends here */
 
 /* ---- making ---- */
 
 static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    static const char *const samplers[] = { "u_entries", "u_starts", "u_records" };
+    static const char *const samplers[] = { "u_deltas", "u_lists", "u_starts" };
     static const char *const defines[2][2][2] = {
         { { NULL, "#define OCCLUSION\n" }, { "#define LAYERS_UINT\n", "#define LAYERS_UINT\n#define OCCLUSION\n" } },
         { { "#define TWO_LAYERS\n", "#define TWO_LAYERS\n#define OCCLUSION\n" },
@@ -35,204 +40,162 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
     return noh_gl_program_create(m->gl, &desc, &m->program, log, log_bytes, error);
 }
 
-typedef void (*visit_pair)(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3]);
-
-/* Visit every delta texel that is not zero, targets in index order. */
-static void visit_pairs(const noh_mesh *mesh, visit_pair visit, void *context)
-{
-    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
-        const noh_rect *rect = mesh->rects + mesh->targets[t].first_rect;
-        const uint32_t *words = mesh->texels + 3u * (size_t)mesh->targets[t].first_texel;
-        for (uint32_t r = 0; r < mesh->targets[t].rect_count; r++, rect++) {
-            for (uint32_t y = rect->y; y < (uint32_t)rect->y + rect->h; y++) {
-                uint32_t vertex = (y << mesh->header->morph_width_log2) + rect->x;
-                for (uint32_t x = 0; x < rect->w; x++, words += 3) {
-                    if (words[0] | words[1] | words[2]) {
-                        visit(context, vertex + x, t, words);
-                    }
-                }
-            }
-        }
-    }
-}
-
-static void count_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
-{
-    (void)target;
-    (void)words;
-    ((uint32_t *)context)[vertex + 1u] += 1u;
-}
-
-typedef struct chunk_filler {
-    uint32_t *cursors;      /* [touched] the next entry of each vertex */
-    uint32_t first;         /* the entry that the chunk begins with */
-    uint32_t (*entries)[4]; /* [NOH_GATHER_CHUNK] */
-    const noh_mesh *mesh;
-} chunk_filler;
-
-static void fill_pair(void *context, uint32_t vertex, uint32_t target, const uint32_t words[3])
-{
-    chunk_filler *f = (chunk_filler *)context;
-    uint32_t at = f->cursors[vertex]++ - f->first; /* an entry before the chunk wraps to a large number */
-    if (at < NOH_GATHER_CHUNK) {
-        memcpy(f->entries[at], words, 12);
-        f->entries[at][3] = target;
-        if (f->mesh->transfer) {
-            const uint32_t texel = (uint32_t)((size_t)(words - f->mesh->texels) / 3u);
-            f->entries[at][3] |= (uint32_t)noh_transfer_delta(f->mesh, texel) << 24;
-        }
-    }
-}
-
-/* Where each vertex's entries begin, into the staging memory. */
-static uint32_t *find_starts(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh)
-{
-    const uint32_t touched = mesh->header->touched_count;
-    uint32_t *starts = (uint32_t *)m->staging;
-    memset(starts, 0, sizeof *starts * (touched + 1u));
-    visit_pairs(mesh, count_pair, starts);
-    starts[0] = to->first_pair;
-    for (uint32_t v = 1; v <= touched; v++) {
-        starts[v] += starts[v - 1];
-    }
-    return starts;
-}
-
-/* Numbers from..from+count-1 in front of the starts: of the last target first. */
-static void upload_ratios(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t from,
-                          uint32_t count)
-{
-    float ratios[64];
-    const uint32_t ratio_count = mesh->header->target_count;
-    for (uint32_t done = 0; done < count;) {
-        const uint32_t at = from + done, left = count - done, now = left < 64u ? left : 64u;
-        for (uint32_t i = 0; i < now; i++) ratios[i] = noh_transfer_ratio(mesh, ratio_count - 1u - (at + i));
-        noh_gl_table_upload(m->gl, &m->rects, to->first_start - ratio_count + at, now, ratios);
-        done += now;
-    }
-}
-
-/* Turn rectangles by target into lists by vertex: a counting sort in fixed memory. The first walk over the mesh counts
- * each vertex's entries, and their running sum gives the starts. A copy of the starts, as cursors, then gives each
- * delta texel its place. Only NOH_GATHER_CHUNK entries fit into the staging memory, so this walk is repeated for each
- * chunk and keeps the entries that fall into it. Targets are visited in index order, so each list is in target order.
- * Ratios are counted first, with occlusion, then starts, then entries. to: whose part of the tables they belong to.
- * Returns 1 once all are there. */
-static int fill(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at, uint32_t *bytes)
-{
-    const uint32_t ratios = noh_gl_morph_ratio_count(mesh->header, m->plan.occlusion);
-    const uint32_t own = mesh->header->touched_count + 1u, first = ratios + own;
-    const uint32_t all = first + mesh->header->pair_count;
-    uint32_t *starts = find_starts(m, to, mesh);
-    chunk_filler f;
-    f.cursors = starts + own;
-    f.entries = (uint32_t(*)[4])(void *)(f.cursors + own);
-    f.mesh = mesh;
-    if (*at < ratios) {
-        const uint32_t fit = *bytes / 4u, count = fit < ratios - *at ? fit : ratios - *at;
-        upload_ratios(m, to, mesh, *at, count);
-        *at += count;
-        *bytes -= 4u * count;
-    }
-    if (*at >= ratios && *at < first) {
-        const uint32_t fit = *bytes / 4u, count = fit < first - *at ? fit : first - *at;
-        noh_gl_table_upload(m->gl, &m->rects, to->first_start + *at - ratios, count, starts + *at - ratios);
-        *at += count;
-        *bytes -= 4u * count;
-    }
-    while (*at >= first && *at < all && *bytes >= 16u) {
-        uint32_t count = *bytes / 16u < all - *at ? *bytes / 16u : all - *at;
-        count = count < NOH_GATHER_CHUNK ? count : NOH_GATHER_CHUNK;
-        memcpy(f.cursors, starts, sizeof *starts * own);
-        f.first = to->first_pair + *at - first;
-        visit_pairs(mesh, fill_pair, &f);
-        noh_gl_table_upload(m->gl, &m->deltas, f.first, count, f.entries);
-        *at += count;
-        *bytes -= 16u * count;
-    }
-    return *at == all;
-}
-
-int noh_gl_morph_fill_gather(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes)
-{
-    return fill(m, &m->meshes[m->meshes[0].owner], from, at, bytes);
-}
-
-static noh_result create_tables(noh_gl_morph *m, noh_error *error)
-{
-    uint32_t starts = 0;
-    noh_result result;
-    for (uint32_t i = 0; i < m->table_count; i++) {
-        const noh_mesh_header *h = m->meshes[i].mesh.header;
-        if (m->meshes[i].owner == i) starts += noh_gl_morph_ratio_count(h, m->plan.occlusion) + h->touched_count + 1u;
-    }
-    result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.pair_count, &m->deltas, error);
-    if (!result) {
-        result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts, &m->rects, error);
-    }
-    for (uint32_t i = 0; !result && i < m->table_count; i++) {
-        uint32_t at = 0, bytes = UINT32_MAX;
-        if (noh_gl_morph_is_there(m, i)) (void)fill(m, &m->meshes[i], &m->meshes[i].mesh, &at, &bytes);
-    }
-    return result ? result
-                  : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
-}
-
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_program(m, log, log_bytes, error);
     if (!result) result = noh_gl_morph_framebuffer(m, NOH_LAYERS_ALL, &m->framebuffers[0], error);
-    if (!result) result = create_tables(m, error);
-    if (!result) result = noh_gl_morph_stream(m, "a_tile", 4, GL_UNSIGNED_INT, error);
+    if (!result) {
+        result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->batch.entries, &m->record_table, error);
+    }
+    if (!result) result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, m->batch.positions, &m->starts, error);
+    if (!result) result = noh_gl_morph_stream(m, "a_tile", 4, 16u * (uint64_t)m->batch.instances, 1, error);
     if (!result) noh_gl_morph_constants(m);
     return result;
 }
 
 /* ---- updating ---- */
 
-/* The weights of all targets of an instance, and its tile. The lists may belong to a finer LOD level and name targets
- * that this level leaves out: those get the weight 0. */
-static void list_instance(noh_gl_morph *m, uint32_t instance, uint32_t *tile, noh_gl_morph_stats *stats)
+/* What is sent at once, in the staging memory. */
+typedef struct lists {
+    uint32_t (*entries)[4], (*tiles)[4], *starts, *cursors;
+    uint32_t entry_count, start_count, tile_count;
+} lists;
+
+static lists lists_of(const noh_gl_morph *m)
+{
+    lists l;
+    memset(&l, 0, sizeof l);
+    l.entries = (uint32_t(*)[4])m->staging;
+    l.tiles = l.entries + m->batch.entries;
+    l.starts = (uint32_t *)(void *)(l.tiles + m->batch.instances);
+    l.cursors = l.starts + m->batch.positions;
+    return l;
+}
+
+static void draw_lists(noh_gl_morph *m, lists *l, noh_gl_morph_stats *stats)
+{
+    if (!l->tile_count) return;
+    noh_gl_table_upload(m->gl, &m->record_table, 0, l->entry_count, l->entries);
+    noh_gl_table_upload(m->gl, &m->starts, 0, l->start_count, l->starts);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
+    m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(16u * (size_t)l->tile_count), l->tiles);
+    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    noh_gl_morph_begin(m);
+    m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
+    m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)l->tile_count);
+    noh_gl_morph_end(m);
+    stats->draws += 1;
+    l->entry_count = l->start_count = l->tile_count = 0;
+}
+
+/* How many active targets each block has, into the cursors. */
+static void count_targets(const noh_mesh *mesh, const float *weights, uint32_t *cursors)
+{
+    const uint32_t across_log2 = mesh->header->morph_width_log2 - 2u;
+    memset(cursors, 0, sizeof *cursors * noh_gl_morph_positions(mesh->header));
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        const noh_target *target = &mesh->targets[t];
+        for (uint32_t r = 0; r < target->rect_count && weights[t] != 0.0f; r++) {
+            const noh_gl_blocks b = noh_gl_blocks_of(&mesh->rects[target->first_rect + r]);
+            for (uint32_t y = b.y0; y < b.y1; y++) {
+                for (uint32_t x = b.x0; x < b.x1; x++) cursors[(y << across_log2) + x]++;
+            }
+        }
+    }
+}
+
+/* One target's entries, each behind what its block has. */
+static void put_target(lists *l, const noh_mesh *mesh, const noh_target *target, const uint32_t record[4],
+                       const uint32_t *slots)
+{
+    const uint32_t across_log2 = mesh->header->morph_width_log2 - 2u;
+    const noh_rect *rect = mesh->rects + target->first_rect;
+    for (uint32_t r = 0; r < target->rect_count; r++, rect++) {
+        const noh_gl_blocks b = noh_gl_blocks_of(rect);
+        for (uint32_t y = b.y0; y < b.y1; y++) {
+            for (uint32_t x = b.x0; x < b.x1; x++) {
+                uint32_t *entry = l->entries[l->cursors[(y << across_log2) + x]++];
+                memcpy(entry, record, 12);
+                entry[3] = record[3] | *slots++;
+            }
+        }
+    }
+}
+
+/* Room for a list of each block: where it begins, into starts and cursors. A block without an active target has one
+ * entry that adds nothing. Returns the number of entries. */
+static uint32_t begin_lists(lists *l, uint32_t positions)
+{
+    uint32_t *starts = l->starts + l->start_count, at = l->entry_count;
+    for (uint32_t p = 0; p < positions; p++) {
+        const uint32_t count = l->cursors[p];
+        starts[p] = l->cursors[p] = at;
+        if (!count) {
+            memset(l->entries[at], 0, 12);
+            l->entries[at][3] = NOH_ENTRY_WIDTHS(8u, 8u);
+        }
+        at += count ? count : 1u;
+    }
+    return at - l->entry_count;
+}
+
+static void end_lists(lists *l, uint32_t positions, uint32_t entries)
+{
+    const uint32_t *starts = l->starts + l->start_count;
+    l->entry_count += entries;
+    for (uint32_t p = 1; p < positions; p++) l->entries[starts[p] - 1u][3] |= LAST;
+    l->entries[l->entry_count - 1u][3] |= LAST;
+    l->start_count += positions;
+}
+
+static uint32_t entries_of(const uint32_t *cursors, uint32_t positions)
+{
+    uint32_t entries = 0;
+    for (uint32_t p = 0; p < positions; p++) entries += cursors[p] ? cursors[p] : 1u;
+    return entries;
+}
+
+/* The lists of an instance. Its tiles may belong to a finer LOD level: a level's rectangles of a target are the first
+ * ones of it. */
+static void list_instance(noh_gl_morph *m, uint32_t instance, lists *l, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);
-    const noh_mesh_header *h = mesh.header;
-    uint32_t first = noh_gl_morph_first_weight(m, instance), x, y;
-    for (uint32_t t = 0; t < h->target_count; t++) {
-        const noh_target *target = &mesh.targets[t];
-        const float weight = target->rect_count ? m->weights[first + t] : 0.0f;
-        noh_gl_morph_put_record(m->records + 4u * (size_t)(first + t), target, weight,
-                                noh_gl_morph_target_bits(target));
-        stats->targets += weight != 0.0f;
+    const noh_gl_morph_mesh *tables = noh_gl_morph_tables(m, instance);
+    const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
+    const uint32_t positions = noh_gl_morph_positions(mesh.header);
+    uint32_t *tile, x, y, entries;
+    count_targets(&mesh, weights, l->cursors);
+    if (l->entry_count + entries_of(l->cursors, positions) > m->batch.entries ||
+        l->start_count + positions > m->batch.positions || l->tile_count == m->batch.instances) {
+        draw_lists(m, l, stats);
     }
     noh_gl_morph_tile(m, instance, &x, &y);
+    tile = l->tiles[l->tile_count++];
     tile[0] = x | y << 16;
-    tile[1] = first;
-    tile[2] = noh_gl_morph_tables(m, instance)->first_start;
-    tile[3] = h->touched_count | h->morph_width_log2 << 24;
-    stats->pairs += h->pair_count;
-    stats->texels += h->touched_count;
-    stats->rects += 1;
-    noh_gl_table_upload(m->gl, &m->record_table, first, h->target_count, m->records + 4u * (size_t)first);
+    tile[1] = l->start_count;
+    tile[2] = positions >> (mesh.header->morph_width_log2 - 2u);
+    tile[3] = mesh.header->morph_width_log2 - 2u;
+    entries = begin_lists(l, positions);
+    for (uint32_t t = 0; t < mesh.header->target_count; t++) {
+        const noh_target *target = &mesh.targets[t];
+        uint32_t record[4];
+        if (weights[t] == 0.0f || !target->rect_count) continue;
+        noh_gl_morph_put_record(record, target, weights[t],
+                                NOH_ENTRY_WIDTHS(target->position_bits, target->normal_bits));
+        put_target(l, &mesh, target, record, m->slots + tables->first_tile + m->target_tiles[tables->first_target + t]);
+        stats->targets += 1;
+        stats->rects += target->rect_count;
+        stats->texels += target->texel_count;
+        stats->pairs += target->pair_count;
+    }
+    end_lists(l, positions, entries);
 }
 
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
-    uint32_t tiles = 0;
+    lists l = lists_of(m);
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
-        if (m->dirty[i] && noh_gl_morph_view(m, i).header->touched_count) {
-            list_instance(m, i, (uint32_t *)m->staging + 4u * (size_t)tiles, stats);
-            tiles += 1;
-        }
+        if (m->dirty[i] && noh_gl_morph_view(m, i).header->touched_count) list_instance(m, i, &l, stats);
     }
-    if (!tiles) {
-        return;
-    }
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
-    m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(16u * (size_t)tiles), m->staging);
-    m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    noh_gl_morph_begin(m);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
-    m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)tiles);
-    stats->draws += 1;
-    noh_gl_morph_end(m);
+    draw_lists(m, &l, stats);
 }

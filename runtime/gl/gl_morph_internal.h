@@ -7,10 +7,12 @@
 #include "gl/gl_morph.h"
 #include "gl/gl_table_internal.h"
 
-#define NOH_GATHER_CHUNK 2048u /* entries that gather builds at once at load: 32 KiB */
-#define NOH_STREAM_STRIDE 12u  /* bytes of a vertex in a stream */
-#define NOH_STREAM_CHUNK 3072u /* bytes of streams that are sent at once at load */
-#define NOH_RECT_CHUNK 256u    /* rectangles that are sent at once at load */
+#define NOH_TILE_CHUNK 64u       /* tiles of delta texels that are sent at once at load: at most 16 KiB */
+#define NOH_BATCH_QUADS 4096u    /* quads that the blended paths draw at once, 48 bytes each, */
+#define NOH_BATCH_POINTS 1536u   /* or points, 12 bytes each (gl_morph_blend.c) */
+#define NOH_BATCH_ENTRIES 16384u /* entries of lists that gather sends at once, more only if one instance has more */
+#define NOH_STREAM_STRIDE 12u    /* bytes of a vertex in a stream */
+#define NOH_STREAM_CHUNK 3072u   /* bytes of streams that are sent at once at load */
 
 /* One mesh of the desc. Its instances' tiles fill a band of the atlas, row by row. */
 typedef struct noh_gl_morph_mesh {
@@ -20,11 +22,21 @@ typedef struct noh_gl_morph_mesh {
     uint32_t columns, band_y;
     uint32_t owner; /* the mesh of the desc whose part of the tables this one uses: itself, or a finer LOD level */
     /* where an owner's part begins */
-    uint32_t first_rect;  /* into the rect table (blended paths) */
-    uint32_t first_texel; /* into the delta table */
-    uint32_t first_start; /* into the starts table (gather) */
-    uint32_t first_pair;  /* into the entry table (gather) */
+    uint32_t first_tile, tile_count; /* of the delta tiles */
+    uint32_t first_target;           /* into target_tiles */
 } noh_gl_morph_mesh;
+
+/* The blocks of 4 x 4 accumulation texels that a rectangle touches, of a tile's: x0..x1-1, y0..y1-1. */
+typedef struct noh_gl_blocks {
+    uint32_t x0, y0, x1, y1;
+} noh_gl_blocks;
+
+/* The most that is sent for one draw. */
+typedef struct noh_gl_batch {
+    uint32_t entries;              /* points, quads, or entries of gather's lists */
+    uint32_t positions, instances; /* gather: lists, and instances that they belong to */
+    uint64_t bytes;                /* blended paths: vertices of all batches of an update */
+} noh_gl_batch;
 
 struct noh_gl_morph {
     const noh_gl_api *gl;
@@ -39,19 +51,24 @@ struct noh_gl_morph {
     uint8_t *levels;           /* [instance_count] LOD level that is accumulated; none is finer than its mesh */
     uint32_t dirty_count;
     float *weights;    /* [weight_count], instance after instance */
-    uint32_t *records; /* [weight_count][4] of the active targets: staging of the record table */
-    void *staging;     /* rect records, gather's tiles, or the CPU's layers; at load, chunks of the tables */
+    uint32_t *records; /* [weight_count][4] of the active targets (blended paths): staging of the record table */
+    void *staging;     /* a batch of vertices, gather's lists, or the CPU's layers; at load, chunks of the tables */
     size_t staging_bytes;
     noh_morph_kernel kernel; /* of the path cpu */
-    int wide; /* a rect record, the indices of a rectangle and a target's record, is 2 x 32 bits instead of 2 x 16 */
+    noh_gl_batch batch;
+    uint32_t *target_tiles; /* of the owners, [target_count] each: a target's first tile, in the order of targets */
+    uint32_t *slots;        /* [block_count] (gather): where that tile lies, in the order of blocks: x | y << 9 */
 
     noh_gl_texture layers;
-    noh_gl_table deltas; /* delta texels by rectangle, or gather's entries */
-    noh_gl_table rects;  /* rectangles, or gather's starts */
-    noh_gl_table record_table;
-    noh_gl_buffer stream; /* rect records, gather's tiles, or the streams */
+    noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
+    uint32_t tiles_across_log2;
+    noh_gl_table record_table;     /* of the active targets, or gather's lists */
+    noh_gl_table starts;           /* where gather's lists begin, by block */
+    noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
+    GLuint a_stream; /* attribute of the stream */
+    int flushes;     /* draws of points are flushed (gl_morph_blend.c) */
     GLint u_layer;
 };
 
@@ -59,16 +76,22 @@ struct noh_gl_morph {
 noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                                noh_gl_morph_plan *plan, noh_error *error);
 
+/* Fill plan->costs. The plan has accumulate and layer_count. */
+void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan);
+
 /* Carve everything behind the struct itself from an arena. `m` NULL only measures. */
 void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
                         noh_gl_morph *m);
 
-/* With occlusion, gather's table of starts has a number for each target in front of an owner's starts, the first
- * target's last: noh_transfer_ratio. */
-uint32_t noh_gl_morph_ratio_count(const noh_mesh_header *h, uint32_t occlusion);
+noh_gl_blocks noh_gl_blocks_of(const noh_rect *rect);
 
-/* 1 when rect records need 32 bits. */
-int noh_gl_morph_wide(const noh_gl_morph_plan *plan);
+noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
+
+/* Blocks of an instance's place in the atlas. */
+uint32_t noh_gl_morph_positions(const noh_mesh_header *h);
+
+/* The texture of the delta tiles of a plan, which is `1 << *across_log2` tiles wide. */
+noh_gl_texture_desc noh_gl_morph_tiles_desc(const noh_gl_morph_plan *plan, uint32_t *across_log2);
 
 /* Rows from one tile to the next: a multiple of four. Rasterisers work in blocks of 2 x 2 to 4 x 4 pixels, and the
  * converter cuts rectangles along those blocks, so every tile must be aligned to them (an eighth less work for mrt with
@@ -87,19 +110,31 @@ noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
 const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance);
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
-/* Where an instance's weights begin, and so its row of records in the gather path. */
+/* Where an instance's weights begin. */
 uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
 
 /* Write the record of a target: weight * scale for each layer, and a last word that the paths use differently. */
 void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last);
+
+/* The widths of fields in an entry's fourth word (shaders_es/common_delta.glsl). */
+#define NOH_ENTRY_WIDTHS(position, normal) ((uint32_t)(position) << 18 | (uint32_t)(normal) << 23)
 
 uint32_t noh_gl_morph_target_bits(const noh_target *target);
 
 /* Set u_tables and u_atlas of the path's program. */
 void noh_gl_morph_constants(noh_gl_morph *m);
 
-/* Make the buffer and the vertex array of the instanced draws: one integer attribute, one element per instance. */
-noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error);
+/* Make the buffer of the draws and its vertex array: one attribute of so many uint32_t; `instanced` 1: each instance
+ * has one, else each vertex. */
+noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, uint64_t bytes,
+                               GLuint instanced, noh_error *error);
+
+/* Make the delta tiles, and fill those that are there. */
+noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error);
+
+/* As noh_gl_morph_fill. mesh: the one whose tiles an owner has. */
+int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at,
+                            uint32_t *bytes);
 
 /* Bind what a draw reads; leave the state that noh_gl_morph_update promises. */
 void noh_gl_morph_begin(const noh_gl_morph *m);
@@ -108,8 +143,6 @@ void noh_gl_morph_end(const noh_gl_morph *m);
 /* The paths: make their GL objects, and do one update. */
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
-int noh_gl_morph_fill_blend(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
-int noh_gl_morph_fill_gather(noh_gl_morph *m, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);

@@ -24,6 +24,11 @@ const char *noh_accumulate_name(noh_accumulate accumulate)
 
 /* ---- which path ---- */
 
+static int blends(noh_morph_path path)
+{
+    return path == NOH_MORPH_LAYERED || path == NOH_MORPH_MRT || path == NOH_MORPH_PER_LAYER;
+}
+
 /* NULL if the path runs here, else what is missing. */
 static const char *missing(noh_morph_path path, noh_accumulate accumulate, const noh_gl_caps *caps)
 {
@@ -58,29 +63,27 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* The cheapest path on a GPU, by a model whose unit is one blended texel. mrt blends every texel of the active targets,
- * and the vertex work of a rectangle costs as much as 4 texels; gather reads all entries, active or not, with two
- * dependent fetches each, at 1.25. The factors were measured by `noh bench` (runtime/README.md). layered and per-layer
- * do the work of mrt and more, so they are never cheaper. */
-static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, float active, noh_accumulate accumulate,
-                                      const noh_gl_caps *caps, const char **reason)
+/* The cheapest path on a GPU by the model of gl_morph_cost.c. layered and per-layer do the work of mrt and more, so
+ * they are never cheaper. */
+static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, const noh_gl_caps *caps, const char **reason)
 {
-    float mrt = active * ((float)plan->texel_count + 4.0f * (float)plan->rect_count);
-    float gather = 1.25f * (float)plan->pair_count;
-    int can_mrt = !missing(NOH_MORPH_MRT, accumulate, caps), can_gather = !missing(NOH_MORPH_GATHER, accumulate, caps);
+    const noh_accumulate accumulate = plan->accumulate;
+    const int can_mrt = !missing(NOH_MORPH_MRT, accumulate, caps);
+    const int can_gather = !missing(NOH_MORPH_GATHER, accumulate, caps);
     const noh_gl_quirk *dear = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_BLEND_DEAR);
     if (can_gather && dear) {
         *reason = dear->reason;
         return NOH_MORPH_GATHER;
     }
-    if (can_mrt && (mrt <= gather || !can_gather)) {
-        *reason = "mrt: float blending works here, and blending the expected targets is the least work";
-        return NOH_MORPH_MRT;
-    }
-    if (can_gather) {
-        *reason = can_mrt ? "gather: so many targets are expected that summing lists is less work than blending"
+    if (can_gather && (!can_mrt || plan->costs.gather <= plan->costs.mrt)) {
+        *reason = can_mrt ? "gather: summing lists of the expected targets in registers is less work than blending them"
                           : "gather: no blending into this format here; sums in registers need none";
         return NOH_MORPH_GATHER;
+    }
+    if (can_mrt) {
+        *reason = can_gather ? "mrt: rectangles are so small that blending them is less work than summing whole blocks"
+                             : "mrt: float blending works here, and this format cannot be written without it";
+        return NOH_MORPH_MRT;
     }
     if (!missing(NOH_MORPH_PER_LAYER, accumulate, caps)) {
         *reason = "per-layer: blending works here, three draw buffers do not";
@@ -115,11 +118,12 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
 {
     const char *lacking;
     plan->accumulate = desc->accumulate == NOH_ACCUMULATE_F16 ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_F32;
+    plan->layer_count = desc->without_tangents ? 2u : 3u;
+    noh_gl_morph_weigh(desc, caps, plan);
     plan->path = desc->path;
     plan->reason = "forced by the caller";
     if (desc->path == NOH_MORPH_AUTO) {
         const noh_gl_quirk *software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
-        float active = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
         if (plan->pair_count == 0) {
             plan->path = NOH_MORPH_CPU;
             plan->reason = "cpu: no target moves anything, there is nothing to accumulate";
@@ -127,7 +131,7 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
             plan->path = NOH_MORPH_CPU;
             plan->reason = software->reason;
         } else {
-            plan->path = cheapest_on_gpu(plan, active, plan->accumulate, caps, &plan->reason);
+            plan->path = cheapest_on_gpu(plan, caps, &plan->reason);
         }
     } else if (desc->path == NOH_MORPH_BLEND) {
         plan->path = blending_path(plan->accumulate, caps, &plan->reason);
@@ -169,6 +173,10 @@ static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
     }
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         instances += desc->instance_counts ? desc->instance_counts[i] : 1u;
+    }
+    if (desc->coarse && (!desc->later_blocks || !desc->later_strips) && desc->meshes[0].header->rect_count) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "morph desc has levels that come later, and does not say how many blocks and strips", 0, 0);
     }
     if (!instances || instances > NOH_MORPH_INSTANCES_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "morph desc asks for no instances, or more than the limit", 0, instances);
@@ -254,8 +262,9 @@ static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
     return owner;
 }
 
+/* What the owners have in all. */
 typedef struct table_sums {
-    uint64_t rects, texels, pairs, starts;
+    uint64_t rects, texels, pairs, tiles, targets;
 } table_sums;
 
 static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
@@ -265,55 +274,45 @@ static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
     return has;
 }
 
-uint32_t noh_gl_morph_ratio_count(const noh_mesh_header *h, uint32_t occlusion)
+/* An owner of tiles, behind those before it. `to` may be NULL. */
+static void add_owner(const noh_mesh *mesh, uint32_t tiles, noh_gl_morph_mesh *to, table_sums *sums)
 {
-    return occlusion ? h->target_count : 0u;
-}
-
-/* The tables of a level in a pack of its own come last. They are not a part of those of a finer level: targets that the
- * level leaves out have no entries in them. */
-static void add_coarse(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes, table_sums *sums)
-{
-    const noh_mesh_header *h = desc->coarse->header;
-    const uint32_t ratios = noh_gl_morph_ratio_count(h, has_occlusion(desc));
-    if (meshes) {
-        noh_gl_morph_mesh *to = &meshes[desc->mesh_count];
-        to->mesh = *desc->coarse;
-        to->owner = desc->mesh_count;
-        to->first_rect = (uint32_t)sums->rects;
-        to->first_texel = (uint32_t)sums->texels;
-        to->first_start = (uint32_t)sums->starts + ratios;
-        to->first_pair = (uint32_t)sums->pairs;
+    if (to) {
+        to->first_tile = (uint32_t)sums->tiles;
+        to->tile_count = tiles;
+        to->first_target = (uint32_t)sums->targets;
     }
-    sums->rects += h->rect_count;
-    sums->texels += h->texel_count;
-    sums->pairs += h->pair_count;
-    sums->starts += (uint64_t)ratios + h->touched_count + 1u;
+    sums->rects += mesh->header->rect_count;
+    sums->texels += mesh->header->texel_count;
+    sums->pairs += mesh->header->pair_count;
+    sums->tiles += tiles;
+    sums->targets += mesh->header->target_count;
 }
 
-/* Where each mesh's part of the tables begins. `meshes` may be NULL. */
+/* Blocks of a mesh of the desc; while its rectangles are not there, of the finest one. */
+static uint32_t blocks_of(const noh_gl_morph_desc *desc, uint32_t mesh)
+{
+    return desc->coarse ? desc->later_blocks : noh_gl_morph_blocks(&desc->meshes[mesh]);
+}
+
+/* Where each mesh's part of the tables begins. `meshes` may be NULL. The tables of a level in a pack of its own come
+ * last. They are not a part of those of a finer level: targets that the level leaves out have nothing in them. */
 static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
-    table_sums sums = { 0, 0, 0, 0 };
-    const uint32_t occlusion = has_occlusion(desc);
+    table_sums sums = { 0, 0, 0, 0, 0 };
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        const noh_mesh_header *h = desc->meshes[i].header;
-        const uint32_t owner = owner_of(desc, i), ratios = noh_gl_morph_ratio_count(h, occlusion);
-        if (meshes) {
-            meshes[i].owner = owner;
-            meshes[i].first_rect = (uint32_t)sums.rects;
-            meshes[i].first_texel = (uint32_t)sums.texels;
-            meshes[i].first_start = (uint32_t)sums.starts + ratios;
-            meshes[i].first_pair = (uint32_t)sums.pairs;
-        }
-        if (owner == i) {
-            sums.rects += h->rect_count;
-            sums.texels += h->texel_count;
-            sums.pairs += h->pair_count;
-            sums.starts += (uint64_t)ratios + h->touched_count + 1u;
-        }
+        const uint32_t owner = owner_of(desc, i);
+        if (meshes) meshes[i].owner = owner;
+        if (owner == i) add_owner(&desc->meshes[i], blocks_of(desc, i), meshes ? &meshes[i] : NULL, &sums);
     }
-    if (desc->coarse) add_coarse(desc, meshes, &sums);
+    if (desc->coarse) {
+        noh_gl_morph_mesh *to = meshes ? &meshes[desc->mesh_count] : NULL;
+        if (to) {
+            to->mesh = *desc->coarse;
+            to->owner = desc->mesh_count;
+        }
+        add_owner(desc->coarse, noh_gl_morph_blocks(desc->coarse), to, &sums);
+    }
     return sums;
 }
 
@@ -336,39 +335,80 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
         plan->instance_count += count;
         weights += (uint64_t)count * h->target_count;
     }
-    if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.rects > NOH_GL_TABLE_TEXELS_MAX ||
-        sums.texels > NOH_GL_TABLE_TEXELS_MAX || sums.starts > NOH_GL_TABLE_TEXELS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "more weights, rectangles or delta texels than a table texture holds",
-                        NOH_GL_TABLE_TEXELS_MAX, weights > sums.texels ? weights : sums.texels);
+    if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.tiles * 16u >= NOH_GL_TABLE_TEXELS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "more weights or delta texels than a table texture holds",
+                        NOH_GL_TABLE_TEXELS_MAX, weights > sums.tiles * 16u ? weights : sums.tiles * 16u);
     }
     plan->weight_count = (uint32_t)weights;
     plan->rect_count = (uint32_t)sums.rects;
     plan->texel_count = (uint32_t)sums.texels;
     plan->pair_count = (uint32_t)sums.pairs;
+    plan->block_count = (uint32_t)sums.tiles;
     return place_tiles(desc, texture_size_max, meshes, plan, error);
 }
 
-int noh_gl_morph_wide(const noh_gl_morph_plan *plan)
+static uint32_t instances_of(const noh_gl_morph_desc *desc, uint32_t mesh)
 {
-    return plan->rect_count > 65536u || plan->weight_count > 65536u;
+    return desc->instance_counts ? desc->instance_counts[mesh] : 1u;
 }
 
-/* For the most that one update can draw: every rectangle of every instance. */
-static uint64_t rect_record_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+/* Points or quads for every active target of every instance: a strip is cut at most where a row of tiles ends. */
+static uint64_t primitives_of(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
+    uint32_t across_log2;
+    const uint32_t rows = noh_gl_morph_tiles_desc(plan, &across_log2).height / 4u;
     uint64_t count = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        count += (uint64_t)(desc->instance_counts ? desc->instance_counts[i] : 1u) * desc->meshes[i].header->rect_count;
+        const uint32_t strips = desc->coarse ? desc->later_strips : noh_gl_morph_strips(&desc->meshes[i]);
+        count += (uint64_t)instances_of(desc, i) * (plan->points ? blocks_of(desc, i) : strips + rows);
     }
-    return (count ? count : 1u) * (noh_gl_morph_wide(plan) ? 8u : 4u);
+    return count;
 }
 
-static size_t largest_touched(const noh_gl_morph_desc *desc)
+static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc)
 {
-    size_t most = desc->coarse ? desc->coarse->header->touched_count : 0;
+    uint64_t entries = 0, positions = 0, instances = 0, most = 0, widest = 0;
+    noh_gl_batch batch;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        size_t touched = desc->meshes[i].header->touched_count;
-        most = touched > most ? touched : most;
+        const uint64_t own = noh_gl_morph_positions(desc->meshes[i].header), all = blocks_of(desc, i) + own;
+        const uint32_t count = instances_of(desc, i);
+        if (!count || !desc->meshes[i].header->touched_count) continue;
+        entries += count * all;
+        positions += count * own;
+        instances += count;
+        most = all > most ? all : most;
+        widest = own > widest ? own : widest;
+    }
+    entries = entries < NOH_BATCH_ENTRIES ? entries : NOH_BATCH_ENTRIES;
+    entries = entries > most ? entries : most;
+    positions = positions < entries ? positions : entries;
+    batch.entries = (uint32_t)(entries ? entries : 1u);
+    batch.positions = (uint32_t)(positions ? positions : 1u);
+    batch.bytes = 0;
+    batch.instances = (uint32_t)(instances < batch.positions ? instances ? instances : 1u : batch.positions);
+    return batch;
+}
+
+noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    const uint64_t most = plan->points ? NOH_BATCH_POINTS : NOH_BATCH_QUADS;
+    noh_gl_batch batch = { 0, 0, 0, 0 };
+    uint64_t all;
+    if (plan->path == NOH_MORPH_GATHER) return lists_batch(desc);
+    if (plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_STREAMS) return batch;
+    all = primitives_of(desc, plan);
+    all += !all; /* GL has no empty buffers */
+    batch.entries = (uint32_t)(all < most ? all : most);
+    batch.bytes = all * (plan->points ? 12u : 48u);
+    return batch;
+}
+
+static size_t most_positions(const noh_gl_morph_desc *desc)
+{
+    size_t most = desc->coarse ? noh_gl_morph_positions(desc->coarse->header) : 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const size_t own = noh_gl_morph_positions(desc->meshes[i].header);
+        most = own > most ? own : most;
     }
     return most;
 }
@@ -384,15 +424,14 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
             if (plan->occlusion) layers = noh_morph_layers_size(&desc->meshes[i]) / 9u * (4u * plan->layer_count + 1u);
             bytes = layers > bytes ? layers : bytes;
         }
-    } else if (plan->path == NOH_MORPH_GATHER) {
-        size_t load = 2u * 4u * (largest_touched(desc) + 1u) + 16u * (size_t)NOH_GATHER_CHUNK;
-        bytes = 16u * (size_t)plan->instance_count;
-        bytes = load > bytes ? load : bytes;
     } else {
-        size_t load = 16u * (size_t)NOH_RECT_CHUNK;
-        const uint64_t records = rect_record_bytes(desc, plan);
-        bytes = records < SIZE_MAX ? (size_t)records : SIZE_MAX; /* which no memory has */
-        bytes = bytes > load ? bytes : load;
+        const noh_gl_batch batch = noh_gl_morph_batch(desc, plan);
+        const int gather = plan->path == NOH_MORPH_GATHER;
+        const size_t positions = gather ? 4u * most_positions(desc) : 0;
+        const size_t load = positions + 256u * (size_t)NOH_TILE_CHUNK;
+        bytes = batch.entries * (size_t)(gather ? 16u : plan->points ? 12u : 48u);
+        if (gather) bytes += 16u * (size_t)batch.instances + 4u * (size_t)batch.positions + positions;
+        bytes = load > bytes ? load : bytes;
     }
     return bytes;
 }
@@ -404,15 +443,39 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
     memset(&dummy, 0, sizeof dummy);
     to->table_count = desc->mesh_count + (desc->coarse != NULL);
     to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * to->table_count, 16);
-    to->records = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_STREAMS
-                      ? NULL
-                      : (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16);
+    to->batch = noh_gl_morph_batch(desc, plan);
+    to->records = blends(plan->path) ? (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16) : NULL;
+    to->target_tiles = (uint32_t *)noh_arena_carve(
+        arena, blends(plan->path) || plan->path == NOH_MORPH_GATHER ? 4u * (size_t)place_tables(desc, NULL).targets : 0,
+        4);
+    to->slots = (uint32_t *)noh_arena_carve(arena, plan->path == NOH_MORPH_GATHER ? 4u * (size_t)plan->block_count : 0,
+                                            4);
     to->staging_bytes = staging_size(desc, plan);
     to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
     to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);
     to->instance_mesh = (uint32_t *)noh_arena_carve(arena, 4u * (size_t)plan->instance_count, 4);
     to->dirty = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
     to->levels = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
+}
+
+/* With all targets of all instances active. */
+static uint64_t update_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    const uint64_t texel = 4u * plan->layer_count * (plan->occlusion ? 4u : 3u);
+    uint64_t bytes = 0;
+    if (blends(plan->path)) bytes = 16u * (uint64_t)plan->weight_count + noh_gl_morph_batch(desc, plan).bytes;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        const uint64_t count = instances_of(desc, i), positions = noh_gl_morph_positions(h);
+        if (plan->path == NOH_MORPH_GATHER && h->touched_count) {
+            bytes += count * (16u + 20u * positions + 16u * (uint64_t)blocks_of(desc, i));
+        }
+        if (plan->path == NOH_MORPH_CPU) {
+            bytes += count * ((uint64_t)h->morph_height << h->morph_width_log2) * texel /
+                     (plan->accumulate == NOH_ACCUMULATE_F16 ? 2u : 1u);
+        }
+    }
+    return bytes;
 }
 
 static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan)
@@ -428,15 +491,20 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
             if (owner_of(desc, i) == i) plan->delta_bytes += noh_gl_morph_stream_bytes(desc->meshes[i].header);
         }
         plan->delta_bytes += plan->delta_bytes ? 0 : NOH_STREAM_STRIDE; /* GL has no empty buffers */
-    } else if (plan->path == NOH_MORPH_GATHER) {
-        plan->delta_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->pair_count);
-        plan->table_bytes = noh_gl_table_bytes(GL_R32UI, (uint32_t)place_tables(desc, NULL).starts);
-        plan->stream_bytes = 16u * (uint64_t)plan->instance_count + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
     } else if (plan->path != NOH_MORPH_CPU) {
-        plan->delta_bytes = noh_gl_table_bytes(plan->occlusion ? GL_RGBA32UI : GL_RGB32UI, plan->texel_count);
-        plan->table_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->rect_count);
-        plan->stream_bytes = rect_record_bytes(desc, plan) + noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count);
+        const noh_gl_batch batch = noh_gl_morph_batch(desc, plan);
+        uint32_t across_log2;
+        const noh_gl_texture_desc tiles = noh_gl_morph_tiles_desc(plan, &across_log2);
+        plan->delta_bytes = noh_gl_texture_bytes(&tiles);
+        if (plan->path == NOH_MORPH_GATHER) {
+            plan->stream_bytes = 16u * (uint64_t)batch.instances + noh_gl_table_bytes(GL_RGBA32UI, batch.entries) +
+                                 noh_gl_table_bytes(GL_R32UI, batch.positions);
+        } else {
+            plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count) + batch.bytes +
+                                 (plan->points ? 0u : 12u) * (uint64_t)batch.entries;
+        }
     }
+    plan->update_bytes = update_bytes(desc, plan);
     plan->gpu_bytes = plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes;
 }
 
@@ -456,11 +524,17 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     }
     p.occlusion = has_occlusion(desc);
     p.layer_format = layer_format(&p, caps);
-    p.layer_count = desc->without_tangents ? 2u : 3u;
+    p.wide = p.occlusion || noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
+    p.points = p.path != NOH_MORPH_LAYERED && blends(p.path) && caps->block_points &&
+               noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
     set_gpu_bytes(desc, &p);
     if (p.path == NOH_MORPH_STREAMS && p.delta_bytes > UINT32_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "the streams of all targets take more than 4 GiB", UINT32_MAX,
                         p.delta_bytes);
+    }
+    if (p.stream_bytes > INT32_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "what one update of all instances draws takes more than 2 GiB", INT32_MAX,
+                        p.stream_bytes);
     }
     noh_arena_carve(&arena, sizeof(noh_gl_morph), 16);
     noh_gl_morph_carve(&arena, desc, &p, NULL);

@@ -1,4 +1,4 @@
-/* gl_morph_shared.c: what the paths share: tiles, records of weights, framebuffers, the instanced vertex stream, and
+/* gl_morph_shared.c: what the paths share: tiles, records of weights, framebuffers, the vertex stream, and
  * the GL state around a draw. */
 #include <string.h>
 
@@ -55,8 +55,8 @@ uint32_t noh_gl_morph_target_bits(const noh_target *t)
 void noh_gl_morph_constants(noh_gl_morph *m)
 {
     m->gl->UseProgram(m->program);
-    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->rects.width_log2,
-                     (GLint)m->record_table.width_log2, (GLint)m->deltas.width_log2);
+    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->record_table.width_log2,
+                     (GLint)m->starts.width_log2, (GLint)m->tiles_across_log2);
     m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
                      2.0f / (float)m->plan.atlas_height);
     m->gl->UseProgram(0);
@@ -93,22 +93,22 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     return noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulation framebuffer", 0, error);
 }
 
-noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, GLenum type, noh_error *error)
+noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, uint64_t bytes,
+                               GLuint instanced, noh_error *error)
 {
-    uint64_t bytes = m->plan.stream_bytes - m->record_table.texture.bytes;
     GLuint location;
     noh_result result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->stream,
                                              error);
     if (result) {
         return result;
     }
-    location = (GLuint)m->gl->GetAttribLocation(m->program, attribute);
+    m->a_stream = location = (GLuint)m->gl->GetAttribLocation(m->program, attribute);
     m->gl->GenVertexArrays(1, &m->vertex_array);
     m->gl->BindVertexArray(m->vertex_array);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
     m->gl->EnableVertexAttribArray(location);
-    m->gl->VertexAttribIPointer(location, components, type, 0, NULL);
-    m->gl->VertexAttribDivisor(location, 1);
+    m->gl->VertexAttribIPointer(location, components, GL_UNSIGNED_INT, 0, NULL);
+    if (instanced) m->gl->VertexAttribDivisor(location, 1);
     noh_gl_label(m->gl, GL_BUFFER, m->stream.name, "morph stream", NULL);
     noh_gl_label(m->gl, GL_VERTEX_ARRAY, m->vertex_array, "morph stream", NULL);
     m->gl->BindVertexArray(0);
@@ -129,7 +129,7 @@ static void plain_state(const noh_gl_morph *m)
 
 void noh_gl_morph_begin(const noh_gl_morph *m)
 {
-    const GLuint names[3] = { m->deltas.texture.name, m->rects.texture.name, m->record_table.texture.name };
+    const GLuint names[3] = { m->tiles.name, m->record_table.texture.name, m->starts.texture.name };
     for (unsigned i = 3; i-- > 0;) { /* downwards, so that unit 0 is the active one at the end */
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, names[i]);

@@ -14,6 +14,10 @@ static const noh_gl_quirk quirks[] = {
     { "Mali", NOH_QUIRK_BLEND_DEAR,
       "gather: this GPU's vendor advises against blending into float framebuffers; sums in registers need none",
       "Arm GPU Best Practices Developer Guide (101897), Fragment shading, Blending" },
+    { "Mali", NOH_QUIRK_TILE_16, "tiles of full size have 128 bits a pixel",
+      "Arm GPU Best Practices Developer Guide (101897): reasoned, not measured here" },
+    { "Apple", NOH_QUIRK_TILE_32, "tile memory has 32 bytes a pixel from A8 on",
+      "Apple, Metal Feature Set Tables, maximum render target size per pixel: reasoned, not measured here" },
     { "SwiftShader", NOH_QUIRK_HALF_UNSURE,
       "halves below 2^-14 are rounded twice now and then, which no probe of a few texels shows",
       "noh verify --seed 1 on the demo mask, ANGLE of Chromium 150: two of 365,646 values one step off" }
@@ -37,7 +41,7 @@ static int contains(const char *text, const char *word)
 
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk)
 {
-    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_HALF_UNSURE);
+    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_TILE_32);
     for (uint32_t i = 0; i < QUIRK_COUNT; i++) {
         if (quirks[i].quirk == quirk && contains(renderer, quirks[i].renderer)) {
             return &quirks[i];

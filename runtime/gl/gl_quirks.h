@@ -17,9 +17,11 @@ extern "C" {
 #endif
 
 typedef enum noh_quirk {
-    NOH_QUIRK_SOFTWARE,   /* rasterises on the CPU: auto takes the path cpu */
-    NOH_QUIRK_BLEND_DEAR, /* float blending is slow: auto takes gather, however few targets are expected */
-    NOH_QUIRK_HALF_UNSURE /* rounds halves irregularly: the probe's half-float modes become NOH_HALF_UNKNOWN */
+    NOH_QUIRK_SOFTWARE,    /* rasterises on the CPU: auto takes the path cpu */
+    NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto takes gather, however few targets are expected */
+    NOH_QUIRK_HALF_UNSURE, /* rounds halves irregularly: the probe's half-float modes become NOH_HALF_UNKNOWN */
+    NOH_QUIRK_TILE_16, /* renders in tiles with 16 bytes a pixel: three layers of floats make tiles smaller, or spill */
+    NOH_QUIRK_TILE_32  /* with 32 bytes a pixel */
 } noh_quirk;
 
 typedef struct noh_gl_quirk {

@@ -143,7 +143,7 @@ typedef struct noh_stage_desc {
     uint32_t event_count; /* callback keys that one step may deliver to noh_stage_events; default (0) 64 and one
                            * for each actor */
     uint32_t load_bytes;  /* of levels that are loaded (noh_stage_load_level), so many are uploaded in a frame at most;
-                           * below 64 counts as 64; default (0) 65,536 */
+                           * below 256 counts as 256; default (0) 65,536 */
     uint64_t update_budget_ns; /* of posing in a frame, by noh_cost_ns; default (0) no bound */
     uint32_t slot_moves;       /* slots that may change hands in a frame, each of which is accumulated afresh:
                                 * actors that wait are drawn coarser, or without targets until they have a slot. 1

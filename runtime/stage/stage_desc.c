@@ -60,7 +60,7 @@ noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc)
     if (!d.update_budget_ns) d.update_budget_ns = UINT64_MAX;
     if (!d.slot_moves) d.slot_moves = UINT32_MAX;
     if (!(d.lod.pixels > 0.0f)) d.lod.pixels = 1.0f;
-    d.load_bytes = !d.load_bytes ? 65536u : d.load_bytes < 64u ? 64u : d.load_bytes;
+    d.load_bytes = !d.load_bytes ? 65536u : d.load_bytes < 256u ? 256u : d.load_bytes;
     return d;
 }
 

@@ -136,6 +136,14 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     d.mesh_count = tiles->count;
     d.instance_counts = tiles->counts;
     d.coarse = tiles->comes_later ? &tiles->coarse : NULL;
+    if (tiles->comes_later) {
+        uint32_t finest = 0;
+        for (uint32_t i = 1; i < tiles->count; i++) {
+            if (tiles->meshes[i].header->level < tiles->meshes[finest].header->level) finest = i;
+        }
+        d.later_blocks = noh_gl_morph_blocks(&tiles->meshes[finest]);
+        d.later_strips = noh_gl_morph_strips(&tiles->meshes[finest]);
+    }
     d.path = (noh_morph_path)desc->morph_path;
     d.without_tangents = !desc->tangents;
     d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;

@@ -197,7 +197,7 @@ static uint32_t load_in_pieces(act *later, act *coarse, const noh_pack packs[FEW
         }
         frames++;
         assert_true(stats->load_bytes <= BOUND && frames < 100);
-        assert_true(!stats->loading || stats->load_bytes > BOUND - 64u);
+        assert_true(!stats->loading || stats->load_bytes > BOUND - 256u);
     } while (stats->loading);
     return frames;
 }
@@ -379,7 +379,7 @@ static void each_frame_keeps_the_bound(void **state)
     for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
         uint64_t least = UINT64_MAX, most = 0;
         for (uint32_t b = 0; b < TEST_COUNT(bounds); b++) {
-            const uint32_t bound = bounds[b] < 64u ? 64u : bounds[b];
+            const uint32_t bound = bounds[b] < 256u ? 256u : bounds[b];
             uint64_t sum = 0;
             if (bounds[b] < 5000u && null_ways[w].path == NOH_MORPH_GATHER) continue; /* two walks for each piece */
             open_null(&g);

@@ -216,7 +216,10 @@ static void what_streams_cannot_do_is_refused(void **state)
     assert_int_equal(noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, &error), NOH_ERR_UNSUPPORTED);
     assert_non_null(strstr(error.what, "f16"));
     desc.accumulate = NOH_ACCUMULATE_F32;
-    desc.coarse = &s.meshes[0];
+    desc.coarse = &s.meshes[0]; /* without its blocks and strips, no path can be planned */
+    desc.later_blocks = noh_gl_morph_blocks(&s.meshes[0]);
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, &error), NOH_ERR_ARG);
+    desc.later_strips = noh_gl_morph_strips(&s.meshes[0]);
     assert_int_equal(noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, &error), NOH_ERR_UNSUPPORTED);
     close_scene(&s);
 }

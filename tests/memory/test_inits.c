@@ -417,6 +417,23 @@ INIT(gl_morph_init)
     return result;
 }
 
+static uint64_t count_calls(void *calls)
+{
+    return ++*(uint64_t *)calls;
+}
+
+INIT(gl_morph_calibrate)
+{
+    const noh_gl_device on = device();
+    noh_gl_morph_desc desc;
+    noh_gl_morph_times times;
+    uint64_t calls = 0;
+    memset(&desc, 0, sizeof desc);
+    desc.meshes = &s.mesh;
+    desc.mesh_count = 1;
+    return noh_gl_morph_calibrate(memory, bytes, &on, &desc, count_calls, &calls, 3, &times, error);
+}
+
 INIT(gl_skin_init)
 {
     const noh_gl_device on = device();
@@ -495,6 +512,7 @@ static const struct {
     ROW(reflection_init),
     ROW(pick),
     ROW(gl_morph_init),
+    ROW(gl_morph_calibrate),
     ROW(gl_skin_init),
     ROW(stage_init),
 };

@@ -200,7 +200,7 @@ const char *const help_formats_text[] = {
     "   layered    one additive pass; a geometry shader draws to three layers",
     "   mrt        one additive pass with three outputs",
     "   per-layer  three additive passes",
-    "   gather     no blending: each fragment sums the list of its vertex",
+    "   gather     no blending: each fragment sums its list of active targets",
     "   cpu        SIMD on the CPU, and an upload",
     "# cameras (--camera)",
     "   face        frames what targets move",

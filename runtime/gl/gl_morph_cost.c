@@ -1,0 +1,67 @@
+/* gl_morph_cost.c: which path `auto` takes, by a model of what each costs on a GPU.
+ *
+ * The unit is one texel blended into three layers of RGBA32F. All terms are of one update of one instance of each mesh,
+ * with the expected share of its targets active.
+ *   mrt     its texels; a quad costs as much as 4 of them, or on a software rasteriser, which shades whole blocks, all
+ *           16 of each block instead; twice all that where the layers do not fit a known tile memory; the clear
+ *   gather  16 texels of each block at a factor, and 0.3 for each that is written once; what is uploaded
+ *   cpu     pairs and vertices, and what is uploaded
+ * The factors for software were measured (runtime/README.md). Those for GPUs follow from bytes: gather reads 12 where
+ * blending reads and writes 96. No GPU was at hand to measure them: let a game calibrate (noh_gl_morph_calibrate). */
+#include <string.h>
+
+#include "gl/gl_morph_internal.h"
+#include "gl/gl_quirks.h"
+
+#define QUAD_TEXELS 4.0f     /* a quad's vertices and setup */
+#define GATHER_SOFTWARE 0.9f /* of a texel that gather reads and adds, */
+#define GATHER_GPU 0.5f      /* reasoned */
+#define WRITE 0.3f           /* of a texel that is written once */
+#define UPLOADED_BYTES 32.0f /* that cost as much as one texel; reasoned */
+#define CPU_PAIR 0.17f       /* 1.4 ns, where a blended texel is 8 on the same processor */
+#define CPU_VERTEX 0.12f     /* 1 ns: into the texture */
+
+/* Bytes that a pixel may take in the tile memory of a GPU without its tiles getting smaller or spilling; 0: it has no
+ * such memory, or it is not known. */
+static uint32_t tile_bytes(const char *renderer)
+{
+    const noh_gl_quirk *quirk = noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_32);
+    if (quirk) return 32;
+    return noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_16) ? 16 : 0;
+}
+
+static uint32_t strips_of(const noh_gl_morph_desc *desc, uint32_t mesh)
+{
+    return desc->coarse ? desc->later_strips : noh_gl_morph_strips(&desc->meshes[mesh]);
+}
+
+void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan)
+{
+    const int software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) != NULL;
+    const float share = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
+    noh_gl_morph_costs *c = &plan->costs;
+    float uploaded;
+    memset(c, 0, sizeof *c);
+    c->tile_bytes = tile_bytes(caps->renderer);
+    c->pixel_bytes = (plan->accumulate == NOH_ACCUMULATE_F16 ? 8u : 16u) * plan->layer_count;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        const float blocks = (float)(desc->coarse ? desc->later_blocks : noh_gl_morph_blocks(&desc->meshes[i]));
+        if (desc->instance_counts && !desc->instance_counts[i]) continue;
+        c->texels += share * (float)h->texel_count;
+        c->quads += share * (float)strips_of(desc, i);
+        c->blocks += share * blocks;
+        c->pairs += share * (float)h->pair_count;
+        c->touched += (float)h->touched_count;
+    }
+    c->mrt = software ? 16.0f * c->blocks : c->texels + QUAD_TEXELS * c->quads;
+    if (c->tile_bytes && c->pixel_bytes > c->tile_bytes) c->mrt *= 2.0f;
+    c->mrt += c->touched;
+    c->per_layer = c->mrt + (software ? 0.0f : QUAD_TEXELS * c->quads * (float)(plan->layer_count - 1u));
+    uploaded = 16.0f * c->blocks + 1.25f * c->touched; /* entries, and where lists begin */
+    c->gather = 16.0f * c->blocks * (software ? GATHER_SOFTWARE : GATHER_GPU) + WRITE * c->touched +
+                uploaded / UPLOADED_BYTES;
+    uploaded = 12.0f * (float)plan->layer_count * c->touched;
+    c->cpu = CPU_PAIR * c->pairs + CPU_VERTEX * c->touched + (software ? 0.0f : uploaded / UPLOADED_BYTES);
+    c->upload_bytes = 16.0f * c->blocks + 1.25f * c->touched;
+}

@@ -1,0 +1,8 @@
+#version 300 es
+// A fifth of white.
+precision highp float;
+layout(location = 0) out vec4 color;
+
+void main() {
+    color = vec4(0.2);
+}
