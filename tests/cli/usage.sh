@@ -75,9 +75,11 @@ says '--accumulate wants'
 noh render "$pack" -o "$work/out.png" --driver vulkan
 expect 2 'an unknown driver'
 says "no driver 'vulkan'"
-noh render "$pack" -o "$work/out.png" --debug bones
+noh render "$pack" -o "$work/out.png" --debug skeleton
 expect 2 'an unknown debug view'
-says "--debug wants none, position, normal, tangent, lod, light, occlusion or wrinkle, not 'bones'"
+says "--debug wants none, position, normal, tangent, lod, light, occlusion, wrinkle, wireframe, joints, weights or bones, not 'skeleton'"
+noh render "$pack" -o "$work/out.png" --debug bones
+expect 1 'bones of a pack without a skeleton'
 noh render "$pack" -o "$work/out.png" --camera sideways
 expect 2 'an unknown camera'
 for value in smile smile= =1 smile=much smile=nan; do
