@@ -389,12 +389,15 @@ static void check_time(asset *a, uint32_t animation, uint32_t channel, const cha
     uint32_t count = oracle_target_count(a->o, (uint32_t)oracle_node_mesh(a->o, node));
     double *expected = test_zeros(sizeof *expected * count), *got = test_zeros(sizeof *got * count);
     float *packed = test_zeros(sizeof *packed * count);
-    oracle_sample(a->o, animation, channel, time, expected);
-    sample_model(model_channel_of(a, clip, made), time, got);
+    const model_channel *from = model_channel_of(a, clip, made);
+    /* What lies before the first key is left out; times are then rounded once more. */
+    const double trimmed = oracle_channel_end(a->o, animation, channel) - (double)from->times[from->key_count - 1u];
+    oracle_sample(a->o, animation, channel, time + trimmed, expected);
+    sample_model(from, time, got);
     sample_pack(a, clip, made, time, packed);
-    check_weights(a, clip, model_channel_of(a, clip, made), time, packed, expected);
+    check_weights(a, clip, from, time, packed, expected);
     for (uint32_t t = 0; t < count; t++) {
-        assert_true(fabs(got[t] - expected[t]) <= 1e-12);
+        assert_true(fabs(got[t] - expected[t]) <= (trimmed == 0.0 ? 1e-12 : 1e-5));
         expected[t] = (double)packed[t]; /* from here on only the deltas count */
     }
     check_node(a, node, expected, packed);
