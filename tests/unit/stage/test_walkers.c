@@ -602,7 +602,7 @@ static float distance_of(const street *s, noh_actor actor, uint32_t agent)
 {
     noh_crowd_agent a;
     noh_place place;
-    assert_true(noh_crowd_agent_stepped(s->crowd, agent, &a));
+    assert_true(noh_crowd_agent_at(s->crowd, agent, &a));
     assert_int_equal(noh_actor_place(s->cast.stage, actor, &place, NULL), NOH_OK);
     return hypotf(place.position[0] - a.position[0], place.position[2] - a.position[1]);
 }
