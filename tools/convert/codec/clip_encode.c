@@ -257,13 +257,14 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
                 clip_report *report, model_error *error)
 {
     encoder *e = calloc(2, sizeof *e); /* their bases are too large for some stacks */
-    encoder *from = e + 1;
+    encoder *from;
     byte_buffer best;
     int failed = 0, found = 0;
     if (!e) {
         if (error) snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
+    from = e + 1;
     memset(&best, 0, sizeof best);
     from->skeleton = skeleton;
     from->clip = clip;

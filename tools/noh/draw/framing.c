@@ -31,8 +31,8 @@ struct framing {
 /* The n-th of 26: every vector of -1, 0 and 1 but 0, of unit length. */
 static void direction(uint32_t n, float d[3])
 {
-    const uint32_t at = n < 13u ? n : n + 1u;
-    const float x[3] = { (float)(at % 3u) - 1.0f, (float)(at / 3u % 3u) - 1.0f, (float)(at / 9u) - 1.0f };
+    const uint32_t at = n < 13u ? n : n + 1u, digits[3] = { at % 3u, at / 3u % 3u, at / 9u };
+    const float x[3] = { (float)digits[0] - 1.0f, (float)digits[1] - 1.0f, (float)digits[2] - 1.0f };
     const float length = sqrtf(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     for (int c = 0; c < 3; c++) d[c] = x[c] / length;
 }

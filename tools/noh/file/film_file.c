@@ -118,9 +118,8 @@ int film_open(film *f, const char *path, uint32_t width, uint32_t height, uint32
 /* "walk.png" to "walk_0007.png". */
 static void numbered(const film *f, uint32_t n, char path[1040])
 {
-    const size_t stem = strlen(f->path) - 4u;
-    memcpy(path, f->path, stem);
-    snprintf(path + stem, 1040u - stem, "_%04u.png", n);
+    const int stem = (int)strlen(f->path) - 4;
+    snprintf(path, 1040, "%.*s_%04u.png", stem, f->path, n);
 }
 
 static int write_all(film *f, const uint8_t *bytes, size_t count)

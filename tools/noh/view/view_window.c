@@ -116,7 +116,8 @@ static int add_to_film(view_window *w, fixed_frames *fixed, const view_run *run,
     if (!status) status = canvas_read(c, fixed->rgba);
     if (!status && film_add(&fixed->film, fixed->rgba)) {
         fixed->has_film = 0;
-        status = film_close(&fixed->film, 1) ? EXIT_FAILED : EXIT_FAILED; /* it tells why */
+        (void)film_close(&fixed->film, 1); /* it tells why */
+        status = EXIT_FAILED;
     }
     return status;
 }
