@@ -5,7 +5,7 @@
 const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEquation', 'Viewport', 'Scissor', 'DepthFunc', 'DepthMask', 'ColorMask',
     'FrontFace', 'GetError', 'EnableVertexAttribArray', 'VertexAttribPointer', 'VertexAttribIPointer', 'VertexAttribDivisor', 'VertexAttrib4f',
     'VertexAttribI4i', 'ActiveTexture', 'TexStorage2D', 'TexStorage3D', 'TexParameteri', 'PixelStorei', 'CheckFramebufferStatus', 'ReadBuffer',
-    'RenderbufferStorageMultisample', 'DrawElements', 'DrawElementsInstanced', 'DrawArraysInstanced'];
+    'RenderbufferStorageMultisample', 'DrawElements', 'DrawElementsInstanced', 'DrawArraysInstanced', 'Flush'];
 
 // By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r: a buffer, a vertex
 // array, a texture, a framebuffer, a renderbuffer; n: a number.
