@@ -2,7 +2,7 @@
 # check_gl_calls.sh: the GL functions that a port has to provide.
 #   - NOH_GL_REQUIRED (runtime/gl/gl_api.h) is what runtime/ calls: no more, no less
 #   - an optional function that runtime/ calls is compared with NULL somewhere
-#   - the list in platform/README.md is that list
+#   - the list in platform/README.md is that list, and the page has each of them (platform/web/package/gl.js)
 set -u
 . tests/cli/lib.sh
 header=$(find runtime -name gl_api.h)
@@ -38,4 +38,11 @@ check 'optional functions are compared with NULL before they are called' sh -c '
 awk '/^<!-- required -->/ { on = 1; next } /^<!-- end -->/ { on = 0 } on' platform/README.md |
     grep -oE 'gl[A-Z][A-Za-z0-9]*' | sed 's/^gl//' | sort -u >"$work/documented"
 check 'platform/README.md lists them' cmp "$work/required" "$work/documented"
+# Gen and Delete of whole lists are made by name there: `glGen${what}`. Strings are C's.
+grep -v '^ *//' platform/web/package/gl.js | cat - platform/web/context.c >"$work/page"
+while read -r name; do
+    case $name in Gen*s) part=${name#Gen} ;; Delete*s) part=${name#Delete} ;; *) part=$name ;; esac
+    grep -qE "\<(gl)?($name|$part)\>" "$work/page" || echo "$name"
+done <"$work/required" >"$work/not_on_the_page"
+check 'the page has them (platform/web/package/gl.js)' sh -c '! grep . "$1"' - "$work/not_on_the_page"
 finish
