@@ -1,8 +1,10 @@
 /* common_layers.glsl: the accumulated deltas of a vertex. noh_fetch of common_vertex.glsl adds them; without it, call
  * noh_morph_fetch, which adds them, and if it returns true noh_morph_frame (shaders_es/README.md). Define
  * NOH_LAYERS_UINT if noh_gl_morph_binding.is_uint is 1, NOH_TWO_LAYERS if its layer_count is 2, NOH_DEPTH_ONLY if
- * positions are enough. */
-#ifdef NOH_LAYERS_UINT
+ * positions are enough, NOH_VERTICES if vertices come morphed: then there is nothing to add. */
+#if defined(NOH_VERTICES)
+/* no texture */
+#elif defined(NOH_LAYERS_UINT)
 uniform highp usampler2DArray noh_layers;
 #define NOH_LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(noh_layers, ivec3(texel, layer), 0).xyz)
 #else
@@ -50,6 +52,9 @@ void noh_add_streams(inout vec3 position, inout vec3 normal, inout vec3 tangent)
  * false, and noh_morph_frame is not needed. */
 bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
 {
+#ifdef NOH_VERTICES
+    return false;
+#else
     bool touched = vertex < tile.w;
     if (touched) {
 #ifdef NOH_STREAMS
@@ -66,6 +71,7 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
 #endif
     }
     return touched;
+#endif
 }
 
 bool noh_morph_fetch(int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)

@@ -25,6 +25,9 @@ struct noh_lobe {
 /* What targets change of a vertex's occlusion: beside the positions that noh_morph_fetch_tile adds. */
 float noh_fetch_occlusion(ivec4 tile, int vertex)
 {
+#ifdef NOH_VERTICES
+    return 0.0;
+#else
     if (vertex >= tile.w) {
         return 0.0;
     }
@@ -33,6 +36,7 @@ float noh_fetch_occlusion(ivec4 tile, int vertex)
     return uintBitsToFloat(texelFetch(noh_layers, texel, 0).w);
 #else
     return texelFetch(noh_layers, texel, 0).w;
+#endif
 #endif
 }
 

@@ -21,6 +21,17 @@ layout(location = 3) in vec2 noh_a_uv;
 layout(location = 4) in vec4 noh_a_color;
 #endif
 
+/* The bind pose. Where the CPU finishes vertices (noh_gl_morph_desc.vertices), noh_a_position and noh_a_normal are
+ * morphed. A shader of your own that reads it defines NOH_REST. */
+#if defined(NOH_STREAMS)
+#define noh_a_rest noh_a_position
+#define noh_a_rest_normal noh_a_normal
+#elif defined(NOH_REST) || \
+    (!defined(NOH_DEPTH_ONLY) && (defined(NOH_WRINKLES) || defined(NOH_EYE) || defined(NOH_TEETH) || defined(NOH_SKIN) || NOH_TRANSFER > 0))
+layout(location = 10) in vec3 noh_a_rest;
+layout(location = 11) in ivec2 noh_a_rest_normal;
+#endif
+
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
 uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
 uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
@@ -138,24 +149,24 @@ noh_vertex noh_fetch()
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-    noh_v_rest = noh_a_position - noh_center;
-    noh_v_moved = v.model - noh_a_position;
+    noh_v_rest = noh_a_rest - noh_center;
+    noh_v_moved = v.model - noh_a_rest;
     noh_wrinkle_vertex(noh_uv.xy + noh_uv.zw * noh_a_uv);
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_EYE
-    noh_face_vertex(noh_a_position, v.model, noh_direction_of_pair(noh_a_normal), v.normal, x, y, z);
+    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, x, y, z);
 #endif
 #ifdef NOH_TEETH
-    noh_face_vertex(noh_a_position, v.model);
+    noh_face_vertex(noh_a_rest, v.model);
 #endif
 #ifdef NOH_SKIN
-    noh_face_vertex(noh_a_position);
+    noh_face_vertex(noh_a_rest);
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
 #if NOH_TRANSFER > 0
-    noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_normal), normalize(v.normal));
+    noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
     lobe.occlusion = clamp(lobe.occlusion + noh_fetch_occlusion(tile, noh_morph_vertex()), 0.0, 1.0);
     noh_v_transfer = noh_lobe_shade(lobe, normalize(noh_world_normal(x, y, z, lobe.axis)));
 #endif

@@ -17,12 +17,12 @@ void main()
     v_tangent = v.tangent;
     v_uv = v.uv;
     v_color = v.color * v.tint;
-    v_rest = noh_a_position;
+    v_rest = noh_a_rest;
     v_corner = gl_VertexID;
 #ifdef NOH_DEPTH_ONLY
     v_rest_normal = vec3(0.0);
 #else
-    v_rest_normal = noh_direction_of_pair(noh_a_normal);
+    v_rest_normal = noh_direction_of_pair(noh_a_rest_normal);
 #endif
     gl_Position = noh_view_projection * vec4(v.position, 1.0);
     gl_Position.z -= 2e-5 * gl_Position.w; /* in front of the surface that it lies on */

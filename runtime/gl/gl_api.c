@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { NOH_GL_GROUP_GEOMETRY, NOH_GL_GROUP_DEBUG, NOH_GL_GROUP_TIMER, NOH_GL_GROUP_COUNT };
+enum { NOH_GL_GROUP_MAP, NOH_GL_GROUP_GEOMETRY, NOH_GL_GROUP_DEBUG, NOH_GL_GROUP_TIMER, NOH_GL_GROUP_COUNT };
 
 #define PROC_NAME_BYTES 48
 
@@ -105,11 +105,22 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     return NOH_OK;
 }
 
+/* WebGL 2 calls itself OpenGL ES 3.0. */
+static int is_webgl(const noh_gl_api *api)
+{
+    const char *text = (const char *)api->GetString(GL_VERSION);
+    for (; text && *text; text++) {
+        if (text_starts(text, "WebGL")) return 1;
+    }
+    return 0;
+}
+
 /* The suffix of each group's functions in this context; NULL: the context does not have them. */
 static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COUNT])
 {
     memset(suffix, 0, sizeof(*suffix) * NOH_GL_GROUP_COUNT);
     api->geometry_ext = 0;
+    if (!is_webgl(api)) suffix[NOH_GL_GROUP_MAP] = ""; /* its buffers cannot be mapped */
     if (api->version >= 320) {
         suffix[NOH_GL_GROUP_GEOMETRY] = "";
     } else if (api->is_es && noh_gl_has_extension(api, "GL_EXT_geometry_shader")) {
@@ -131,15 +142,11 @@ static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COU
     }
 }
 
-/* WebGL 2 calls itself OpenGL ES 3.0, but has these formats as an extension. */
 static int has_etc2(const noh_gl_api *api)
 {
-    const char *text = (const char *)api->GetString(GL_VERSION);
-    for (; text && *text; text++) {
-        if (text_starts(text, "WebGL")) {
-            return noh_gl_has_extension(api, "WEBGL_compressed_texture_etc") ||
-                   noh_gl_has_extension(api, "GL_WEBGL_compressed_texture_etc");
-        }
+    if (is_webgl(api)) {
+        return noh_gl_has_extension(api, "WEBGL_compressed_texture_etc") ||
+               noh_gl_has_extension(api, "GL_WEBGL_compressed_texture_etc");
     }
     return api->is_es || api->version >= 430 || noh_gl_has_extension(api, "GL_ARB_ES3_compatibility");
 }

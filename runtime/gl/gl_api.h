@@ -162,9 +162,7 @@ extern "C" {
     X(UniformMatrix3fv, UNIFORMMATRIX3FV)                 \
     /* buffers */                                         \
     X(CopyBufferSubData, COPYBUFFERSUBDATA)               \
-    X(MapBufferRange, MAPBUFFERRANGE)                     \
     X(FlushMappedBufferRange, FLUSHMAPPEDBUFFERRANGE)     \
-    X(UnmapBuffer, UNMAPBUFFER)                           \
     /* vertices */                                        \
     X(DisableVertexAttribArray, DISABLEVERTEXATTRIBARRAY) \
     X(VertexAttrib4fv, VERTEXATTRIB4FV)                   \
@@ -186,10 +184,7 @@ extern "C" {
     /* transform feedback */                              \
     X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK)     \
     X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)         \
-    /* fences and queries */                              \
-    X(FenceSync, FENCESYNC)                               \
-    X(ClientWaitSync, CLIENTWAITSYNC)                     \
-    X(DeleteSync, DELETESYNC)                             \
+    /* queries */                                         \
     X(GenQueries, GENQUERIES)                             \
     X(DeleteQueries, DELETEQUERIES)                       \
     X(BeginQuery, BEGINQUERY)                             \
@@ -200,6 +195,11 @@ extern "C" {
  * lookups return a stub for any name. A field may hold the core function or its KHR, EXT or OES form.
  * X(field, type, name without suffix, group) */
 #define NOH_GL_OPTIONAL(X)                                                                      \
+    X(MapBufferRange, MAPBUFFERRANGE, "glMapBufferRange", NOH_GL_GROUP_MAP)                     \
+    X(UnmapBuffer, UNMAPBUFFER, "glUnmapBuffer", NOH_GL_GROUP_MAP)                              \
+    X(FenceSync, FENCESYNC, "glFenceSync", NOH_GL_GROUP_MAP)                                    \
+    X(ClientWaitSync, CLIENTWAITSYNC, "glClientWaitSync", NOH_GL_GROUP_MAP)                     \
+    X(DeleteSync, DELETESYNC, "glDeleteSync", NOH_GL_GROUP_MAP)                                 \
     X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
     X(ObjectLabel, OBJECTLABEL, "glObjectLabel", NOH_GL_GROUP_DEBUG)                            \
     X(PushDebugGroup, PUSHDEBUGGROUP, "glPushDebugGroup", NOH_GL_GROUP_DEBUG)                   \

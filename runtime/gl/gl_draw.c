@@ -117,14 +117,14 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
         r->gl->Uniform3f(v->u_center, 0.5f * (h->bounds_min[0] + h->bounds_max[0]),
                          0.5f * (h->bounds_min[1] + h->bounds_max[1]), 0.5f * (h->bounds_min[2] + h->bounds_max[2]));
     }
-    if (morph) {
+    if (morph && morph->texture) {
         r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
         r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
     }
     r->gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
-    r->gl->BindVertexArray(mesh->vertex_array);
+    noh_gl_mesh_bind(r->gl, mesh, morph);
     if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);
     if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
 }
@@ -375,7 +375,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
         if (!v || v->key.features != features) {
             v = variant_of(j, part, features);
             NOH_ASSERT(v); /* the renderer's desc asked for it */
-            if (!v) return;
+            if (!v) break;
             begin_variant(j, v, level.header->level);
             palette = NOH_NONE;
         }
@@ -386,6 +386,9 @@ static void draw_part_of(const draw_job *j, draw_part part)
         draw_material(j, v, s, first, part);
     }
     if (v && j->r->triangles) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
+    if (v && j->morph && (j->morph->vertex_buffer || j->morph->stream_buffer)) {
+        noh_gl_mesh_unbind(j->r->gl, j->mesh, j->morph);
+    }
 }
 
 static void draw_pass(const draw_job *j, int pass)
@@ -426,7 +429,7 @@ void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass)
 {
-    NOH_ASSERT(!morph || !morph->stream_buffer);
+    NOH_ASSERT(!morph || !(morph->stream_buffer || morph->vertex_buffer));
     const draw_job job = { r, mesh, NULL, morph, first, count, lod ? lod : &whole, pictures };
     NOH_ASSERT(!r->triangles);
     draw_pass(&job, pass);

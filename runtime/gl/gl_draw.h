@@ -2,6 +2,7 @@
  *
  *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
  *   noh_gl_mesh_lod          which indices an LOD level draws
+ *   noh_gl_mesh_bind         its vertex array, with an instance's finished vertices; noh_gl_mesh_unbind
  *   noh_gl_mesh_create_empty buffers for levels that come later; noh_gl_mesh_fill fills them piece by piece
  *   noh_gl_picture_create    upload a texture; delete it by noh_gl_texture_delete (gl_memory.h)
  *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
@@ -43,7 +44,10 @@ extern "C" {
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
 #define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer's record; only with a transfer */
 #define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of it */
-/* NOH_ATTRIBUTE_STREAMS and three more (gl_morph.h): uvec3: delta texels; only on the path streams */
+/* NOH_ATTRIBUTE_STREAMS and three more (gl_morph.h): uvec3: delta texels; only on the path streams. On others, the first
+ * two are those of the bind pose, whatever is at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL: */
+#define NOH_ATTRIBUTE_REST 10u        /* vec3 */
+#define NOH_ATTRIBUTE_REST_NORMAL 11u /* ivec2 */
 
 typedef struct noh_gl_mesh {
     noh_mesh mesh; /* the finest LOD level that was uploaded */
@@ -84,6 +88,13 @@ int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_m
 /* Make the GL objects of noh_gl_mesh_create again in a new context (gl_lost.h).
  * errors  GL, MEMORY as noh_gl_mesh_create: it then has no GL objects */
 noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
+
+/* Bind a mesh's vertex array for one instance, for a renderer of your own: noh_gl_draw_mesh does it by itself. Where the
+ * instance has finished vertices, positions, normals and tangents are pointed to them; noh_gl_mesh_unbind points them
+ * back and binds vertex array 0. Leaves array buffer 0 bound.
+ * morph   NULL: the bind pose */
+void noh_gl_mesh_bind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
+void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
 
 /* The mesh as a draw of an LOD level sees it. Level 0 is the full mesh; clamped to the levels that were uploaded.
  * first  byte offset of the level's indices in the index buffer; a submesh's first_index counts from there */

@@ -127,16 +127,68 @@ static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
     noh_gl_label(gl, GL_VERTEX_ARRAY, m->vertex_array, "mesh", m->mesh.name);
 }
 
-static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
+/* What finished vertices take the place of. */
+static void point_to_bind_pose(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
-    uint32_t stride = m->mesh.header->attribute_stride;
-    gl->GenVertexArrays(1, &m->vertex_array);
-    gl->BindVertexArray(m->vertex_array);
+    const uint32_t stride = m->mesh.header->attribute_stride;
     gl->BindBuffer(GL_ARRAY_BUFFER, m->positions.name);
     set_attribute(gl, NOH_ATTRIBUTE_POSITION, 3, GL_FLOAT, GL_FALSE, 12, 0);
     gl->BindBuffer(GL_ARRAY_BUFFER, m->attributes.name);
     set_pair(gl, NOH_ATTRIBUTE_NORMAL, stride, 0);
     set_pair(gl, NOH_ATTRIBUTE_TANGENT, stride, noh_mesh_tangent_offset(&m->mesh));
+}
+
+static void point_to_rest(const noh_gl_api *gl, const noh_gl_mesh *m)
+{
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->positions.name);
+    set_attribute(gl, NOH_ATTRIBUTE_REST, 3, GL_FLOAT, GL_FALSE, 12, 0);
+    gl->BindBuffer(GL_ARRAY_BUFFER, m->attributes.name);
+    set_pair(gl, NOH_ATTRIBUTE_REST_NORMAL, m->mesh.header->attribute_stride, 0);
+}
+
+static void point_to_finished(const noh_gl_api *gl, const noh_gl_morph_binding *morph)
+{
+    const uint32_t stride = morph->vertex_stride;
+    const uintptr_t at = morph->vertex_offset;
+    gl->BindBuffer(GL_ARRAY_BUFFER, morph->vertex_buffer);
+    gl->VertexAttribPointer(NOH_ATTRIBUTE_POSITION, 3, GL_FLOAT, GL_FALSE, (GLsizei)stride, (const void *)at);
+    gl->VertexAttribIPointer(NOH_ATTRIBUTE_NORMAL, 2, GL_SHORT, (GLsizei)stride, (const void *)(at + 12u));
+    if (stride == 20u) {
+        gl->VertexAttribIPointer(NOH_ATTRIBUTE_TANGENT, 2, GL_SHORT, (GLsizei)stride, (const void *)(at + 16u));
+    }
+}
+
+void noh_gl_mesh_bind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph)
+{
+    NOH_ASSERT(api && mesh && mesh->vertex_array);
+    api->BindVertexArray(mesh->vertex_array);
+    if (!morph || !morph->vertex_buffer) return;
+    point_to_finished(api, morph);
+    api->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph)
+{
+    NOH_ASSERT(api && mesh && mesh->vertex_array);
+    if (morph && (morph->vertex_buffer || morph->stream_buffer)) {
+        api->BindVertexArray(mesh->vertex_array);
+        if (morph->vertex_buffer) {
+            point_to_bind_pose(api, mesh);
+        } else {
+            point_to_rest(api, mesh); /* streams lay over it */
+        }
+        api->BindBuffer(GL_ARRAY_BUFFER, 0);
+    }
+    api->BindVertexArray(0);
+}
+
+static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
+{
+    uint32_t stride = m->mesh.header->attribute_stride;
+    gl->GenVertexArrays(1, &m->vertex_array);
+    gl->BindVertexArray(m->vertex_array);
+    point_to_bind_pose(gl, m);
+    point_to_rest(gl, m);
     set_attribute(gl, NOH_ATTRIBUTE_UV, 2, GL_UNSIGNED_SHORT, GL_TRUE, stride, noh_mesh_uv_offset(&m->mesh));
     set_attribute(gl, NOH_ATTRIBUTE_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, noh_mesh_color_offset(&m->mesh));
     if (m->mesh.header->flags & NOH_MESH_TEXELS) {

@@ -44,7 +44,9 @@ static void label_objects(const noh_gl_morph *m)
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     const int streams = m->plan.path == NOH_MORPH_STREAMS;
-    noh_result result = streams ? noh_gl_morph_init_streams(m, error) : create_layers(m, error);
+    noh_result result = streams               ? noh_gl_morph_init_streams(m, error)
+                        : m->plan.vertex_ring ? noh_gl_morph_init_vertices(m, error)
+                                              : create_layers(m, error);
     if (!result && m->plan.path != NOH_MORPH_CPU && !streams) {
         result = noh_gl_morph_make_tiles(m, error);
         if (!result && m->plan.path == NOH_MORPH_GATHER) {
@@ -159,6 +161,7 @@ static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
         gl->DeleteVertexArrays(1, &m->vertex_array);
         m->vertex_array = 0;
     }
+    noh_gl_morph_delete_vertices(m, gl);
     noh_gl_buffer_delete(gl, m->ledger, &m->stream);
     noh_gl_buffer_delete(gl, m->ledger, &m->indices);
     noh_gl_texture_delete(gl, m->ledger, &m->record_table.texture);
@@ -222,6 +225,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     binding.width_log2 = (int32_t)h->morph_width_log2;
     binding.touched = (int32_t)h->touched_count;
     if (morph->plan.path == NOH_MORPH_STREAMS) noh_gl_morph_set_streams(morph, instance, &binding);
+    if (morph->plan.vertex_ring) noh_gl_morph_set_vertices(morph, instance, &binding);
     return binding;
 }
 
@@ -313,7 +317,9 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
     }
     s->instances = morph->dirty_count;
     noh_gl_group_begin(morph->gl, "noh morph", noh_morph_path_name(morph->plan.path));
-    if (morph->plan.path == NOH_MORPH_CPU) {
+    if (morph->plan.vertex_ring) {
+        noh_gl_morph_update_vertices(morph, s);
+    } else if (morph->plan.path == NOH_MORPH_CPU) {
         noh_gl_morph_update_cpu(morph, s);
     } else if (morph->plan.path == NOH_MORPH_GATHER) {
         noh_gl_morph_update_gather(morph, s);

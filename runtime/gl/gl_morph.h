@@ -31,7 +31,7 @@
  *   mrt        ES 3.0, blending           one additive pass with three outputs
  *   per-layer  ES 3.0, blending           three additive passes
  *   gather     ES 3.0                     no blending: each fragment sums what active targets add to one vertex
- *   cpu        nothing                    SIMD on the CPU; the sums are uploaded
+ *   cpu        nothing                    SIMD on the CPU; the sums are uploaded, or vertices (desc.vertices)
  *   streams    ES 3.0                     nothing is accumulated: the draw adds up to four targets as vertex streams
  *
  * Two policies choose among them: `auto` takes the cheapest on this GPU; `blend` takes layered draws where they are
@@ -91,6 +91,12 @@ typedef struct noh_gl_morph_desc {
      * which must stay. Until noh_gl_morph_use says otherwise, this coarser level of the same mesh,
      * which may lie in another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is there */
     const noh_mesh *coarse;
+    /* 1: where the path is cpu, finished vertices in vertex buffers (deform/morph_finish.h) in place of sums in a
+     * texture, which is faster. Draw by noh_gl_draw_mesh or noh_gl_mesh_bind, with a binding that was
+     * taken after the last update, and a renderer with layers_uint NOH_LAYERS_VERTICES; noh_gl_draw_crowd cannot.
+     * Shaders find the bind pose in noh_a_rest. Where f16, transfers or `coarse` ask for sums, there are none:
+     * plan.vertex_ring tells. Default (0) sums in a texture */
+    int vertices;
     const char *simd; /* kernel of the path cpu by its name (deform/morph.h), for tests. NULL, or one that is not here:
                        * the fastest */
     /* With `coarse`: noh_gl_morph_blocks and noh_gl_morph_strips of the finest mesh, counted where that is whole */
@@ -114,7 +120,8 @@ typedef struct noh_gl_morph_plan {
     noh_morph_path path;                /* never AUTO or BLEND */
     noh_accumulate accumulate;          /* never AUTO */
     const char *reason;                 /* why this path, in words; a string constant */
-    GLenum layer_format;                /* 0 (streams), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or RGB16F */
+    GLenum layer_format;                /* 0 (streams, vertices), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or
+                                         * RGB16F */
     uint32_t layer_count;               /* 3; 2 without tangents */
     uint32_t occlusion;                 /* 1: a mesh has a transfer (light/transfer.h), and what targets change of its
                                          * occlusion is summed, too: the fourth component beside positions */
@@ -130,7 +137,9 @@ typedef struct noh_gl_morph_plan {
     uint64_t table_bytes;  /* GPU: 0; no path has a table beside its deltas */
     uint64_t stream_bytes; /* GPU: what is sent for one draw of an update: weights, with vertices or lists */
     uint64_t layer_bytes;  /* GPU: the accumulation texels */
-    uint64_t gpu_bytes;    /* the sum of these four */
+    uint32_t vertex_ring;  /* buffers that finished vertices take turns in, 2 or 3; 0: there are none */
+    uint64_t vertex_bytes; /* GPU: all of these */
+    uint64_t gpu_bytes;    /* the sum of these five */
     uint64_t update_bytes; /* that one update sends at most: all targets of all instances active */
     noh_gl_morph_costs costs;
 } noh_gl_morph_plan;
@@ -146,14 +155,19 @@ typedef struct noh_gl_morph_stats {
 } noh_gl_morph_stats;
 
 #define NOH_LAYERS_STREAMS 2 /* of is_uint */
+#define NOH_LAYERS_VERTICES 3
 
 /* Where an instance's accumulated deltas are. The last four numbers go into noh_morph of common_layers.glsl in
  * this order. */
 typedef struct noh_gl_morph_binding {
     GLuint texture;  /* GL_TEXTURE_2D_ARRAY */
     int is_uint;     /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT;
-                      * NOH_LAYERS_STREAMS: there is no texture: build it with NOH_STREAMS */
+                      * NOH_LAYERS_STREAMS: there is no texture: build it with NOH_STREAMS; NOH_LAYERS_VERTICES: there
+                      * is nothing to add: with NOH_VERTICES, or not at all */
     int layer_count; /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
+    /* Finished vertices: noh_gl_mesh_bind. There is no texture then, and `touched` is 0 */
+    GLuint vertex_buffer;                        /* else 0 */
+    uint32_t vertex_offset, vertex_stride;       /* bytes; a stride of 20 has a tangent */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
     /* With NOH_LAYERS_STREAMS, by the weights that the instance has now: noh_gl_morph_bind_streams */
     GLuint stream_buffer;                           /* else 0 */

@@ -3,7 +3,7 @@
 #define NOH_GL_GL_MORPH_INTERNAL_H
 
 #include "base/arena.h"
-#include "deform/morph.h"
+#include "deform/morph_finish.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_table_internal.h"
 
@@ -13,6 +13,8 @@
 #define NOH_BATCH_ENTRIES 16384u /* entries of lists that gather sends at once, more only if one instance has more */
 #define NOH_STREAM_STRIDE 12u    /* bytes of a vertex in a stream */
 #define NOH_STREAM_CHUNK 3072u   /* bytes of streams that are sent at once at load */
+#define NOH_VERTEX_CHUNK 1024u   /* finished vertices that are sent at once where buffers cannot be mapped */
+#define NOH_VERTEX_RING_MAX 3u
 
 /* One mesh of the desc. Its instances' tiles fill a band of the atlas, row by row. */
 typedef struct noh_gl_morph_mesh {
@@ -24,6 +26,7 @@ typedef struct noh_gl_morph_mesh {
     /* where an owner's part begins */
     uint32_t first_tile, tile_count; /* of the delta tiles */
     uint32_t first_target;           /* into target_tiles */
+    uint32_t first_byte;             /* of its instances' finished vertices, in each buffer of the ring */
 } noh_gl_morph_mesh;
 
 /* The blocks of 4 x 4 accumulation texels that a rectangle touches, of a tile's: x0..x1-1, y0..y1-1. */
@@ -59,6 +62,16 @@ struct noh_gl_morph {
     uint32_t *target_tiles; /* of the owners, [target_count] each: a target's first tile, in the order of targets */
     uint32_t *slots;        /* [block_count] (gather): where that tile lies, in the order of blocks: x | y << 9 */
 
+    /* Finished vertices (gl_morph_vertices.c). A slot is an instance's part of one buffer of the ring. */
+    float *slot_weights;  /* [ring][weight_count] by which it was written */
+    uint8_t *slot_levels; /* [ring][instance_count] at which; NOH_SLOT_STALE: write all of it */
+    uint8_t *slot_drawn;  /* [instance_count] in the ring */
+    uint8_t *groups;      /* of the largest mesh: 1: a group of texels is written now */
+    void *finished;       /* [NOH_VERTEX_CHUNK] vertices at most */
+    uint32_t update_count;
+    noh_gl_buffer ring[NOH_VERTEX_RING_MAX];
+    GLsync fences[NOH_VERTEX_RING_MAX - 1u];
+
     noh_gl_texture layers;
     noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
     uint32_t tiles_across_log2;
@@ -89,6 +102,9 @@ noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morp
 
 /* Blocks of an instance's place in the atlas. */
 uint32_t noh_gl_morph_positions(const noh_mesh_header *h);
+
+/* How many vertices targets may move: the first ones, where vertex n has texel n. */
+uint32_t noh_gl_morph_vertex_end(const noh_mesh_header *h);
 
 /* The texture of the delta tiles of a plan, which is `1 << *across_log2` tiles wide. */
 noh_gl_texture_desc noh_gl_morph_tiles_desc(const noh_gl_morph_plan *plan, uint32_t *across_log2);
@@ -146,10 +162,16 @@ noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
+noh_result noh_gl_morph_init_vertices(noh_gl_morph *m, noh_error *error);
+void noh_gl_morph_delete_vertices(noh_gl_morph *m, const noh_gl_api *gl);
+void noh_gl_morph_update_vertices(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_set_vertices(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
 noh_result noh_gl_morph_init_streams(noh_gl_morph *m, noh_error *error);
 void noh_gl_morph_update_streams(const noh_gl_morph *m, noh_gl_morph_stats *stats);
 uint64_t noh_gl_morph_stream_bytes(const noh_mesh_header *header);
 void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
+
+#define NOH_SLOT_STALE 255u
 
 /* A framebuffer over the layers. which: 0 to 2 for one layer, or one of these. */
 #define NOH_LAYERS_ALL 3     /* all as draw buffers */

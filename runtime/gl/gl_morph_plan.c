@@ -144,10 +144,21 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
     return NOH_OK;
 }
 
+/* How many buffers finished vertices take turns in. A software rasteriser is at most a frame behind, and two stay in
+ * its caches; a GPU may be two frames behind. */
+static uint32_t vertex_ring(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, const noh_gl_morph_plan *plan)
+{
+    if (!desc->vertices || plan->path != NOH_MORPH_CPU || plan->accumulate == NOH_ACCUMULATE_F16 || plan->occlusion ||
+        desc->coarse || !plan->pair_count) {
+        return 0;
+    }
+    return noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) ? 2u : NOH_VERTEX_RING_MAX;
+}
+
 static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *caps)
 {
     int half = plan->accumulate == NOH_ACCUMULATE_F16;
-    if (plan->path == NOH_MORPH_STREAMS) return 0;
+    if (plan->path == NOH_MORPH_STREAMS || plan->vertex_ring) return 0;
     if (plan->path == NOH_MORPH_CPU) {
         if (plan->occlusion) return half ? GL_RGBA16F : GL_RGBA32F;
         return half ? GL_RGB16F : GL_RGB32F; /* never rendered to, so three components are enough */
@@ -316,6 +327,19 @@ static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh 
     return sums;
 }
 
+/* Of one buffer of the ring. Meshes that no target moves have no vertices in it. */
+static uint64_t place_vertices(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        const uint64_t count = desc->instance_counts ? desc->instance_counts[i] : 1u;
+        if (meshes) meshes[i].first_byte = (uint32_t)bytes;
+        if (h->touched_count) bytes += count * h->vertex_count * noh_morph_finished_stride(&desc->meshes[i]);
+    }
+    return bytes;
+}
+
 noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                                noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -344,6 +368,7 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
     plan->texel_count = (uint32_t)sums.texels;
     plan->pair_count = (uint32_t)sums.pairs;
     plan->block_count = (uint32_t)sums.tiles;
+    if (meshes) (void)place_vertices(desc, meshes);
     return place_tiles(desc, texture_size_max, meshes, plan, error);
 }
 
@@ -413,6 +438,40 @@ static size_t most_positions(const noh_gl_morph_desc *desc)
     return most;
 }
 
+static size_t largest_touched(const noh_gl_morph_desc *desc)
+{
+    size_t most = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const size_t touched = desc->meshes[i].header->touched_count;
+        most = touched > most ? touched : most;
+    }
+    return most;
+}
+
+static size_t largest_vertices(const noh_gl_morph_desc *desc)
+{
+    size_t most = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const size_t count = desc->meshes[i].header->vertex_count;
+        const size_t bytes = (count < NOH_VERTEX_CHUNK ? count : NOH_VERTEX_CHUNK) *
+                             noh_morph_finished_stride(&desc->meshes[i]);
+        most = bytes > most ? bytes : most;
+    }
+    return most;
+}
+
+static void carve_vertices(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
+                           noh_gl_morph *to)
+{
+    const size_t ring = plan->vertex_ring;
+    const size_t groups = (largest_touched(desc) + NOH_MORPH_GROUP - 1u) / NOH_MORPH_GROUP;
+    to->finished = noh_arena_carve(arena, largest_vertices(desc), 16);
+    to->slot_weights = (float *)noh_arena_carve(arena, 4u * ring * plan->weight_count, 4);
+    to->slot_levels = (uint8_t *)noh_arena_carve(arena, ring * plan->instance_count, 1);
+    to->slot_drawn = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
+    to->groups = (uint8_t *)noh_arena_carve(arena, groups, 1);
+}
+
 static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     size_t bytes = 0;
@@ -452,6 +511,7 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
                                             4);
     to->staging_bytes = staging_size(desc, plan);
     to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
+    if (plan->vertex_ring) carve_vertices(arena, desc, plan, to);
     to->weights = (float *)noh_arena_carve(arena, 4u * (size_t)plan->weight_count, 4);
     to->instance_mesh = (uint32_t *)noh_arena_carve(arena, 4u * (size_t)plan->instance_count, 4);
     to->dirty = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);
@@ -470,7 +530,9 @@ static uint64_t update_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_p
         if (plan->path == NOH_MORPH_GATHER && h->touched_count) {
             bytes += count * (16u + 20u * positions + 16u * (uint64_t)blocks_of(desc, i));
         }
-        if (plan->path == NOH_MORPH_CPU) {
+        if (plan->vertex_ring) {
+            bytes += count * noh_gl_morph_vertex_end(h) * noh_morph_finished_stride(&desc->meshes[i]);
+        } else if (plan->path == NOH_MORPH_CPU) {
             bytes += count * ((uint64_t)h->morph_height << h->morph_width_log2) * texel /
                      (plan->accumulate == NOH_ACCUMULATE_F16 ? 2u : 1u);
         }
@@ -485,7 +547,8 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
     layers.width = plan->atlas_width;
     layers.height = plan->atlas_height;
     layers.layers = plan->layer_count;
-    plan->layer_bytes = plan->path == NOH_MORPH_STREAMS ? 0 : noh_gl_texture_bytes(&layers);
+    plan->layer_bytes = plan->layer_format ? noh_gl_texture_bytes(&layers) : 0;
+    plan->vertex_bytes = plan->vertex_ring * place_vertices(desc, NULL);
     if (plan->path == NOH_MORPH_STREAMS) {
         for (uint32_t i = 0; i < desc->mesh_count; i++) {
             if (owner_of(desc, i) == i) plan->delta_bytes += noh_gl_morph_stream_bytes(desc->meshes[i].header);
@@ -505,7 +568,8 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
         }
     }
     plan->update_bytes = update_bytes(desc, plan);
-    plan->gpu_bytes = plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes;
+    plan->gpu_bytes = plan->delta_bytes + plan->table_bytes + plan->stream_bytes + plan->layer_bytes +
+                      plan->vertex_bytes;
 }
 
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
@@ -523,6 +587,7 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
         return result;
     }
     p.occlusion = has_occlusion(desc);
+    p.vertex_ring = vertex_ring(desc, caps, &p);
     p.layer_format = layer_format(&p, caps);
     p.wide = p.occlusion || noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
     p.points = p.path != NOH_MORPH_LAYERED && blends(p.path) && caps->block_points &&
@@ -535,6 +600,10 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     if (p.stream_bytes > INT32_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "what one update of all instances draws takes more than 2 GiB", INT32_MAX,
                         p.stream_bytes);
+    }
+    if (p.vertex_bytes / (p.vertex_ring ? p.vertex_ring : 1u) > UINT32_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "the finished vertices of all instances take more than 4 GiB", UINT32_MAX,
+                        p.vertex_bytes / p.vertex_ring);
     }
     noh_arena_carve(&arena, sizeof(noh_gl_morph), 16);
     noh_gl_morph_carve(&arena, desc, &p, NULL);

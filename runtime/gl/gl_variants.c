@@ -113,6 +113,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.crowd, "#define NOH_CROWD\n" },
                   { key.layers_uint == 1u, "#define NOH_LAYERS_UINT\n" },
                   { key.layers_uint == NOH_LAYERS_STREAMS, "#define NOH_STREAMS\n" },
+                  { key.layers_uint == NOH_LAYERS_VERTICES, "#define NOH_VERTICES\n" },
                   { key.encode_srgb, "#define NOH_ENCODE_SRGB\n" },
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
@@ -266,7 +267,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 /* What the vertex arrays have: what a game adds, and what those of meshes do (gl_draw.h). Returns how many. Attributes
  * that a mesh lacks are constants of the same kind. */
 #define INPUTS_MAX (14u + NOH_GL_OWN_INPUTS_MAX)
-static uint32_t list_inputs(uint32_t influences, const noh_gl_shader_desc *own, noh_gl_input inputs[INPUTS_MAX])
+static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,
+                            noh_gl_input inputs[INPUTS_MAX])
 {
     static const noh_gl_input of_meshes[] = {
         { NOH_ATTRIBUTE_POSITION, GL_FLOAT_VEC3 },
@@ -277,17 +279,20 @@ static uint32_t list_inputs(uint32_t influences, const noh_gl_shader_desc *own, 
         { NOH_ATTRIBUTE_TEXEL, GL_UNSIGNED_INT },
         { NOH_ATTRIBUTE_LOBE, GL_INT_VEC4 },
         { NOH_ATTRIBUTE_MORE_LOBE, GL_INT_VEC4 },
-        { NOH_ATTRIBUTE_STREAMS, GL_UNSIGNED_INT_VEC3 },
-        { NOH_ATTRIBUTE_STREAMS + 1u, GL_UNSIGNED_INT_VEC3 },
         { NOH_ATTRIBUTE_STREAMS + 2u, GL_UNSIGNED_INT_VEC3 },
         { NOH_ATTRIBUTE_STREAMS + 3u, GL_UNSIGNED_INT_VEC3 },
     };
+    static const noh_gl_input shared[2][2] = {
+        { { NOH_ATTRIBUTE_REST, GL_FLOAT_VEC3 }, { NOH_ATTRIBUTE_REST_NORMAL, GL_INT_VEC2 } },
+        { { NOH_ATTRIBUTE_STREAMS, GL_UNSIGNED_INT_VEC3 }, { NOH_ATTRIBUTE_STREAMS + 1u, GL_UNSIGNED_INT_VEC3 } }
+    };
     static const GLenum words[] = { GL_UNSIGNED_INT, GL_UNSIGNED_INT, GL_UNSIGNED_INT_VEC2, GL_UNSIGNED_INT_VEC3,
                                     GL_UNSIGNED_INT_VEC4 };
-    const uint32_t word_count = NOH_INFLUENCE_WORDS(influences);
+    const uint32_t influences = key->influences, word_count = NOH_INFLUENCE_WORDS(influences);
     uint32_t count = own->input_count + (uint32_t)(sizeof of_meshes / sizeof of_meshes[0]);
     for (uint32_t i = 0; i < own->input_count; i++) inputs[i] = own->inputs[i];
     memcpy(inputs + own->input_count, of_meshes, sizeof of_meshes);
+    for (int i = 0; i < 2; i++) inputs[count++] = shared[key->layers_uint == NOH_LAYERS_STREAMS][i];
     if (influences)
         inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_INFLUENCES, words[word_count < 4u ? word_count : 4u] };
     if (word_count > 4u) inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_MORE_INFLUENCES, GL_UNSIGNED_INT_VEC3 };
@@ -328,7 +333,7 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
     desc->blocks = blocks;
     desc->block_count = 1;
     desc->inputs = inputs;
-    desc->input_count = list_inputs(v->key.influences, own, inputs);
+    desc->input_count = list_inputs(&v->key, own, inputs);
     desc->ledger = device->ledger;
     return noh_gl_program_create(device->api, desc, program, device->log, device->log_bytes, error);
 }

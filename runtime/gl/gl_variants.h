@@ -42,7 +42,7 @@ typedef struct noh_gl_variant_key {
     uint8_t dual_quaternion; /* 1: the mesh has NOH_MESH_DUAL_QUATERNION */
     uint8_t texels;          /* 1: the mesh has NOH_MESH_TEXELS */
     uint8_t crowd;           /* 1: for noh_gl_draw_crowd */
-    uint8_t layers_uint;     /* 0, 1 or NOH_LAYERS_STREAMS, as in noh_gl_morph_binding.is_uint */
+    uint8_t layers_uint;     /* as noh_gl_morph_binding.is_uint */
     uint8_t view;            /* noh_debug_view */
     uint8_t fade;            /* 1: draws only some pixels (noh_gl_lod) */
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */

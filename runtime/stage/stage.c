@@ -57,7 +57,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     noh_stage *s = b->stage;
     memset(s, 0, sizeof *s);
     s->desc = noh_stage_desc_filled(desc);
-    s->desc.halves = noh_stage_halves(desc, plan);
+    noh_stage_desc_by_plan(&s->desc, plan);
     s->plan = plan;
     s->kinds = b->kinds;
     s->kind_descs = b->kind_descs;

@@ -159,6 +159,10 @@ typedef struct noh_stage_desc {
     int without_transfer; /* 1: meshes with a transfer (light/transfer.h) are lit as those without, and their records
                            * are not on the GPU; without `light` they are not either */
     uint32_t morph_path;  /* noh_morph_path of gl_morph.h; default (0) the cheapest */
+    /* 1: the path cpu keeps sums in a texture, for renderers of yours that read it, or shaders that take noh_a_position
+     * for the bind pose. Default (0) it writes finished vertices (noh_gl_morph_desc.vertices) unless halves, a transfer,
+     * levels that come later, or a kind of several actors need sums */
+    int morph_sums;
     /* gl_light.h: what is mirrored, and the shadow map. Shaders are then lit by noh_stage_set_lighting. Must outlive
      * the stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
@@ -208,6 +212,7 @@ typedef struct noh_stage_plan {
     uint64_t state_bytes; /* of cpu_bytes: noh_stage_state */
     uint64_t pack_bytes;  /* of the packs, which are read where they lie and not counted above; without `finer` */
     uint32_t halves;      /* 1: 16-bit accumulators */
+    uint32_t sums;        /* 1: finished vertices were given up, as by morph_sums */
     uint32_t morph_path;  /* noh_morph_path that was chosen; 0 without GPU */
     uint32_t hash;        /* of the desc and the plan: a state of another one is refused */
     uint32_t concession_count;

@@ -507,7 +507,7 @@ struct noh_stage_list {
 noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
                            noh_stage_blocks *blocks, noh_stage_list *list, noh_error *error);
 void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, uint64_t cpu_bytes, uint64_t gpu_bytes);
-int noh_stage_halves(const noh_stage_desc *desc, const noh_stage_plan *plan);           /* of a desc by a plan */
+void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan); /* without what the plan gave up */
 uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots); /* returns how many */
 
 noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);

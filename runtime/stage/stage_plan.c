@@ -6,9 +6,10 @@
 
 /* ---- measuring ---- */
 
-int noh_stage_halves(const noh_stage_desc *desc, const noh_stage_plan *plan)
+void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan)
 {
-    return plan->halves ? 1 : desc->halves < 0 ? -1 : 0;
+    desc->halves = plan->halves ? 1 : desc->halves < 0 ? -1 : 0;
+    desc->morph_sums |= plan->sums != 0;
 }
 
 typedef struct planner {
@@ -43,7 +44,7 @@ static noh_result measure(const planner *p, noh_error *error)
     noh_stage_desc desc = *p->desc;
     noh_result result = read_clips(p, error);
     memset(&blocks, 0, sizeof blocks);
-    desc.halves = noh_stage_halves(&desc, plan);
+    noh_stage_desc_by_plan(&desc, plan);
     if (result == NOH_OK) result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
     if (result == NOH_OK && desc.gpu) {
         result = desc.gpu->measure(&desc, p->caps, plan, &cpu_bytes, &gpu_bytes, error);
@@ -66,7 +67,7 @@ uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_ca
     memset(&blocks, 0, sizeof blocks);
     list.parts = parts;
     list.capacity = capacity;
-    d.halves = noh_stage_halves(&d, plan);
+    noh_stage_desc_by_plan(&d, plan);
     if (noh_stage_carve(&arena, &d, plan, &blocks, &list, NULL) == NOH_OK && d.gpu) {
         d.gpu->parts(&d, caps, plan, &list);
     }
@@ -104,8 +105,9 @@ static void concede(noh_stage_plan *plan, const char *what, uint32_t kind, uint3
     row->gpu_bytes += gpu_before > plan->gpu_bytes ? gpu_before - plan->gpu_bytes : 0;
 }
 
-static const char *const halves_text = "half-float accumulators", *const segments_text = "cached segments",
-                         *const slots_text = "slots", *const finest_text = "finest level";
+static const char *const sums_text = "finished vertices", *const halves_text = "half-float accumulators",
+                         *const segments_text = "cached segments", *const slots_text = "slots",
+                         *const finest_text = "finest level";
 
 /* Measure again, and note what this change of one thing has won. */
 static noh_result changed(const planner *p, const char *what, uint32_t kind, uint32_t value, float loss_pixels,
@@ -116,6 +118,24 @@ static noh_result changed(const planner *p, const char *what, uint32_t kind, uin
     if (result == NOH_OK) {
         concede(p->plan, what, kind, value, cpu, gpu, loss_pixels);
     }
+    return result;
+}
+
+/* Sums in their place are smaller. Where there are no finished vertices, that changes nothing. */
+static noh_result give_up_vertices(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->desc->gpu || p->desc->morph_sums || fits(p->desc, p->plan)) {
+        return NOH_OK;
+    }
+    p->plan->sums = 1;
+    result = measure(p, error);
+    if (result == NOH_OK && p->plan->cpu_bytes + p->plan->gpu_bytes >= cpu + gpu) {
+        p->plan->sums = 0;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) concede(p->plan, sums_text, NOH_NONE, 1, cpu, gpu, 0.0f);
     return result;
 }
 
@@ -325,6 +345,25 @@ static noh_result give_back_halves(const planner *p, noh_error *error)
     return result;
 }
 
+static noh_result give_back_vertices(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->plan->sums || p->plan->halves) {
+        return NOH_OK;
+    }
+    p->plan->sums = 0;
+    result = measure(p, error);
+    if (result == NOH_OK && !fits(p->desc, p->plan)) {
+        p->plan->sums = 1;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) {
+        taken_back(p->plan, sums_text, NOH_NONE, 0, 1, p->plan->cpu_bytes - cpu, p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
 /* What was given up first may fit again, once more was won than was needed. */
 static noh_result give_back(const planner *p, noh_error *error)
 {
@@ -341,6 +380,7 @@ static noh_result give_back(const planner *p, noh_error *error)
             result = give_back_segments(p, i, most.cached_segment_count, error);
         }
     }
+    if (result == NOH_OK && p->plan->concession_count) result = give_back_vertices(p, error);
     return result;
 }
 
@@ -462,7 +502,8 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
 
 static noh_result find_fit(const planner *p, noh_error *error)
 {
-    noh_result result = give_up_halves(p, error);
+    noh_result result = give_up_vertices(p, error);
+    if (result == NOH_OK) result = give_up_halves(p, error);
     if (result == NOH_OK) result = give_up_segments(p, 2, error);
     if (result == NOH_OK) result = give_up_slots(p, error);
     if (result == NOH_OK) result = give_up_finest(p, error);

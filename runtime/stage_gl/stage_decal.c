@@ -57,6 +57,7 @@ noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device
     if (picture) out->picture = *picture;
     desc.name = "decals";
     desc.vertex = noh_shader_decal_vertex_glsl;
+    desc.defines = "#define NOH_REST\n";
     desc.fragment = noh_shader_decal_fragment_glsl;
     desc.samplers = samplers;
     desc.sampler_count = 3;

@@ -102,8 +102,9 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     m->morph_path = (uint32_t)plan.path;
     targets = m->arena.used;
     memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
-    add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes);
-    add(m, "accumulators", site.kind, m->arena.used, plan.layer_bytes);
+    add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes);
+    add(m, plan.vertex_ring ? "morphed vertices" : "accumulators", site.kind, m->arena.used,
+        plan.layer_bytes + plan.vertex_bytes);
     return model ? noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error) : NOH_OK;
 }
 
@@ -513,7 +514,7 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
     noh_gl_tiles tiles;
     noh_gl_morph_desc morph;
     NOH_ASSERT(plan && caps && out);
-    d.halves = noh_stage_halves(desc, plan);
+    noh_stage_desc_by_plan(&d, plan);
     while (noh_gl_next_site(plan, d.kind_count, &site)) {
         if (noh_gl_site_mesh(&d, plan, site).header->touched_count) {
             first = noh_gl_owner(&d, plan, site);

@@ -146,6 +146,7 @@ typedef struct noh_gl_tiles {
     uint32_t count;
     noh_mesh coarse; /* where `comes_later` */
     int comes_later;
+    int vertices; /* 1: the path cpu finishes those of the whole stage */
 } noh_gl_tiles;
 
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);

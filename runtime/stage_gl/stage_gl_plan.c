@@ -107,10 +107,26 @@ static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, no
     }
 }
 
+/* Whether the path cpu may finish vertices. One renderer draws all of a stage, so it is all of them or none. */
+static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    int takes = !desc->morph_sums && desc->halves <= 0;
+    while (takes && noh_gl_next_site(plan, desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+        noh_mesh coarse;
+        if (!mesh.header->touched_count) continue;
+        takes = !mesh.transfer && desc->kinds[site.kind].actor_count == 1u &&
+                !noh_gl_site_coarse(desc, plan, site, &coarse);
+    }
+    return takes;
+}
+
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     out->count = 0;
+    out->vertices = takes_vertices(desc, plan);
     out->comes_later = noh_gl_site_coarse(desc, plan, owner, &out->coarse);
     while (noh_gl_next_site(plan, desc->kind_count, &site)) {
         if (is_same(noh_gl_owner(desc, plan, site), owner)) add_tiles(desc, plan, site, out);
@@ -146,6 +162,7 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     }
     d.path = (noh_morph_path)desc->morph_path;
     d.without_tangents = !desc->tangents;
+    d.vertices = tiles->vertices;
     d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;
     return d;
 }

@@ -135,13 +135,13 @@ static void the_picture_is_that_of_the_parts(void **state)
         noh_gl_renderer_desc desc;
         static noh_gl_renderer renderer;
         gpu_morph morph;
-        const noh_gl_morph_desc morph_desc = { .meshes = &mesh, .mesh_count = 1 };
+        const noh_gl_morph_desc morph_desc = { .meshes = &mesh, .mesh_count = 1, .vertices = 1 }; /* as a stage's */
         noh_gl_texture pictures[32];
         float weights[NOH_TARGETS_MAX] = { 0.0f };
         weights[noh_mesh_find_target(&mesh, "smile")] = 1.0f;
         memset(&desc, 0, sizeof desc);
         assert_int_equal(gpu_morph_open(&morph, g, &morph_desc, "mask"), 0);
-        desc.layers_uint = noh_gl_morph_plan_of(morph.morph)->layer_format == GL_RGBA32UI;
+        desc.layers_uint = noh_gl_morph_binding_of(morph.morph, 0).is_uint;
         desc.meshes = &mesh;
         desc.mesh_count = 1;
         assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &mesh, &on_gl, NULL), NOH_OK);
@@ -639,6 +639,38 @@ static void a_refusing_driver_leaves_nothing(void **state)
     gpu_close(&g);
 }
 
+/* Where a bound is kept, finished vertices go first, and nothing else if that is enough. */
+static void vertices_are_given_up_first(void **state)
+{
+    noh_gl_caps caps = fixture_gpu()->caps;
+    noh_stage_plan wide, sums;
+    cast c;
+    noh_error error;
+    (void)state;
+    cast_open(&c);
+    for (uint32_t k = 0; k < CAST_KINDS; k++) c.kinds[k].actor_count = 1;
+    c.desc.gpu = &noh_stage_on_gl;
+    c.desc.morph_path = NOH_MORPH_CPU;
+    assert_int_equal(noh_stage_plan_make(&c.desc, &caps, &wide, &error), NOH_OK);
+    c.desc.morph_sums = 1;
+    assert_int_equal(noh_stage_plan_make(&c.desc, &caps, &sums, &error), NOH_OK);
+    assert_true(wide.cpu_bytes + wide.gpu_bytes > sums.cpu_bytes + sums.gpu_bytes);
+    c.desc.morph_sums = 0;
+    for (int halves = -1; halves <= 0; halves++) {
+        c.desc.halves = halves;
+        c.desc.bytes_max = sums.cpu_bytes + sums.gpu_bytes;
+        cast_make(&c, &(noh_gl_device){ &fixture_gpu()->gl, &caps, &fixture_gpu()->ledger, NULL, 0 });
+        assert_true(c.plan.sums && !c.plan.halves && c.plan.concession_count == 1);
+        assert_string_equal(c.plan.concessions[0].what, "finished vertices");
+        assert_true(c.plan.cpu_bytes == sums.cpu_bytes && c.plan.gpu_bytes == sums.gpu_bytes);
+        cast_close_stage(&c);
+        c.desc.bytes_max = wide.cpu_bytes + wide.gpu_bytes;
+        assert_int_equal(noh_stage_plan_make(&c.desc, &caps, &c.plan, &error), NOH_OK);
+        assert_true(!c.plan.sums && !c.plan.concession_count);
+    }
+    cast_close(&c);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -652,6 +684,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(few_of_a_crowd_are_drawn),
         cmocka_unit_test(random_casts_use_what_is_planned),
         cmocka_unit_test(a_refusing_driver_leaves_nothing),
+        cmocka_unit_test(vertices_are_given_up_first),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -69,7 +69,8 @@ typedef struct way {
     noh_morph_path path;
     noh_accumulate accumulate;
     int uint_layers;   /* without renderable floats */
-    int no_extensions; /* neither debug functions nor geometry shaders */
+    int no_extensions; /* neither debug functions nor geometry shaders, nor mapped buffers */
+    int vertices;      /* finished ones, of the path cpu */
 } way;
 
 static void set_weights(parts *p, uint32_t frame, int which)
@@ -126,10 +127,13 @@ static void load_and_draw(const pack_file *file, const way *w)
         g.gl.ObjectLabel = NULL;
         g.gl.PushDebugGroup = NULL;
         g.gl.PopDebugGroup = NULL;
+        g.gl.MapBufferRange = NULL;
     }
-    snprintf(name, sizeof name, "%s %s%s%s", noh_morph_path_name(w->path), noh_accumulate_name(w->accumulate),
-             w->uint_layers ? " as integers" : "", w->no_extensions ? " without extensions" : "");
-    parts_open(&p, &g, file, w->path, w->accumulate, 3);
+    snprintf(name, sizeof name, "%s%s %s%s%s", noh_morph_path_name(w->path), w->vertices ? " of vertices" : "",
+             noh_accumulate_name(w->accumulate), w->uint_layers ? " as integers" : "",
+             w->no_extensions ? " without extensions" : "");
+    parts_open_as(&p, &g, file, w->path, w->accumulate, w->vertices, 3);
+    assert_int_equal(noh_gl_morph_plan_of(p.morph.morph)->vertex_ring != 0, w->vertices);
     bytes = noh_gl_morph_plan_of(p.morph.morph)->gpu_bytes + NOH_GL_RENDERER_BYTES;
     for (uint32_t i = 0; i < file->pack.mesh_count; i++) bytes += noh_gl_mesh_bytes(&p.meshes[i]);
     for (uint32_t i = 0; i < file->pack.texture_count; i++) {
@@ -154,10 +158,11 @@ static void load_and_draw(const pack_file *file, const way *w)
 static void every_path_keeps_the_order(void **state)
 {
     static const way ways[] = {
-        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, 0, 0 },   { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, 0, 0 },
-        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, 0, 0 }, { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 0, 0 },
-        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 1, 0 },    { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0 },
-        { NOH_MORPH_CPU, NOH_ACCUMULATE_F16, 0, 0 },       { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, 0, 1 }
+        { NOH_MORPH_LAYERED, NOH_ACCUMULATE_F32, 0, 0, 0 },   { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, 0, 0, 0 },
+        { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, 0, 0, 0 }, { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 0, 0, 0 },
+        { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 1, 0, 0 },    { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0, 0 },
+        { NOH_MORPH_CPU, NOH_ACCUMULATE_F16, 0, 0, 0 },       { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, 0, 1, 0 },
+        { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0, 1 },       { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 1, 1 }
     };
     const test_model_desc desc = { 3, 7, 9, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 11 };
     pack_file file;
@@ -202,7 +207,7 @@ static void expect_cameras(const gpu *g, const parts *p, const noh_gl_renderer *
 }
 
 /* No index past its buffer, no object made in a frame, no call outside the groups. */
-static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
+static void load_and_draw_levels(const pack_file *file, noh_morph_path path, int vertices)
 {
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
@@ -211,7 +216,8 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
     memset(&desc, 0, sizeof desc);
     open_null(&g);
     all_abilities(&g.caps);
-    parts_open(&p, &g, file, path, NOH_ACCUMULATE_AUTO, 1);
+    parts_open_as(&p, &g, file, path, NOH_ACCUMULATE_AUTO, vertices, 1);
+    desc.layers_uint = noh_gl_morph_binding_of(p.morph.morph, 0).is_uint;
     desc.meshes = p.meshes;
     desc.mesh_count = file->pack.mesh_count;
     desc.fades = 1;
@@ -236,7 +242,7 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path)
 static void levels_keep_the_order(void **state)
 {
     const test_model_desc desc = { 3, 7, 9, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 11 };
-    const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER, NOH_MORPH_CPU };
+    const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER, NOH_MORPH_CPU, NOH_MORPH_CPU };
     size_t count;
     uint8_t *bytes = test_pack(&desc, &count);
     const noh_pack pack = test_open(bytes, count);
@@ -247,7 +253,7 @@ static void levels_keep_the_order(void **state)
     fixture_levels_open(&levels, &pack, 3, 2.0f);
     file.path = "a pack in memory";
     file.pack = levels.pack;
-    for (size_t i = 0; i < TEST_COUNT(paths); i++) load_and_draw_levels(&file, paths[i]);
+    for (size_t i = 0; i < TEST_COUNT(paths); i++) load_and_draw_levels(&file, paths[i], i == 3);
     fixture_levels_close(&levels);
     free(bytes);
 }

@@ -53,9 +53,9 @@ static inline void parts_list(parts *p)
     }
 }
 
-/* instances: of everything, all but the first without an item. */
-static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph_path path, noh_accumulate accumulate,
-                              uint32_t instances)
+/* instances: of everything, all but the first without an item. vertices: as noh_gl_morph_desc has it. */
+static inline void parts_open_as(parts *p, gpu *g, const pack_file *file, noh_morph_path path,
+                                 noh_accumulate accumulate, int vertices, uint32_t instances)
 {
     const noh_pack *pack = &file->pack;
     const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, NULL, 0 };
@@ -82,9 +82,10 @@ static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph
     morph.instance_counts = p->counts;
     morph.path = path;
     morph.accumulate = accumulate;
+    morph.vertices = vertices;
     assert_int_equal(gpu_morph_open(&p->morph, g, &morph, file->path), 0);
     memset(&renderer, 0, sizeof renderer);
-    renderer.layers_uint = noh_gl_morph_plan_of(p->morph.morph)->layer_format == GL_RGBA32UI;
+    renderer.layers_uint = noh_gl_morph_binding_of(p->morph.morph, 0).is_uint;
     renderer.meshes = p->meshes;
     renderer.mesh_count = pack->mesh_count;
     assert_int_equal(renderer_create(&device, &renderer, &p->renderer, NULL), NOH_OK);
@@ -92,6 +93,12 @@ static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph
         const uint32_t mesh = p->items[i].mesh;
         p->items[i].instance = noh_gl_morph_instance(p->morph.morph, mesh, next[mesh]++);
     }
+}
+
+static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph_path path, noh_accumulate accumulate,
+                              uint32_t instances)
+{
+    parts_open_as(p, g, file, path, accumulate, 0, instances);
 }
 
 static inline void parts_close(parts *p)

@@ -41,11 +41,13 @@ static int capture(check *c)
     if (c->method->bind) {
         c->method->bind(c->method->self, BENCH_CHECK);
     }
+    noh_gl_mesh_bind(gl, c->method->mesh, c->method->binding);
     gl->Enable(GL_RASTERIZER_DISCARD);
     gl->BeginTransformFeedback(GL_POINTS);
     gl->DrawArrays(GL_POINTS, 0, (GLsizei)c->vertex_count);
     gl->EndTransformFeedback();
     gl->Disable(GL_RASTERIZER_DISCARD);
+    noh_gl_mesh_unbind(gl, c->method->mesh, c->method->binding);
     gl->Finish();
     mapped = gl->MapBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, bytes, GL_MAP_READ_BIT);
     if (mapped) {

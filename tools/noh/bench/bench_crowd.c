@@ -1,5 +1,5 @@
 /* bench_crowd.c: a hundred heads in one accumulator, each with weights of its own, against
- * one head alone; and how cost grows with pairs. */
+ * one head alone, with all targets active and with few; and how cost grows with pairs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,14 +119,40 @@ static int measure(crowd *c)
     return status;
 }
 
+/* One head and a hundred with so many targets active. */
+static int measure_few(crowd *c, uint32_t active)
+{
+    bench_weights weights;
+    crowd_work works[2] = { { c, &c->one, &weights, 1 }, { c, &c->many, &weights, HEADS } };
+    bench_cells cells;
+    char name[64];
+    int status = bench_weights_open(&weights, &c->job->mesh, active);
+    if (status) return status;
+    memset(&cells, 0, sizeof cells);
+    snprintf(name, sizeof name, "crowd/100-heads/%u-active/%s-f32", (unsigned)active, noh_morph_path_name(c->path));
+    for (int i = 0; i < 2; i++) bench_add_cell(&cells, run_update, &works[i]);
+    status = bench_run_cells(&cells, &c->job->gl_clock, c->job->rounds, SAMPLE_NS, name);
+    if (!status) {
+        bench_add_row(&c->job->rows, name, "one-head", 1e-3 * bench_median(&cells, 0),
+                      1e-3 * bench_median(&cells, 1) / HEADS, "us/head", cells.rounds);
+    }
+    bench_free_cells(&cells);
+    bench_weights_close(&weights);
+    return status;
+}
+
 static int bench_path(crowd *c)
 {
+    static const uint32_t few[] = { 2, 6, 34 };
     int status = open_morph(c, &c->one, 1);
     if (!status) {
         status = open_morph(c, &c->many, HEADS);
     }
     if (!status) {
         status = measure(c);
+    }
+    for (size_t i = 0; i < sizeof few / sizeof few[0] && !status; i++) {
+        if (c->job->mesh.header->target_count >= few[i] && !c->job->quick) status = measure_few(c, few[i]);
     }
     gpu_morph_close(&c->many);
     gpu_morph_close(&c->one);

@@ -5,6 +5,7 @@
  *   bench_stage.c       where meshes are drawn: targets, camera, programs
  *   bench_check.c       every method against the CPU reference, before it is timed
  *   bench_paths.c       our five paths, and the unmorphed mesh
+ *   bench_before.c      rows morph-before: the path cpu against what it was in version 0.1
  *   bench_loops.c       baselines that loop over targets in the vertex shader
  *   bench_quads.c       baseline: one quad per target through a geometry shader
  *   bench_morph.c       rows morph/one-pass, morph/three-pass and frame
@@ -112,6 +113,8 @@ uint32_t bench_add_cell(bench_cells *cells, void (*work)(void *self, uint32_t fr
 int bench_run_cells(bench_cells *cells, bench_clock *clock, uint32_t rounds, double sample_ns, const char *what);
 void bench_free_cells(bench_cells *cells);
 double bench_median(const bench_cells *cells, uint32_t cell);
+/* The tenth part of the samples is faster: says more than the median where others use the machine, too. */
+double bench_low_tenth(const bench_cells *cells, uint32_t cell);
 /* The median over rounds of cell minus floor: both were timed in the same round. */
 double bench_median_above(const bench_cells *cells, uint32_t cell, uint32_t floor);
 double bench_median_of(double *values, uint32_t count); /* sorts them */
@@ -142,12 +145,13 @@ typedef struct bench_method {
     int is_baseline;
     double slack; /* error allowed to this method on top of the common one, model units */
     double normal_slack;
-    uint32_t most_targets; /* that it morphs at once; 0: any number. It has rows of so few alone */
+    uint32_t most_targets;   /* that it morphs at once; 0: any number. It has rows of so few alone */
     int normals_of_one_only; /* normals agree with a linear sum only while one target is active at weight 1 */
     void *self;
     void (*prepare)(void *self, const float *weights); /* once a frame; NULL: nothing to do */
-    void (*bind)(void *self, bench_pass pass);         /* textures and uniforms; the program is in use; NULL: none */
-    void (*close)(void *self);                         /* NULL: nothing to delete */
+    const noh_gl_morph_binding *binding;       /* whose finished vertices a draw takes, if it has any; NULL: none */
+    void (*bind)(void *self, bench_pass pass); /* textures and uniforms; the program is in use; NULL: none */
+    void (*close)(void *self);                 /* NULL: nothing to delete */
 } bench_method;
 
 /* Compile bench_mesh.vert for a method's three passes: `defines` says how it morphs. */
@@ -166,7 +170,8 @@ int bench_check(bench_stage *s, const bench_method *m, const char *subject);
 
 /* Each fills *m. 0 on success, an exit code after a message on failure, -1 without one where this GL lacks it. */
 int bench_open_unmorphed(bench_method *m, bench_stage *s);
-int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate);
+/* vertices: of the path cpu: finished ones, not sums in a texture */
+int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate, int vertices);
 int bench_open_dense(bench_method *m, bench_stage *s, int hoisted);
 int bench_open_filament(bench_method *m, bench_stage *s);
 /* artist[vertex_count]: pack vertex -> vertex of the asset; NULL: in the pack's order. */
@@ -215,6 +220,7 @@ typedef struct bench_job {
 } bench_job;
 
 int bench_morph(bench_job *job);
+int bench_before(bench_job *job);
 int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
 int bench_ear(bench_job *job);

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7
-#define METHODS_MAX 17 /* one floor, four baselines, eleven paths and formats, and one that is not here */
+#define METHODS_MAX 19 /* one floor, four baselines, twelve paths and formats, and one that is not here */
 #define FLOOR 0        /* methods[FLOOR] is the mesh that is not morphed */
 
 typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
@@ -66,9 +66,13 @@ static int open_methods(morph_job *j)
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
     if (!status) status = take(j, bench_open_filament(&j->methods[j->method_count], &j->stage));
     if (!status) status = take(j, bench_open_quads(&j->methods[j->method_count], &j->stage, j->job->artist));
+    if (!status) {
+        status = take(j,
+                      bench_open_path(&j->methods[j->method_count], &j->stage, NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 1));
+    }
     for (int a = NOH_ACCUMULATE_F32; a <= NOH_ACCUMULATE_F16; a++) {
         for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
-            status = take(j, bench_open_path(&j->methods[j->method_count], &j->stage, paths[p], (noh_accumulate)a));
+            status = take(j, bench_open_path(&j->methods[j->method_count], &j->stage, paths[p], (noh_accumulate)a, 0));
         }
     }
     return status;
@@ -119,37 +123,59 @@ static void add_rows(morph_job *j, const measured *m, const char *prefix, int wi
     }
 }
 
+/* What the rows of a number of active targets are called; NULL: there are none of this kind. */
+typedef struct row_names {
+    const char *of[3]; /* by work_kind */
+} row_names;
+
+static const row_names names_of_all = { { "morph/one-pass", "morph/three-pass", "frame" } };
+static const row_names names_of_34 = { { "morph/34-active/one-pass", "morph/34-active/three-pass", NULL } };
+
 static int measure_rows(morph_job *j, const bench_weights *weights, work_kind kind, const char *prefix)
 {
     measured *m = malloc(sizeof *m);
     int status = m ? measure(j, weights, kind, prefix, m) : tool_fail("bench", "out of memory");
-    if (!status) {
-        add_rows(j, m, prefix, kind == WORK_FRAME);
+    if (!status) add_rows(j, m, prefix, kind == WORK_FRAME);
+    /* 34 targets that are all there are have both names */
+    if (!status && prefix == names_of_all.of[kind] && j->active == 34u && names_of_34.of[kind]) {
+        add_rows(j, m, names_of_34.of[kind], 0);
     }
     free(m);
     return status;
 }
 
-/* All targets, then four of them; the latter under names of their own. */
+static int measure_active(morph_job *j, uint32_t active, const row_names *names)
+{
+    bench_weights weights;
+    int status;
+    j->active = active;
+    status = bench_weights_open(&weights, j->stage.mesh, active);
+    for (int kind = WORK_ONE_PASS; kind <= WORK_FRAME && !status; kind++) {
+        if (names->of[kind]) status = measure_rows(j, &weights, (work_kind)kind, names->of[kind]);
+    }
+    bench_weights_close(&weights);
+    return status;
+}
+
+/* All targets; then four, two, six and 34 of more. */
 static int measure_all(morph_job *j)
 {
-    static const char *const names[2][3] = { { "morph/one-pass", "morph/three-pass", "frame" },
-                                             { "morph/4-active/one-pass", "morph/4-active/three-pass",
-                                               "frame/4-active" } };
-    int status = 0;
-    for (int few = 0; few < 2 && !status; few++) {
-        uint32_t targets = j->stage.mesh->header->target_count;
-        bench_weights weights;
-        if (few && targets <= 4) {
-            break;
+    static const struct few {
+        uint32_t active;
+        row_names names;
+    } fews[] = {
+        { 4, { { "morph/4-active/one-pass", "morph/4-active/three-pass", "frame/4-active" } } },
+        { 2, { { "morph/2-active/one-pass", "morph/2-active/three-pass", NULL } } },
+        { 6, { { "morph/6-active/one-pass", "morph/6-active/three-pass", NULL } } },
+    };
+    const uint32_t targets = j->stage.mesh->header->target_count;
+    int status = measure_active(j, targets, &names_of_all);
+    for (size_t i = 0; i < sizeof fews / sizeof fews[0] && !status; i++) {
+        if (targets > fews[i].active && !(i && j->job->quick)) {
+            status = measure_active(j, fews[i].active, &fews[i].names);
         }
-        j->active = few ? 4u : targets;
-        status = bench_weights_open(&weights, j->stage.mesh, j->active);
-        for (int kind = WORK_ONE_PASS; kind <= WORK_FRAME && !status; kind++) {
-            status = measure_rows(j, &weights, (work_kind)kind, names[few][kind]);
-        }
-        bench_weights_close(&weights);
     }
+    if (!status && targets > 34u && !j->job->quick) status = measure_active(j, 34, &names_of_34);
     return status;
 }
 

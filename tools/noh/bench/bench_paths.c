@@ -5,6 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "deform/morph_finish.h"
 
 typedef struct path_method {
     bench_stage *stage;
@@ -49,10 +50,11 @@ static void set_slack(bench_method *m, const noh_mesh_header *h, noh_accumulate 
     }
 }
 
-int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate)
+int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate, int vertices)
 {
     static const char *const defines[] = { "#define BENCH_LAYERS\n", "#define BENCH_LAYERS\n#define NOH_LAYERS_UINT\n",
-                                           "#define BENCH_LAYERS\n#define NOH_STREAMS\n" };
+                                           "#define BENCH_LAYERS\n#define NOH_STREAMS\n",
+                                           "#define BENCH_LAYERS\n#define NOH_VERTICES\n" };
     noh_gl_morph_desc desc;
     noh_gl_morph_plan plan;
     path_method *p;
@@ -63,22 +65,27 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     desc.mesh_count = 1;
     desc.path = path;
     desc.accumulate = accumulate;
-    if (noh_gl_morph_plan_make(&desc, &s->g->caps, &plan, NULL)) {
+    desc.vertices = vertices;
+    if (noh_gl_morph_plan_make(&desc, &s->g->caps, &plan, NULL) || (vertices && !plan.vertex_ring)) {
         return -1;
     }
     p = calloc(1, sizeof *p);
     if (!p) {
         return tool_fail("bench", "out of memory");
     }
-    snprintf(m->name, sizeof m->name, "%s-%s", noh_morph_path_name(path), noh_accumulate_name(accumulate));
+    snprintf(m->name, sizeof m->name, "%s%s-%s", noh_morph_path_name(path),
+             path == NOH_MORPH_CPU && accumulate != NOH_ACCUMULATE_F16 && !vertices ? "-sums" : "",
+             noh_accumulate_name(accumulate));
     p->stage = s;
     m->self = p;
     p->programs = m->programs;
     m->most_targets = path == NOH_MORPH_STREAMS ? NOH_MORPH_STREAMS_MAX : 0;
     m->mesh = &s->gl_mesh;
     m->prepare = prepare;
+    m->binding = &p->binding;
     m->bind = bind;
     m->close = close_path;
+    if (vertices) m->normal_slack = (double)NOH_FINISHED_NORMAL_ERROR;
     set_slack(m, s->mesh->header, accumulate);
     status = gpu_morph_open(&p->morph, s->g, &desc, "bench");
     if (!status) {

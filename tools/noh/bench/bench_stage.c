@@ -192,11 +192,17 @@ void bench_method_close(bench_stage *s, bench_method *m)
 static void draw_pass(const bench_stage *s, const bench_method *m, bench_pass pass)
 {
     const noh_gl_api *gl = &s->g->gl;
+    const int finished = m->binding && m->binding->vertex_buffer;
     gl->UseProgram(m->programs[pass]);
     if (m->bind) {
         m->bind(m->self, pass);
     }
+    if (finished) noh_gl_mesh_bind(gl, m->mesh, m->binding);
     gl->DrawElements(GL_TRIANGLES, (GLsizei)m->mesh->mesh.header->index_count, m->mesh->index_type, NULL);
+    if (finished) {
+        noh_gl_mesh_unbind(gl, m->mesh, m->binding);
+        gl->BindVertexArray(m->mesh->vertex_array);
+    }
 }
 
 static void begin(const bench_stage *s, const bench_method *m)

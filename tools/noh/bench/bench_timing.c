@@ -210,6 +210,14 @@ double bench_median_above(const bench_cells *cells, uint32_t cell, uint32_t floo
     return bench_median_of(values, cells->rounds);
 }
 
+double bench_low_tenth(const bench_cells *cells, uint32_t cell)
+{
+    double values[ROUNDS_MAX];
+    memcpy(values, cells->cells[cell].samples, cells->rounds * sizeof *values);
+    qsort(values, cells->rounds, sizeof *values, compare_doubles);
+    return values[cells->rounds / 10u];
+}
+
 double bench_median(const bench_cells *cells, uint32_t cell)
 {
     double values[ROUNDS_MAX];

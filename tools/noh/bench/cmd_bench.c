@@ -39,12 +39,12 @@ static const struct group {
     int (*run)(bench_job *job);
     int draws; /* wants a mesh with targets */
 } groups[] = {
-    { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },     { "skin-cpu", bench_skin_cpu, 1 },
-    { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },       { "clip", bench_clip_rows, 0 },
-    { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 }, { "stage", bench_cast, 0 },
-    { "look", bench_look, 1 },         { "face", bench_face, 1 },         { "ear", bench_ear, 1 },
-    { "sim", bench_sim, 0 },           { "agents", bench_agents, 0 },     { "people", bench_people, 0 },
-    { "wire", bench_wire, 0 },
+    { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },       { "skin-cpu", bench_skin_cpu, 1 },
+    { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },         { "clip", bench_clip_rows, 0 },
+    { "pose", bench_crowd_pose, 0 },   { "crowd", bench_crowd_frame, 1 },   { "stage", bench_cast, 0 },
+    { "look", bench_look, 1 },         { "face", bench_face, 1 },           { "ear", bench_ear, 1 },
+    { "sim", bench_sim, 0 },           { "agents", bench_agents, 0 },       { "people", bench_people, 0 },
+    { "wire", bench_wire, 0 },         { "morph-before", bench_before, 1 },
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -167,7 +167,7 @@ static const option options[] = {
       .at = offsetof(bench_args, only),
       .value = "GROUP",
       .what =
-          "measure these rows: morph, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear, "
+          "measure these rows: morph, morph-before, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear, "
           "sim, agents, people or wire; default: all for which the packs have data",
       .example = "look" },
     { .name = "--source",

@@ -169,6 +169,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     d->tangents = desc->tangents || desc->view == NOH_VIEW_TANGENT;
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
+    d->morph_sums = desc->sums;
     d->light = desc->light && caps ? &desc->light->desc : NULL;
     d->without_transfer = desc->light && desc->light->without_transfer;
     d->without_depth = !d->light || !d->light->shadow_px;

@@ -69,6 +69,7 @@ typedef struct figure_desc {
     int pickable;              /* 1: noh_stage_pick finds it */
     int tangents;              /* 1: accumulators with tangents, even where no view shows them */
     noh_morph_path path;
+    int sums; /* 1: of the path cpu in a texture, which layers are shown from */
     noh_accumulate accumulate;
     noh_debug_view view;
     figure_body *body;        /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */

@@ -157,3 +157,17 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
     }
     return finish(r, &t, status);
 }
+
+int readback_buffer(readback *r, GLuint buffer, size_t offset, size_t bytes, void *out)
+{
+    const noh_gl_api *gl = &r->g->gl;
+    const void *mapped;
+    gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
+    mapped = gl->MapBufferRange(GL_COPY_READ_BUFFER, (GLintptr)offset, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+    if (mapped) memcpy(out, mapped, bytes);
+    if (!mapped || !gl->UnmapBuffer(GL_COPY_READ_BUFFER)) {
+        return tool_fail("readback", "the driver does not give a buffer back (GL error 0x%x)", gl->GetError());
+    }
+    gl->BindBuffer(GL_COPY_READ_BUFFER, 0);
+    return 0;
+}

@@ -20,6 +20,9 @@ void readback_close(readback *r);
  * out[3][morph_height << morph_width_log2][3]; the third layer is zeros where there are two. */
 int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_binding *binding, float *out);
 
+/* Bytes of a buffer, from an offset on. */
+int readback_buffer(readback *r, GLuint buffer, size_t offset, size_t bytes, void *out);
+
 /* A vertex as mesh.vert leaves it, before the camera. */
 typedef struct readback_vertex {
     float position[3]; /* morphed and skinned, model space */

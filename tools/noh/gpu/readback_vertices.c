@@ -39,7 +39,7 @@ static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, con
         gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
     }
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
-    gl->BindVertexArray(mesh->vertex_array);
+    noh_gl_mesh_bind(gl, mesh, morph);
     if (morph) noh_gl_morph_bind_streams(gl, v->program, morph);
 }
 
@@ -106,6 +106,7 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
         }
         lost = capture(r->g, mesh, palettes ? palette : NOH_NONE, count, out);
     } while (++palette < palettes && !lost);
+    noh_gl_mesh_unbind(gl, mesh, morph);
     tear_down(r->g);
     gl->DeleteBuffers(1, &buffer);
     error = gl->GetError();

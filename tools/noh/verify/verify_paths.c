@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "deform/morph_finish.h"
 #include "gpu/readback.h"
 #include "half_bound.h"
 #include "verify.h"
@@ -161,6 +162,29 @@ static int verify_streams(verify_row *row, readback *r, const noh_gl_mesh *gl_me
     return 0;
 }
 
+/* Finished vertices: every word of the vertex buffer is that of the reference in plain C; drawn, positions are equal to
+ * the bit and directions within what their pairs of 16 bits allow. */
+static int verify_finished(verify_row *row, readback *r, const noh_gl_mesh *gl_mesh,
+                           const noh_gl_morph_binding *binding, const noh_morph_layers *expected,
+                           const verify_buffers *b)
+{
+    const noh_mesh *mesh = &gl_mesh->mesh;
+    const size_t words = (size_t)noh_morph_finished_stride(mesh) / 4u * mesh->header->vertex_count;
+    uint32_t *want = malloc(words * 4u + 4u), *got = malloc(words * 4u + 4u);
+    int status = want && got ? readback_buffer(r, binding->vertex_buffer, binding->vertex_offset, words * 4u, got)
+                             : tool_fail("verify", "out of memory");
+    if (!status) {
+        noh_morph_finish_scalar(mesh, expected, 0, mesh->header->vertex_count, want);
+        row->values += words;
+        for (size_t i = 0; i < words; i++) row->differing += got[i] != want[i];
+        status = readback_vertices(r, gl_mesh, binding, b->positions, b->normals, b->tangents);
+    }
+    if (!status) compare_vertices(row, mesh, expected, b->positions, b->normals);
+    free(want);
+    free(got);
+    return status;
+}
+
 static void clear_layers(const verify_job *job, void *memory, size_t bytes, const noh_mesh *mesh,
                          noh_morph_layers *layers)
 {
@@ -209,6 +233,11 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
         if (plan->path == NOH_MORPH_STREAMS) {
             binding = noh_gl_morph_binding_of(m->morph, instance);
             status = verify_streams(row, r, gl_mesh, &binding, &expected, &b);
+            continue;
+        }
+        if (plan->vertex_ring) {
+            binding = noh_gl_morph_binding_of(m->morph, instance);
+            if (binding.vertex_buffer) status = verify_finished(row, r, gl_mesh, &binding, &expected, &b);
             continue;
         }
         status = readback_layers(r, mesh, &binding, b.got);
@@ -262,7 +291,9 @@ static uint64_t least_block(verify_job *job, const noh_gl_morph_desc *desc, uint
     return ok ? predicted : 0;
 }
 
-static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accumulate, const noh_gl_mesh *gl_meshes)
+/* vertices: of the path cpu, as noh_gl_morph_desc has it */
+static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accumulate, int vertices,
+                       const noh_gl_mesh *gl_meshes)
 {
     verify_row *row = &job->rows[job->row_count++];
     noh_gl_morph_desc desc;
@@ -274,8 +305,10 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     int status;
     memset(row, 0, sizeof *row);
     memset(&desc, 0, sizeof desc);
-    row->path = noh_morph_path_name(path);
+    row->path = vertices ? "cpu-vertices" : noh_morph_path_name(path);
     row->accumulate = noh_accumulate_name(accumulate);
+    desc.vertices = vertices;
+    row->normal_bound = vertices ? (double)NOH_FINISHED_NORMAL_ERROR : 0.0;
     desc.meshes = job->meshes;
     desc.mesh_count = job->file.pack.mesh_count;
     desc.path = path;
@@ -283,6 +316,10 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     desc.without_tangents = job->without_tangents;
     if (noh_gl_morph_plan_make(&desc, &job->g.caps, &plan, &error)) {
         row->reason = error.what;
+        return 0;
+    }
+    if (vertices && !plan.vertex_ring) {
+        row->reason = "no finished vertices: meshes with a transfer need sums";
         return 0;
     }
     row->available = row->exact = 1;
@@ -385,9 +422,10 @@ int verify_paths(verify_job *job)
     }
     for (int a = NOH_ACCUMULATE_F32; a <= NOH_ACCUMULATE_F16 && !status; a++) {
         for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
-            status = verify_path(job, paths[p], (noh_accumulate)a, gl_meshes);
+            status = verify_path(job, paths[p], (noh_accumulate)a, 0, gl_meshes);
         }
     }
+    if (!status) status = verify_path(job, NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 1, gl_meshes);
     if (!status && verify_skin_wanted(job->meshes, &job->file.pack)) {
         status = verify_skins(job, gl_meshes);
     }

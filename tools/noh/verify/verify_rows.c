@@ -25,8 +25,8 @@ int verify_row_failed(verify_row *row)
     if (row->bound_um > 0.0 && !(row->max_error_um <= row->bound_um)) {
         fail_row(row, "position error, um", row->max_error_um, row->bound_um);
     }
-    if (!(row->max_normal_error <= NORMAL_BOUND)) {
-        fail_row(row, "normal error", row->max_normal_error, NORMAL_BOUND);
+    if (!(row->max_normal_error <= row->normal_bound + NORMAL_BOUND)) {
+        fail_row(row, "normal error", row->max_normal_error, row->normal_bound + NORMAL_BOUND);
     }
     if (row->cpu_predicted != row->cpu_used) {
         fail_row(row, "CPU bytes used (bound: predicted)", (double)row->cpu_used, (double)row->cpu_predicted);
@@ -62,15 +62,15 @@ static void print_failures(const verify_job *job)
 int verify_print(const verify_job *job)
 {
     printf("%s: %s\n", job->g.caps.renderer, job->g.caps.version_text);
-    printf("%-10s %-4s %10s %10s %12s %12s  %s\n", "path", "", "values", "differing", "error, um", "bound, um", "");
+    printf("%-12s %-4s %10s %10s %12s %12s  %s\n", "path", "", "values", "differing", "error, um", "bound, um", "");
     for (int i = 0; i < job->row_count; i++) {
         const verify_row *row = &job->rows[i];
         if (!row->available) {
-            printf("%-10s %-4s %10s %10s %12s %12s  not here: %s\n", row->path, row->accumulate, "-", "-", "-", "-",
+            printf("%-12s %-4s %10s %10s %12s %12s  not here: %s\n", row->path, row->accumulate, "-", "-", "-", "-",
                    row->reason);
             continue;
         }
-        printf("%-10s %-4s %10llu %10llu %12.4g %12.4g  %s\n", row->path, row->accumulate,
+        printf("%-12s %-4s %10llu %10llu %12.4g %12.4g  %s\n", row->path, row->accumulate,
                (unsigned long long)(row->values + row->vertex_values),
                (unsigned long long)(row->differing + row->vertex_differing), row->max_error_um, row->bound_um,
                row->exact ? "" : "only within the bound: this driver's rounding is not modelled");

@@ -90,6 +90,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     d.falls = !m->cannot_fall.result;
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
     d.path = desc->morph_path;
+    d.sums = 1;
     d.accumulate = desc->accumulate;
     d.view = desc->view;
     d.light = desc->light;
