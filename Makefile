@@ -332,6 +332,9 @@ $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --wrinkles auto --quiet
+$(BUILD)/page/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(BUILD)/noh build $< -o $@ --wrinkles auto --lod 4 --lod-fast --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
 MASK_HAIR := tools/demo_assets/mask/mask.hair
@@ -446,7 +449,8 @@ bench-lod: deps-build
 # ---- the page ----
 
 # One program for all packs: the memory that it runs in is made in the browser, for its pack (platform/web/package).
-WEB_PACK    ?= $(BUILD)/mask.noh
+WEB_PACK    ?= $(BUILD)/page/mask.noh
+WEB_WIRE    ?= --error-um 10# of `noh pack`; empty: nothing is rounded
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
 WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
 WEB_STACK   := 65536
@@ -454,7 +458,10 @@ WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js targets.js light.js hair.js faces.js load.js speech.js tabs.js page.noh page.nohz $(addprefix package/,noh.wasm $(filter %.js,$(WEB_PACKAGE))))
+# A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
+WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js)
+WEB_MODULES := $(addprefix platform/web/package/,camera.js gl.js program.js pointer.js speech.js character.js)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh page.nohz $(addprefix package/,noh.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm worker.js)
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
@@ -465,7 +472,7 @@ web: deps-web
 	@sh tools/web_sizes.sh $(WEB)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
-WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
 	@$(MAKE) --no-print-directory DEPS=0 npm
@@ -482,8 +489,8 @@ web-bench: deps-web
 	@[ -f "$(WEB_BENCH)" ] || { echo 'skipped: no $(WEB_BENCH) (ASSETS=DIR says where models are)'; exit 0; }; \
 	mkdir -p $(BUILD)/web-bench && \
 	$(MAKE) --no-print-directory $(BUILD)/noh $(BUILD)/tests/gl/picture_diff && \
-	$(BUILD)/noh build $(WEB_BENCH) -o $(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh --quiet && \
-	$(MAKE) --no-print-directory DEPS=0 web WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
+	NOH_BUILD="$(BUILD)" sh tests/web_bench_pack.sh $(WEB_BENCH) $(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
+	$(MAKE) --no-print-directory DEPS=0 web WEB_WIRE= WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
 	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
 
 # Pictures beside those of three.js's standard materials.
@@ -491,12 +498,17 @@ LOOKS ?= $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb $(BUILD)/mask.glb
 look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
 	@NOH_BUILD="$(BUILD)" sh tests/web_look.sh $(LOOKS)
 
-$(WEB)/page.noh: $(WEB_PACK)
-	@mkdir -p $(@D)
-	@cp $< $@
 $(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh
 	@mkdir -p $(@D)
-	$(Q)$(BUILD)/noh pack $< -o $@ --quiet
+	$(Q)$(BUILD)/noh pack $< -o $@ --quiet $(WEB_WIRE)
+$(WEB)/page.noh: $(WEB)/page.nohz
+	$(Q)$(BUILD)/noh strip $< -o $@ --from-level 0 --quiet
+$(WEB)/page.js: $(WEB_SCRIPTS)
+	@mkdir -p $(@D)
+	@cat $^ >$@
+$(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze' $(WEB_MODULES)
 $(WEB)/package/noh.wasm: $(WEB_OBJECTS)/noh.wasm
 	@mkdir -p $(@D)
 	@cp $< $@
@@ -528,7 +540,7 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
-	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|height\|lost\|string\|width\)'
+	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
 
 # ---- the page's converter ----
 
@@ -594,7 +606,7 @@ $(WEB_FESTIVAL)/program.js: $(WEB_FESTIVAL_O) $(filter-out $(WEB_OBJECTS)/platfo
 	$(Q)$(WEB_CC) $(WEB_FLAGS) -O1 $^ -msse2 --no-entry -s ALLOW_MEMORY_GROWTH=0 -s INITIAL_MEMORY=64MB -s TOTAL_STACK=1MB -s ENVIRONMENT=web \
 	    -s MODULARIZE=1 -s EXPORT_NAME=nohFestival -s EXPORTED_RUNTIME_METHODS=UTF8ToString,FS -s FORCE_FILESYSTEM=1 \
 	    -s INCOMING_MODULE_JS_API=instantiateWasm -s ERROR_ON_UNDEFINED_SYMBOLS=0 -o $@ 2>$(WEB_OBJECTS)/festival.log || { cat $(WEB_OBJECTS)/festival.log; exit 1; }
-	$(Q)! grep 'undefined symbol' $(WEB_OBJECTS)/festival.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|height\|lost\|string\|width\)'
+	$(Q)! grep 'undefined symbol' $(WEB_OBJECTS)/festival.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
 $(WEB_FESTIVAL)/people.nohz: $(BUILD)/demo/puppet_levels.noh $(BUILD)/noh
 	@mkdir -p $(@D)
 	$(Q)$(BUILD)/noh pack $< -o $@ --error-um 10 --quiet

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 out=$build/web-check/package
-project=$build/web-check/project
+project=$build/web-check/project # three.js is not installed in it, but beside it
 tarball=$build/npm/noh-character-$(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/base/version.h).tgz
 passed=0 failed=0
 
@@ -17,7 +17,7 @@ leave_out() {
     exit 0
 }
 . tests/web/find_browser.sh
-find_browser "$build/web-check" playwright-core axe-core typescript # those of web.sh: npm removes others
+find_browser "$build/web-check" playwright-core axe-core typescript three @types/three # those of web.sh: npm removes others
 ok() { passed=$((passed + 1)); }
 not_ok() {
     failed=$((failed + 1))
@@ -51,5 +51,9 @@ timeout -k 5 500 node tests/web/package.js "$project" "$chromium" "$out" "$proje
     not_ok "tests/web/package.js ends too early: $(tail -n 1 "$out/log.txt")"
 passed=$((passed + $(grep -c '^ok ' "$out/log.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/log.txt")))
 grep -v '^ok \|^1\.\.' "$out/log.txt"
+timeout -k 5 500 node tests/web/three.js "$project" "$chromium" "$out" "$project" "$build/noh" >"$out/three.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/three.txt")" != 0 ] ||
+    not_ok "tests/web/three.js ends too early: $(tail -n 1 "$out/three.txt")"
+passed=$((passed + $(grep -c '^ok ' "$out/three.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/three.txt")))
+grep -v '^ok \|^1\.\.' "$out/three.txt"
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

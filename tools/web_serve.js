@@ -35,6 +35,14 @@ function pack(file, bytes, changed, accepted) {
     return { bytes: packed.get(key), coding: coding[0] };
 }
 
+// The bytes that are asked for, of what is sent as it is.
+function part(request, sent) {
+    const asked = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range || ''), all = sent.bytes.length;
+    if (!asked || sent.coding || Number(asked[1]) >= all) return sent;
+    const from = Number(asked[1]), to = Math.min(all - 1, Number(asked[2] || all));
+    return to < from ? sent : { bytes: sent.bytes.subarray(from, to + 1), range: `bytes ${from}-${to}/${all}` };
+}
+
 function answer(request, response) {
     const refuse = (code) => response.writeHead(code).end();
     let file;
@@ -45,10 +53,11 @@ function answer(request, response) {
     }
     if (request.method !== 'GET' && request.method !== 'HEAD') return refuse(405);
     if (!file || !fs.statSync(file, { throwIfNoEntry: false })?.isFile()) return refuse(404);
-    const sent = pack(file, fs.readFileSync(file), fs.statSync(file).mtimeMs, request.headers['accept-encoding'] || '');
-    response.writeHead(200, {
+    const changed = fs.statSync(file).mtimeMs, sent = part(request, pack(file, fs.readFileSync(file), changed, request.headers['accept-encoding'] || ''));
+    response.writeHead(sent.range ? 206 : 200, {
         'Content-Type': types[path.extname(file)] || 'application/octet-stream', 'Content-Length': sent.bytes.length,
-        'Cache-Control': 'no-cache', Vary: 'Accept-Encoding', ...(sent.coding ? { 'Content-Encoding': sent.coding } : {}),
+        'Cache-Control': 'no-cache', Vary: 'Accept-Encoding', 'Accept-Ranges': 'bytes', 'Last-Modified': new Date(changed).toUTCString(),
+        ...(sent.coding ? { 'Content-Encoding': sent.coding } : {}), ...(sent.range ? { 'Content-Range': sent.range } : {}),
     });
     return response.end(request.method === 'HEAD' ? undefined : sent.bytes);
 }

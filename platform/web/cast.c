@@ -69,7 +69,7 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
 static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
     cast->hair_kind = NOH_NONE;
-    if (noh_haircut_open(pack, &cast->cut, NULL)) return NOH_OK;
+    if (cast->wants.elsewhere || noh_haircut_open(pack, &cast->cut, NULL)) return NOH_OK;
     for (uint32_t k = 0; k < cast->desc.kind_count && cast->hair_kind == NOH_NONE; k++) {
         if (noh_wig_make(&cast->cut, pack, cast->kinds[k].skeleton, &cast->wig, error) == NOH_OK) cast->hair_kind = k;
     }
@@ -162,6 +162,7 @@ static void describe(web_cast *cast)
     cast->desc.gpu = &noh_stage_on_gl;
     cast->desc.encode_srgb = 1; /* a canvas does not encode */
     cast->desc.without_depth = !cast->wants.lit;
+    cast->desc.without_shader = cast->wants.elsewhere;
     cast->desc.without_transfer = cast->wants.without_transfer;
     cast->desc.morph_path = (uint32_t)cast->wants.path;
 }

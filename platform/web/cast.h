@@ -18,6 +18,7 @@ typedef struct web_wants {
     int lit;              /* 1: by an environment, with a shadow map */
     int alive;            /* 1: faces, where eyes are found, and springs */
     int without_transfer; /* 1: light that was worked out for each vertex is left out */
+    int elsewhere;        /* 1: another renderer draws: no shaders, no light and no hair of ours */
 } web_wants;
 
 typedef struct web_cast {

@@ -1,9 +1,8 @@
-// load.js: the pack is asked for while the program still arrives. ?pack=NAME: another one than page.nohz; and files of the
-// visitor's own.
+// load.js: the pack, which index.html asks for while the program still arrives (?pack=NAME: another one than page.nohz), and
+// files of the visitor's own.
 'use strict';
 
-const ownPack = query.get('pack') || 'page.nohz';
-const asked = fetch(ownPack), ownText = byId('file-text').textContent;
+const ownText = byId('file-text').textContent;
 
 // What has arrived, in words and as a bar. Without a length that the server tells, only in words.
 function showProgress({ taken, all, shows }) {

@@ -141,11 +141,18 @@ static noh_result begin(const web_wants *wants)
     return result;
 }
 
+/* Before web_plan and web_open. 1: another renderer draws what vertices.c writes, and web_draw is not called. */
+EMSCRIPTEN_KEEPALIVE void web_set_elsewhere(int on)
+{
+    web.elsewhere = on;
+}
+
 /* Open the pack that was loaded. path: a noh_morph_path. characters: on stage. alive: 0: without faces. All as they
  * were when its memory was planned. */
 EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
 {
-    const web_wants wants = { characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0 };
+    const web_wants wants = { characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive,
+                              0,          web.elsewhere };
     noh_result result = web_load(&web.pack);
     web.character_count = characters;
     if (!result) result = web_open_context();
@@ -421,6 +428,36 @@ EMSCRIPTEN_KEEPALIVE float *web_measure(void)
     set_looks(0);
     web.view.cut = 1;
     memcpy(web.from, web_walked(), sizeof web.from);
+    return web.bounds;
+}
+
+/* Pose a clip on the bodies at even times, and measure each pose as from where the first character then is. */
+static void grow_by_clip(int clip, double seconds, uint32_t poses, float box[6])
+{
+    for (uint32_t i = 0; i < poses && !web_play(WEB_BODY, clip, seconds * i / poses, 0.0); i++) {
+        const float *now = web_measure();
+        for (int c = 0; c < 3; c++) {
+            const float low = now[c] - web.from[c], high = now[3 + c] - web.from[c];
+            box[c] = low < box[c] ? low : box[c];
+            box[3 + c] = high > box[3 + c] ? high : box[3 + c];
+        }
+    }
+}
+
+/* The box of all figures over a clip of the body, at so many of its poses, at where the first character is now: as
+ * web_measure. What plays goes on as before. */
+EMSCRIPTEN_KEEPALIVE float *web_measure_clip(int clip, double seconds, uint32_t poses)
+{
+    size_t bytes;
+    float box[6];
+    const void *state = noh_stage_state(web.stage, &bytes);
+    uint8_t *kept = web.block + web.block_bytes - bytes; /* as web_open_stage has it */
+    memcpy(kept, state, bytes);
+    noh_box_empty(box);
+    grow_by_clip(clip, seconds, poses, box);
+    (void)noh_stage_set_state(web.stage, kept, bytes, &web.error);
+    memcpy(web.from, web_walked(), sizeof web.from);
+    for (int c = 0; c < 6; c++) web.bounds[c] = box[c] + web.from[c % 3];
     return web.bounds;
 }
 

@@ -8,7 +8,7 @@
 const query = new URLSearchParams(location.search);
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
-const arriving = Promise.all([import('./package/character.js'), import('./package/pointer.js')]);
+const arriving = import('./package/page.js'); // Character and what it needs, joined (tools/web_join.sh)
 let character = null;
 let Module = null; // its program
 let fresh = true; // the next pack begins anew, else it goes on
@@ -200,7 +200,7 @@ function listen() {
 }
 
 async function start() {
-    const [{ Character }, { addPointers, addGaze }] = await arriving;
+    const { Character, addPointers, addGaze } = await arriving;
     character = new Character(canvas, {
         path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')),
         follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),

@@ -41,7 +41,7 @@ typedef struct web_light {
 
 typedef struct web_hair {
     noh_stage_hair drawn[WEB_CHARACTERS_MAX]; /* of each character */
-    int off;                              /* 1: not shown */
+    int off;                                  /* 1: not shown */
     float wind[3];
     double shake_s; /* how long heads are still shaken */
 } web_hair;
@@ -72,6 +72,7 @@ struct web {
     float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
     int32_t speed;                     /* 1/65,536, of what plays */
     uint8_t smoothed;                  /* noh_look.smoothed of all */
+    int elsewhere;                     /* 1: another renderer draws (vertices.c) */
     uint32_t level;                    /* 1 + the LOD level that is shown; 0: by pixels */
 };
 

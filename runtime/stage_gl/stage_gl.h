@@ -79,7 +79,8 @@ typedef struct noh_stage_drawn {
     const noh_gl_mesh *mesh; /* the stage's, valid as long as it is */
     noh_gl_morph_binding morph;
     noh_gl_skin_binding skin;
-    int is_morphed, is_skinned; /* 0: that binding is zeros, and not to be used */
+    int is_morphed, is_skinned;     /* 0: that binding is zeros, and not to be used */
+    const noh_gl_texture *pictures; /* [texture_count] of its mesh pack, of the texture set that the actor wears */
 } noh_stage_drawn;
 
 /* The index-th mesh of an actor, as noh_actor_mesh_at counts them. Valid until the next frame.

@@ -11,8 +11,15 @@ const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'applic
 // A file alone is served as itself.
 const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, !name || name.endsWith('/') ? `${name}index.html` : name) : place;
 
-// What is text or program goes over the wire with gzip, as servers send it.
+// What is text or program goes over the wire with gzip, as servers send it; of the rest, parts that are asked for.
 function send(request, answer, name, bytes) {
+    const range = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range || '');
+    if (range && !types[path.extname(name)] && Number(range[1]) < bytes.length) {
+        const from = Number(range[1]), to = Math.min(bytes.length - 1, Number(range[2] || bytes.length));
+        answer.writeHead(206, { 'Content-Type': 'application/octet-stream', 'Content-Length': to + 1 - from, 'Content-Range': `bytes ${from}-${to}/${bytes.length}` });
+        answer.end(bytes.subarray(from, to + 1));
+        return;
+    }
     const type = types[path.extname(name)] || (name.endsWith('/') ? 'text/html' : 'application/octet-stream');
     const packed = types[path.extname(name)] && /gzip/.test(request.headers['accept-encoding'] || '') ? zlib.gzipSync(bytes) : null;
     answer.writeHead(200, { 'Content-Type': type, 'Content-Length': (packed || bytes).length, ...(packed ? { 'Content-Encoding': 'gzip' } : {}) });

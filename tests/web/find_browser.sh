@@ -9,7 +9,8 @@ find_browser() {
     mkdir -p "$folder"
     export NODE_PATH="$folder/node_modules${NODE_PATH:+:$NODE_PATH}"
     for package in "$@"; do
-        node -e "require.resolve('$package')" 2>/dev/null || (cd "$folder" && npm install --no-save --silent "$@" >/dev/null 2>&1)
-        node -e "require.resolve('$package')" 2>/dev/null || leave_out "the npm package $package cannot be had here"
+        is_there "$package" || (cd "$folder" && npm install --no-save --silent "$@" >/dev/null 2>&1)
+        is_there "$package" || leave_out "the npm package $package cannot be had here"
     done
 }
+is_there() { node -e "try { require.resolve('$1') } catch { require.resolve('$1/package.json') }" 2>/dev/null; } # types have no program

@@ -1,5 +1,7 @@
 // types.ts: what a program of TypeScript does with the package; it is compiled, never run.
 import { Character, NohCharacter, addPointers, shapesOfText } from 'noh-character';
+import { NohObject3D } from 'noh-character/three';
+import { PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 
 const element = document.querySelector('noh-character');
 if (element) {
@@ -24,3 +26,11 @@ character.load(fetch('face.nohz')).then(end);
 console.log(shapesOfText('Papa', 1)[0]?.shape);
 // @ts-expect-error memory is read, not written
 character.memory = null;
+
+const renderer = new WebGLRenderer(), scene = new Scene(), view = new PerspectiveCamera();
+const object = new NohObject3D(renderer, { alive: true });
+scene.add(object);
+object.load('face.nohz').then((loaded) => { loaded.character.play('smile'); loaded.meshes[0].castShadow = true; });
+object.update(1 / 60, view);
+// @ts-expect-error a camera is needed, for the detail
+object.update(1 / 60);

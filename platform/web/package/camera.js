@@ -12,16 +12,17 @@ function product(a, b, out) {
 export class Camera {
     constructor() {
         // distance: 1 frames the figures; pixel: what one of the page's is there, in world units
-        Object.assign(this, front, { distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true });
+        Object.assign(this, front, { distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
         this.matrix = new Float32Array(16);
     }
 
     // Come as near as a box allows, that was measured where the figures were.
     fit(box, from) {
-        Object.assign(this, { box, from, distance: 0, offset: [0, 0, 0] });
+        Object.assign(this, { box, from, distance: 0, offset: [0, 0, 0], byHand: false });
     }
 
     zoom(by) {
+        this.byHand = true;
         this.distance = Math.min(4, Math.max(0.15, (this.distance || 1) * by));
     }
 
@@ -32,6 +33,7 @@ export class Camera {
 
     // By pixels of the page: what is under a finger stays there.
     pan(x, y) {
+        this.byHand = true;
         this.offset = this.offset.map((o, i) => o + (y * this.up[i] - x * this.right[i]) * this.pixel);
     }
 

@@ -1,7 +1,7 @@
 // character.js: a character on a canvas: its pack arrives, is drawn, plays clips, looks, feels and speaks. What is chosen
 // is kept here, so that it holds for the coarsest levels of a pack, for the whole of it, and for another pack.
 import { Camera, front } from './camera.js';
-import { Arrival, compile, receive } from './program.js';
+import { Arrival, compile, fetchFirst, receive } from './program.js';
 import { Speech } from './speech.js';
 
 export const layers = ['body', 'face'];
@@ -13,6 +13,7 @@ const settles = 2500; // ms in which a gaze and a feeling arrive
 const swings = 2000; // in which hair comes to rest
 const shakes = 4000;
 const strength = 90; // of a push, newton seconds
+const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
 
 // How a character is shown, where nothing else was asked for.
 const asMade = { light: 'studio', degrees: 0, shadow: 'on', tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
@@ -20,11 +21,11 @@ const asMade = { light: 'studio', degrees: 0, shadow: 'on', tonemap: true, backg
 
 export class Character extends EventTarget {
     // options: { program: where noh.wasm is, path, characters, alive, size: pixels across instead of the canvas's own,
-    // follows: whether the camera does }, and what `asMade` has.
+    // follows: whether the camera does, elsewhere: another renderer draws (three.js) }, and what `asMade` has.
     constructor(canvas, options = {}) {
         super();
-        const { program, path = 'auto', characters = 1, alive = true, size = 0, follows = true, ...chosen } = options;
-        this.wants = { path, characters, alive };
+        const { program, path = 'auto', characters = 1, alive = true, size = 0, follows = true, elsewhere = false, ...chosen } = options;
+        this.wants = { path, characters, alive, elsewhere };
         Object.assign(this, { canvas, size, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
         Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
         Object.assign(this, { ready: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
@@ -34,6 +35,9 @@ export class Character extends EventTarget {
         this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // so that the canvas can be saved
         this.watch();
     }
+
+    // Calls of GL by the library, all together: for who shares the context.
+    around(call) { return call(); }
 
     emit(type, detail) {
         this.dispatchEvent(new CustomEvent(type, { detail }));
@@ -90,6 +94,7 @@ export class Character extends EventTarget {
         const [module, answer] = await Promise.all([compile(this.address), responseOf(source)]);
         if (!mine()) return;
         const arrival = await Arrival.begin(module, this.gl, this.caps);
+        arrival.around = (call) => this.around(call);
         await receive(answer, async (bytes) => {
             if (mine() && arrival.push(bytes) > shown()) await show(arrival);
         }, (taken, all) => { if (mine()) this.emit('progress', { taken, all, shows: shown() }); }, this.ended.signal);
@@ -172,13 +177,19 @@ export class Character extends EventTarget {
         if (this.moves(now)) this.redraw();
     }
 
-    // Move time on, and draw.
-    advance(seconds) {
+    // Move time on.
+    step(seconds) {
         const p = this.program;
         this.speech.frame();
         p.check(p._web_step(seconds));
         for (let i = 0; i < p._web_key_count(); i++) this.tellKey(i);
         this.watchFall();
+    }
+
+    // Move time on, and draw.
+    advance(seconds) {
+        const p = this.program;
+        this.step(seconds);
         this.camera.write(p.floats(p._web_view(), 22), p.floats(p._web_walked(), 3), this.canvas.width / this.canvas.height, this.canvas.clientHeight || this.canvas.height);
         p.check(p._web_draw());
         this.frames++;
@@ -225,9 +236,12 @@ export class Character extends EventTarget {
     // Where the first character has walked to.
     get walked() { return Array.from(this.program.floats(this.program._web_walked(), 3)); }
 
-    // Come as near as all figures in their present pose allow.
+    // Come as near as all figures allow, in their present pose or, of a clip that runs, in all of its.
     fit() {
-        this.camera.fit(Array.from(this.program.floats(this.program._web_measure(), 6)), this.walked);
+        const p = this.program, clip = this.runs && this.playing[0].clip !== null ? this.clipNamed(this.playing[0].clip) : null;
+        const poses = clip ? Math.min(mostPoses, Math.max(4, Math.ceil(clip.seconds * posesASecond))) : 0;
+        const box = p.floats(clip ? p._web_measure_clip(clip.index, clip.seconds, poses) : p._web_measure(), 6);
+        this.camera.fit(Array.from(box), this.walked);
         this.redraw();
     }
 
@@ -248,11 +262,17 @@ export class Character extends EventTarget {
         this.playing[at].clip = name;
         this.program.check(this.program._web_play(at, clip ? clip.index : -1, time, fade));
         this.settle(1000 * fade + 100);
+        if (at === 0 && clip && this.camera.box && !this.camera.byHand && !this.paused) this.fit(); // it may reach further
     }
 
     // Of what plays on the body, in seconds.
     get time() { return this.program._web_time(); }
-    set time(seconds) { this.play(this.playing[0].clip, { fade: 0, time: seconds }); }
+    set time(seconds) {
+        const { byHand } = this.camera;
+        this.camera.byHand = true; // the same clip needs no other picture
+        this.play(this.playing[0].clip, { fade: 0, time: seconds });
+        this.camera.byHand = byHand;
+    }
 
     // 1: as it was made.
     get speed() { return this.chosen.speed; }
@@ -459,9 +479,13 @@ export class Character extends EventTarget {
         this.ended.abort();
         this.resizes.disconnect();
         this.close();
+        this.releaseContext();
+        this.gl = this.caps = null;
+    }
+
+    releaseContext() {
         const loses = this.gl && this.gl.getExtension('WEBGL_lose_context');
         if (loses) loses.loseContext();
-        this.gl = this.caps = null;
     }
 }
 
@@ -471,5 +495,5 @@ async function responseOf(source) {
     if (given instanceof Response) return given;
     if (given instanceof Blob) return new Response(given.stream(), { headers: { 'Content-Length': given.size } });
     if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return new Response(given, { headers: { 'Content-Length': given.byteLength } });
-    return fetch(given).catch(() => { throw new Error(`no pack: ${given} cannot be reached`); });
+    return fetchFirst(given).catch(() => { throw new Error(`no pack: ${given} cannot be reached`); });
 }

@@ -201,6 +201,7 @@ function addOthers(gl, heap) {
         lost: () => Number(gl.isContextLost()),
         width: () => gl.drawingBufferWidth,
         height: () => gl.drawingBufferHeight,
+        feedback: (begins) => (begins ? gl.beginTransformFeedback(gl.POINTS) : gl.endTransformFeedback()),
     };
 }
 

@@ -77,7 +77,7 @@ export class Program {
 export class Arrival {
     static async begin(module, gl, caps) {
         const arrival = new Arrival();
-        Object.assign(arrival, { module, gl, shows: 0, parts: [], bytes: 0, place: 0 });
+        Object.assign(arrival, { module, gl, shows: 0, parts: [], bytes: 0, place: 0, around: (call) => call() });
         arrival.program = await Program.start(module, gl, new WebAssembly.Memory({ initial: UNPACKING, maximum: MOST }), caps);
         return arrival;
     }
@@ -126,17 +126,19 @@ export class Arrival {
         this.shows = 2;
     }
 
-    // The best pack that is there, in a program whose memory is what it takes: { path, characters, alive }.
+    // The best pack that is there, in a program whose memory is what it takes: { path, characters, alive, elsewhere }.
     async open(wants) {
         const planner = this.program, path = Math.max(0, paths.indexOf(wants.path || 'auto'));
         planner.check(planner._web_loaded());
         const bytes = planner._web_loaded_bytes();
         planner.reserve(planner.memory.buffer.byteLength + planner._web_plan_grows());
-        const block = planner._web_plan(path, wants.characters, wants.alive ? 1 : 0);
+        planner._web_set_elsewhere(wants.elsewhere ? 1 : 0);
+        const block = this.around(() => planner._web_plan(path, wants.characters, wants.alive ? 1 : 0));
         if (!block) throw new Error(planner.words());
         const pages = Math.ceil(planner._web_memory_for(bytes, block) / PAGE);
         const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
         const program = await Program.start(this.module, this.gl, memory, this.caps());
+        program._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         program.HEAPU8.set(planner.HEAPU8.subarray(planner._web_loaded_at(), planner._web_loaded_at() + bytes), program._web_pack(bytes));
         return Object.assign(program, { packBytes: bytes, open: () => program.check(program._web_open(path, wants.characters, wants.alive ? 1 : 0)) });
     }
@@ -156,18 +158,40 @@ function joined(parts) {
     return out;
 }
 
-// The bytes of an answer to a fetch, as they come: push(piece) for each, tell(taken, all) of how far it is. Without a
-// length that the server tells, all is 0.
-export async function receive(answer, push, tell, signal) {
+// The first bytes of a pack are asked for alone, so that while the program arrives beside them no others come: the coarsest
+// levels of most are among them.
+const FIRST = 196608;
+export const fetchFirst = (address) => fetch(address, { headers: { Range: `bytes=0-${FIRST - 1}` } });
+
+// What an answer holds of a file: { from, all }. A server that does not know ranges sends the whole.
+function extent(answer) {
     if (!answer.ok) throw new Error(`no pack: the server says ${answer.status}`);
-    const reader = answer.body.getReader();
+    const range = answer.status === 206 && /^bytes (\d+)-\d+\/(\d+)$/.exec(answer.headers.get('Content-Range') || '');
     const coded = answer.headers.get('Content-Encoding'); // then the length is that of what was sent
-    const all = coded ? 0 : Number(answer.headers.get('Content-Length'));
-    for (let taken = 0; ;) {
-        const { value, done } = await reader.read().catch(() => { throw new Error(`the connection was lost after ${kilobytes(taken)} kB of the pack`); });
-        if (done || (signal && signal.aborted)) break;
-        taken += value.length;
-        await push(value);
-        tell(taken, all);
+    return range ? { from: Number(range[1]), all: Number(range[2]) } : { from: 0, all: coded ? 0 : Number(answer.headers.get('Content-Length')) };
+}
+
+// The rest of a file behind its first bytes, of the same version.
+async function fetchRest(first, taken) {
+    const rest = await fetch(first.url, { headers: { Range: `bytes=${taken}-` } }), same = (name) => rest.headers.get(name) === first.headers.get(name);
+    if (extent(rest).from === taken && same('ETag') && same('Last-Modified')) return rest;
+    throw new Error('the pack has changed while it arrived');
+}
+
+// The bytes of an answer to a fetch, as they come: push(piece) for each, tell(taken, all) of how far it is. Without a
+// length that the server tells, all is 0. If the answer is the first of a file, the rest is asked for.
+export async function receive(answer, push, tell, signal) {
+    const { all } = extent(answer), ended = () => signal && signal.aborted;
+    let taken = 0;
+    for (let part = answer; ; part = await fetchRest(answer, taken)) {
+        const reader = part.body.getReader();
+        for (;;) {
+            const { value, done } = await reader.read().catch(() => { throw new Error(`the connection was lost after ${kilobytes(taken)} kB of the pack`); });
+            if (done || ended()) break;
+            taken += value.length;
+            await push(value);
+            tell(taken, all);
+        }
+        if (answer.status !== 206 || taken >= all || ended()) return;
     }
 }

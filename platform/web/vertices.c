@@ -1,0 +1,362 @@
+/* vertices.c: the deformed vertices of each mesh, in buffers that another renderer on the same context draws
+ * (package/three.js). A point is drawn for each vertex, nothing is rasterised, and transform feedback writes what the
+ * vertex shader makes of it. Texture coordinates and colours, which never change, are written once. */
+#include <emscripten.h>
+#include <string.h>
+
+#include "web.h"
+
+__attribute__((import_module("noh"), import_name("feedback"))) void web_gl_feedback(int begins);
+
+enum { OUT_POSITION, OUT_NORMAL, OUT_TANGENT, OUT_UV, OUT_COLOR, OUT_COUNT };
+
+#define MOVING 3u /* of the outputs: those before OUT_UV */
+#define DRAWN_MAX 64u
+#define VARIANTS_MAX 16u
+
+static const char *const names[OUT_COUNT] = { "noh_out_position", "noh_out_normal", "noh_out_tangent", "noh_out_uv",
+                                              "noh_out_color" };
+static const uint32_t floats_of[OUT_COUNT] = { 3, 3, 4, 2, 4 };
+static const char vertex_text[] =
+    "out vec3 noh_out_position;\nout vec3 noh_out_normal;\nout vec4 noh_out_tangent;\nout vec2 noh_out_uv;\n"
+    "out vec4 noh_out_color;\n"
+    "void main()\n{\n"
+    "    noh_vertex v = noh_fetch();\n"
+    "    noh_out_position = v.position;\n"
+    "    noh_out_normal = normalize(v.normal);\n"
+    "    noh_out_tangent = vec4(normalize(v.tangent.xyz), v.tangent.w);\n"
+    "    noh_out_uv = v.uv;\n"
+    "    noh_out_color = v.color;\n"
+    "    gl_Position = vec4(v.position, 1.0);\n"
+    "    gl_PointSize = 1.0;\n"
+    "}\n";
+static const char fragment_text[] = "out vec4 noh_out;\nvoid main()\n{\n    noh_out = vec4(0.0);\n}\n";
+
+/* A mesh of a figure. */
+typedef struct web_drawn {
+    uint32_t figure, index; /* of noh_actor_mesh_at */
+    uint32_t mesh, level;   /* of the pack; the level that was written last */
+    int is_written;
+    noh_gl_buffer outs[OUT_COUNT];
+} web_drawn;
+
+typedef struct web_program {
+    noh_gl_variant variant;
+    int moving; /* 1: writes what moves, 0: what does not */
+} web_program;
+
+static struct {
+    web_drawn drawn[DRAWN_MAX];
+    uint32_t count;
+    web_program programs[VARIANTS_MAX];
+    uint32_t program_count;
+    const noh_gl_texture *pictures;
+} all;
+
+/* ---- making them ---- */
+
+/* three.js wants a buffer for each attribute. */
+static void GL_APIENTRY separate(GLuint program, GLsizei count, const GLchar *const *varyings, GLenum mode)
+{
+    (void)mode;
+    web.gl.TransformFeedbackVaryings(program, count, varyings, GL_SEPARATE_ATTRIBS);
+}
+
+static noh_result create_program(noh_gl_variant_key key, int moving, web_program *out)
+{
+    static const noh_gl_shader_desc own = { .name = "vertices", .vertex = vertex_text, .fragment = fragment_text };
+    noh_gl_api gl = web.gl;
+    const noh_gl_device device = { &gl, &web.caps, &web.ledger, NULL, 0 };
+    gl.TransformFeedbackVaryings = separate;
+    out->moving = moving;
+    return noh_gl_variant_create(&device, key, &own, moving ? names : names + MOVING,
+                                 moving ? MOVING : OUT_COUNT - MOVING, &out->variant, &web.error);
+}
+
+static const noh_gl_variant *program_of(noh_gl_variant_key key, int moving)
+{
+    for (uint32_t i = 0; i < all.program_count; i++) {
+        const web_program *p = &all.programs[i];
+        if (p->moving == moving && memcmp(&p->variant.key, &key, sizeof key) == 0) return &p->variant;
+    }
+    if (all.program_count == VARIANTS_MAX) {
+        (void)noh_fail(&web.error, NOH_ERR_LIMIT, "the meshes need more programs than the limit", VARIANTS_MAX, 0);
+        return NULL;
+    }
+    if (create_program(key, moving, &all.programs[all.program_count])) return NULL;
+    return &all.programs[all.program_count++].variant;
+}
+
+static noh_result create_buffers(web_drawn *d)
+{
+    noh_mesh mesh;
+    noh_result result = noh_pack_mesh_at(&web.pack, d->mesh, &mesh, &web.error);
+    for (uint32_t i = 0; i < OUT_COUNT && !result; i++) {
+        const uint64_t bytes = (uint64_t)mesh.header->vertex_count * floats_of[i] * sizeof(float);
+        result = noh_gl_buffer_create(&web.gl, &web.ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_DYNAMIC_COPY, &d->outs[i],
+                                      &web.error);
+    }
+    d->is_written = 0;
+    return result;
+}
+
+/* List the meshes of all figures, and make their buffers. Returns 0 or a noh_result. */
+EMSCRIPTEN_KEEPALIVE int web_vertices_open(void)
+{
+    noh_result result = NOH_OK;
+    (void)web_measure(); /* shows all of them */
+    all.count = 0;
+    web.gl.BindVertexArray(0);
+    for (uint32_t f = 0; f < web.figure_count && !result; f++) {
+        noh_actor_mesh mesh;
+        for (uint32_t m = 0;
+             !result && noh_actor_mesh_at(web.stage, web.figures[f].actor, m, &mesh, NULL, NULL) == NOH_OK; m++) {
+            if (all.count == DRAWN_MAX) {
+                return (int)noh_fail(&web.error, NOH_ERR_LIMIT, "more meshes than another renderer is given", DRAWN_MAX,
+                                     0);
+            }
+            all.drawn[all.count] = (web_drawn){ .figure = f, .index = m, .mesh = mesh.mesh };
+            result = create_buffers(&all.drawn[all.count++]);
+        }
+    }
+    return (int)result;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_vertices_close(void)
+{
+    for (uint32_t i = 0; i < all.count; i++) {
+        for (uint32_t o = 0; o < OUT_COUNT; o++) noh_gl_buffer_delete(&web.gl, &web.ledger, &all.drawn[i].outs[o]);
+    }
+    for (uint32_t i = 0; i < all.program_count; i++) {
+        noh_gl_variant_delete(&web.gl, &web.ledger, &all.programs[i].variant);
+    }
+    all.program_count = 0;
+    all.pictures = NULL;
+}
+
+/* After web_restore: everything anew, under other names; what the lost context had is deleted in vain. Returns 0 or a
+ * noh_result. */
+EMSCRIPTEN_KEEPALIVE int web_vertices_restore(void)
+{
+    noh_result result = NOH_OK;
+    web_vertices_close();
+    web.gl.BindVertexArray(0);
+    for (uint32_t i = 0; i < all.count && !result; i++) result = create_buffers(&all.drawn[i]);
+    return (int)result;
+}
+
+/* ---- writing them ---- */
+
+/* What one pass over a mesh needs. */
+typedef struct web_pass {
+    web_drawn *d;
+    noh_mesh mesh; /* at the level that is shown */
+    noh_stage_drawn on_gl;
+    float world[12];
+} web_pass;
+
+static void set_uniforms(const web_pass *p, const noh_gl_variant *v)
+{
+    const noh_gl_api *gl = &web.gl;
+    const noh_mesh_header *h = p->mesh.header;
+    const noh_gl_morph_binding *morph = &p->on_gl.morph;
+    float rows[12];
+    (void)noh_gl_normal_rows(p->world, rows);
+    gl->UseProgram(v->program);
+    gl->Uniform4f(v->u_uv, h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1]);
+    gl->Uniform4fv(v->u_world, 3, p->world);
+    gl->Uniform4fv(v->u_normal, 3, rows);
+    gl->Uniform4i(v->u_morph, morph->tile_x, morph->tile_y, morph->width_log2, morph->touched); /* zeros: not morphed */
+    if (p->on_gl.is_morphed) {
+        gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
+        gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
+    }
+    gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
+    gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
+    gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
+    gl->BindVertexArray(p->on_gl.mesh->vertex_array);
+}
+
+/* Each vertex belongs to one submesh, and with it to a palette. */
+static void write_submesh(const web_pass *p, const noh_submesh *s, uint32_t first, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t out = first + i, bytes = floats_of[out] * (uint32_t)sizeof(float);
+        web.gl.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, i, p->d->outs[out].name,
+                               (GLintptr)(s->first_vertex * bytes), (GLsizeiptr)(s->vertex_count * bytes));
+    }
+    web_gl_feedback(1);
+    web.gl.DrawArraysInstanced(GL_POINTS, (GLint)s->first_vertex, (GLsizei)s->vertex_count, 1);
+    web_gl_feedback(0);
+}
+
+static noh_result write(const web_pass *p, int moving)
+{
+    const noh_gl_skin_binding *skin = p->on_gl.is_skinned ? &p->on_gl.skin : NULL;
+    noh_gl_variant_key key = noh_gl_variant_key_of(&p->mesh, skin, 0, p->on_gl.morph.is_uint, NOH_VIEW_LIT);
+    const noh_gl_variant *v;
+    key.two_layers = p->on_gl.is_morphed && p->on_gl.morph.layer_count == 2;
+    v = program_of(key, moving);
+    if (!v) return web.error.result;
+    set_uniforms(p, v);
+    web.gl.Enable(GL_RASTERIZER_DISCARD);
+    for (uint32_t i = 0; i < p->mesh.header->submesh_count; i++) {
+        const noh_submesh *s = &p->mesh.submeshes[i];
+        if (!s->vertex_count) continue;
+        if (skin) noh_gl_variant_skin(&web.gl, v, &p->mesh, skin, s->palette);
+        write_submesh(p, s, moving ? 0 : MOVING, moving ? MOVING : OUT_COUNT - MOVING);
+    }
+    web.gl.Disable(GL_RASTERIZER_DISCARD);
+    for (uint32_t i = 0; i < MOVING; i++) web.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, i, 0);
+    return NOH_OK;
+}
+
+/* 0: no view sees it, and what was written before stays. */
+static int look_at(web_drawn *d, web_pass *p)
+{
+    noh_actor_mesh shown;
+    const noh_actor actor = web.figures[d->figure].actor;
+    size_t first;
+    if (noh_actor_on_gl(web.stage, actor, d->index, &p->on_gl, NULL)) return 0;
+    if (noh_actor_mesh_at(web.stage, actor, d->index, &shown, NULL, NULL)) return 0;
+    p->d = d;
+    d->level = shown.level;
+    p->mesh = noh_gl_mesh_lod(p->on_gl.mesh, shown.level, &first);
+    memcpy(p->world, shown.world, sizeof p->world);
+    all.pictures = p->on_gl.pictures;
+    return 1;
+}
+
+/* A frame as web_view sees it, in a picture of so many pixels: everything is posed, and its vertices are written.
+ * Returns 0 or a noh_result. */
+EMSCRIPTEN_KEEPALIVE int web_vertices(uint32_t height_px)
+{
+    noh_result result;
+    web.view.height_px = height_px;
+    web.view.cut = 1; /* another renderer has no fades */
+    result = noh_stage_frame_begin(web.stage, &web.view, 1, &web.error);
+    if (!result) result = noh_stage_frame_end(web.stage, &web.error);
+    for (uint32_t i = 0; i < all.count && !result; i++) {
+        web_drawn *d = &all.drawn[i];
+        web_pass p;
+        size_t first;
+        if (!look_at(d, &p)) continue;
+        result = write(&p, 1);
+        p.mesh = noh_gl_mesh_lod(p.on_gl.mesh, 0, &first); /* of all levels */
+        if (!result && !d->is_written) result = write(&p, 0);
+        d->is_written = 1;
+    }
+    web.gl.BindVertexArray(0);
+    return (int)result;
+}
+
+/* ---- what another renderer asks ---- */
+
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_count(void)
+{
+    return all.count;
+}
+static noh_mesh mesh_of(uint32_t i, uint32_t level)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(&web.pack, all.drawn[i].mesh, &mesh, NULL);
+    return noh_mesh_at_lod(&mesh, level);
+}
+EMSCRIPTEN_KEEPALIVE const char *web_drawn_name(uint32_t i)
+{
+    return mesh_of(i, 0).name;
+}
+/* Of the finest level; buffers are as long. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_vertices(uint32_t i)
+{
+    return mesh_of(i, 0).header->vertex_count;
+}
+/* 1: tangents, 2: texture coordinates, 4: colours. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_has(uint32_t i)
+{
+    return mesh_of(i, 0).header->flags & (NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS);
+}
+/* The level that was written last. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_level(uint32_t i)
+{
+    return all.drawn[i].level;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_level_count(uint32_t i)
+{
+    return mesh_of(i, 0).header->level_count;
+}
+/* The name of a buffer of floats: 0 positions (3), 1 normals (3), 2 tangents (4), 3 texture coordinates (2), 4 colours
+ * (4). */
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_buffer(uint32_t i, uint32_t out)
+{
+    return all.drawn[i].outs[out].name;
+}
+/* A level's indices, and how many bytes each has. */
+EMSCRIPTEN_KEEPALIVE const void *web_drawn_indices(uint32_t i, uint32_t level)
+{
+    return mesh_of(i, level).indices;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_index_count(uint32_t i, uint32_t level)
+{
+    return mesh_of(i, level).header->index_count;
+}
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_index_bytes(uint32_t i)
+{
+    return mesh_of(i, 0).header->index_bytes;
+}
+/* A level's submeshes: uint32_t [count][6], of which the first three are the first index, how many, the material. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_part_count(uint32_t i, uint32_t level)
+{
+    return mesh_of(i, level).header->submesh_count;
+}
+EMSCRIPTEN_KEEPALIVE const noh_submesh *web_drawn_parts(uint32_t i, uint32_t level)
+{
+    return mesh_of(i, level).submeshes;
+}
+
+/* A material: its name; and base colour (4), roughness, metallic, emissive (3), alpha cutoff or -1, scale of the normal
+ * map, 1 if it blends, 1 if double-sided, 1 if unlit. Valid until the next call. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_material_count(void)
+{
+    return web.pack.material_count;
+}
+EMSCRIPTEN_KEEPALIVE const char *web_material_name(uint32_t m)
+{
+    return noh_pack_string(&web.pack, web.pack.materials[m].name);
+}
+EMSCRIPTEN_KEEPALIVE const float *web_material(uint32_t m)
+{
+    static float told[14];
+    const noh_material *of = &web.pack.materials[m];
+    memcpy(told, of->base_color, sizeof of->base_color);
+    told[4] = of->roughness;
+    told[5] = of->metallic;
+    memcpy(told + 6, of->emissive, sizeof of->emissive);
+    told[9] = of->flags & NOH_MATERIAL_MASK ? of->alpha_cutoff : -1.0f;
+    told[10] = of->normal_scale;
+    told[11] = of->flags & NOH_MATERIAL_BLEND ? 1.0f : 0.0f;
+    told[12] = of->flags & NOH_MATERIAL_DOUBLE_SIDED ? 1.0f : 0.0f;
+    told[13] = of->flags & NOH_MATERIAL_UNLIT ? 1.0f : 0.0f;
+    return told;
+}
+/* The name of a texture of it, once a frame was written; 0: none. which: 0 base colour, 1 normals, 2 occlusion,
+ * roughness and metallic, 3 what it emits. */
+EMSCRIPTEN_KEEPALIVE uint32_t web_material_picture(uint32_t m, uint32_t which)
+{
+    const noh_material *of = &web.pack.materials[m];
+    const uint32_t textures[4] = { of->base_color_texture, of->normal_texture, of->surface_texture,
+                                   of->emissive_texture };
+    return all.pictures && textures[which] != NOH_NONE ? all.pictures[textures[which]].name : 0u;
+}
+
+/* What a ray hits: its distance; negative: nothing. The place is in web_hit_point, the names are those of
+ * web_picked_mesh and web_picked_joint. */
+EMSCRIPTEN_KEEPALIVE float web_pick_ray(float x, float y, float z, float dx, float dy, float dz, float most)
+{
+    const float origin[3] = { x, y, z }, direction[3] = { dx, dy, dz };
+    return noh_stage_pick(web.stage, origin, direction, most, &web.hit, NULL) == NOH_OK ? web.hit.distance : -1.0f;
+}
+EMSCRIPTEN_KEEPALIVE const float *web_hit_point(void)
+{
+    return web.hit.point;
+}
