@@ -66,7 +66,7 @@ function shadeAsNoh(scene, from, view, white) {
 // The same geometry without its targets, in a scene of its own.
 function atRest(mesh) {
     const rest = mesh.clone(`${mesh.name} at rest`, mesh.parent);
-    rest.morphTargetManager = null;
+    Object.assign(rest, { morphTargetManager: null, hasVertexAlpha: mesh.hasVertexAlpha });
     rest.material = mesh.material.clone(`${mesh.material.name} at rest`);
     return rest;
 }
@@ -85,7 +85,10 @@ export async function open(canvas, bounds, names) {
     const white = RawTexture.CreateRGBATexture(new Uint8Array([255, 255, 255, 255]), 1, 1, scene, false, false);
     const loaded = await ImportMeshAsync('/asset.glb', scene);
     const meshes = loaded.meshes.filter((mesh) => mesh.getTotalVertices() > 0);
-    for (const mesh of meshes) mesh.material = shadeAsNoh(scene, mesh.material, view, white);
+    for (const mesh of meshes) {
+        mesh.hasVertexAlpha = mesh.material.needAlphaBlending(); // colours of four components would blend what is opaque
+        mesh.material = shadeAsNoh(scene, mesh.material, view, white);
+    }
     const rest = meshes.map(atRest);
     for (const group of loaded.animationGroups) group.dispose();
     const managers = meshes.map((mesh) => mesh.morphTargetManager);
