@@ -19,7 +19,7 @@ command -v emcc >/dev/null 2>&1 || leave_out 'no emcc here (emscripten)'
 . tests/web/find_browser.sh
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
-find_browser "$build/web-check" playwright-core axe-core typescript
+find_browser "$build/web-check" playwright-core axe-core typescript three @types/three
 
 ok() { passed=$((passed + 1)); }
 not_ok() {
@@ -82,14 +82,17 @@ count() { # CODE LOG
 check_pack() {
     out=$build/web-check/$name
     mkdir -p "$out"
-    rm -f "$out/level.png"
+    rm -f "$out"/*.png
     : >"$out/log.txt"
     # a pack for a part of the page alone
-    [ "$all" = 0 ] || timeout -k 5 500 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size >"$out/log.txt" 2>&1
+    [ "$all" = 0 ] || timeout -k 5 500 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size "$paths" >"$out/log.txt" 2>&1
     code=$?
     [ "$all" = 0 ] || count $code "$out/log.txt"
-    timeout -k 5 500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
-    count $? "$out/figure.txt"
+    : >"$out/figure.txt"
+    if [ -n "$figure" ]; then
+        NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
+        count $? "$out/figure.txt"
+    fi
     if [ "$all" = 1 ]; then
         timeout -k 5 500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
         count $? "$out/load.txt"
@@ -106,18 +109,19 @@ check_pack() {
 $(cat "$out/log.txt" "$out/figure.txt" | grep '^# budget ')
 END
     [ "$all" = 1 ] && [ -z "${NOH_WEB_ONLY:-}" ] || return
+    shown_pack=$build/web/$name/page.noh # as rounded for the wire form
     for shown in 'rest --light none --weight smile=0' 'smile --light none --weight smile=1' "clip --light none --clip $clip --time $time"; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$pack" --springs off --light none -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
-        for path in auto mrt gather; do compare "${path}_${shown%% *}"; done
+        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        for path in $paths; do compare "${path}_${shown%% *}"; done
     done
     for shown in 'room --light room' 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
-        for path in auto gather; do compare "${path}_${shown%% *}"; done
+        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        for path in $paths; do [ ! -f "$out/${path}_${shown%% *}.png" ] || compare "${path}_${shown%% *}"; done
     done
     [ -f "$out/level.png" ] || return
-    "$build/noh" render "$pack" --light none -o "$out/native.png" --size ${size}x$size --light none --lod 2 >/dev/null || not_ok 'noh render --lod'
+    "$build/noh" render "$shown_pack" --light none -o "$out/native.png" --size ${size}x$size --light none --lod 2 >/dev/null || not_ok 'noh render --lod'
     compare level
 }
 
@@ -129,19 +133,45 @@ add() {
     failed=$((failed + $(echo "$said" | sed -n 's/^[0-9]* passed, \([0-9]*\) failed.*/\1/p')))
 }
 
+spent() { # WHAT: the clock and the processors' time so far, with NOH_WEB_TIMES=1
+    [ "${NOH_WEB_TIMES:-0}" != 1 ] || { echo "# $1: $(date +%T)"; times; }
+}
+
 for pack in "$@"; do
     case $pack in /*) ;; *) pack=$PWD/$pack ;; esac
-    name=$(basename "$pack" .noh) clip=smile time=0.5 all=1
-    case $name in wig | puppet_falls | *_transfer) all=0 ;; esac
-    [ "$name" != puppet ] || clip=dance time=3.25
+    name=$(basename "$pack" .noh) clip=smile time=0.5 all=1 paths='auto mrt gather'
+    figure=hair,spots,transfer,pushes,small # the parts of figure.js
+    case $name in
+    wig) all=0 figure=hair ;;
+    puppet_falls) all=0 figure=pushes ;;
+    *_transfer) all=0 figure=transfer ;;
+    puppet) figure= ;;
+    esac
+    [ "$name" != puppet ] || clip=dance time=3.25 paths=auto # the other paths are the mask's to try
     if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
     [ "$name" != mask ] || add tests/web_package.sh "$pack"
 done
 add tests/web_convert.sh
+# How much of a figure is in the picture while clips play.
+assets=${NOH_ASSETS:-../shared/assets}
+inside() { # NAME RATE CLIP...
+    name=$1 out=$build/web-check/$1
+    shift
+    timeout -k 5 3000 node tests/web/silhouette.js "$build/web/$name" "$chromium" "$out" "$@" >"$out/silhouette.log" 2>&1
+    count $? "$out/silhouette.log"
+}
+if [ "${NOH_LONG:-0}" != 1 ]; then
+    [ ! -f "$build/web/puppet/index.html" ] || [ -n "${NOH_WEB_ONLY:-}" ] || inside puppet 3 dance
+elif [ -f "$assets/hero/body.glb" ]; then
+    mkdir -p "$build/web-check/body"
+    "$build/noh" build "$assets/hero/body.glb" -o "$build/web-check/body.noh" --quiet &&
+        make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$build/web-check/body.noh" >/dev/null || not_ok 'no page of the body'
+    inside body 30
+fi
 if [ "${NOH_LONG:-0}" = 1 ] && [ -f "$build/web/mask/index.html" ]; then # the crowd: its pack takes a minute
     name=festival out=$build/web-check/festival
     mkdir -p "$out"
-    make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web-festival WEB_PACK="$build/mask.noh" >/dev/null || not_ok 'the crowd does not build'
+    make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web-festival WEB_PACK="$build/page/mask.noh" >/dev/null || not_ok 'the crowd does not build'
     timeout -k 5 500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
     count $? "$out/log.txt"
 fi

@@ -6,7 +6,7 @@ const fs = require('fs');
 const http = require('http');
 const path = require('path');
 const zlib = require('zlib');
-const { folder, out, check, keep, same, drawn, open, close, run } = require('./harness.js');
+const { folder, out, check, keep, same, drawn, open, close, faults, run } = require('./harness.js');
 
 const clip = process.argv[5];
 
@@ -82,11 +82,9 @@ async function tabbed(browser) {
 
 // What axe finds wrong: nothing, in both colour schemes, wide and narrow.
 async function access(browser) {
-    const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
     for (const [colorScheme, width, height, tab] of [['dark', 1440, 900, 'all'], ['light', 1440, 900, 'face'], ['light', 390, 844, 'motion'], ['dark', 844, 390, 'several']]) {
         const page = await open(browser, { viewport: { width, height }, colorScheme, hasTouch: width < 1000, isMobile: width < 1000 }, `clip=none&size=256&tab=${tab}`);
-        await page.evaluate(axe);
-        const found = await page.evaluate(() => window.axe.run().then((r) => r.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`)));
+        const found = await faults(page);
         check(`access: axe finds nothing, ${colorScheme}, ${width} x ${height}`, found.length === 0, found.join(' | '));
         if (width < 1000) {
             const small = await page.locator('button:visible, select:visible, input[type=range]:visible').evaluateAll((e) => e.filter((c) => c.getBoundingClientRect().height < 44).map((c) => c.id));

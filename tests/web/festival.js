@@ -3,7 +3,7 @@
 // "#" lines, what a frame takes at 640 x 360 for several counts.
 'use strict';
 const path = require('path');
-const { out, check, keep, same, run, address } = require('./harness.js');
+const { out, check, keep, same, faults, run, address } = require('./harness.js');
 
 const minute = { timeout: 120000 };
 
@@ -30,6 +30,13 @@ async function crowd(browser) {
     const again = await open(browser, 'agents=40&size=320x180&still=2');
     await keep(again, 'festival_again.png');
     check('crowd: the same picture again', same('festival_still.png', 'festival_again.png'));
+    for (const [colorScheme, width, height] of [['dark', 900, 640], ['light', 390, 844]]) {
+        await again.emulateMedia({ colorScheme });
+        await again.setViewportSize({ width, height });
+        const wrong = await faults(again);
+        check(`crowd: axe finds nothing, ${colorScheme}, ${width} x ${height}`, wrong.length === 0, wrong.join(' | '));
+        await again.screenshot({ path: path.join(out, `festival_${width}.png`) });
+    }
     await close(again, 'crowd, again');
     const frame = async (act) => {
         const frames = await page.evaluate(() => window.noh.frames);

@@ -33,13 +33,17 @@ const slide = (page, selector, value) => drawn(page, () => page.locator(selector
 }, value));
 const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
 
-// In plain light, without faces that live and with all panels, unless the search says otherwise.
+// In plain light, without faces that live and with all panels, unless the search says otherwise; in a small picture at a
+// coarse level, since a software rasteriser pays for each pixel and triangle.
+const asTested = { light: 'plain', alive: 'off', tab: 'all', size: 192, detail: 3 };
 async function open(browser, options, search) {
+    const asked = new URLSearchParams(search);
+    for (const [name, value] of Object.entries(asTested)) if (!asked.has(name)) asked.set(name, value);
     const page = await browser.newPage(options);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
-    await page.goto(`${address}/?${search}&light=plain&alive=off&tab=all`);
+    await page.goto(`${address}/?${asked}`);
     await page.waitForFunction(() => window.noh.whole || window.noh.error, null, { timeout: 60000 });
     return page;
 }
@@ -60,8 +64,28 @@ async function loseAndRestore(page) {
     await page.waitForFunction(() => window.noh.restored === 1);
 }
 
+// What axe finds wrong in a page, or in a part of it.
+async function faults(page, part) {
+    await page.evaluate(fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8'));
+    return page.evaluate((selector) => window.axe.run(selector || document).then((r) => r.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`)), part || '');
+}
+
 const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
 const toggle = (page, selector) => drawn(page, () => page.click(selector));
+
+// CPU seconds of the browser's processes so far, by kind, with NOH_WEB_TIMES=1; those of a closed page are gone.
+async function spent(browser) {
+    if (process.env.NOH_WEB_TIMES !== '1') return null;
+    const client = await browser.newBrowserCDPSession(), { processInfo } = await client.send('SystemInfo.getProcessInfo'), sum = {};
+    await client.detach();
+    for (const { type, cpuTime } of processInfo) sum[type] = (sum[type] || 0) + cpuTime;
+    return sum;
+}
+
+function tell(name, seconds, before, after) {
+    const cpu = ['GPU', 'browser'].map((type) => `${type} ${(after[type] - (before[type] || 0)).toFixed(1)}`).join(', ');
+    console.log(`# ${path.basename(folder)} ${name}: ${seconds.toFixed(1)} s; of processors: ${cpu}`);
+}
 
 // { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served beside the
 // page.
@@ -71,7 +95,12 @@ async function main(parts, flags, places) {
     const browser = await launch(executablePath, flags);
     const only = (process.env.NOH_WEB_ONLY || '').split(',').filter((name) => name);
     try {
-        for (const name of Object.keys(parts)) if (!only.length || only.includes(name)) await parts[name](browser);
+        for (const name of Object.keys(parts)) {
+            if (only.length && !only.includes(name)) continue;
+            const begin = Date.now(), before = await spent(browser);
+            await parts[name](browser);
+            if (before) await tell(name, (Date.now() - begin) / 1000, before, await spent(browser));
+        }
     } finally {
         await browser.close();
         served.server.close();
@@ -82,4 +111,4 @@ async function main(parts, flags, places) {
 const run = (parts, flags, places) => main(parts, flags, places).then(() => process.exit(failures ? 1 : 0))
     .catch((error) => { console.log(`not ok ${told + 1} - ${error}`); process.exit(1); });
 
-module.exports = { folder, out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, run, address: () => address };
+module.exports = { folder, out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, faults, run, address: () => address };

@@ -132,6 +132,6 @@ async function slow(browser) {
     await page.close();
 }
 
-// Of the page, not of the pack: once is enough, and once more with levels, of which the coarsest come first.
-const parts = path.basename(folder) === 'puppet' ? { arrives, slow } : images > 1 ? { arrives, own, slow } : { arrives, refused, own, slow };
+// Of the page, not of the pack: once is enough. The puppet has no levels that come first.
+const parts = path.basename(folder) === 'puppet' ? { arrives } : { arrives, refused, own, slow };
 run(parts, [], { '/held': heldBack, '/cut': cut, '/flipped': flipped });

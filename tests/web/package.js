@@ -4,7 +4,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { folder, out, check, run, address } = require('./harness.js');
+const { folder, out, check, faults, run, address } = require('./harness.js');
 
 const project = process.argv[5];
 const minute = { timeout: 60000 };
@@ -117,6 +117,8 @@ async function used(browser) {
     await whole(page, 'it');
     const canvas = page.locator('noh-character canvas');
     check('used: its name is said', (await canvas.getAttribute('aria-label')).startsWith('a mask;') && await canvas.getAttribute('role') === 'application');
+    const wrong = await faults(page, 'noh-character');
+    check('used: axe finds nothing', wrong.length === 0, wrong.join(' | '));
     await frames(page, 'it', 1);
     const state = () => page.evaluate(() => { const { camera, chosen, paused } = document.getElementById('it').character; return { ...camera, light: chosen.light, paused }; });
     const before = await state();

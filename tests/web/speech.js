@@ -68,7 +68,7 @@ async function open(browser, options, prepare) {
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     if (prepare) await page.addInitScript(prepare);
-    await page.goto(`${address}/?clip=none&light=plain&size=256&tab=all`);
+    await page.goto(`${address}/?clip=none&light=plain&size=192&detail=3&tab=all`);
     await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
     await page.click('#alive'); // a mouth that moves is then the speech's
     return page;
@@ -107,18 +107,16 @@ async function refused(browser) {
     await page.click('#listen');
     check('refused: it says so, and what to do', await words(page, 'Allow it for this page'), await page.textContent('#speech-text'));
     check('refused: nothing listens', await page.getAttribute('#listen', 'aria-pressed') === 'false' && await page.evaluate(() => !character.speech.speaks));
-    await close(page, 'refused');
     for (const [name, error, said] of [['no device', 'NotFoundError', 'There is no microphone'], ['a device in use', 'NotReadableError', 'another program'],
         ['an unknown error', 'OddError', 'cannot be used: odd']]) {
-        const other = await open(browser, {}, `navigator.mediaDevices.getUserMedia = () => Promise.reject(Object.assign(new Error('odd'), { name: '${error}' }));`);
-        await other.click('#listen');
-        check(`${name}: it says so`, await words(other, said), await other.textContent('#speech-text'));
-        await close(other, name);
+        await page.evaluate((e) => { navigator.mediaDevices.getUserMedia = () => Promise.reject(Object.assign(new Error('odd'), { name: e })); }, error);
+        await page.click('#listen');
+        check(`${name}: it says so`, await words(page, said), await page.textContent('#speech-text'));
     }
-    const old = await open(browser, {}, "Object.defineProperty(navigator, 'mediaDevices', { value: undefined });");
-    await old.click('#listen');
-    check('no https: it says so', await words(old, 'https'), await old.textContent('#speech-text'));
-    await close(old, 'no https');
+    await page.evaluate(() => Object.defineProperty(navigator, 'mediaDevices', { value: undefined }));
+    await page.click('#listen');
+    check('no https: it says so', await words(page, 'https'), await page.textContent('#speech-text'));
+    await close(page, 'refused');
 }
 
 async function file(browser) {
