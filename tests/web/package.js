@@ -13,12 +13,12 @@ const inside = path.join(project, 'node_modules/noh-character');
 // A page with this body. Elements of the page have their ids as names.
 async function show(browser, body, options) {
     fs.writeFileSync(path.join(project, 'page.html'), `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>test</title><link rel="icon" href="data:,">
-<style>body { margin: 0 } noh-character { height: 200px }</style><script type="module" src="node_modules/noh-character/index.js"></script><main>${body}</main></html>`);
+<style>body { margin: 0 } noh-character { height: 100px }</style><script type="module" src="node_modules/noh-character/index.js"></script><main>${body}</main></html>`);
     return visit(browser, 'page.html', options);
 }
 
 async function visit(browser, name, options) {
-    const page = await browser.newPage({ viewport: { width: 400, height: 500 }, ...options });
+    const page = await browser.newPage({ viewport: { width: 200, height: 250 }, ...options });
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
@@ -45,7 +45,7 @@ async function readme(browser) {
     const html = /```html\n([^]*?)```/.exec(fs.readFileSync(path.join(inside, 'README.md'), 'utf8'))[1];
     fs.writeFileSync(path.join(project, 'index.html'), html);
     check('readme: it has ten lines at most', html.trim().split('\n').length <= 10);
-    const page = await visit(browser, 'index.html');
+    const page = await visit(browser, 'index.html', { viewport: { width: 120, height: 160 } }); // pixels are dear here
     await page.waitForFunction(() => document.querySelector('noh-character').whole || document.querySelector('noh-character').error, null, minute);
     check('readme: it is there', await page.evaluate(() => document.querySelector('noh-character').error) === '');
     const blinks = await page.waitForFunction(() => document.querySelector('noh-character').weight('eyeBlinkLeft') > 0.5, null, minute).then(() => true, () => false);
