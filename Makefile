@@ -472,7 +472,7 @@ web: deps-web
 	@sh tools/web_sizes.sh $(WEB)
 
 # Of the mask and of the puppet; or of one pack, if it is named.
-WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/demo/puppet.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
 	@$(MAKE) --no-print-directory DEPS=0 npm

@@ -93,10 +93,11 @@ check_pack() {
         NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
         count $? "$out/figure.txt"
     fi
-    if [ "$all" = 1 ]; then
+    case $name in mask | wig) # with levels, of which the coarsest come first, and without
         timeout -k 5 500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
         count $? "$out/load.txt"
-    fi
+        ;;
+    esac
     if [ "$name" = mask ]; then
         timeout -k 5 500 node tests/web/controls.js "$build/web/$name" "$chromium" "$out" "$clip" >"$out/controls.txt" 2>&1
         count $? "$out/controls.txt"
@@ -145,9 +146,9 @@ for pack in "$@"; do
     wig) all=0 figure=hair ;;
     puppet_falls) all=0 figure=pushes ;;
     *_transfer) all=0 figure=transfer ;;
-    puppet) figure= ;;
+    puppet_levels) figure= ;;
     esac
-    [ "$name" != puppet ] || clip=dance time=3.25 paths=auto # the other paths are the mask's to try
+    [ "$name" != puppet_levels ] || clip=dance time=3.25 paths=auto # the other paths are the mask's to try
     if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
     [ "$name" != mask ] || add tests/web_package.sh "$pack"
 done
@@ -161,7 +162,7 @@ inside() { # NAME RATE CLIP...
     count $? "$out/silhouette.log"
 }
 if [ "${NOH_LONG:-0}" != 1 ]; then
-    [ ! -f "$build/web/puppet/index.html" ] || [ -n "${NOH_WEB_ONLY:-}" ] || inside puppet 3 dance
+    [ ! -f "$build/web/puppet_levels/index.html" ] || [ -n "${NOH_WEB_ONLY:-}" ] || inside puppet_levels 3 dance
 elif [ -f "$assets/hero/body.glb" ]; then
     mkdir -p "$build/web-check/body"
     "$build/noh" build "$assets/hero/body.glb" -o "$build/web-check/body.noh" --quiet &&

@@ -132,6 +132,6 @@ async function slow(browser) {
     await page.close();
 }
 
-// Of the page, not of the pack: once is enough. The puppet has no levels that come first.
-const parts = path.basename(folder) === 'puppet' ? { arrives } : { arrives, refused, own, slow };
+// Of the page, not of the pack: once is enough.
+const parts = images > 1 ? { arrives, refused, own, slow } : { arrives };
 run(parts, [], { '/held': heldBack, '/cut': cut, '/flipped': flipped });
