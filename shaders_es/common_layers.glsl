@@ -47,6 +47,12 @@ void noh_add_streams(inout vec3 position, inout vec3 normal, inout vec3 tangent)
 }
 #endif
 
+/* Where accumulation texel i of a tile, as below, lies in the layers. */
+ivec2 noh_morph_texel(ivec4 tile, int i)
+{
+    return tile.xy + ivec2(i & ((1 << tile.z) - 1), i >> tile.z);
+}
+
 /* Add a vertex's deltas from an instance's tile, given by the four numbers of noh_morph. Texel i of the tile belongs to
  * vertex i. The vertices that no target moves are the last ones of a mesh and have no texel: for them the result is
  * false, and noh_morph_frame is not needed. */
@@ -60,7 +66,7 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
 #ifdef NOH_STREAMS
         noh_add_streams(position, normal, tangent);
 #else
-        ivec2 texel = tile.xy + ivec2(vertex & ((1 << tile.z) - 1), vertex >> tile.z);
+        ivec2 texel = noh_morph_texel(tile, vertex);
         position += NOH_LAYER_FETCH(texel, 0);
 #ifndef NOH_DEPTH_ONLY
         normal += NOH_LAYER_FETCH(texel, 1);

@@ -31,7 +31,7 @@ float noh_fetch_occlusion(ivec4 tile, int vertex)
     if (vertex >= tile.w) {
         return 0.0;
     }
-    ivec3 texel = ivec3(tile.xy + ivec2(vertex & ((1 << tile.z) - 1), vertex >> tile.z), 0);
+    ivec3 texel = ivec3(noh_morph_texel(tile, vertex), 0);
 #ifdef NOH_LAYERS_UINT
     return uintBitsToFloat(texelFetch(noh_layers, texel, 0).w);
 #else

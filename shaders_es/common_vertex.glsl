@@ -5,11 +5,16 @@
  *
  *   NOH_DEPTH_ONLY   defined: depth alone is drawn. Normals and tangents are neither fetched nor computed, their deltas
  *                    not either, and they are 0; nor are colours and uv, except with
- *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Without NOH_DEPTH_ONLY that needs no define */
+ *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Without NOH_DEPTH_ONLY that needs no define
+ *   NOH_UV_TARGETS   defined: the mesh has NOH_MESH_UV_TARGETS, and its texture coordinates are fetched */
 uniform mat4 noh_view_projection;
 uniform vec4 noh_world[3];      /* rows of 3 x 4 */
 uniform vec4 noh_normal[3];     /* rows of the inverse transpose of its 3 x 3 part, up to a positive factor */
+#ifdef NOH_UV_TARGETS
+uniform vec4 noh_uv[2];         /* offset, scale; x: texture coordinates for a unit in their texel */
+#else
 uniform vec4 noh_uv;            /* offset, scale */
+#endif
 
 layout(location = 0) in vec3 noh_a_position;
 #ifndef NOH_DEPTH_ONLY
@@ -19,6 +24,9 @@ layout(location = 2) in ivec2 noh_a_tangent;
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
 layout(location = 3) in vec2 noh_a_uv;
 layout(location = 4) in vec4 noh_a_color;
+#ifdef NOH_UV_TARGETS
+layout(location = 14) in highp uint noh_a_uv_texel;
+#endif
 #endif
 
 /* The bind pose. Where the CPU finishes vertices (noh_gl_morph_desc.vertices), noh_a_position and noh_a_normal are
@@ -133,6 +141,20 @@ vec4 noh_tint_of(ivec4 row)
 }
 #endif
 
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+/* Texture coordinates, with what the targets change of them. */
+vec2 noh_uv_of(ivec4 tile)
+{
+#ifdef NOH_UV_TARGETS
+    vec2 uv = noh_uv[0].xy + noh_uv[0].zw * noh_a_uv;
+    int texel = int(noh_a_uv_texel);
+    return texel < tile.w ? uv + NOH_LAYER_FETCH(noh_morph_texel(tile, texel), 0).xy * noh_uv[1].x : uv;
+#else
+    return noh_uv.xy + noh_uv.zw * noh_a_uv;
+#endif
+}
+#endif
+
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
@@ -151,7 +173,7 @@ noh_vertex noh_fetch()
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
     noh_v_rest = noh_a_rest - noh_center;
     noh_v_moved = v.model - noh_a_rest;
-    noh_wrinkle_vertex(noh_uv.xy + noh_uv.zw * noh_a_uv);
+    noh_wrinkle_vertex(noh_uv_of(tile));
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_EYE
@@ -178,7 +200,7 @@ noh_vertex noh_fetch()
     v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror turns the frame inside out */
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    v.uv = noh_uv.xy + noh_uv.zw * noh_a_uv;
+    v.uv = noh_uv_of(tile);
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
 #endif
     return v;

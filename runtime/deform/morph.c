@@ -184,6 +184,7 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
     const float *p, *n, *t;
     size_t texel = noh_mesh_accumulation_texel(mesh, index);
     noh_mesh_vertex(mesh, index, out);
+    noh_morph_uv(mesh, layers, index, out->uv);
     if (texel >= mesh->header->touched_count) {
         return;
     }
@@ -204,6 +205,15 @@ void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint
             out->tangent[i] -= along * out->normal[i];
         }
         noh_normalize3(out->tangent, rest_tangent);
+    }
+}
+
+void noh_morph_uv(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float uv[2])
+{
+    const size_t texel = noh_mesh_uv_texel(mesh, index);
+    NOH_ASSERT(layers && uv);
+    for (size_t i = 0; texel < mesh->header->touched_count && i < 2; i++) {
+        uv[i] += layers->position[3u * texel + i] * mesh->header->uv_per_unit;
     }
 }
 

@@ -79,10 +79,16 @@ void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_mor
 /* "scalar", "sse2", "avx2" or "neon": what noh_morph_accumulate was compiled to. */
 const char *noh_morph_simd(void);
 
-/* The vertex as drawn: position, normal and tangent of the bind pose plus their differences. The normal is made unit,
- * the tangent orthogonal to it and unit; its handedness stays. A direction that vanishes becomes the bind pose's.
+/* The vertex as drawn: position, normal, tangent and texture coordinates of the bind pose plus their differences. The
+ * normal is made unit, the tangent orthogonal to it and unit; its handedness stays. A direction that vanishes becomes
+ * the bind pose's.
  * ranges  index below vertex_count */
 void noh_morph_vertex(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
+
+/* Add to uv[2], those of the bind pose, what the targets change of a vertex's texture coordinates: noh_morph_vertex has
+ * done so. Nothing in a mesh without NOH_MESH_UV_TARGETS.
+ * ranges  index below vertex_count */
+void noh_morph_uv(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float uv[2]);
 
 /* Only its position, in the same bits. layers NULL: that of the bind pose. */
 void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, float out[3]);

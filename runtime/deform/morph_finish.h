@@ -9,7 +9,8 @@
  * of 16-bit integers; and where the mesh has tangents its tangent as such a pair with the handedness in the lowest bit,
  * as the mesh's own attributes are. Each pair is the nearest one to the direction: a decoded normal is within
  * NOH_FINISHED_NORMAL_ERROR of noh_morph_vertex's, a tangent within NOH_FINISHED_TANGENT_ERROR. The scalar bits
- * everywhere, whatever instructions the processor has.
+ * everywhere, whatever instructions the processor has. Texture coordinates stay those of the mesh: what targets change
+ * of them (NOH_MESH_UV_TARGETS) is noh_morph_uv's.
  *
  * source  the octahedron: Meyer, Suessmuth, Sussner, Stamminger, Greiner: On floating-point normal vectors, 2010; errors
  *         of its pairs: Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, 2014

@@ -118,6 +118,7 @@ void noh_skin_rest(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_
     } else {
         noh_mesh_vertex(mesh, index, out);
         noh_mesh_directions(mesh, index, out->normal, out->tangent); /* unnormalised: noh_skin_apply makes them unit */
+        if (layers) noh_morph_uv(mesh, layers, index, out->uv);
     }
 }
 

@@ -109,7 +109,8 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
                      const noh_gl_morph_binding *morph)
 {
     const noh_mesh_header *h = mesh->mesh.header;
-    r->gl->Uniform4f(v->u_uv, h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1]);
+    const float uv[8] = { h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1], h->uv_per_unit };
+    r->gl->Uniform4fv(v->u_uv, v->key.uv_targets ? 2 : 1, uv);
     r->gl->Uniform3f(v->u_bounds_min, h->bounds_min[0], h->bounds_min[1], h->bounds_min[2]);
     r->gl->Uniform3f(v->u_bounds_size, h->bounds_max[0] - h->bounds_min[0], h->bounds_max[1] - h->bounds_min[1],
                      h->bounds_max[2] - h->bounds_min[2]);

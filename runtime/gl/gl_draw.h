@@ -44,6 +44,7 @@ extern "C" {
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
 #define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer's record; only with a transfer */
 #define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of it */
+#define NOH_ATTRIBUTE_UV_TEXEL 14u       /* uint: accumulation texel of its UV; only with NOH_MESH_UV_TARGETS */
 /* NOH_ATTRIBUTE_STREAMS and three more (gl_morph.h): uvec3: delta texels; only on the path streams. On others, the first
  * two are those of the bind pose, whatever is at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL: */
 #define NOH_ATTRIBUTE_REST 10u        /* vec3 */

@@ -194,6 +194,9 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
     if (m->mesh.header->flags & NOH_MESH_TEXELS) {
         set_words(gl, NOH_ATTRIBUTE_TEXEL, 1, stride, stride - 4u);
     }
+    if (m->mesh.header->flags & NOH_MESH_UV_TARGETS) {
+        set_words(gl, NOH_ATTRIBUTE_UV_TEXEL, 1, stride, (uint32_t)noh_mesh_uv_texel_offset(&m->mesh));
+    }
     if (m->influences.name) {
         set_influences(gl, m);
     }

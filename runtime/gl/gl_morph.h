@@ -59,8 +59,8 @@ typedef enum noh_morph_path {
     NOH_MORPH_CPU,
     NOH_MORPH_BLEND, /* a policy: additive blending, layered draws where supported, else per-layer passes */
     /* Never chosen by itself. Of more than four active targets the four are drawn that move the mesh most. No crowds
-     * in one draw, no change of occlusion, no levels that come later, f32 only; what else reads sums, as marks and
-     * hair do, finds zeros */
+     * in one draw, no change of occlusion or of texture coordinates, no levels that come later, f32 only; what else
+     * reads sums, as marks and hair do, finds zeros */
     NOH_MORPH_STREAMS
 } noh_morph_path;
 #define NOH_MORPH_PATH_COUNT 8
@@ -94,7 +94,7 @@ typedef struct noh_gl_morph_desc {
     /* 1: where the path is cpu, finished vertices in vertex buffers (deform/morph_finish.h) in place of sums in a
      * texture, which is faster. Draw by noh_gl_draw_mesh or noh_gl_mesh_bind, with a binding that was
      * taken after the last update, and a renderer with layers_uint NOH_LAYERS_VERTICES; noh_gl_draw_crowd cannot.
-     * Shaders find the bind pose in noh_a_rest. Where f16, transfers or `coarse` ask for sums, there are none:
+     * Shaders find the bind pose in noh_a_rest. Where f16, transfers, UV targets or `coarse` ask for sums, there are none:
      * plan.vertex_ring tells. Default (0) sums in a texture */
     int vertices;
     const char *simd; /* kernel of the path cpu by its name (deform/morph.h), for tests. NULL, or one that is not here:

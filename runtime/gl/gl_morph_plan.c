@@ -107,9 +107,17 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
 
 static uint32_t has_occlusion(const noh_gl_morph_desc *desc);
 
+static int has_uv_targets(const noh_gl_morph_desc *desc)
+{
+    int has = 0;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) has |= (desc->meshes[i].header->flags & NOH_MESH_UV_TARGETS) != 0;
+    return has;
+}
+
 static const char *missing_of_streams(const noh_gl_morph_desc *desc)
 {
     if (desc->coarse) return "streams are not loaded later: give the accumulator all levels";
+    if (has_uv_targets(desc)) return "streams do not carry what targets change of texture coordinates";
     return has_occlusion(desc) ? "streams do not carry what targets change of a transfer's occlusion" : NULL;
 }
 
@@ -149,7 +157,7 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
 static uint32_t vertex_ring(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, const noh_gl_morph_plan *plan)
 {
     if (!desc->vertices || plan->path != NOH_MORPH_CPU || plan->accumulate == NOH_ACCUMULATE_F16 || plan->occlusion ||
-        desc->coarse || !plan->pair_count) {
+        desc->coarse || !plan->pair_count || has_uv_targets(desc)) {
         return 0;
     }
     return noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) ? 2u : NOH_VERTEX_RING_MAX;

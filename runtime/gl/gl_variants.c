@@ -35,6 +35,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
         key.texture = key.crowd = 1;
     }
     key.texels = (h->flags & NOH_MESH_TEXELS) != 0;
+    key.uv_targets = (h->flags & NOH_MESH_UV_TARGETS) != 0;
     key.layers_uint = (uint8_t)layers_uint;
     key.view = (uint8_t)view;
     if (mesh->transfer) key.transfer = (uint8_t)(mesh->transfer->order | mesh->transfer->flags);
@@ -67,6 +68,7 @@ noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
     key.encode_srgb = key.two_layers = key.features = key.lit = key.transfer = 0;
     key.depth = 1;
     key.cut = cut != 0;
+    key.uv_targets = key.uv_targets && cut;
     return key;
 }
 
@@ -110,6 +112,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     } flags[] = { { key.texture, "#define NOH_PALETTE_TEXTURE\n" },
                   { key.dual_quaternion, "#define NOH_DUAL_QUATERNION\n" },
                   { key.texels, "#define NOH_MORPH_TEXELS\n" },
+                  { key.uv_targets, "#define NOH_UV_TARGETS\n" },
                   { key.crowd, "#define NOH_CROWD\n" },
                   { key.layers_uint == 1u, "#define NOH_LAYERS_UINT\n" },
                   { key.layers_uint == NOH_LAYERS_STREAMS, "#define NOH_STREAMS\n" },
@@ -266,7 +269,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 
 /* What the vertex arrays have: what a game adds, and what those of meshes do (gl_draw.h). Returns how many. Attributes
  * that a mesh lacks are constants of the same kind. */
-#define INPUTS_MAX (14u + NOH_GL_OWN_INPUTS_MAX)
+#define INPUTS_MAX (15u + NOH_GL_OWN_INPUTS_MAX)
 static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,
                             noh_gl_input inputs[INPUTS_MAX])
 {
@@ -277,6 +280,7 @@ static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_d
         { NOH_ATTRIBUTE_UV, GL_FLOAT_VEC2 },
         { NOH_ATTRIBUTE_COLOR, GL_FLOAT_VEC4 },
         { NOH_ATTRIBUTE_TEXEL, GL_UNSIGNED_INT },
+        { NOH_ATTRIBUTE_UV_TEXEL, GL_UNSIGNED_INT },
         { NOH_ATTRIBUTE_LOBE, GL_INT_VEC4 },
         { NOH_ATTRIBUTE_MORE_LOBE, GL_INT_VEC4 },
         { NOH_ATTRIBUTE_STREAMS + 2u, GL_UNSIGNED_INT_VEC3 },

@@ -52,6 +52,7 @@ typedef struct noh_gl_variant_key {
     uint8_t features;        /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t lit;             /* 1: light is that of gl_light.h; with depth 0 */
     uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
+    uint8_t uv_targets;      /* 1: the mesh has NOH_MESH_UV_TARGETS; in depth with cut alone */
 } noh_gl_variant_key;
 
 /* What a material has: a variant pays for nothing else. */
@@ -100,7 +101,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
  * cut  1: of alpha-cut materials */
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut);
 
-#define NOH_GL_DEFINES_BYTES 736u
+#define NOH_GL_DEFINES_BYTES 768u
 
 /* Write the key as lines of #define, zero-terminated. */
 void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);

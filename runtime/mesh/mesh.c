@@ -125,8 +125,14 @@ int noh_mesh_uv_offset(const noh_mesh *mesh)
 
 int noh_mesh_color_offset(const noh_mesh *mesh)
 {
-    int after = (mesh->header->flags & NOH_MESH_TEXELS) ? 8 : 4;
+    int after = 4 + ((mesh->header->flags & NOH_MESH_TEXELS) ? 4 : 0) +
+                ((mesh->header->flags & NOH_MESH_UV_TARGETS) ? 4 : 0);
     return (mesh->header->flags & NOH_MESH_COLORS) ? (int)mesh->header->attribute_stride - after : -1;
+}
+
+int noh_mesh_uv_texel_offset(const noh_mesh *mesh)
+{
+    return (mesh->header->flags & NOH_MESH_UV_TARGETS) ? (int)mesh->header->attribute_stride - 8 : -1;
 }
 
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
@@ -158,6 +164,14 @@ uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex)
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
 {
     return texel_word(mesh, vertex) >> NOH_TEXEL_VERTEX_BITS;
+}
+
+uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex)
+{
+    const int offset = noh_mesh_uv_texel_offset(mesh);
+    NOH_ASSERT(vertex < mesh->header->vertex_count);
+    return offset < 0 ? NOH_TEXEL_NONE
+                      : load_u32(mesh->attributes + (size_t)vertex * mesh->header->attribute_stride + offset);
 }
 
 /* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE: the second heaviest, at most a half, in

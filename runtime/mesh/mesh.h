@@ -81,11 +81,15 @@ void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], 
 int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
+int noh_mesh_uv_texel_offset(const noh_mesh *mesh);
 
 /* A vertex's accumulation texel; header->touched_count or more: it has none, no target moves it. And its palette: 0
  * unless the mesh is split into several. */
 uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
+
+/* The accumulation texel of a vertex's texture coordinates; header->touched_count or more: no target moves those. */
+uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex);
 
 /* The joints that move a vertex of a skinned mesh.
  * shapes   joints[influence_count] indices into the skin's joints, weights[influence_count]

@@ -135,8 +135,20 @@ noh_level_sums noh_check_level_sums(const noh_mesh_header *h)
 
 static int texel_is_right(const noh_mesh_header *l, uint32_t vertex, uint32_t texel)
 {
-    return l->level_count > 1 ? texel < l->touched_count || texel == NOH_TEXEL_NONE
-                              : texel <= vertex && (vertex >= l->touched_count || texel == vertex);
+    return l->level_count > 1 || l->flags & NOH_MESH_UV_TARGETS
+               ? texel < l->touched_count || texel == NOH_TEXEL_NONE
+               : texel <= vertex && (vertex >= l->touched_count || texel == vertex);
+}
+
+/* The texel of its texture coordinates is one of the level, too. */
+static noh_result check_uv_texel(const noh_check *check, const noh_mesh_header *l, uint32_t vertex)
+{
+    const uint64_t at = l->attributes_offset + ((uint64_t)vertex + 1u) * l->attribute_stride - 8u;
+    uint32_t texel;
+    memcpy(&texel, check->bytes + at, 4);
+    return texel < l->touched_count || texel == NOH_TEXEL_NONE
+               ? NOH_OK
+               : noh_check_fail(check, "texture coordinates of a vertex have a texel that its level does not have", at);
 }
 
 /* Every vertex of a level refers to a texel that the level has. */
@@ -154,6 +166,10 @@ static noh_result check_texels(const noh_check *check, const noh_mesh_header *h,
             return noh_check_fail(check,
                                   "vertex shares the texel of a later vertex, or one that its level does not have",
                                   l->attributes_offset + (uint64_t)v * l->attribute_stride);
+        }
+        if (l->flags & NOH_MESH_UV_TARGETS) {
+            const noh_result result = check_uv_texel(check, l, v);
+            if (result) return result;
         }
     }
     return NOH_OK;

@@ -43,8 +43,25 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
         return noh_check_fail(check, "rectangle count is over its limit: there are fewer delta texels",
                               offsetof(noh_mesh_header, rect_count));
     }
-    if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS)) {
+    if (h->flags & ~(NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS | NOH_MESH_DUAL_QUATERNION | NOH_MESH_TEXELS |
+                     NOH_MESH_UV_TARGETS)) {
         return noh_check_fail(check, "unknown mesh flags", offsetof(noh_mesh_header, flags));
+    }
+    return NOH_OK;
+}
+
+/* Targets move texture coordinates of a mesh that has some and refers to their texels, by a number that is one. */
+static noh_result check_uv_targets(const noh_check *check, const noh_mesh_header *h)
+{
+    const uint32_t needed = NOH_MESH_UVS | NOH_MESH_TEXELS;
+    const int moves = (h->flags & NOH_MESH_UV_TARGETS) != 0;
+    if (moves && (h->flags & needed) != needed) {
+        return noh_check_fail(check, "targets move texture coordinates that the mesh does not have",
+                              offsetof(noh_mesh_header, flags));
+    }
+    if (moves ? !(h->uv_per_unit > 0.0f) || !noh_float_finite(h->uv_per_unit) : h->uv_per_unit != 0.0f) {
+        return noh_check_fail(check, "texture coordinates for a unit are not above 0, or nothing moves any",
+                              offsetof(noh_mesh_header, uv_per_unit));
     }
     return NOH_OK;
 }
@@ -115,7 +132,8 @@ static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t 
 static uint32_t stride_of(uint32_t flags)
 {
     return 4u + ((flags & NOH_MESH_TANGENTS) ? 4u : 0u) + ((flags & NOH_MESH_UVS) ? 4u : 0u) +
-           ((flags & NOH_MESH_COLORS) ? 4u : 0u) + ((flags & NOH_MESH_TEXELS) ? 4u : 0u);
+           ((flags & NOH_MESH_COLORS) ? 4u : 0u) + ((flags & NOH_MESH_UV_TARGETS) ? 4u : 0u) +
+           ((flags & NOH_MESH_TEXELS) ? 4u : 0u);
 }
 
 static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
@@ -253,6 +271,7 @@ noh_result noh_check_mesh(noh_check *check)
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_limits(check, h);
     if (!result) result = check_reserved(check, h);
+    if (!result) result = check_uv_targets(check, h);
     if (!result) result = noh_check_texture_shape(check, h);
     if (!result) result = check_skin_counts(check, h);
     if (!result) result = noh_check_level_headers(check, h);

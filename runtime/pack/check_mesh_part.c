@@ -9,8 +9,9 @@
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h)
 {
     const uint64_t at = noh_check_level_at(h);
+    const uint64_t most = (uint64_t)h->vertex_count * (h->flags & NOH_MESH_UV_TARGETS ? 2u : 1u);
     uint64_t texels;
-    if (h->touched_count > h->vertex_count) {
+    if (h->touched_count > most || h->touched_count > NOH_VERTICES_MAX) {
         return noh_check_fail(check, "more touched vertices than vertices",
                               at + offsetof(noh_mesh_header, touched_count));
     }

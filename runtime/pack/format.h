@@ -71,15 +71,20 @@ typedef struct noh_pack_chunk {
 /* Each vertex has a texel reference: the mesh is split into several palettes, or has LOD levels, in which moved and
  * unmoved vertices alternate. */
 #define NOH_MESH_TEXELS 16u
+/* Targets move texture coordinates: each vertex has a reference to a second accumulation texel, that of its UV. The
+ * position that is accumulated there is how far the picture slides over the surface, along u and v, as a length:
+ * uv_per_unit makes texture coordinates of it. A mesh with it has UVS and TEXELS, too. */
+#define NOH_MESH_UV_TARGETS 32u
 
 /* Attribute record, interleaved, 4 bytes each and in this order; those whose flag is not set are absent:
  *   normal   int16 x 2, octahedral: n.xy / 32767 unfolds to a unit vector; always there
  *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
  *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
+ *   uv texel the accumulation texel of its UV, or NOH_TEXEL_NONE where no target moves that (UV_TARGETS)
  *   texel    low 22 bits the vertex's accumulation texel, above them its palette (TEXELS). Without levels: the vertex
- *            whose texel it shares, which has one if it is below touched_count; with levels: the texel, or
- *            NOH_TEXEL_NONE */
+ *            whose texel it shares, which has one if it is below touched_count; with levels, or with UV_TARGETS: the
+ *            texel, or NOH_TEXEL_NONE */
 #define NOH_TEXEL_VERTEX_BITS 22u
 #define NOH_TEXEL_NONE ((1u << NOH_TEXEL_VERTEX_BITS) - 1u)
 
@@ -102,7 +107,8 @@ typedef struct noh_mesh_header {
     uint32_t texel_count;
     uint32_t pair_count;        /* vertices moved by targets: delta texels that are not zero */
     uint32_t source_pair_count; /* what the asset had, for reports */
-    uint32_t touched_count;     /* accumulation texels; without texel references vertices 0..touched_count-1 have one */
+    uint32_t touched_count;     /* accumulation texels, of vertices and of UVs; without texel references vertices
+                                 * 0..touched_count-1 have one */
     uint32_t morph_width_log2;  /* texel t: x = t & (width - 1), y = t >> width_log2 */
     uint32_t morph_height;
     uint32_t attribute_stride;
@@ -146,7 +152,8 @@ typedef struct noh_mesh_header {
                                 * joints move it, model units; 0 in a mesh without levels */
     uint32_t level_first;      /* the finest level in the pack; below level_count */
     uint32_t source_crc; /* CRC-32C of the chunk that the levels were cut from, with level 0; 0 where level_first is */
-    uint32_t reserved[6];
+    float uv_per_unit;   /* with UV_TARGETS: texture coordinates for a model unit in a UV's texel, above 0; else 0 */
+    uint32_t reserved[5];
 } noh_mesh_header;
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is what the others leave of 1, so sums
@@ -346,7 +353,7 @@ typedef struct noh_material {
 #define NOH_TEXTURE_RGBA8 0u     /* uint8_t[height][width][4] */
 #define NOH_TEXTURE_ETC2_RGB 1u  /* 8 bytes a block; alpha is 1 */
 #define NOH_TEXTURE_ETC2_RGBA 2u /* 16 bytes a block: alpha as EAC, then RGB */
-#define NOH_TEXTURE_EAC_RG                                                                   \
+#define NOH_TEXTURE_EAC_RG \
     3u /* 16 bytes a block, 11 bits a channel: x and y of a normal map, z is what they leave \
         * of 1. LINEAR, without `nearest` */
 

@@ -39,6 +39,17 @@ static const morph_target *worst_target(const morph_encoding *e, uint32_t *index
     return worst;
 }
 
+/* What targets move of texture coordinates. */
+static void report_uvs(FILE *out, const model_mesh *m, const morph_encoding *e, float error)
+{
+    uint32_t count = 0;
+    for (uint32_t v = 0; e->uv_texel && v < m->vertex_count; v++) count += e->uv_texel[v] != MODEL_NONE;
+    if (!e->uv_texel) return;
+    fprintf(out, "  texture coordinates of %u vertices move, off by at most %.2g: %.2f texels of %u\n", count,
+            (double)(error * e->uv_per_unit), (double)(error * e->uv_per_unit) * NOH_TEXTURE_SIZE_MAX,
+            NOH_TEXTURE_SIZE_MAX);
+}
+
 void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e, float scale, float error_um)
 {
     double bytes = 12.0 * e->texel_count + sizeof(noh_rect) * (double)e->rect_count +
@@ -59,6 +70,7 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
     fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n",
             bytes, ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name,
             worst->position_bits, (double)error_um);
+    report_uvs(out, m, e, worst->position_error);
     report_peers(out, m, e, bytes);
 }
 

@@ -1610,6 +1610,32 @@ static void texture_transform_is_baked(void **state)
     model_free(m);
 }
 
+/* Deltas of texture coordinates are scaled and turned as those are, but not moved; of another UV set they are left
+ * out. */
+static void targets_move_texture_coordinates(void **state)
+{
+    (void)state;
+    const float uv[6] = { 0, 0, 1, 0, 0, 1 }, deltas[6] = { 0.1f, 0, 0, 0.2f, 0, 0 };
+    const float expected[6] = { 0, -0.2f, 0.6f, 0, 0, 0 }, zeros[9] = { 0 };
+    scene *s = triangle(",\"TEXCOORD_0\":1,\"TEXCOORD_1\":1",
+                        ",\"material\":0,\"targets\":[{\"TEXCOORD_0\":2},{\"POSITION\":0},{\"TEXCOORD_1\":2}]");
+    add_array(s, uv, sizeof uv, F32, 3, "VEC2");
+    add_array(s, deltas, sizeof deltas, F32, 3, "VEC2");
+    APPEND(s->rest,
+           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+           "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],\"rotation\":1.5707963267948966}}}}}],"
+           "\"textures\":[{}]");
+    model *m = load(s);
+    const model_target *t = m->meshes[0].targets;
+    assert_floats(t[0].uv, expected, 6);
+    assert_memory_equal(t[0].position, zeros, sizeof zeros);
+    assert_memory_equal(t[0].normal, zeros, sizeof zeros);
+    assert_null(t[1].uv);
+    assert_null(t[2].uv);
+    assert_true(has_warning(m, "the deltas of TEXCOORD_1 were ignored"));
+    model_free(m);
+}
+
 /* --- bad input --- */
 
 static void not_gltf_is_refused(void **state)
@@ -2127,6 +2153,7 @@ int main(void)
         cmocka_unit_test(bad_images_are_warnings),
         cmocka_unit_test(webp_textures),
         cmocka_unit_test(texture_transform_is_baked),
+        cmocka_unit_test(targets_move_texture_coordinates),
         cmocka_unit_test(not_gltf_is_refused),
         cmocka_unit_test(nothing_to_convert_is_refused),
         cmocka_unit_test(deep_json_is_refused),

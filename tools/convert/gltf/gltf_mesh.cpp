@@ -72,6 +72,11 @@ static uint32_t accepted_position_delta(const file &f)
     return with_quantization(f, c_f32, signed_bits);
 }
 
+static uint32_t accepted_uv_delta(const file &f)
+{
+    return with_quantization(f, c_f32 | c_i8n | c_u8n | c_i16n | c_u16n, signed_bits | unsigned_bits);
+}
+
 /* --- triangles --- */
 
 static std::vector<uint32_t> listed_vertices(file &f, const mesh_job &job, const part &p)
@@ -213,8 +218,9 @@ std::string uv_name(const file &f, const tinygltf::Primitive &p)
     return has(p.attributes, wanted) ? wanted : "TEXCOORD_0";
 }
 
-/* The transform is applied to the UVs: a model has no place for it. They are scaled, then rotated, then moved. */
-static void transform_uvs(const file &f, const mesh_job &job, const part &p, float *uv)
+/* The transform is applied to the UVs: a model has no place for it. They are scaled, then rotated, then moved by
+ * `moved` of its offset: differences are not. */
+static void transform_uvs(const file &f, const mesh_job &job, const part &p, double moved, float *uv)
 {
     const uv_use use = uv_use_of(f, *p.source);
     const double sine = std::sin(use.rotation), cosine = std::cos(use.rotation);
@@ -225,8 +231,8 @@ static void transform_uvs(const file &f, const mesh_job &job, const part &p, flo
     for (size_t i = 0; i < p.vertices.count(); ++i) {
         const double u = static_cast<double>(uv[i * 2]) * use.scale[0];
         const double v = static_cast<double>(uv[i * 2 + 1]) * use.scale[1];
-        uv[i * 2] = to_float(cosine * u + sine * v + use.offset[0], where);
-        uv[i * 2 + 1] = to_float(cosine * v - sine * u + use.offset[1], where);
+        uv[i * 2] = to_float(cosine * u + sine * v + moved * use.offset[0], where);
+        uv[i * 2 + 1] = to_float(cosine * v - sine * u + moved * use.offset[1], where);
     }
 }
 
@@ -308,7 +314,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
         if (uv != text("TEXCOORD_%d", uv_use_of(f, *p.source).set))
             leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
         read_vertices(f, find(a, uv), 2, accepted_uv(f), p.vertices, where + " " + uv, m.uv + first * 2);
-        transform_uvs(f, job, p, m.uv + first * 2);
+        transform_uvs(f, job, p, 1.0, m.uv + first * 2);
     }
     if (m.color) read_color(f, job, p, m.color + first * 4);
 }
@@ -346,6 +352,13 @@ static bool any_part_gives(const mesh_job &job, size_t target, const char *name)
     return false;
 }
 
+static bool any_part_gives_uvs(const file &f, const mesh_job &job, size_t target)
+{
+    for (const part &p : job.parts)
+        if (gives(p, target, uv_name(f, *p.source).c_str())) return true;
+    return false;
+}
+
 static void allocate_target(file &f, mesh_job &job, size_t t)
 {
     const model_mesh &m = *job.out;
@@ -357,22 +370,34 @@ static void allocate_target(file &f, mesh_job &job, size_t t)
     target.position = allocate<float>(f, floats, job.where);
     target.normal = allocate<float>(f, floats, job.where);
     if (m.tangent) target.tangent = allocate<float>(f, floats, job.where);
+    if (any_part_gives_uvs(f, job, t)) target.uv = allocate<float>(f, uint64_t{ m.vertex_count } * 2, job.where);
     target.missing = allocate<uint8_t>(f, m.submesh_count, job.where);
 }
 
-static void read_delta(file &f, const part &p, size_t t, const char *name, uint32_t accepted, const std::string &where,
-                       float *deltas)
+static void read_delta(file &f, const part &p, size_t t, const std::string &name, size_t width, uint32_t accepted,
+                       const std::string &where, float *deltas)
 {
-    float *out = deltas + size_t{ p.first_vertex } * 3;
-    read_vertices(f, find(p.source->targets[t], name), 3, accepted, p.vertices, where + " " + name, out);
-    for (size_t i = 0; i < p.vertices.count() * 3; ++i)
+    float *out = deltas + size_t{ p.first_vertex } * width;
+    read_vertices(f, find(p.source->targets[t], name.c_str()), width, accepted, p.vertices, where + " " + name, out);
+    for (size_t i = 0; i < p.vertices.count() * width; ++i)
         out[i] += 0.0f; /* -0 becomes 0, so that dense and sparse files give the same model */
+}
+
+/* Of the UV set that the primitive's texture uses. */
+static void read_uv_delta(file &f, const mesh_job &job, const part &p, size_t t, const std::string &where,
+                          float *deltas)
+{
+    const std::string name = uv_name(f, *p.source);
+    if (!gives(p, t, name.c_str())) return;
+    read_delta(f, p, t, name, 2, accepted_uv_delta(f), where, deltas);
+    transform_uvs(f, job, p, 0.0, deltas + size_t{ p.first_vertex } * 2);
 }
 
 static void warn_unused_deltas(file &f, const part &p, size_t t, const std::string &where)
 {
     for (const auto &delta : p.source->targets[t]) {
-        bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT";
+        bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT" ||
+                     delta.first == uv_name(f, *p.source);
         if (known && gives(p, t, delta.first.c_str())) continue;
         leave_out(f, where,
                   ": the deltas of " + printable(delta.first) + " were ignored " +
@@ -385,15 +410,16 @@ static void read_target_part(file &f, mesh_job &job, const part &p, size_t part_
     model_target &target = job.out->targets[t];
     std::string where = where_of(job, p) + text(" target %zu", t);
     warn_unused_deltas(f, p, t, where);
-    if (gives(p, t, "POSITION")) read_delta(f, p, t, "POSITION", accepted_position_delta(f), where, target.position);
+    if (gives(p, t, "POSITION")) read_delta(f, p, t, "POSITION", 3, accepted_position_delta(f), where, target.position);
     if (gives(p, t, "NORMAL"))
-        read_delta(f, p, t, "NORMAL", accepted_normal(f), where, target.normal);
+        read_delta(f, p, t, "NORMAL", 3, accepted_normal(f), where, target.normal);
     else
         target.missing[part_index] |= MODEL_MISSING_NORMAL;
     if (gives(p, t, "TANGENT"))
-        read_delta(f, p, t, "TANGENT", accepted_normal(f), where, target.tangent);
+        read_delta(f, p, t, "TANGENT", 3, accepted_normal(f), where, target.tangent);
     else if (target.tangent)
         target.missing[part_index] |= MODEL_MISSING_TANGENT;
+    if (target.uv) read_uv_delta(f, job, p, t, where, target.uv);
 }
 
 static const tinygltf::Value *names_in(const tinygltf::Value &extras)

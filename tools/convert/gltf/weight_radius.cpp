@@ -1,4 +1,4 @@
-/* weight_radius.cpp: the radius of a morph weight: how far, in the world, it moves the surface. */
+/* weight_radius.cpp: the radius of a morph weight: how far, in the world, it moves the surface or the picture on it. */
 #include "clips_internal.h"
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "convert/base/quat.h"
+#include "convert/model/model_build.h"
 
 namespace gltf
 {
@@ -19,9 +20,13 @@ static double length(const float *v)
 std::vector<double> target_sizes(const model_mesh &mesh)
 {
     std::vector<double> sizes(mesh.target_count, 0.0);
+    const double per_uv = mesh.uv && mesh.vertex_count ? model_uv_length(&mesh) : 0.0;
     for (uint32_t t = 0; t < mesh.target_count; ++t)
-        for (size_t v = 0; v < mesh.vertex_count; ++v)
+        for (size_t v = 0; v < mesh.vertex_count; ++v) {
+            const float *uv = mesh.targets[t].uv ? mesh.targets[t].uv + v * 2 : nullptr;
             sizes[t] = std::fmax(sizes[t], length(mesh.targets[t].position + v * 3));
+            if (uv) sizes[t] = std::fmax(sizes[t], per_uv * std::hypot(double{ uv[0] }, double{ uv[1] }));
+        }
     return sizes;
 }
 

@@ -45,6 +45,7 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     k->turned = model_zeros(texels, 3u * sizeof(float));
     k->vertices = model_zeros(k->surface.mesh.header->touched_count, sizeof(uint32_t));
     k->weights = model_zeros(k->surface.mesh.header->target_count, sizeof(float));
+    if (k->vertices) memset(k->vertices, 0xff, k->surface.mesh.header->touched_count * sizeof(uint32_t));
     return k->blocked && k->normals && k->direct && k->transfers && k->occlusion && k->brightest && k->targets &&
                    k->turned && k->vertices && k->weights
                ? 0

@@ -107,6 +107,11 @@ static int moves(const float *delta, uint32_t v)
     return d[0] != 0.0f || d[1] != 0.0f || d[2] != 0.0f;
 }
 
+static int slides(const float *uv_delta, uint32_t v)
+{
+    return uv_delta && (uv_delta[(size_t)v * 2] != 0.0f || uv_delta[(size_t)v * 2 + 1] != 0.0f);
+}
+
 /* --- normals --- */
 
 static void base_normals_write(work *w)
@@ -209,7 +214,7 @@ static void base_tangents_write(work *w)
 static int base_tangents(work *w)
 {
     if (tangents_build(w->mesh, w->weld, &w->groups)) return 1;
-    tangents_evaluate(&w->groups, w->mesh, NULL, NULL, NULL);
+    tangents_evaluate(&w->groups, w->mesh, NULL, NULL, NULL, NULL);
     w->base_tangent = model_zeros(w->mesh->vertex_count, 3 * sizeof(double));
     free(w->touched);
     w->touched = model_zeros(w->groups.group_count, 1);
@@ -225,7 +230,8 @@ static void touch_groups(work *w, const model_target *target)
     for (uint32_t c = 0; c + 2 < w->mesh->index_count; c += 3) {
         int changed = 0;
         for (uint32_t k = 0; k < 3; ++k)
-            changed |= moves(target->position, index[c + k]) || moves(target->normal, index[c + k]);
+            changed |= moves(target->position, index[c + k]) || moves(target->normal, index[c + k]) ||
+                       slides(target->uv, index[c + k]);
         for (uint32_t k = 0; changed && k < 3; ++k) w->touched[group[index[c + k]]] = 1;
     }
 }
@@ -233,7 +239,7 @@ static void touch_groups(work *w, const model_target *target)
 static void target_tangents(work *w, model_target *target)
 {
     touch_groups(w, target);
-    tangents_evaluate(&w->groups, w->mesh, target->position, target->normal, w->touched);
+    tangents_evaluate(&w->groups, w->mesh, target->position, target->normal, target->uv, w->touched);
     for (uint32_t v = 0; v < w->mesh->vertex_count; ++v) {
         if (!(w->target_missing[v] & MODEL_MISSING_TANGENT) || !w->touched[w->groups.vertex_group[v]]) continue;
         const double *base = w->base_tangent + (size_t)v * 3;

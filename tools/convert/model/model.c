@@ -70,6 +70,7 @@ static void target_free(model_target *target)
     free(target->position);
     free(target->normal);
     free(target->tangent);
+    free(target->uv);
     free(target->missing);
 }
 

@@ -60,6 +60,7 @@ typedef struct model_target {
     float *position;                               /* [vertex_count][3] */
     float *normal;                                 /* [vertex_count][3]; never NULL after model_complete */
     float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
+    float *uv;                                     /* [vertex_count][2]; NULL where it moves no texture coordinates */
     uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
     uint8_t identity;                              /* makes one face differ from another: NOH_TARGET_IDENTITY */
     /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */

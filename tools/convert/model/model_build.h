@@ -70,10 +70,15 @@ int tangents_build(const model_mesh *mesh, const uint32_t *weld, tangent_groups 
 
 /* Angle-weighted tangents in one pose: base plus deltas.
  * position_delta, normal_delta  [vertex_count][3] or NULL
+ * uv_delta  [vertex_count][2] or NULL
  * touched  [group_count] only these are evaluated; NULL = all */
 void tangents_evaluate(tangent_groups *groups, const model_mesh *mesh, const float *position_delta,
-                       const float *normal_delta, const uint8_t *touched);
+                       const float *normal_delta, const float *uv_delta, const uint8_t *touched);
 void tangents_free(tangent_groups *groups);
+
+/* How far the picture slides over the surface for a texture coordinate, in the mean over all triangles, model units: so
+ * what a target changes of texture coordinates compares with what it moves. The mesh has some, and vertices. */
+double model_uv_length(const model_mesh *mesh);
 
 /* Small vector helpers in double precision; a, b and out are [3]. */
 double vec_dot(const double *a, const double *b);

@@ -16,7 +16,7 @@
 
 typedef struct pose {
     const model_mesh *mesh;
-    const float *position_delta, *normal_delta;
+    const float *position_delta, *normal_delta, *uv_delta;
 } pose;
 
 typedef struct face_tangent {
@@ -25,9 +25,13 @@ typedef struct face_tangent {
     signed char hand; /* +1 where the UVs run counter-clockwise, -1 where mirrored, 0 where unusable */
 } face_tangent;
 
-static void uv_difference(const float *uv, uint32_t from, uint32_t to, double *out)
+static void uv_difference(const pose *p, uint32_t from, uint32_t to, double *out)
 {
-    for (size_t i = 0; i < 2; ++i) out[i] = (double)uv[(size_t)to * 2 + i] - (double)uv[(size_t)from * 2 + i];
+    const float *uv = p->mesh->uv, *delta = p->uv_delta;
+    for (size_t i = 0; i < 2; ++i) {
+        out[i] = (double)uv[(size_t)to * 2 + i] - (double)uv[(size_t)from * 2 + i];
+        if (delta) out[i] += (double)delta[(size_t)to * 2 + i] - (double)delta[(size_t)from * 2 + i];
+    }
 }
 
 static signed char uv_hand(const double *d1, const double *d2)
@@ -43,8 +47,8 @@ static void face_tangent_evaluate(const pose *p, const uint32_t *v, face_tangent
     double d1[2], d2[2];
     out->hand = 0;
     if (!p->mesh->uv) return;
-    uv_difference(p->mesh->uv, v[0], v[1], d1);
-    uv_difference(p->mesh->uv, v[0], v[2], d2);
+    uv_difference(p, v[0], v[1], d1);
+    uv_difference(p, v[0], v[2], d2);
     out->hand = uv_hand(d1, d2);
     if (!out->hand) return;
     for (size_t k = 0; k < 3; ++k) vec_posed(p->mesh->position, p->position_delta, v[k], out->position[k]);
@@ -136,7 +140,7 @@ static int find_groups(const model_mesh *mesh, const uint32_t *weld, tangent_gro
 /* hand = the side with the larger weight; a tie goes to +1. */
 static int choose_hands(const model_mesh *mesh, tangent_groups *groups)
 {
-    const pose base = { mesh, NULL, NULL };
+    const pose base = { mesh, NULL, NULL, NULL };
     double *weight = model_zeros(groups->group_count, sizeof *weight);
     if (!weight) return 1;
     for (uint32_t c = 0; c + 2 < mesh->index_count; c += 3) {
@@ -185,9 +189,9 @@ static void add_corners(tangent_groups *groups, const pose *p, const uint32_t *v
 }
 
 void tangents_evaluate(tangent_groups *groups, const model_mesh *mesh, const float *position_delta,
-                       const float *normal_delta, const uint8_t *touched)
+                       const float *normal_delta, const float *uv_delta, const uint8_t *touched)
 {
-    const pose p = { mesh, position_delta, normal_delta };
+    const pose p = { mesh, position_delta, normal_delta, uv_delta };
     for (uint32_t g = 0; g < groups->group_count; ++g)
         if (wanted(touched, g)) memset(groups->sum + (size_t)g * 3, 0, 3 * sizeof(double));
     for (uint32_t c = 0; c + 2 < mesh->index_count; c += 3) {

@@ -59,6 +59,10 @@ int model_append_targets(model *m, uint32_t mesh, model_mesh *b)
     a->target_count = count;
     b->target_count = 0;
     for (uint32_t i = 0; i < count; i++) { /* both have tangents, or neither */
+        if (!a->uv) {
+            free(targets[i].uv);
+            targets[i].uv = NULL;
+        }
         if (a->tangent && !targets[i].tangent) {
             targets[i].tangent = model_zeros((size_t)a->vertex_count * 3, sizeof(float));
             if (!targets[i].tangent) return 1;

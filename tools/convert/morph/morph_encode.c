@@ -37,14 +37,13 @@ static int no_memory(encoder *c)
 
 /* ---- what comes in ---- */
 
-static int check_deltas(encoder *c, const float *delta, uint32_t t, const char *part)
+static int check_deltas(encoder *c, const float *delta, uint32_t width, uint32_t t, const char *part)
 {
     char where[128];
     if (!delta) return 0;
-    for (size_t i = 0; i < (size_t)c->mesh->vertex_count * MORPH_AXES; i++) {
+    for (size_t i = 0; i < (size_t)c->mesh->vertex_count * width; i++) {
         if (fabsf(delta[i]) <= DELTA_LIMIT) continue; /* false for a NaN */
-        snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part,
-                 (unsigned)(i / MORPH_AXES));
+        snprintf(where, sizeof where, "target %u, %s delta of vertex %u", (unsigned)t, part, (unsigned)(i / width));
         return fail(c, "morph delta is not finite or larger than 10^12", where);
     }
     return 0;
@@ -61,8 +60,9 @@ static int check_input(encoder *c)
         return fail(c, "the cost of a rectangle must be above zero", "options");
     for (uint32_t t = 0; t < c->mesh->target_count; t++) {
         const model_target *s = &c->mesh->targets[t];
-        if (check_deltas(c, s->position, t, "position") || check_deltas(c, s->normal, t, "normal") ||
-            check_deltas(c, s->tangent, t, "tangent"))
+        if (check_deltas(c, s->position, MORPH_AXES, t, "position") ||
+            check_deltas(c, s->normal, MORPH_AXES, t, "normal") ||
+            check_deltas(c, s->tangent, MORPH_AXES, t, "tangent") || check_deltas(c, s->uv, 2, t, "UV"))
             return 1;
     }
     return 0;
@@ -330,11 +330,29 @@ static void count_one_rect(encoder *c, uint32_t *texels)
     e->texels_one_rect = sum > UINT32_MAX ? UINT32_MAX : (uint32_t)sum;
 }
 
+/* Where the order has put what stands in for texture coordinates. */
+static int find_uv_texels(encoder *c, const morph_uv *uv, uint32_t count)
+{
+    morph_encoding *e = c->e;
+    uint32_t *place = morph_alloc(e->vertex_count, sizeof *place);
+    e->uv_texel = morph_alloc(count, sizeof *e->uv_texel);
+    e->uv_per_unit = uv->uv_per_unit;
+    if (place && e->uv_texel) {
+        for (uint32_t i = 0; i < e->vertex_count; i++) place[e->order[i]] = i;
+        for (uint32_t v = 0; v < count; v++) {
+            const uint32_t texel = uv->stand_in[v] == MODEL_NONE ? MODEL_NONE : place[uv->stand_in[v]];
+            e->uv_texel[v] = texel < e->touched_count ? texel : MODEL_NONE;
+        }
+    }
+    free(place);
+    return place && e->uv_texel ? 0 : no_memory(c);
+}
+
 static int encode(encoder *c)
 {
     uint32_t *texels;
     int failed;
-    if (check_input(c) || find_pairs(c) || compact(c) || order_vertices(c)) return 1;
+    if (find_pairs(c) || compact(c) || order_vertices(c)) return 1;
     texels = morph_alloc(c->e->vertex_count, sizeof *texels);
     if (!texels) return no_memory(c);
     count_one_rect(c, texels);
@@ -359,6 +377,19 @@ static int start(encoder *c)
     return e->order && e->targets && e->level_touched && e->parts ? 0 : no_memory(c);
 }
 
+/* The mesh with what stands in for its texture coordinates. */
+static int encode_with_uvs(encoder *c)
+{
+    const uint32_t count = c->mesh->vertex_count;
+    morph_uv uv;
+    int failed = morph_uv_extend(c->mesh, &c->options, &uv) ? no_memory(c) : 0;
+    c->mesh = &uv.mesh;
+    if (c->options.rank) c->options.rank = uv.rank;
+    failed = failed || start(c) || encode(c) || find_uv_texels(c, &uv, count);
+    morph_uv_free(&uv);
+    return failed;
+}
+
 int morph_encode(const model_mesh *mesh, const morph_options *options, morph_encoding **out, model_error *error)
 {
     encoder c;
@@ -370,7 +401,8 @@ int morph_encode(const model_mesh *mesh, const morph_options *options, morph_enc
     if (c.options.error_um == 0.0f) c.options.error_um = MORPH_DEFAULT_ERROR_UM;
     if (c.options.rect_cost_texels == 0.0f) c.options.rect_cost_texels = MORPH_DEFAULT_RECT_COST;
     if (c.options.level_count == 0u || !c.options.rank) c.options.level_count = 1;
-    failed = start(&c) || encode(&c);
+    failed = check_input(&c);
+    if (!failed) failed = morph_uv_needed(mesh) ? encode_with_uvs(&c) : start(&c) || encode(&c);
     free(c.vertices.bits);
     free(c.touched.bits);
     free(c.touched_index);
@@ -386,6 +418,7 @@ void morph_encoding_free(morph_encoding *e)
 {
     if (!e) return;
     free(e->order);
+    free(e->uv_texel);
     free(e->targets);
     free(e->level_touched);
     free(e->parts);

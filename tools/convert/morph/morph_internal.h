@@ -1,7 +1,7 @@
 /* morph_internal.h: what the parts of the morph encoder share.
  *
- * morph_encode.c drives; morph_quantise.c turns deltas into words and certifies
- * the errors; morph_patterns.c groups vertices by the targets that move them;
+ * morph_encode.c drives; morph_uv.c makes positions of texture coordinates; morph_quantise.c turns deltas into words
+ * and certifies the errors; morph_patterns.c groups vertices by the targets that move them;
  * morph_order.c puts the groups in line; morph_fold.c lays the line into the texture; morph_bands.c and morph_rects.c
  * cover a target's texels by rectangles. */
 #ifndef NOH_CONVERT_MORPH_MORPH_INTERNAL_H
@@ -96,6 +96,22 @@ void morph_quantise_choose(const model_mesh *mesh, uint32_t t, float error_um, m
 
 /* The three words of one delta. 0 where the pair is dropped: the words are then 0. */
 int morph_quantise_pack(const morph_target *q, const model_target *source, uint32_t vertex, uint32_t words[3]);
+
+/* ---- texture coordinates ---- */
+/* A mesh with a vertex more for each whose texture coordinates a target moves. That stand-in has, as positions, how far
+ * the picture slides over the surface along u and v: so bits, errors, rectangles and the texture of sums are those of
+ * positions, and a target's radius is how far anything moves over the screen. Only what the encoder reads is there. */
+typedef struct morph_uv {
+    model_mesh mesh;
+    uint32_t *stand_in; /* [vertices of the mesh it was made from], MODEL_NONE: nothing moves its UV */
+    uint8_t *rank;      /* [mesh.vertex_count] as in morph_options */
+    float uv_per_unit;  /* texture coordinates for a model unit */
+} morph_uv;
+
+int morph_uv_needed(const model_mesh *mesh);
+/* 0 on success, 1 when memory runs out; free it in any case. */
+int morph_uv_extend(const model_mesh *mesh, const morph_options *options, morph_uv *out);
+void morph_uv_free(morph_uv *uv);
 
 /* ---- patterns: vertices that exactly the same targets move ---- */
 typedef struct morph_patterns {

@@ -86,7 +86,7 @@ static uint32_t vertex_for(layout_job *j, uint32_t old, uint32_t palette)
     if (copy == MODEL_NONE) {
         copy = out->vertex_count++;
         out->source[copy] = old;
-        out->texel[copy] = v;
+        out->texel[copy] = out->texel[v];
         out->palette[copy] = palette;
         memcpy(j->positions + 3 * (size_t)copy, j->positions + 3 * (size_t)v, 12);
         j->next_copy[copy] = j->next_copy[v];
@@ -209,7 +209,7 @@ static void move_words(uint32_t *words, const uint32_t *to, uint32_t count, uint
     memcpy(words, scratch, (size_t)count * sizeof *words);
 }
 
-/* With levels a texel reference is the texel, or says that there is none. */
+/* With levels, or texels of texture coordinates, a texel reference is the texel, or says that there is none. */
 static void set_texels(mesh_layout *l, uint32_t touched)
 {
     for (uint32_t v = 0; v < l->vertex_count; v++) {
@@ -244,7 +244,6 @@ static int sort_by_level(layout_job *j)
         for (uint32_t i = 0; i < l->index_count; i++) {
             l->indices[i] = to[l->indices[i]];
         }
-        set_texels(l, j->e->touched_count);
     }
     free(rank);
     free(to);
@@ -308,14 +307,16 @@ static int allocate(layout_job *j)
 static void place_vertices(layout_job *j)
 {
     mesh_layout *out = j->out;
-    out->vertex_count = j->mesh->vertex_count;
     out->level_count = j->levels->count;
-    for (uint32_t v = 0; v < out->vertex_count; v++) {
-        out->source[v] = j->e->order[v];
-        out->texel[v] = v;
+    for (uint32_t i = 0; i < j->e->vertex_count; i++) {
+        const uint32_t v = out->vertex_count, old = j->e->order[i];
+        if (old >= j->mesh->vertex_count) continue; /* a texel of texture coordinates */
+        out->source[v] = old;
+        out->texel[v] = i;
         out->palette[v] = is_skinned(j->mesh) ? MODEL_NONE : 0;
-        j->place[j->e->order[v]] = v;
-        memcpy(j->positions + 3 * (size_t)v, j->mesh->position + 3 * (size_t)out->source[v], 12);
+        j->place[old] = v;
+        memcpy(j->positions + 3 * (size_t)v, j->mesh->position + 3 * (size_t)old, 12);
+        out->vertex_count++;
     }
 }
 
@@ -340,6 +341,8 @@ static int make(layout_job *j, model_error *error)
     if (out->level_count > 1 && sort_by_level(j)) {
         return model_fail(error, "", "out of memory");
     }
+    if (out->level_count > 1 || j->e->uv_texel) set_texels(out, j->e->touched_count);
+    out->texel_references |= j->e->uv_texel != NULL;
     find_vertex_runs(out);
     return 0;
 }

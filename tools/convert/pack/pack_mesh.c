@@ -100,8 +100,10 @@ static uint32_t pack_uv(const float uv[2], const noh_mesh_header *h)
     return word;
 }
 
-static uint32_t attribute_record(const model_mesh *m, const mesh_layout *l, uint32_t vertex, const noh_mesh_header *h,
-                                 uint32_t record[5])
+#define RECORD_WORDS_MAX 6u
+
+static uint32_t attribute_record(const model_mesh *m, const morph_encoding *e, const mesh_layout *l, uint32_t vertex,
+                                 const noh_mesh_header *h, uint32_t record[RECORD_WORDS_MAX])
 {
     size_t old = l->source[vertex];
     uint32_t words = 0;
@@ -115,14 +117,17 @@ static uint32_t attribute_record(const model_mesh *m, const mesh_layout *l, uint
     if (m->color) {
         record[words++] = pack_color(m->color + 4 * old);
     }
+    if (e->uv_texel) {
+        record[words++] = e->uv_texel[old] == MODEL_NONE ? NOH_TEXEL_NONE : e->uv_texel[old];
+    }
     if (h->flags & NOH_MESH_TEXELS) {
         record[words++] = l->texel[vertex] | l->palette[vertex] << NOH_TEXEL_VERTEX_BITS;
     }
     return words;
 }
 
-static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_header *h, size_t base,
-                            byte_buffer *out)
+static void append_vertices(const model_mesh *m, const morph_encoding *e, const mesh_layout *l, noh_mesh_header *h,
+                            size_t base, byte_buffer *out)
 {
     buffer_align(out, 16);
     h->positions_offset = (uint32_t)(out->count - base);
@@ -132,8 +137,8 @@ static void append_vertices(const model_mesh *m, const mesh_layout *l, noh_mesh_
     buffer_align(out, 16);
     h->attributes_offset = (uint32_t)(out->count - base);
     for (uint32_t v = 0; v < l->vertex_count; v++) {
-        uint32_t record[5];
-        h->attribute_stride = 4 * attribute_record(m, l, v, h, record);
+        uint32_t record[RECORD_WORDS_MAX];
+        h->attribute_stride = 4 * attribute_record(m, e, l, v, h, record);
         buffer_append(out, record, h->attribute_stride);
     }
 }
@@ -237,6 +242,8 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
     h->morph_height = e->height;
     h->texels_one_rect = e->texels_one_rect;
     h->level_count = l->level_count;
+    h->flags |= e->uv_texel ? NOH_MESH_UV_TARGETS : 0u;
+    h->uv_per_unit = e->uv_per_unit;
     set_bounds(m, h);
     set_uv_range(m, h);
     f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
@@ -299,7 +306,7 @@ int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encodi
         h.world_scale = world_scale;
         memcpy(h.influence_errors, levels->cap_error, sizeof h.influence_errors);
         buffer_append(out, NULL, sizeof h * l.level_count);
-        append_vertices(m, &l, &h, base, out);
+        append_vertices(m, e, &l, &h, base, out);
         append_indices(&l, &h, base, out);
         append_targets(m, e, strings, &h, base, out);
         append_target_boxes(m, e, &h, base, out);

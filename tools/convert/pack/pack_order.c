@@ -377,12 +377,13 @@ static int apply(orderer *o)
 
 /* ---- a mesh ---- */
 
-/* Vertices keep their places where something else refers to them: a transfer, an influence list, or texels shared
- * between palettes. */
+/* Vertices keep their places where something else refers to them: a transfer, an influence list, texels shared between
+ * palettes, or texels of texture coordinates. */
 static int may_rename(const orderer *o, const noh_pack *pack, uint32_t index)
 {
     noh_skin_list list;
-    return !o->mesh.transfer && noh_pack_skin_list(pack, index, &list, NULL) &&
+    return !o->mesh.transfer && !(o->mesh.header->flags & NOH_MESH_UV_TARGETS) &&
+           noh_pack_skin_list(pack, index, &list, NULL) &&
            !((o->mesh.header->flags & NOH_MESH_TEXELS) && o->mesh.header->level_count == 1u) &&
            o->mesh.header->palette_count <= 1u;
 }

@@ -210,6 +210,10 @@ static void write_attributes(writer *w, const noh_mesh *mesh, uint32_t chunk)
         s.stride = (uint16_t)(mesh->header->attribute_stride - 4u);
         write_section(w, &s, &w->report->attributes);
     }
+    if (mesh->header->flags & NOH_MESH_UV_TARGETS) {
+        s.stride = (uint16_t)noh_mesh_uv_texel_offset(mesh);
+        write_section(w, &s, &w->report->attributes);
+    }
 }
 
 static int write_positions(writer *w, uint32_t chunk, const wire_grid *grid)

@@ -109,6 +109,7 @@ static void join_target(const model_mesh *from, const model_target *target, size
     turn_vector(t->normal, 3, target->normal + 3 * v, turned);
     length = length_of(base);
     store(turned, length > 0.0 ? 1.0 / length : 0.0, out->normal + 3 * to);
+    if (out->uv && target->uv) memcpy(out->uv + 2 * to, target->uv + 2 * v, 2 * sizeof *out->uv);
     if (out->tangent && target->tangent) {
         turn_vector(t->place, 4, from->tangent + 4 * v, base);
         turn_vector(t->place, 4, target->tangent + 3 * v, turned);
@@ -175,7 +176,9 @@ static int allocate_targets(const model_mesh *from, model_mesh *out)
         to->normal = model_zeros((size_t)out->vertex_count * 3, sizeof *to->normal);
         to->tangent = out->tangent ? model_zeros((size_t)out->vertex_count * 3, sizeof *to->tangent) : NULL;
         to->has_position = to->has_normal = to->has_tangent = 1;
-        if (!to->name || !to->position || !to->normal || (out->tangent && !to->tangent)) {
+        if (from->targets[i].uv) to->uv = model_zeros((size_t)out->vertex_count * 2, sizeof *to->uv);
+        if (!to->name || !to->position || !to->normal || (out->tangent && !to->tangent) ||
+            (from->targets[i].uv && !to->uv)) {
             return 1;
         }
     }
@@ -270,6 +273,7 @@ static void copy_target(const model_target *from, const model_mesh *mesh, model_
     out->position = duplicate(from->position, vectors, sizeof *from->position, failed);
     out->normal = duplicate(from->normal, vectors, sizeof *from->normal, failed);
     out->tangent = duplicate(from->tangent, vectors, sizeof *from->tangent, failed);
+    out->uv = duplicate(from->uv, (size_t)mesh->vertex_count * 2, sizeof *from->uv, failed);
     out->missing = duplicate(from->missing, mesh->submesh_count, 1, failed);
 }
 

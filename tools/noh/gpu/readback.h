@@ -29,6 +29,7 @@ typedef struct readback_vertex {
     float normal[3];   /* in the world, as below */
     float tangent[4];  /* with handedness */
     float world[3];
+    float uv[2];
 } readback_vertex;
 
 /* Every vertex of a mesh with these bindings (NULL: rest pose, bind pose), each by its own palette: out[vertex_count].
@@ -41,5 +42,9 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
 /* Every vertex as drawn in the bind pose: positions, normals, tangents, each [vertex_count][3]. */
 int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
                       float *normals, float *tangents);
+
+/* The same of texture coordinates, too: uvs[vertex_count][2], or NULL. */
+int readback_vertices_uv(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
+                         float *normals, float *tangents, float *uvs);
 
 #endif

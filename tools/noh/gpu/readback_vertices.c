@@ -11,14 +11,14 @@
 /* The shader variant that draws such a mesh, with transform feedback; the last one is cached. */
 static int use_variant(readback *r, noh_gl_variant_key key)
 {
-    static const char *const varyings[] = { "v_model", "v_normal", "v_tangent", "v_world" };
+    static const char *const varyings[] = { "v_model", "v_normal", "v_tangent", "v_world", "v_uv" };
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
     if (r->variant.program && memcmp(&r->variant.key, &key, sizeof key) == 0) {
         return 0;
     }
     noh_gl_variant_delete(&r->g->gl, NULL, &r->variant);
-    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, NULL, varyings, 4,
+    if (noh_gl_variant_create(&(noh_gl_device){ &r->g->gl, NULL, NULL, log, sizeof log }, key, NULL, varyings, 5,
                               &r->variant, &error)) {
         fputs(log, stderr);
         return tool_fail_error("readback", &error);
@@ -29,8 +29,11 @@ static int use_variant(readback *r, noh_gl_variant_key key)
 static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph)
 {
     static const float rows[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+    const noh_mesh_header *h = mesh->mesh.header;
+    const float uv[8] = { h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1], h->uv_per_unit };
     const noh_gl_api *gl = &g->gl;
     gl->UseProgram(v->program);
+    gl->Uniform4fv(v->u_uv, v->key.uv_targets ? 2 : 1, uv);
     gl->Uniform4fv(v->u_world, 3, rows);
     gl->Uniform4fv(v->u_normal, 3, rows);
     if (morph) {
@@ -39,6 +42,7 @@ static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, con
         gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
     }
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
+    gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     noh_gl_mesh_bind(gl, mesh, morph);
     if (morph) noh_gl_morph_bind_streams(gl, v->program, morph);
 }
@@ -114,8 +118,8 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
                          : 0;
 }
 
-int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
-                      float *normals, float *tangents)
+int readback_vertices_uv(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
+                         float *normals, float *tangents, float *uvs)
 {
     size_t count = mesh->mesh.header->vertex_count;
     readback_vertex *vertices = malloc(count * sizeof *vertices);
@@ -125,7 +129,14 @@ int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_b
         memcpy(positions + 3 * v, vertices[v].position, 12);
         memcpy(normals + 3 * v, vertices[v].normal, 12);
         memcpy(tangents + 3 * v, vertices[v].tangent, 12);
+        if (uvs) memcpy(uvs + 2 * v, vertices[v].uv, 8);
     }
     free(vertices);
     return status;
+}
+
+int readback_vertices(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,
+                      float *normals, float *tangents)
+{
+    return readback_vertices_uv(r, mesh, binding, positions, normals, tangents, NULL);
 }

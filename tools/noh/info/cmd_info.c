@@ -85,6 +85,16 @@ static void print_levels(const noh_mesh *m)
     }
 }
 
+/* Vertices whose texture coordinates targets move. */
+static uint32_t count_sliding(const noh_mesh *m)
+{
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < m->header->vertex_count; v++) {
+        count += noh_mesh_uv_texel(m, v) < m->header->touched_count;
+    }
+    return count;
+}
+
 /* Of all weights from 0 to 1, micrometres. */
 static double half_bound_um(const noh_mesh *m)
 {
@@ -112,6 +122,9 @@ static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)
             "  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights 0..1; %.0f: -2..2)\n",
             h->touched_count, 1u << h->morph_width_log2, h->morph_height, half_bound_um(m),
             1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+    }
+    if (h->flags & NOH_MESH_UV_TARGETS) {
+        printf("  texture coordinates of %u vertices move, each by a texel of its own\n", count_sliding(m));
     }
     info_print_transfer(m);
     print_levels(m);
@@ -259,6 +272,7 @@ static void json_mesh(json *j, const noh_pack *pack, uint32_t index, const noh_m
     json_integer(j, "submeshes", h->submesh_count);
     json_integer(j, "targets", h->target_count);
     json_integer(j, "touched", h->touched_count);
+    json_integer(j, "sliding", count_sliding(m));
     json_integer(j, "pairs", h->pair_count);
     json_integer(j, "source_pairs", h->source_pair_count);
     json_integer(j, "rects", h->rect_count);

@@ -13,6 +13,7 @@ typedef struct verify_row {
     int available, exact; /* exact: equality is demanded */
     uint64_t values, differing, vertex_values, vertex_differing;
     double max_error_um, bound_um; /* f16 against f32; of streams, against the CPU */
+    double max_uv_error;           /* of fetched texture coordinates, of their size where that is above 1 */
     double max_normal_error;       /* of fetched normals: the GPU's reciprocal root is not exact */
     double normal_bound;           /* on top of that: what rounding to pairs of 16 bits allows */
     uint64_t cpu_predicted, cpu_used, gpu_predicted, gpu_used;

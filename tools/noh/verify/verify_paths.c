@@ -93,7 +93,7 @@ static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got,
 /* The fetched vertices: position is one exact sum; directions are compared within what a
  * GPU's normalize may differ. */
 static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers,
-                             const float *positions, const float *normals)
+                             const float *positions, const float *normals, const float *uvs)
 {
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         noh_vertex expected;
@@ -104,11 +104,15 @@ static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_mo
             row->max_normal_error = fmax(row->max_normal_error,
                                          fabs((double)normals[3 * v + c] - (double)expected.normal[c]));
         }
+        for (size_t c = 0; c < 2; c++) {
+            const double off = fabs((double)uvs[2 * v + c] - (double)expected.uv[c]);
+            row->max_uv_error = fmax(row->max_uv_error, off / fmax(1.0, fabs((double)expected.uv[c])));
+        }
     }
 }
 
 typedef struct verify_buffers {
-    float *weights, *got, *positions, *normals, *tangents;
+    float *weights, *got, *positions, *normals, *tangents, *uvs;
     void *expected, *exact;
 } verify_buffers;
 
@@ -122,7 +126,9 @@ static int buffers_open(verify_buffers *b, const noh_mesh *mesh)
     b->positions = malloc(vertices);
     b->normals = malloc(vertices);
     b->tangents = malloc(vertices);
-    return !b->weights || !b->got || !b->expected || !b->exact || !b->positions || !b->normals || !b->tangents;
+    b->uvs = malloc(vertices);
+    return !b->weights || !b->got || !b->expected || !b->exact || !b->positions || !b->normals || !b->tangents ||
+           !b->uvs;
 }
 
 static void buffers_close(verify_buffers *b)
@@ -134,6 +140,7 @@ static void buffers_close(verify_buffers *b)
     free(b->positions);
     free(b->normals);
     free(b->tangents);
+    free(b->uvs);
 }
 
 /* Streams leave no sums to read: vertices are compared, and how far their positions are off. A GPU may fuse the
@@ -143,10 +150,10 @@ static int verify_streams(verify_row *row, readback *r, const noh_gl_mesh *gl_me
 {
     const noh_mesh *mesh = &gl_mesh->mesh;
     const uint64_t differing = row->vertex_differing;
-    const int status = readback_vertices(r, gl_mesh, binding, b->positions, b->normals, b->tangents);
+    const int status = readback_vertices_uv(r, gl_mesh, binding, b->positions, b->normals, b->tangents, b->uvs);
     if (status) return status;
     row->exact = 0;
-    compare_vertices(row, mesh, expected, b->positions, b->normals);
+    compare_vertices(row, mesh, expected, b->positions, b->normals, b->uvs);
     row->values += 3u * (uint64_t)mesh->header->vertex_count;
     row->differing += row->vertex_differing - differing;
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
@@ -177,9 +184,9 @@ static int verify_finished(verify_row *row, readback *r, const noh_gl_mesh *gl_m
         noh_morph_finish_scalar(mesh, expected, 0, mesh->header->vertex_count, want);
         row->values += words;
         for (size_t i = 0; i < words; i++) row->differing += got[i] != want[i];
-        status = readback_vertices(r, gl_mesh, binding, b->positions, b->normals, b->tangents);
+        status = readback_vertices_uv(r, gl_mesh, binding, b->positions, b->normals, b->tangents, b->uvs);
     }
-    if (!status) compare_vertices(row, mesh, expected, b->positions, b->normals);
+    if (!status) compare_vertices(row, mesh, expected, b->positions, b->normals, b->uvs);
     free(want);
     free(got);
     return status;
@@ -242,11 +249,11 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
         }
         status = readback_layers(r, mesh, &binding, b.got);
         if (!status) {
-            status = readback_vertices(r, gl_mesh, &binding, b.positions, b.normals, b.tangents);
+            status = readback_vertices_uv(r, gl_mesh, &binding, b.positions, b.normals, b.tangents, b.uvs);
         }
         if (!status) {
             compare_layers(job, row, mesh, b.got, b.expected);
-            compare_vertices(row, mesh, &expected, b.positions, b.normals);
+            compare_vertices(row, mesh, &expected, b.positions, b.normals, b.uvs);
             measure_f16(row, mesh, b.got, b.exact);
             status = raise_bound(job, plan, mesh, b.weights, row);
         }
@@ -319,7 +326,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
         return 0;
     }
     if (vertices && !plan.vertex_ring) {
-        row->reason = "no finished vertices: meshes with a transfer need sums";
+        row->reason = "no finished vertices: meshes with a transfer, or with targets of texture coordinates, need sums";
         return 0;
     }
     row->available = row->exact = 1;

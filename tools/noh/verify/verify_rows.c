@@ -6,6 +6,8 @@
 
 #define NORMAL_BOUND 1e-5 /* of a component of a fetched normal: the inexactness of a GPU's reciprocal root */
 
+#define UV_BOUND 4e-6 /* of fetched texture coordinates: products and sums that a GPU may fuse */
+
 static void fail_row(verify_row *row, const char *what, double value, double bound)
 {
     if (!row->failure) {
@@ -24,6 +26,9 @@ int verify_row_failed(verify_row *row)
     }
     if (row->bound_um > 0.0 && !(row->max_error_um <= row->bound_um)) {
         fail_row(row, "position error, um", row->max_error_um, row->bound_um);
+    }
+    if (row->exact && !(row->max_uv_error <= UV_BOUND)) {
+        fail_row(row, "texture coordinate error", row->max_uv_error, UV_BOUND);
     }
     if (!(row->max_normal_error <= row->normal_bound + NORMAL_BOUND)) {
         fail_row(row, "normal error", row->max_normal_error, row->normal_bound + NORMAL_BOUND);
