@@ -387,7 +387,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
         draw_material(j, v, s, first, part);
     }
     if (v && j->r->triangles) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
-    if (v && j->morph && (j->morph->vertex_buffer || j->morph->stream_buffer)) {
+    if (v && j->morph && !j->morph->vertex_array && (j->morph->vertex_buffer || j->morph->stream_buffer)) {
         noh_gl_mesh_unbind(j->r->gl, j->mesh, j->morph);
     }
 }

@@ -7,6 +7,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_morph_internal.h"
 
 static uint64_t position_bytes(const noh_mesh *mesh)
 {
@@ -161,8 +162,8 @@ static void point_to_finished(const noh_gl_api *gl, const noh_gl_morph_binding *
 void noh_gl_mesh_bind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph)
 {
     NOH_ASSERT(api && mesh && mesh->vertex_array);
-    api->BindVertexArray(mesh->vertex_array);
-    if (!morph || !morph->vertex_buffer) return;
+    api->BindVertexArray(morph && morph->vertex_array ? morph->vertex_array : mesh->vertex_array);
+    if (!morph || !morph->vertex_buffer || morph->vertex_array) return;
     point_to_finished(api, morph);
     api->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
@@ -170,7 +171,7 @@ void noh_gl_mesh_bind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_
 void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph)
 {
     NOH_ASSERT(api && mesh && mesh->vertex_array);
-    if (morph && (morph->vertex_buffer || morph->stream_buffer)) {
+    if (morph && !morph->vertex_array && (morph->vertex_buffer || morph->stream_buffer)) {
         api->BindVertexArray(mesh->vertex_array);
         if (morph->vertex_buffer) {
             point_to_bind_pose(api, mesh);
@@ -182,12 +183,15 @@ void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const no
     api->BindVertexArray(0);
 }
 
-static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
+GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const noh_gl_mesh *m, const noh_gl_morph_binding *morph)
 {
-    uint32_t stride = m->mesh.header->attribute_stride;
-    gl->GenVertexArrays(1, &m->vertex_array);
-    gl->BindVertexArray(m->vertex_array);
+    const uint32_t stride = m->mesh.header->attribute_stride;
+    GLuint array = 0;
+    gl->GenVertexArrays(1, &array);
+    if (!array) return 0;
+    gl->BindVertexArray(array);
     point_to_bind_pose(gl, m);
+    if (morph) point_to_finished(gl, morph);
     point_to_rest(gl, m);
     set_attribute(gl, NOH_ATTRIBUTE_UV, 2, GL_UNSIGNED_SHORT, GL_TRUE, stride, noh_mesh_uv_offset(&m->mesh));
     set_attribute(gl, NOH_ATTRIBUTE_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, noh_mesh_color_offset(&m->mesh));
@@ -207,6 +211,7 @@ static void create_vertex_array(const noh_gl_api *gl, noh_gl_mesh *m)
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    return array;
 }
 
 /* room: of which sizes are taken; mesh: which is drawn; contents: `mesh`, or NULL for none. */
@@ -246,7 +251,7 @@ static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_m
         noh_gl_mesh_delete(api, ledger, &m);
         return result;
     }
-    create_vertex_array(api, &m);
+    m.vertex_array = noh_gl_mesh_make_array(api, &m, NULL);
     label_mesh(api, &m);
     result = noh_gl_error_check(api, "the driver refuses a mesh's vertex array", 0, error);
     if (result) {

@@ -8,6 +8,7 @@
  *   noh_gl_morph_init         build it in your memory and make its GL objects
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make them again after a lost context
+ *   noh_gl_morph_set_mesh     vertex arrays for finished vertices
  *   noh_gl_morph_set_weights  set one instance's weights; costs no more than a comparison if they did not change
  *   noh_gl_morph_set_lod      accumulate only what an LOD level of an instance needs
  *   noh_gl_morph_update       accumulate the instances whose weights changed
@@ -145,6 +146,7 @@ typedef struct noh_gl_morph_plan {
 } noh_gl_morph_plan;
 
 typedef struct noh_gl_morph noh_gl_morph;
+struct noh_gl_mesh; /* gl_draw.h */
 
 /* What one update did. */
 typedef struct noh_gl_morph_stats {
@@ -167,6 +169,7 @@ typedef struct noh_gl_morph_binding {
     int layer_count; /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
     /* Finished vertices: noh_gl_mesh_bind. There is no texture then, and `touched` is 0 */
     GLuint vertex_buffer;                        /* else 0 */
+    GLuint vertex_array;                         /* that reads them: noh_gl_morph_set_mesh; else 0 */
     uint32_t vertex_offset, vertex_stride;       /* bytes; a stride of 20 has a tangent */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
     /* With NOH_LAYERS_STREAMS, by the weights that the instance has now: noh_gl_morph_bind_streams */
@@ -267,6 +270,14 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
  * pack, which must stay as long. The next update accumulates each instance whose level changes by that.
  * mesh  whole: as desc.coarse was, or as noh_gl_morph_fill was given, once that has sent all of it */
 void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh);
+
+/* With finished vertices: make a vertex array for each instance of a mesh and each buffer of the ring, so that no draw
+ * points attributes anew, which drivers look up states for. Call it after init and after each restore; without it
+ * noh_gl_mesh_bind points the mesh's own array there and back. Elsewhere it does nothing.
+ * mesh    index in the desc
+ * drawn   by which the mesh is drawn; its buffers must stay
+ * errors  GL the driver refuses: there are then none of this mesh */
+noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const struct noh_gl_mesh *drawn, noh_error *error);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
 

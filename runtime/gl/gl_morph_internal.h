@@ -63,11 +63,12 @@ struct noh_gl_morph {
     uint32_t *slots;        /* [block_count] (gather): where that tile lies, in the order of blocks: x | y << 9 */
 
     /* Finished vertices (gl_morph_vertices.c). A slot is an instance's part of one buffer of the ring. */
-    float *slot_weights;  /* [ring][weight_count] by which it was written */
-    uint8_t *slot_levels; /* [ring][instance_count] at which; NOH_SLOT_STALE: write all of it */
-    uint8_t *slot_drawn;  /* [instance_count] in the ring */
-    uint8_t *groups;      /* of the largest mesh: 1: a group of texels is written now */
-    void *finished;       /* [NOH_VERTEX_CHUNK] vertices at most */
+    float *slot_weights;   /* [ring][weight_count] by which it was written */
+    uint8_t *slot_levels;  /* [ring][instance_count] at which; NOH_SLOT_STALE: write all of it */
+    uint8_t *slot_drawn;   /* [instance_count] in the ring */
+    GLuint *vertex_arrays; /* [ring][instance_count]; 0: none */
+    uint8_t *groups;       /* of the largest mesh: 1: a group of texels is written now */
+    void *finished;        /* [NOH_VERTEX_CHUNK] vertices at most */
     uint32_t update_count;
     noh_gl_buffer ring[NOH_VERTEX_RING_MAX];
     GLsync fences[NOH_VERTEX_RING_MAX - 1u];
@@ -170,6 +171,11 @@ noh_result noh_gl_morph_init_streams(noh_gl_morph *m, noh_error *error);
 void noh_gl_morph_update_streams(const noh_gl_morph *m, noh_gl_morph_stats *stats);
 uint64_t noh_gl_morph_stream_bytes(const noh_mesh_header *header);
 void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
+
+struct noh_gl_mesh;
+
+/* A vertex array like the mesh's own, but for what `morph` has finished; 0 where the driver makes none. */
+GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const struct noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
 
 #define NOH_SLOT_STALE 255u
 

@@ -474,6 +474,7 @@ static void carve_vertices(noh_arena *arena, const noh_gl_morph_desc *desc, cons
     const size_t ring = plan->vertex_ring;
     const size_t groups = (largest_touched(desc) + NOH_MORPH_GROUP - 1u) / NOH_MORPH_GROUP;
     to->finished = noh_arena_carve(arena, largest_vertices(desc), 16);
+    to->vertex_arrays = (GLuint *)noh_arena_carve(arena, sizeof(GLuint) * ring * plan->instance_count, 4);
     to->slot_weights = (float *)noh_arena_carve(arena, 4u * ring * plan->weight_count, 4);
     to->slot_levels = (uint8_t *)noh_arena_carve(arena, ring * plan->instance_count, 1);
     to->slot_drawn = (uint8_t *)noh_arena_carve(arena, plan->instance_count, 1);

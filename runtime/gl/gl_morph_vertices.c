@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "gl/gl_debug.h"
+#include "gl/gl_draw.h"
 #include "gl/gl_morph_internal.h"
 
 /* A refused glBufferSubData goes unseen (glGetError would wait for the GPU in some browsers), so now and then all of a
@@ -49,6 +50,11 @@ static uint8_t *level_of(const noh_gl_morph *m, uint32_t instance, uint32_t slot
 static float *weights_of(const noh_gl_morph *m, uint32_t instance, uint32_t slot)
 {
     return m->slot_weights + (size_t)slot * m->plan.weight_count + noh_gl_morph_first_weight(m, instance);
+}
+
+static GLuint *array_of(const noh_gl_morph *m, uint32_t instance, uint32_t slot)
+{
+    return m->vertex_arrays + (size_t)slot * m->plan.instance_count + instance;
 }
 
 /* ---- writing ---- */
@@ -312,6 +318,7 @@ void noh_gl_morph_set_vertices(const noh_gl_morph *m, uint32_t instance, noh_gl_
     binding->vertex_buffer = m->ring[m->slot_drawn[instance]].name;
     binding->vertex_offset = (uint32_t)offset_of(m, instance);
     binding->vertex_stride = noh_morph_finished_stride(mesh);
+    binding->vertex_array = *array_of(m, instance, m->slot_drawn[instance]);
 }
 
 /* ---- making ---- */
@@ -322,6 +329,7 @@ noh_result noh_gl_morph_init_vertices(noh_gl_morph *m, noh_error *error)
     noh_result result = NOH_OK;
     memset(m->slot_levels, NOH_SLOT_STALE, (size_t)m->plan.vertex_ring * m->plan.instance_count);
     memset(m->slot_drawn, 0, m->plan.instance_count);
+    memset(m->vertex_arrays, 0, sizeof(GLuint) * m->plan.vertex_ring * m->plan.instance_count);
     m->update_count = 0;
     for (uint32_t slot = 0; slot < m->plan.vertex_ring && result == NOH_OK; slot++) {
         result = noh_gl_buffer_create(m->gl, m->ledger, GL_ARRAY_BUFFER, bytes, NULL, GL_STREAM_DRAW, &m->ring[slot],
@@ -337,11 +345,46 @@ noh_result noh_gl_morph_init_vertices(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
+static void delete_arrays(noh_gl_morph *m, const noh_gl_api *gl, uint32_t first, uint32_t count)
+{
+    for (uint32_t i = 0; i < m->plan.vertex_ring * count; i++) {
+        GLuint *array = array_of(m, first + i % count, i / count);
+        if (*array) gl->DeleteVertexArrays(1, array);
+        *array = 0;
+    }
+}
+
+noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const noh_gl_mesh *drawn, noh_error *error)
+{
+    const noh_gl_morph_mesh *own;
+    noh_result result;
+    NOH_ASSERT(morph && mesh < morph->mesh_count && drawn);
+    own = &morph->meshes[mesh];
+    if (!morph->plan.vertex_ring || !own->mesh.header->touched_count) return NOH_OK;
+    noh_gl_error_take(morph->gl);
+    delete_arrays(morph, morph->gl, own->first_instance, own->instance_count);
+    for (uint32_t i = 0; i < morph->plan.vertex_ring * own->instance_count; i++) {
+        const uint32_t instance = own->first_instance + i % own->instance_count, slot = i / own->instance_count;
+        GLuint *array = array_of(morph, instance, slot);
+        noh_gl_morph_binding at;
+        memset(&at, 0, sizeof at);
+        at.vertex_buffer = morph->ring[slot].name;
+        at.vertex_offset = (uint32_t)offset_of(morph, instance);
+        at.vertex_stride = noh_morph_finished_stride(&own->mesh);
+        *array = noh_gl_mesh_make_array(morph->gl, drawn, &at);
+        if (*array) noh_gl_label(morph->gl, GL_VERTEX_ARRAY, *array, "morphed", own->mesh.name);
+    }
+    result = noh_gl_error_check(morph->gl, "the driver refuses vertex arrays of morphed vertices", 0, error);
+    if (result) delete_arrays(morph, morph->gl, own->first_instance, own->instance_count);
+    return result;
+}
+
 void noh_gl_morph_delete_vertices(noh_gl_morph *m, const noh_gl_api *gl)
 {
     for (uint32_t i = 0; i + 1u < NOH_VERTEX_RING_MAX; i++) {
         if (m->fences[i] && gl->DeleteSync) gl->DeleteSync(m->fences[i]);
         m->fences[i] = NULL;
     }
+    if (m->plan.vertex_ring) delete_arrays(m, gl, 0, m->plan.instance_count);
     for (uint32_t i = 0; i < NOH_VERTEX_RING_MAX; i++) noh_gl_buffer_delete(gl, m->ledger, &m->ring[i]);
 }

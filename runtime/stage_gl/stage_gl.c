@@ -105,7 +105,10 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes);
     add(m, plan.vertex_ring ? "morphed vertices" : "accumulators", site.kind, m->arena.used,
         plan.layer_bytes + plan.vertex_bytes);
-    return model ? noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error) : NOH_OK;
+    if (!model) return NOH_OK;
+    result = noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error);
+    model->part_count = d.mesh_count;
+    return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
 }
 
 /* The palettes, and the rows of places, of one kind's actors for one mesh. */

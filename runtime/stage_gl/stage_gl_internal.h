@@ -11,6 +11,7 @@
 typedef struct noh_gl_model {
     noh_gl_mesh mesh;
     noh_gl_morph *morph; /* NULL: no targets */
+    uint32_t part_count; /* meshes of its desc */
     uint32_t load_kind;  /* noh_stage_kind.load_kind where finer levels come later; else NOH_NONE, and the rest is 0 */
     uint32_t mesh_index; /* in the packs */
     int loaded;          /* 1: they are used */
@@ -122,6 +123,8 @@ size_t noh_gl_room_size(const noh_mesh *mesh);
 noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory);
 /* Make the mesh of a model, with what its own pack has. */
 noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error);
+/* Its mesh is what its accumulators' finished vertices are drawn by. */
+noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
 /* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
 noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
 int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);

@@ -121,11 +121,21 @@ static noh_result restore_mesh(const noh_gl_device *d, noh_gl_model *model, noh_
     return noh_gl_model_make_mesh(d, model, error);
 }
 
+noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < model->part_count && result == NOH_OK; i++) {
+        result = noh_gl_morph_set_mesh(model->morph, i, &model->mesh, error);
+    }
+    return result;
+}
+
 noh_result noh_gl_model_restore(const noh_stage *s, noh_gl_model *model, noh_error *error)
 {
     const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
     noh_result result = restore_mesh(d, model, error);
     if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
+    if (result == NOH_OK && model->morph) result = noh_gl_model_set_mesh(model, error);
     model->mesh_at = 0;
     model->morph_at = 0;
     if (result == NOH_OK && model->load_kind != NOH_NONE && model->loaded) {

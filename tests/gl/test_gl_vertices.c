@@ -313,7 +313,8 @@ static void what_may_be_drawn_is_kept(void **state)
 
 /* ---- drawing ---- */
 
-/* Bound, a mesh has the morphed vertices; unbound, those of the bind pose again. */
+/* Bound, a mesh has the morphed vertices; unbound, those of the bind pose again. By its own vertex array, then by those
+ * of the instances. */
 static void a_mesh_is_drawn_from_them(void **state)
 {
     gpu *g = fixture_gpu();
@@ -331,10 +332,12 @@ static void a_mesh_is_drawn_from_them(void **state)
     memset(&ledger, 0, sizeof ledger);
     open_vertices(&m, &desc);
     assert_int_equal(noh_gl_mesh_create(&g->gl, &ledger, mesh, &gl_mesh, NULL), NOH_OK);
-    for (int morphed = 1; morphed >= 0; morphed--) {
+    for (int round = 0; round < 4; round++) {
+        const int morphed = !(round % 2);
         const uint32_t instance = noh_gl_morph_instance(m.morph, 2, 1);
         noh_morph_layers layers;
         int exact;
+        if (round == 2) assert_int_equal(noh_gl_morph_set_mesh(m.morph, 2, &gl_mesh, NULL), NOH_OK);
         if (morphed) fixture_set_random(&m, instance, &r);
         noh_gl_morph_update(m.morph, NULL);
         layers.position = fixture_reference(&m, instance, &exact);
@@ -342,7 +345,8 @@ static void a_mesh_is_drawn_from_them(void **state)
         layers.tangent = layers.normal + noh_morph_layers_size(mesh) / 12u;
         if (!morphed) memset(layers.position, 0, noh_morph_layers_size(mesh));
         binding = noh_gl_morph_binding_of(m.morph, instance);
-        if (!morphed) binding.vertex_buffer = 0; /* as where nothing is morphed */
+        assert_int_equal(binding.vertex_array != 0, round >= 2);
+        if (!morphed) binding.vertex_buffer = binding.vertex_array = 0; /* as where nothing is morphed */
         assert_int_equal(readback_open(&back, g, NOH_LAYERS_VERTICES), 0);
         assert_int_equal(readback_vertices(&back, &gl_mesh, &binding, positions, normals, tangents), 0);
         readback_close(&back);

@@ -84,6 +84,9 @@ static inline void parts_open_as(parts *p, gpu *g, const pack_file *file, noh_mo
     morph.accumulate = accumulate;
     morph.vertices = vertices;
     assert_int_equal(gpu_morph_open(&p->morph, g, &morph, file->path), 0);
+    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+        assert_int_equal(noh_gl_morph_set_mesh(p->morph.morph, i, &p->on_gl[i], NULL), NOH_OK);
+    }
     memset(&renderer, 0, sizeof renderer);
     renderer.layers_uint = noh_gl_morph_binding_of(p->morph.morph, 0).is_uint;
     renderer.meshes = p->meshes;
@@ -127,6 +130,9 @@ static inline noh_result parts_restore(parts *p)
         result = noh_gl_picture_restore(gl, &p->g->ledger, &texture, &p->pictures[i], NULL);
     }
     if (!result) result = noh_gl_morph_restore(p->morph.morph, NULL, 0, NULL);
+    for (uint32_t i = 0; !result && i < p->file->pack.mesh_count; i++) {
+        result = noh_gl_morph_set_mesh(p->morph.morph, i, &p->on_gl[i], NULL);
+    }
     return result ? result : noh_gl_renderer_restore(&p->renderer, NULL, 0, NULL);
 }
 

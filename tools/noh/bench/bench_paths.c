@@ -88,6 +88,9 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     if (vertices) m->normal_slack = (double)NOH_FINISHED_NORMAL_ERROR;
     set_slack(m, s->mesh->header, accumulate);
     status = gpu_morph_open(&p->morph, s->g, &desc, "bench");
+    if (!status && noh_gl_morph_set_mesh(p->morph.morph, 0, &s->gl_mesh, NULL)) {
+        status = tool_fail("bench", "the driver refuses vertex arrays");
+    }
     if (!status) {
         p->binding = noh_gl_morph_binding_of(p->morph.morph, 0);
         status = bench_programs(s, m, defines[p->binding.is_uint]);
