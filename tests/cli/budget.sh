@@ -20,6 +20,20 @@ sum_of() { # COLUMN FILE
 noh budget "$build/mask.noh" --nominal
 expect 0 'a mask'
 check 'what a material has and costs' grep -q "^material 'paint': plain, 4 textures of 152940 bytes, a pixel makes 2 fetches, 7 under a light with a shadow" "$work/out"
+noh budget "$build/mask.noh" --nominal --why
+expect 0 'why this path'
+# The nominal device is no software rasteriser: the least of mrt and gather is taken.
+check 'the path named is the cheaper one' awk '
+    /^why: / { taken = $2; sub(":", "", taken) } $1 == "mrt" { mrt = $2 } $1 == "gather" { gather = $2 }
+    END { exit !(mrt > 0 && gather > 0 && taken == (gather <= mrt ? "gather" : "mrt")) }' "$work/out"
+check 'what gather sends at most is told' grep -q '^an update of all instances sends at most [1-9]' "$work/out"
+if [ -n "$json" ]; then
+    noh budget "$build/mask.noh" --nominal --why --json
+    check 'as JSON, too' sh -c '[ -s "$1" ]' - "$work/out"
+    check 'with every cost' $json 'j.why.costs.mrt > 0 && j.why.costs.gather > 0 && j.why.costs.per_layer > 0 && j.why.costs.cpu > 0 && j.why.update_bytes > 0' <"$work/out"
+fi
+noh budget "$puppet" --actors 20 --why
+expect 2 'of a stage it is refused'
 noh budget "$puppet" --actors 20 --nominal
 expect 0 'a stage of twenty'
 cp "$work/out" "$work/whole"

@@ -5,6 +5,7 @@
 
 #include "info/info_materials.h"
 #include "budget_args.h"
+#include "budget_why.h"
 #include "pack_budget.h"
 #include "gpu/gpu_args.h"
 #include "cli/json.h"
@@ -67,7 +68,7 @@ static void print_parts(const pack_budget *b)
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
 }
 
-static void print_budget(const pack_budget *b, const char *device)
+static void print_budget(const pack_budget *b, const char *device, int why)
 {
     const uint32_t instances = b->planned.kinds[0].actor_count;
     print_parts(b);
@@ -81,12 +82,13 @@ static void print_budget(const pack_budget *b, const char *device)
     } else {
         printf("%s\n", b->morph.reason);
     }
+    if (why && b->morph.instance_count) budget_why_print(&b->morph);
     print_levels(b);
     if (b->planned.kinds[0].mesh) info_print_costs(b->planned.kinds[0].mesh);
     if (b->planned.kinds[0].mesh) info_print_textures(b->planned.kinds[0].mesh);
 }
 
-static int json_budget(const pack_budget *b, const char *device)
+static int json_budget(const pack_budget *b, const char *device, int why)
 {
     const noh_stage_plan *plan = &b->planned.plan;
     json j = json_begin();
@@ -99,6 +101,7 @@ static int json_budget(const pack_budget *b, const char *device)
     json_text(&j, "accumulate", noh_accumulate_name(b->morph.accumulate));
     json_text(&j, "reason", b->morph.reason);
     json_text(&j, "device", device);
+    if (why && b->morph.instance_count) budget_why_json(&j, &b->morph);
     json_integer(&j, "instances", b->planned.kinds[0].actor_count);
     json_integer(&j, "clip_segments_held", b->cached_segment_count);
     json_integer(&j, "clip_segments", b->segment_count);
@@ -157,9 +160,9 @@ static int budget_of(const budget_args *a, const figure_desc *desc)
     if (!status) status = pack_budget_make(&b, desc, draws ? &caps : NULL);
     if (!status) {
         if (a->as_json) {
-            status = json_budget(&b, caps.renderer);
+            status = json_budget(&b, caps.renderer, a->why);
         } else {
-            print_budget(&b, caps.renderer);
+            print_budget(&b, caps.renderer, a->why);
         }
         pack_budget_free(&b);
     }
@@ -227,6 +230,11 @@ static const option options[] = {
       .at = offsetof(budget_args, nominal),
       .what = "assume a GLES 3.2 device that supports everything; needs no driver",
       .excludes = "--no-gpu" },
+    { .name = "--why",
+      .kind = OPTION_FLAG,
+      .at = offsetof(budget_args, why),
+      .what = "also what the choice of the morph path weighs, term by term",
+      .excludes = OF_STAGE },
     COUNT_OPTION("--actors", ACTORS, "N", .example = "20", .excludes = "--desc",
                  .what = "a stage with this many characters of the pack at one time, 1 to 65535"),
     COUNT_OPTION(
@@ -303,7 +311,7 @@ const verb verb_budget = {
         "With --actors, or with --desc in place of PACK, it plans a stage: its parts, each kind's levels, and what is "
         "given up where the stage has to keep a bound.",
     .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json\n"
-               "body.noh --actors 20 --near 4 --bytes 2097152\n--desc cast.txt --nominal",
+               "face.noh --why --nominal\nbody.noh --actors 20 --near 4 --bytes 2097152\n--desc cast.txt --nominal",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
