@@ -14,11 +14,13 @@
 #include "platform.h"
 #include "wire/wire.h"
 
-/* A plain device that does all that any path needs: which one it will be is found in the browser. */
+/* A device that does all that any path needs, and draws in software as that of the tests does: which one it will be is
+ * found in the browser. */
 static noh_gl_caps any_device(void)
 {
     noh_gl_caps caps;
     memset(&caps, 0, sizeof caps);
+    memcpy(caps.renderer, "SwiftShader", sizeof "SwiftShader");
     caps.version = 320;
     caps.is_es = 1;
     caps.texture_size_max = 2048;

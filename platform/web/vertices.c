@@ -1,6 +1,6 @@
 /* vertices.c: the deformed vertices of each mesh, in buffers that another renderer on the same context draws
  * (package/three.js). A point is drawn for each vertex, nothing is rasterised, and transform feedback writes what the
- * vertex shader makes of it. Texture coordinates and colours, which never change, are written once. */
+ * vertex shader makes of it. Colours, which never change, are written once. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ __attribute__((import_module("noh"), import_name("feedback"))) void web_gl_feedb
 
 enum { OUT_POSITION, OUT_NORMAL, OUT_TANGENT, OUT_UV, OUT_COLOR, OUT_COUNT };
 
-#define MOVING 3u /* of the outputs: those before OUT_UV */
+#define MOVING 4u /* of the outputs: those before OUT_COLOR; WebGL has at least four */
 #define DRAWN_MAX 64u
 #define VARIANTS_MAX 16u
 
@@ -167,14 +167,14 @@ static void set_uniforms(const web_pass *p, const noh_gl_variant *v)
     gl->Uniform4fv(v->u_world, 3, p->world);
     gl->Uniform4fv(v->u_normal, 3, rows);
     gl->Uniform4i(v->u_morph, morph->tile_x, morph->tile_y, morph->width_log2, morph->touched); /* zeros: not morphed */
-    if (p->on_gl.is_morphed) {
+    if (p->on_gl.is_morphed && morph->texture) {
         gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
         gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
     }
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
-    gl->BindVertexArray(p->on_gl.mesh->vertex_array);
+    noh_gl_mesh_bind(gl, p->on_gl.mesh, p->on_gl.is_morphed ? morph : NULL);
 }
 
 /* Each vertex belongs to one submesh, and with it to a palette. */
@@ -207,6 +207,7 @@ static noh_result write(const web_pass *p, int moving)
         write_submesh(p, s, moving ? 0 : MOVING, moving ? MOVING : OUT_COUNT - MOVING);
     }
     web.gl.Disable(GL_RASTERIZER_DISCARD);
+    noh_gl_mesh_unbind(&web.gl, p->on_gl.mesh, p->on_gl.is_morphed ? &p->on_gl.morph : NULL);
     for (uint32_t i = 0; i < MOVING; i++) web.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, i, 0);
     return NOH_OK;
 }

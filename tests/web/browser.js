@@ -52,10 +52,19 @@ function launch(executablePath, flags) {
     });
 }
 
+// A dozen frames a second are enough to see that something moves: a browser asks for more than a software rasteriser draws,
+// and what it was asked for has to be drawn in the end.
+function slowly(page) {
+    return page.addInitScript(() => {
+        const next = window.requestAnimationFrame.bind(window);
+        window.requestAnimationFrame = (call) => setTimeout(() => next(call), 70);
+    });
+}
+
 // Save a canvas as PNG.
 async function save(page, selector, file) {
     const url = await page.evaluate((s) => document.querySelector(s).toDataURL('image/png'), selector);
     fs.writeFileSync(file, Buffer.from(url.split(',')[1], 'base64'));
 }
 
-module.exports = { serve, launch, save };
+module.exports = { serve, launch, save, slowly };

@@ -3,7 +3,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, save } = require('./browser.js');
+const { serve, launch, save, slowly } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
 let told = 0, failures = 0, address = '';
@@ -40,6 +40,7 @@ async function open(browser, options, search) {
     const asked = new URLSearchParams(search);
     for (const [name, value] of Object.entries(asTested)) if (!asked.has(name)) asked.set(name, value);
     const page = await browser.newPage(options);
+    await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });

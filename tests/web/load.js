@@ -117,9 +117,14 @@ async function own(browser) {
 // By a slow network, in milliseconds since the page was asked for, and what had come by then.
 async function slow(browser) {
     const page = await browser.newPage(wide), client = await page.context().newCDPSession(page);
-    let bytes = 0;
+    let bytes = 0, rest = 0; // rest: of them, what is asked for after the first picture
+    const later = new Set();
     await client.send('Network.enable');
-    client.on('Network.dataReceived', (event) => { bytes += event.encodedDataLength; });
+    client.on('Network.requestWillBeSent', ({ requestId, request }) => { if (/^bytes=[1-9]/.test(request.headers.Range)) later.add(requestId); });
+    client.on('Network.dataReceived', ({ requestId, encodedDataLength }) => {
+        bytes += encodedDataLength;
+        if (later.has(requestId)) rest += encodedDataLength;
+    });
     await client.send('Network.emulateNetworkConditions', { offline: false, latency: 150, downloadThroughput: 200000, uploadThroughput: 93750 });
     const start = Date.now(), told = [];
     await page.goto(`${address()}/?clip=none&size=256`, { waitUntil: 'commit' });
@@ -128,6 +133,7 @@ async function slow(browser) {
         told.push(`${what === 'ready' ? 'first picture' : 'complete'} after ${((Date.now() - start) / 1000).toFixed(1)} s and ${Math.round(bytes / 1000)} kB`);
     }
     console.log(`# 1.6 Mbit/s, 150 ms: ${told.join(', ')}`);
+    check('by a slow network: the first picture takes 500 kB at most', rest > 0 && bytes - rest <= 500000, `${bytes - rest} and ${rest}`);
     check('by a slow network: it is all there', await page.evaluate(() => window.noh.whole && !window.noh.error));
     await page.close();
 }

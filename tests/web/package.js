@@ -5,6 +5,7 @@
 const fs = require('fs');
 const path = require('path');
 const { folder, out, check, faults, run, address } = require('./harness.js');
+const { slowly } = require('./browser.js');
 
 const project = process.argv[5];
 const minute = { timeout: 60000 };
@@ -19,6 +20,7 @@ async function show(browser, body, options) {
 
 async function visit(browser, name, options) {
     const page = await browser.newPage({ viewport: { width: 200, height: 250 }, ...options });
+    await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });

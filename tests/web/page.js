@@ -123,6 +123,7 @@ async function held(browser) {
 async function walks(browser, camera) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=walk&camera=${camera}`);
     const before = await view(page);
+    await page.evaluate(() => { character.speed = 2; });
     for (let i = 0; i < 2; i++) {
         await reach(page, 1);
         await page.waitForFunction(() => Number(document.getElementById('time').value) < 0.4, null, { timeout: 60000 });

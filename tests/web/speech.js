@@ -4,7 +4,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, save } = require('./browser.js');
+const { serve, launch, save, slowly } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
 const rate = 16000, minute = { timeout: 60000 };
@@ -64,6 +64,7 @@ function wav() {
 async function open(browser, options, prepare) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
     const page = await context.newPage();
+    await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
