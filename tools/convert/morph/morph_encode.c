@@ -15,6 +15,7 @@
 
 typedef struct encoder {
     const model_mesh *mesh;
+    morph_uv uv; /* of it, where targets move texture coordinates: `mesh` is then the one in here */
     morph_options options;
     morph_encoding *e;
     morph_bits vertices;     /* all vertices x targets: kept pairs */
@@ -331,9 +332,10 @@ static void count_one_rect(encoder *c, uint32_t *texels)
 }
 
 /* Where the order has put what stands in for texture coordinates. */
-static int find_uv_texels(encoder *c, const morph_uv *uv, uint32_t count)
+static int find_uv_texels(encoder *c, uint32_t count)
 {
     morph_encoding *e = c->e;
+    const morph_uv *uv = &c->uv;
     uint32_t *place = morph_alloc(e->vertex_count, sizeof *place);
     e->uv_texel = morph_alloc(count, sizeof *e->uv_texel);
     e->uv_per_unit = uv->uv_per_unit;
@@ -381,12 +383,11 @@ static int start(encoder *c)
 static int encode_with_uvs(encoder *c)
 {
     const uint32_t count = c->mesh->vertex_count;
-    morph_uv uv;
-    int failed = morph_uv_extend(c->mesh, &c->options, &uv) ? no_memory(c) : 0;
-    c->mesh = &uv.mesh;
-    if (c->options.rank) c->options.rank = uv.rank;
-    failed = failed || start(c) || encode(c) || find_uv_texels(c, &uv, count);
-    morph_uv_free(&uv);
+    int failed = morph_uv_extend(c->mesh, &c->options, &c->uv) ? no_memory(c) : 0;
+    c->mesh = &c->uv.mesh;
+    if (c->options.rank) c->options.rank = c->uv.rank;
+    failed = failed || start(c) || encode(c) || find_uv_texels(c, count);
+    morph_uv_free(&c->uv);
     return failed;
 }
 
