@@ -116,8 +116,8 @@ static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan
         const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
         noh_mesh coarse;
         if (!mesh.header->touched_count) continue;
-        takes = !mesh.transfer && desc->kinds[site.kind].actor_count == 1u &&
-                !noh_gl_site_coarse(desc, plan, site, &coarse);
+        takes = !mesh.transfer && !(mesh.header->flags & NOH_MESH_UV_TARGETS) &&
+                desc->kinds[site.kind].actor_count == 1u && !noh_gl_site_coarse(desc, plan, site, &coarse);
     }
     return takes;
 }

@@ -389,7 +389,7 @@ static void a_shader_reads_what_meshes_have(void **state)
 {
     noh_gl_shader_desc own = {
         .name = "toon",
-        .vertex = "layout(location = 14) in vec4 mine;\nvoid main()\n{\n    gl_Position = mine;\n}\n",
+        .vertex = "layout(location = 15) in vec4 mine;\nvoid main()\n{\n    gl_Position = mine;\n}\n",
         .fragment = "layout(location = 0) out vec4 o;\nvoid main() { o = vec4(1.0); }\n",
     };
     char log[2048];
@@ -397,12 +397,12 @@ static void a_shader_reads_what_meshes_have(void **state)
     (void)state;
     assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_ERR_DATA);
     assert_string_equal(error.what, "a vertex shader reads an attribute that what it draws does not have");
-    assert_int_equal(error.where, 14);
+    assert_int_equal(error.where, 15);
     assert_true(strncmp(log, "toon: vertex: mine: ", 20) == 0);
-    own.inputs = &(noh_gl_input){ 14, GL_FLOAT_VEC4 };
+    own.inputs = &(noh_gl_input){ 15, GL_FLOAT_VEC4 };
     own.input_count = 1;
     assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_OK);
-    own.inputs = &(noh_gl_input){ 14, GL_INT_VEC4 };
+    own.inputs = &(noh_gl_input){ 15, GL_INT_VEC4 };
     assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_ERR_DATA);
     own.input_count = NOH_GL_OWN_INPUTS_MAX + 1;
     assert_int_equal(create_with(&own, NULL, 0, &error), NOH_ERR_LIMIT);
