@@ -34,7 +34,7 @@ FP       := -ffp-contract=off -fno-math-errno
 SECTIONS := -ffunction-sections -fdata-sections
 # With sanitizers gcc warns of truncations that cannot be; warnings are errors in the builds without them.
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-error)
-OPT      ?= $(if $(SAN),-O1 -g1,-O2 -g)
+OPT      ?= $(if $(SAN),-O1,-O2) -g1
 ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
@@ -69,7 +69,9 @@ STAGES     := vert geom frag
 # What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
 SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%)) $(foreach text,layers attributes skin face transfer vertex fade fragment wrinkle material environment scatter eye light,shaders_es/common_$(text).glsl) shaders_es/decal_vertex.glsl shaders_es/decal_fragment.glsl
 TOOL_SHADERS := $(call sources,tools/noh,$(STAGES:%=*.%))
-TEST_C     := $(call sources,tests,test_*.c)
+# Under sanitizers, of what draws and of the program as a whole, only what is listed (NOH_LONG=1: all).
+SANITIZED  := $(if $(SAN),$(if $(NOH_LONG),,$(shell sed '/^\#/d' tests/sanitized.txt)))
+TEST_C     := $(filter $(if $(SANITIZED),tests/unit/% tests/memory/% $(SANITIZED:%=tests/%.c),%),$(call sources,tests,test_*.c))
 VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)
 
 # `noh view` needs a window and panels; without their libraries the verb says which are missing.
@@ -81,8 +83,8 @@ else
 VIEW_O     := $(VIEW_NOT_C:%.c=$(BUILD)/%.o)
 endif
 
-RUNTIME_O  := $(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o
 ASSERT_O   := $(RUNTIME_C:%.c=$(BUILD)/assert/%.o) $(BUILD)/gen/shaders.gen.o
+RUNTIME_O  := $(if $(SAN),$(ASSERT_O),$(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o)
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
 CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
@@ -117,7 +119,7 @@ help:
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each), needs clang'
 	@echo 'make check-long  all that .ci/run does in its long form: hours; and memcheck, paths by gcc and clang, AFL++'
-	@echo 'make threads    poses on four threads under ThreadSanitizer, with gcc and clang'
+	@echo 'make threads    poses on four threads under ThreadSanitizer'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
 	@echo 'make budgets    what the demo characters take, to the byte, against a table; budgets-update: a new table'
 	@echo 'make cross      the library and its CPU tests for aarch64, armv7 and wasm (qemu, node)'
@@ -146,7 +148,7 @@ $(BUILD)/libnoh.a: $(RUNTIME_O)
 	$(call say,AR,$@)
 	$(Q)$(AR) rcsD $@ $^
 
-# The same with every assert on, for the tests: what ships has none.
+# The same with every assert on, for the tests and all that sanitizers watch: what ships has none.
 $(BUILD)/assert/libnoh.a: $(ASSERT_O)
 	@rm -f $@
 	$(call say,AR,$@)
@@ -397,7 +399,7 @@ check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/wig.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
-# Under ThreadSanitizer, with gcc and with clang.
+# Under ThreadSanitizer.
 threads: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/tsan.sh
@@ -655,19 +657,21 @@ $(BUILD)/tests/tool.a: $(filter-out %/main.o,$(TOOL_O)) $(CONVERT_O) $(PLATFORM_
 	$(Q)$(AR) rcsD $@ $^
 
 $(BUILD)/tests/%.o: INCLUDES += -Itests -Itests/support
+# They are compiled in two thirds of the time so.
+$(BUILD)/tests/%.o: OPT = -O1 -g1
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
-# The library's CPU tests, those that need neither C++ nor GL, for another processor: tests/cross.sh
+# The library's CPU tests, those that need neither C++ nor GL nor the tool, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := normal_map raw_turn mocap wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips demo_borders eye_split seam uv_targets wrinkles region_mask identity gltf_read gltf_left_out gltf_formula embed clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
-               skin skin_list skin_oracle skin_pack bounds_pick pick source_errors puppet simplify lod_chunks lod_certified lod_lies levels pack \
-               joint_order clip_errors lod_pack strip stage stage_between stage_day blob decal decal_grow stage_face stage_graph stage_part stage_ragdoll stage_springs stage_desc_file place_file data_page walkers graph_text puppet_graph $(if $(findstring emcc,$(CC)),threads crowd_threads) \
+CROSS_SKIP  := normal_map raw_turn mocap wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips eye_split seam uv_targets wrinkles region_mask identity gltf_read gltf_left_out gltf_formula clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
+               skin skin_list skin_oracle skin_pack bounds_pick pick source_errors simplify lod_chunks lod_certified lod_lies levels pack \
+               joint_order clip_errors lod_pack strip stage stage_between stage_day blob decal decal_grow stage_face stage_graph stage_part stage_ragdoll stage_springs walkers graph_text $(if $(findstring emcc,$(CC)),threads crowd_threads) \
                $(if $(SAN),,stage_threads)
-CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
+CROSS_TESTS := $(patsubst tests/%.c,$(BUILD)/cross/%,$(filter-out tests/unit/tools/% $(addprefix %/test_,$(CROSS_SKIP:%=%.c)),$(call sources,tests/unit,test_*.c)))
 CROSS_O     := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/cross/*.c) $(filter %/support.c %/pack_walk.c,$(wildcard tests/*.c tests/support/*.c)) \
                    platform/file.c platform/file_write.c $(CONVERT_C))
 INCLUDES    += $(if $(CROSS),-Itests/cross -idirafter /usr/include)

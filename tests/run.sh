@@ -70,30 +70,25 @@ count='
 long='gl/view gl/view_figure gl/view_tools check_install gl/test_gl_load cli/graph cli/light check_stack check_headers cli/zoom cli/strip cli/lighting
     gl/verify gl/matrix check_amalgam check_plain_c cli/crowd cli/springs cli/wrinkles unit/clip/test_clip_codec
     unit/face/test_identity unit/stage/test_stage'
-# Of what draws, and of the program as a whole, these run under sanitizers: they read files of others, call in any order,
-# refuse what the library asks for, or lose the context. The rest calls the same code, and is left to `make check-long`.
-sanitized='cli/bad_input cli/build cli/fbx cli/mask cli/obj cli/pack cli/terrain cli/usage cli/write
-    gl/test_figure gl/test_gl_base gl/test_gl_load gl/test_gl_morph gl/test_gl_refused gl/test_gl_refused_driver
-    gl/test_gl_skin gl/test_gl_stage gl/test_lost gl/test_null gl/test_source_errors_gl gl/test_stage_calls'
 left_out_by_sanitizers() { # NAME
     [ -n "$NOH_SAN" ] && [ -z "${NOH_LONG:-}" ] || return 1
     case $1 in cli/* | gl/*) ;; *) return 1 ;; esac
-    case " $(echo $sanitized) " in *" $1 "*) return 1 ;; esac
+    ! grep -qx "$1" tests/sanitized.txt
 }
 
 # ---- one program: run.sh --one NAME COMMAND..., as the loop below calls it ----
 
-# Its log is NAME.txt; NAME.told holds "C passed failed skipped seconds" and an S line for each skip.
+# Its log is NAME.txt; NAME.told holds "C passed failed skipped seconds" (those of processors) and an S line for each skip.
 if [ "${1:-}" = --one ]; then
     name=$2
     shift 2
     log=$logs/$(echo "$name" | tr / _)
-    begin=$(date +%s)
     left_out_by_sanitizers "$name" &&
         set -- printf 'ok 1 - %s # SKIP %s\n1..1\n' "$name" 'under sanitizers only in make check-long'
     timeout -k 10 "$limit" "$@" >"$log.txt" 2>&1 </dev/null
     status=$?
-    seconds=$(($(date +%s) - begin))
+    times >"$log.times" # not in a subshell: it counts the children of the shell that calls it
+    seconds=$(awk 'NR == 2 { split($1 "m" $2, part, /[ms]+/); printf "%d", part[1] * 60 + part[2] + part[3] * 60 + part[4] }' "$log.times")
     awk -v status=$status -v seconds=$seconds "$count" "$log.txt" >"$log.told"
     echo $status >"$log.status"
     # shellcheck disable=SC2046
@@ -126,7 +121,7 @@ programs | while read -r name command; do
     case $name in *"${NOH_TEST:-}"*) ;; *) continue ;; esac
     log=$logs/$(echo "$name" | tr / _)
     seconds=$(sed -n 's/^C [0-9]* [0-9]* [0-9]* //p' "$log.told" 2>/dev/null)
-    rm -f "$log.told" "$log.txt" "$log.status"
+    rm -f "$log.told" "$log.txt" "$log.times" "$log.status"
     [ -n "$seconds" ] || case " $(echo $long) " in *" $name "*) seconds=60 ;; esac
     echo "${seconds:-1} $name $command"
 done | sort -s -k1,1nr | cut -d' ' -f2- >"$logs/programs"
@@ -134,7 +129,7 @@ done | sort -s -k1,1nr | cut -d' ' -f2- >"$logs/programs"
 xargs -r -P "$jobs" -L 1 sh tests/run.sh --one <"$logs/programs"
 
 passed=0 failed=0 skipped=0
-: >"$logs/skips"
+: >"$logs/skips" >"$logs/seconds"
 while read -r name command; do
     log=$logs/$(echo "$name" | tr / _)
     # shellcheck disable=SC2046
@@ -142,6 +137,7 @@ while read -r name command; do
     [ $# = 4 ] || set -- 0 1 0 0
     passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
     sed -n "s|^S |  $name: |p" "$log.told" >>"$logs/skips"
+    echo "$4 $name" >>"$logs/seconds"
     if [ "$2" != 0 ]; then
         status=$(cat "$log.status" 2>/dev/null)
         echo "$name FAILED (exit code ${status:-unknown}); the end of its output, which is in $log.txt:"
@@ -154,5 +150,9 @@ if [ -s "$logs/skips" ]; then
     echo 'skipped, and why:'
     sort "$logs/skips"
 fi
+sort -rn "$logs/seconds" | awk '
+    { all += $1 }
+    NR <= 12 && $1 > 4 { longest = longest sprintf("%s%s %d", longest == "" ? "" : ", ", $2, $1) }
+    END { if (longest != "") printf "seconds of processors: %d; of them %s\n", all, longest }'
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ] && [ $passed != 0 ]

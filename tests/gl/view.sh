@@ -2,6 +2,7 @@
 # `noh view` on a virtual display: its options, then real key, mouse and drop events, as a window system has them; what
 # it does with them is view_figure.sh's and view_tools.sh's. Every run fails on any GL error that KHR_debug reports.
 . tests/cli/lib.sh
+. tests/support/view.sh
 mask=$build/mask.noh
 case $mask in /*) ;; *) mask=$PWD/$mask ;; esac
 case $build in /*) ;; *) build=$PWD/$build ;; esac
@@ -23,37 +24,13 @@ expect 2 'so is a driver that windows do not have'
 noh view "$mask" --lod 9
 expect 2 'so are more LOD levels than there can be'
 
-for program in Xvfb xdotool; do
-    if ! command -v $program >/dev/null 2>&1; then
-        skip 'windows' "$program is not installed"
-        finish
-    fi
-done
-# -noreset: else it resets between two programs, and refuses one that connects meanwhile.
-Xvfb -noreset -displayfd 3 -screen 0 1800x1000x24 3>"$work/display" >"$work/xvfb" 2>&1 &
-xvfb=$!
-trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT
-tries=0
-while [ ! -s "$work/display" ] && [ $tries -lt 50 ]; do sleep 0.2; tries=$((tries + 1)); done
-if [ ! -s "$work/display" ]; then
-    skip 'windows' 'Xvfb does not start here'
-    finish
-fi
-DISPLAY=:$(cat "$work/display")
-export DISPLAY
+start_display
 
 # ---- without a hand ----
 
-png_size() { # FILE: "640x480"
-    od -An -tu1 -j16 -N8 "$1" | awk '{ print ($1 * 256 + $2) * 65536 + $3 * 256 + $4 "x" ($5 * 256 + $6) * 65536 + $7 * 256 + $8 }'
-}
 noh view "$mask" --frames 2 --size 900x600 --screenshot "$work/shot.png"
-if [ $code != 0 ] && grep -q 'no window with OpenGL ES' "$work/err"; then
-    skip 'windows' 'no window with OpenGL ES 3 here'
-    finish
-fi
 expect 0 'some frames and a screenshot'
-check 'of the size of the window' test "$(png_size "$work/shot.png")" = 900x600
+check 'of the size of the window' test "$(png_size shot.png)" = 900x600
 for path in layered mrt per-layer gather cpu; do
     noh view "$mask" --path $path --accumulate f16 --clip speak --frames 3 --size 700x400
     if [ $code != 0 ] && grep -q "^noh: $mask: " "$work/err"; then
@@ -133,9 +110,6 @@ figure() { # sets $shot
     tries=0
     while [ ! -f "$shot" ] && [ $tries -lt 900 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
 }
-same() { cmp -s "$1" "$2"; }
-differ() { [ -f "$1" ] && [ -f "$2" ] && ! cmp -s "$1" "$2"; }
-# A picture is saved some frames after its key, so it is also how to wait until all that went before has been drawn.
 drag() { # X0 Y0 X1 Y1 BUTTON
     xdotool mousemove "$1" "$2" mousedown "${5:-1}"
     figure
@@ -208,7 +182,7 @@ xdotool key F12
 shots=$((shots + 1))
 tries=0
 while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 100 ]; do sleep 0.1; tries=$((tries + 1)); done
-check 'F12 saves the window' test "$(png_size "$work/noh-window-$shots.png")" = 1280x800
+check 'F12 saves the window' test "$(png_size "noh-window-$shots.png")" = 1280x800
 lose
 check 'F10 loses the context, and a new one comes' test "${window:-$lost}" != "$lost"
 figure

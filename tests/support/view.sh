@@ -5,7 +5,7 @@
 #   hand NAME ARGUMENTS <<.. noh view with a script (tools/noh/view/view_script.h) in $work, where it saves pictures;
 #                            what it expects and what it finds is checked frame by frame, whatever time that takes
 #   last STATE-LINE          what follows these words in the last state that was printed
-#   same, differ, alike A B  pictures in $work
+#   same, differ, alike A B  pictures, in $work where no folder is named
 #   check_near A B WITHIN    numbers
 
 start_display() {
@@ -46,15 +46,16 @@ hand() {
 last() {
     sed -n "s/^$1//p" "$work/out" | tail -n 1
 }
-same() { cmp -s "$work/$1" "$work/$2"; }
-differ() { [ -f "$work/$1" ] && [ -f "$work/$2" ] && ! cmp -s "$work/$1" "$work/$2"; }
+path_of() { case $1 in /*) echo "$1" ;; *) echo "$work/$1" ;; esac; }
+same() { cmp -s "$(path_of "$1")" "$(path_of "$2")"; }
+differ() { [ -f "$(path_of "$1")" ] && [ -f "$(path_of "$2")" ] && ! same "$1" "$2"; }
 # But for a rounding: creases and skin are lit by derivatives, and other programs round them otherwise.
-alike() { "$build/tests/gl/picture_diff" "$work/$1" "$work/$2" "${3:-0.02}" "${4:-0.01}"; }
+alike() { "$build/tests/gl/picture_diff" "$(path_of "$1")" "$(path_of "$2")" "${3:-0.02}" "${4:-0.01}"; }
 check_near() {
     awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a != "" && b != "" && a - b <= most && b - a <= most) }'
 }
 png_size() { # FILE: "640x480"
-    od -An -tu1 -j16 -N8 "$work/$1" | awk '{ print ($1 * 256 + $2) * 65536 + $3 * 256 + $4 "x" ($5 * 256 + $6) * 65536 + $7 * 256 + $8 }'
+    od -An -tu1 -j16 -N8 "$(path_of "$1")" | awk '{ print ($1 * 256 + $2) * 65536 + $3 * 256 + $4 "x" ($5 * 256 + $6) * 65536 + $7 * 256 + $8 }'
 }
 draw() { # OUT LIKE FILE OPTIONS: as noh render has it, of the size of the picture LIKE
     drawn=$1 like=$2 drawn_file=$3
