@@ -12,20 +12,20 @@ check 'what depends on the compiler is in base/compiler.h, math_internal.h and p
 
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'plain C gives the same bits' 'the build without sanitizers says it'
-else
-    plain=$build/plain
-    plain_make() {
-        make --no-print-directory -j"${JOBS:-2}" BUILD="$plain" CC="${CC:-gcc}" CROSS=1 DEPS=0 SAN= OPT='-O2 -DNOH_PLAIN_C' "$@" >"$work/log" 2>&1
-    }
-    check 'the library builds as plain C' plain_make lib
-    names='hash math quat trig mesh bounds blend clip_codec'
-    # shellcheck disable=SC2086
-    check 'and its tests' plain_make $(printf "$plain/cross/test_%s " $names)
-    for name in $names; do
-        check "plain C: test_$name" sh -c 'NOH_ASSETS=none "$1" >"$2" 2>&1 || { grep -v "^ok" "$2" | tail -n 20; exit 1; }' - \
-            "$plain/cross/test_$name" "$work/log"
-    done
+    finish
 fi
+plain=$build/plain
+plain_make() {
+    make --no-print-directory -j"${JOBS:-2}" BUILD="$plain" CC="${CC:-gcc}" CROSS=1 DEPS=0 SAN= OPT='-O2 -DNOH_PLAIN_C' "$@" >"$work/log" 2>&1
+}
+check 'the library builds as plain C' plain_make lib
+names='hash math quat trig mesh bounds blend clip_codec'
+# shellcheck disable=SC2086
+check 'and its tests' plain_make $(printf "$plain/cross/test_%s " $names)
+for name in $names; do
+    check "plain C: test_$name" sh -c 'NOH_ASSETS=none "$1" >"$2" 2>&1 || { grep -v "^ok" "$2" | tail -n 20; exit 1; }' - \
+        "$plain/cross/test_$name" "$work/log"
+done
 
 if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! command -v nm >/dev/null 2>&1; then
     skip 'i386 without SSE asks for nothing of libm' "${CC:-gcc} does not build for i386 here, or nm is missing"
