@@ -341,6 +341,7 @@ static void warnings_of_joined_files_are_kept(void **state)
         model_error error;
         char advice[64];
         other.sets[0]->skeleton.unit_cm = units[i];
+        free(other.sets[0]->warning); /* of its size */
         other.sets[0]->warning = model_string("the skeleton is odd");
         assert_int_equal(model_warn(other.m, "a sentence"), 0);
         assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
