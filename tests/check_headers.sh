@@ -2,7 +2,8 @@
 # check_headers.sh: what a program sees of the library. Public is what noh.h and noh_gl.h reach.
 #   - noh.h reaches no header of gl/ and includes no GL header; nothing private (*_internal.h) is reached
 #   - limits.h holds every limit
-#   - each public header compiles alone, without a warning: C99, C11 and C++17, gcc and clang, for 32 bits too
+#   - each public header compiles alone, without a warning: C99, C11 and C++17, gcc and clang, for 32 bits too (NOH_LONG:
+#     each compiler with each)
 #   - all functions that they declare link, from C and from C++
 # NOH_HEADERS is where they lie: runtime, or PREFIX/include/noh of an installed library.
 . "$(dirname "$0")/cli/lib.sh"
@@ -61,15 +62,17 @@ alone() {
     done <"$work/public"
     check "each header alone: $name" sh -c '! grep . "$1"' - "$work/failed"
 }
-for compiler in gcc clang; do
-    alone $compiler -std=c99
-    alone $compiler -std=c11
-done
+alone gcc -std=c99
+alone clang -std=c11
 for compiler in g++ clang++; do
     alone $compiler -std=c++17
 done
 alone gcc -std=c99 -m32
-alone g++ -std=c++17 -m32
+if [ -n "${NOH_LONG:-}" ]; then
+    alone gcc -std=c11
+    alone clang -std=c99
+    alone g++ -std=c++17 -m32
+fi
 
 # Every function that is declared, by gcc's own list, in one table.
 if ! printf '#include "noh_gl.h"\n' | gcc -std=c99 "-I$headers" -fsyntax-only -aux-info "$work/functions" -x c - 2>/dev/null; then
