@@ -16,7 +16,7 @@ if [ -n "${NOH_SAN:-}" ]; then
 fi
 plain=$build/plain
 plain_make() {
-    make --no-print-directory -j"${JOBS:-2}" BUILD="$plain" CC="${CC:-gcc}" CROSS=1 DEPS=0 SAN= OPT='-O2 -DNOH_PLAIN_C' "$@" >"$work/log" 2>&1
+    make --no-print-directory -j"${JOBS:-2}" BUILD="$plain" CC="${CC:-gcc}" CROSS=1 DEPS=0 SAN= OPT='-O1 -DNOH_PLAIN_C' "$@" >"$work/log" 2>&1
 }
 check 'the library builds as plain C' plain_make lib
 names='hash math quat trig mesh bounds blend clip_codec'
@@ -32,7 +32,7 @@ if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! comm
 else
     for source in runtime/*/*.c; do
         case $source in runtime/gl/*) continue ;; esac
-        ${CC:-gcc} -std=c99 -O2 -m32 -march=i386 -mno-sse -DNOH_ALLOW_X87 -Iruntime "-I$build/gen" -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
+        ${CC:-gcc} -std=c99 -O1 -m32 -march=i386 -mno-sse -DNOH_ALLOW_X87 -Iruntime "-I$build/gen" -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
     done
     nm -u "$work"/*.o | awk 'NF == 2 { print $2 }' | sort -u | grep -v '^noh_' >"$work/asked"
     # the compiler's own: 64-bit arithmetic, and where the program lies

@@ -32,16 +32,21 @@ done
 check 'none is the picture' cmp "$work/view_none.png" "$work/rest.png"
 check 'five different pictures' test "$(cksum "$work"/view_*.png | cut -d' ' -f1 | sort -u | wc -l)" = 5
 
-# Equal sums make equal pictures, on the driver's every path.
-noh render "$pack" -o "$work/cpu.png" --size 96x64 --weight smile=1 --path cpu
-for path in layered mrt per-layer gather; do
+# Equal sums make equal pictures, on the driver's every path; the path cpu hands finished vertices to the GPU, whose
+# shader rounds nothing more, where it adds sums to a base in the others.
+noh render "$pack" -o "$work/gather.png" --size 96x64 --weight smile=1 --path gather
+for path in layered mrt per-layer cpu; do
     noh render "$pack" -o "$work/path.png" --size 96x64 --weight smile=1 --path $path
     if [ $code = 1 ] && grep -q 'not supported here' "$work/err"; then
         skip "render --path $path" "$(sed 's/^noh: [^:]*: //' "$work/err")"
         continue
     fi
     expect 0 "render --path $path"
-    check "the picture of --path cpu" cmp "$work/path.png" "$work/cpu.png"
+    if [ $path = cpu ]; then
+        check 'the picture of --path gather, but for a rounding' "$build/tests/gl/picture_diff" "$work/path.png" "$work/gather.png" 0.02 0
+    else
+        check 'the picture of --path gather' cmp "$work/path.png" "$work/gather.png"
+    fi
 done
 
 noh sheet "$pack" -o "$work/sheet.png"
