@@ -1,10 +1,10 @@
 #!/bin/sh
 # The policy `--path blend`: layered draws where supported, per-layer passes otherwise, refused without float blending;
-# and the line in which `make demo` says so. The pictures are those of the CPU, byte for byte.
+# and the line in which `make demo` says so. The pictures are those of gather, which blends nothing, byte for byte.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 
-noh render "$mask" --light none -o "$work/cpu.png" --size 128x128 --weight smile=1 --path cpu
+noh render "$mask" --light none -o "$work/gather.png" --size 128x128 --weight smile=1 --path gather
 if [ $code != 0 ]; then
     skip 'blending' 'no EGL context here'
     finish
@@ -23,7 +23,7 @@ blends() { # NAME PATH ENVIRONMENT...
     code=$?
     expect 0 "$name"
     check "$name: $path" grep -q " $path-f32 ($path: " "$work/out"
-    check "$name: the picture is the CPU's" cmp "$work/cpu.png" "$work/blend.png"
+    check "$name: the picture is gather's" cmp "$work/gather.png" "$work/blend.png"
     env "$@" sh tools/demo_path.sh "$build/noh" "$mask" >"$work/out" 2>"$work/err"
     code=$?
     expect 0 "$name: demo_path.sh"
