@@ -192,6 +192,21 @@ static void a_folder_of_targets(void **state)
     (void)remove(test_path("targets/face.obj"));
 }
 
+/* Not of the names of the files: '-' comes before '.'. */
+static void targets_come_in_order_of_their_names(void **state)
+{
+    (void)state;
+    const obj_options options = { 0.0, make_folder() };
+    save("targets/mouth.obj", MOVED);
+    save("targets/mouth-open.obj", MOVED);
+    model *m = load_with(SQUARE "f 1 2 3\n", &options);
+    assert_string_equal(m->meshes[0].targets[0].name, "mouth");
+    assert_string_equal(m->meshes[0].targets[1].name, "mouth-open");
+    model_free(m);
+    (void)remove(test_path("targets/mouth.obj"));
+    (void)remove(test_path("targets/mouth-open.obj"));
+}
+
 static void refused_targets(const char *folder, const char *what, const char *where)
 {
     const obj_options options = { 0.0, folder };
@@ -269,6 +284,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(units_and_sizes),
     cmocka_unit_test(what_has_no_triangles_is_told),
     cmocka_unit_test(a_folder_of_targets),
+    cmocka_unit_test(targets_come_in_order_of_their_names),
     cmocka_unit_test(bad_targets_are_refused),
     cmocka_unit_test(bad_lines_are_refused),
     cmocka_unit_test(mutations_never_crash),

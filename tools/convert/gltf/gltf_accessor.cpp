@@ -235,9 +235,10 @@ static bool place_of(const vertex_list &vertices, uint32_t element, size_t &plac
 {
     place = element;
     if (vertices.used.empty()) return true;
-    auto found = std::lower_bound(vertices.used.begin(), vertices.used.end(), element);
-    place = static_cast<size_t>(found - vertices.used.begin());
-    return found != vertices.used.end() && *found == element;
+    auto found = std::lower_bound(vertices.sorted.begin(), vertices.sorted.end(), element);
+    if (found == vertices.sorted.end() || *found != element) return false;
+    place = vertices.place[static_cast<size_t>(found - vertices.sorted.begin())];
+    return true;
 }
 
 static void apply_sparse(file &f, const layout &l, const vertex_list &vertices, float *out)

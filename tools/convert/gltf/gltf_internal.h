@@ -177,8 +177,9 @@ void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, 
                  const std::string &where, float *out);
 /* The vertices of a primitive: all elements of its accessors, or those that its triangles use. */
 struct vertex_list {
-    uint64_t total = 0;         /* elements of each accessor */
-    std::vector<uint32_t> used; /* increasing; empty: all of them */
+    uint64_t total = 0;                  /* elements of each accessor */
+    std::vector<uint32_t> used;          /* empty: all of them */
+    std::vector<uint32_t> sorted, place; /* `used` increasing, and the place in it of each */
     size_t count() const
     {
         return used.empty() ? static_cast<size_t>(total) : used.size();
@@ -223,7 +224,7 @@ void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);
 /* Whether the file's figure faces -z, as VRM's did before 1.0. */
 bool faces_back(const file &f);
-void read_vrm(file &f);     /* after read_nodes and read_meshes */
+void read_vrm(file &f); /* after read_nodes and read_meshes */
 /* Whether a material is a toon of VRM (MToon); then its tones are set. After its base colour. */
 bool read_toon(const file &f, size_t index, model_material &out);
 void read_springs(file &f); /* after read_nodes */

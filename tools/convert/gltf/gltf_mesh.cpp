@@ -124,16 +124,26 @@ static void read_triangles(file &f, const mesh_job &job, part &p)
     p.indices.swap(list);
 }
 
-/* Many exporters give all primitives of a mesh one set of accessors: each keeps the vertices that its triangles use. */
+/* Many exporters give all primitives of a mesh one set of accessors: each keeps the vertices that its triangles use, in
+ * the order in which they use them, as if it had accessors of its own. */
 static void keep_used_vertices(part &p)
 {
-    std::vector<uint32_t> used(p.indices);
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    if (used.size() == p.vertices.total) return;
-    for (uint32_t &i : p.indices)
-        i = static_cast<uint32_t>(std::lower_bound(used.begin(), used.end(), i) - used.begin());
-    p.vertices.used.assign(used.begin(), used.end());
+    std::vector<uint32_t> sorted(p.indices);
+    std::sort(sorted.begin(), sorted.end());
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    if (sorted.size() == p.vertices.total) return;
+    std::vector<uint32_t> place(sorted.size(), MODEL_NONE);
+    p.vertices.used.reserve(sorted.size());
+    for (uint32_t &i : p.indices) {
+        uint32_t &at = place[static_cast<size_t>(std::lower_bound(sorted.begin(), sorted.end(), i) - sorted.begin())];
+        if (at == MODEL_NONE) {
+            at = static_cast<uint32_t>(p.vertices.used.size());
+            p.vertices.used.push_back(i);
+        }
+        i = at;
+    }
+    p.vertices.sorted.swap(sorted);
+    p.vertices.place.swap(place);
 }
 
 /* --- which primitives are kept --- */

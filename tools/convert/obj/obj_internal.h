@@ -23,7 +23,7 @@ typedef struct obj_part {
 } obj_part;
 
 typedef struct obj_text {
-    byte_buffer positions, uvs, normals; /* of float: 3, 2, 3 each */
+    byte_buffer positions, uvs, normals; /* of float: 3, 2, 3 each; v from the top of the picture */
     byte_buffer colors;                  /* of float, 3 a position: white where a line has none */
     int has_colors;                      /* any line has */
     byte_buffer parts;                   /* of obj_part */

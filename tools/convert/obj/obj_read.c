@@ -89,7 +89,6 @@ static int index_parts(const obj_text *o, vertices *v, uint64_t corners, model_m
 
 /* ---- arrays ---- */
 
-/* OBJ counts v from the bottom of the picture, glTF from its top. */
 static void fill_vertex(const obj_text *o, const obj_corner *c, double scale, uint32_t vertex, model_mesh *mesh)
 {
     const float *p = (const float *)(const void *)o->positions.bytes + (size_t)c->position * 3;
@@ -103,9 +102,8 @@ static void fill_vertex(const obj_text *o, const obj_corner *c, double scale, ui
         mesh->color[(size_t)vertex * 4 + k] = k < 3 ? color[k] : 1.0f;
     }
     if (mesh->uv && c->uv != MODEL_NONE) {
-        const float *uv = (const float *)(const void *)o->uvs.bytes + (size_t)c->uv * 2;
-        mesh->uv[(size_t)vertex * 2] = uv[0];
-        mesh->uv[(size_t)vertex * 2 + 1] = 1.0f - uv[1];
+        memcpy(mesh->uv + (size_t)vertex * 2, (const float *)(const void *)o->uvs.bytes + (size_t)c->uv * 2,
+               2 * sizeof(float));
     }
 }
 

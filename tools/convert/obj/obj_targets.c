@@ -20,9 +20,13 @@ static int is_obj(const char *name)
            (name[length - 1] | 32) == 'j';
 }
 
+/* By the names of the targets, which end before ".obj". */
 static int by_name(const void *a, const void *b)
 {
-    return strcmp(*(char *const *)a, *(char *const *)b);
+    const char *p = *(char *const *)a, *q = *(char *const *)b;
+    const size_t p_size = strlen(p) - 4, q_size = strlen(q) - 4;
+    const int order = memcmp(p, q, p_size < q_size ? p_size : q_size);
+    return order ? order : p_size != q_size ? (p_size > q_size) - (p_size < q_size) : strcmp(p, q);
 }
 
 static const char *file_name(const char *path)

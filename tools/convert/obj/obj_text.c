@@ -53,21 +53,41 @@ static int out_of_memory(reader *r)
 
 /* ---- numbers ---- */
 
-/* `count` numbers of a line. */
-static int read_numbers(reader *r, uint32_t count, byte_buffer *to)
+static int read_values(reader *r, uint32_t count, double *out)
 {
-    float values[3] = { 0.0f, 0.0f, 0.0f };
     for (uint32_t i = 0; i < count; i++) {
-        double value;
         const text_word word = text_next_on_line(&r->scan);
         if (word.size == 0) {
             return text_fail(&r->scan, word.line, "%u numbers are wanted here, and there are %u", count, i);
         }
-        if (text_number(&r->scan, word, &value)) return 1;
-        if (!(value > -1e9 && value < 1e9)) return text_fail(&r->scan, word.line, "the number %g is too large", value);
-        values[i] = (float)value;
+        if (text_number(&r->scan, word, &out[i])) return 1;
+        if (!(out[i] > -1e9 && out[i] < 1e9)) {
+            return text_fail(&r->scan, word.line, "the number %g is too large", out[i]);
+        }
     }
-    return buffer_append(to, values, count * sizeof *values) ? 0 : out_of_memory(r);
+    return 0;
+}
+
+/* Three numbers of a line. */
+static int read_vector(reader *r, byte_buffer *to)
+{
+    double values[3];
+    float narrow[3];
+    if (read_values(r, 3, values)) return 1;
+    for (int k = 0; k < 3; k++) narrow[k] = (float)values[k];
+    return buffer_append(to, narrow, sizeof narrow) ? 0 : out_of_memory(r);
+}
+
+/* OBJ counts v from the bottom of the picture, glTF from its top. Turned over before it is rounded, it is the number
+ * that a glTF file of the same face has. */
+static int read_uv(reader *r)
+{
+    double values[2];
+    float uv[2];
+    if (read_values(r, 2, values)) return 1;
+    uv[0] = (float)values[0];
+    uv[1] = (float)(1.0 - values[1]);
+    return buffer_append(&r->out->uvs, uv, sizeof uv) ? 0 : out_of_memory(r);
 }
 
 /* A position; behind it three more numbers are a colour, and one a weight, which only curves need. */
@@ -76,7 +96,7 @@ static int read_position(reader *r)
     float color[3] = { 1.0f, 1.0f, 1.0f };
     double values[3];
     uint32_t count = 0;
-    if (read_numbers(r, 3, &r->out->positions)) return 1;
+    if (read_vector(r, &r->out->positions)) return 1;
     if (r->positions_only) return 0;
     for (; count < 3; count++) {
         const text_word word = text_next_on_line(&r->scan);
@@ -222,8 +242,8 @@ static int read_line(reader *r, text_word keyword)
 {
     if (text_is(keyword, "v")) return read_position(r);
     if (r->positions_only) return 0;
-    if (text_is(keyword, "vt")) return read_numbers(r, 2, &r->out->uvs);
-    if (text_is(keyword, "vn")) return read_numbers(r, 3, &r->out->normals);
+    if (text_is(keyword, "vt")) return read_uv(r);
+    if (text_is(keyword, "vn")) return read_vector(r, &r->out->normals);
     if (text_is(keyword, "f")) return read_face(r);
     if (text_is(keyword, "mtllib")) return r->out->library ? 0 : read_name(r, &r->out->library);
     if (text_is(keyword, "usemtl")) {
