@@ -110,7 +110,7 @@ help:
 	@echo 'make            build/noh and build/libnoh.a'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, dances, falls and gets up'
-	@echo 'make demo-crowd a square at a festival, with hundreds of puppets who know where they are'
+	@echo 'make demo-crowd a square at a festival, with a thousand puppets who know where they are'
 	@echo 'make demo-face  the puppet and the mask say a sentence: sound, strips, a film'
 	@echo 'make view       the puppet in a window: sliders, clips, memory and times (FILE=PACK|MODEL: another)'
 	@echo 'make check      install what is missing, build and run the tests'

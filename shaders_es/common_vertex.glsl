@@ -125,7 +125,7 @@ ivec4 noh_tile_row()
 }
 
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-uniform int noh_blends; /* 1: the material blends, so that a tint's alpha counts */
+uniform int noh_blends; /* 1: the material blends, so that a tint's alpha counts; 2: its colour does not */
 
 /* From 8 bits of sRGB, and of alpha. */
 vec4 noh_tint_of(ivec4 row)
@@ -135,7 +135,8 @@ vec4 noh_tint_of(ivec4 row)
     if (left != ivec4(0)) {
         tint -= vec4(left) / 255.0;
         tint.rgb = mix(pow((tint.rgb + 0.055) / 1.055, vec3(2.4)), tint.rgb / 12.92, vec3(lessThanEqual(tint.rgb, vec3(0.04045))));
-        tint.a = noh_blends != 0 ? tint.a : 1.0;
+        tint.rgb = (noh_blends & 2) != 0 ? vec3(1.0) : tint.rgb;
+        tint.a = (noh_blends & 1) != 0 ? tint.a : 1.0;
     }
     return tint;
 }

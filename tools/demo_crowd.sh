@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo_crowd.sh BUILD: a square at a festival, drawn with six hundred puppets who stroll, buy, rest and listen; a strip of
+# demo_crowd.sh BUILD: a square at a festival, drawn with a thousand puppets who stroll, buy, rest and listen; a strip of
 # it closer by; and how its agents got on.
 set -eu
 build=$1
@@ -15,13 +15,13 @@ draw() { # NAME OPTION...
     shift
     "$noh" crowd "$out/puppet_levels.noh" --place "$place" --scenery "$out/festival.noh" --light sky -o "$out/festival$name.png" "$@"
 }
-draw '' --agents 600 --time 30 --camera 18,13,24,0,0 --size 1280x640
+draw '' --agents 1000 --time 30 --camera 18,13,24,0,0 --size 1280x640
 draw _drum --agents 400 --time 40 --camera -35,9,11,-1,-5 --size 960x540
 draw _stall --agents 400 --time 40 --camera 140,9,8,-15.5,-1 --size 960x540
 draw _stairs --agents 400 --time 40 --camera -30,12,9,16,-8 --size 960x540
 draw _strip --agents 300 --time 36 --strip 4,1 --camera -60,12,6.5,15.3,-7.7 --size 320x320
 echo
-"$noh" crowd --place "$place" --agents 600 --seconds 60
+"$noh" crowd --place "$place" --agents 1000 --seconds 60
 echo
 echo 'Pictures:'
 ls "$out"/festival*.png | sed 's/^/  /'

@@ -348,12 +348,17 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
 
+/* noh_blends of the shader: what a tint changes. */
+#define TINT_ALPHA 1
+#define TINT_NO_COLOR 2
+
 static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,
                           draw_part part)
 {
     const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
     set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
-    j->r->gl->Uniform1i(v->u_blends, (m->flags & NOH_MATERIAL_BLEND) != 0);
+    j->r->gl->Uniform1i(v->u_blends, ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
+                                         ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));
     if (j->r->shaders.bind) {
         j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
     }

@@ -236,7 +236,8 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
 
 /* The tint of the meshes that noh_gl_draw_mesh draws next; noh_gl_draw_begin makes it white. Instances of a crowd have
  * their own (noh_gl_skin_set_tint).
- * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
+ * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied, but for NOH_MATERIAL_UNTINTED; alpha
+ *         counts where the material blends.
  *         NULL: white */
 void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
 

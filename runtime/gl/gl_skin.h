@@ -122,7 +122,8 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
                                  const noh_gl_morph_binding *morph, noh_error *error);
 
 /* Set the tint of one instance, for noh_gl_draw_crowd: noh_vertex.tint in shaders. noh_gl_skin_set_place keeps it.
- * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied; alpha counts where the material blends.
+ * shapes  tint: sRGB and alpha, by which the colour of vertices is multiplied, but for NOH_MATERIAL_UNTINTED; alpha
+ *         counts where the material blends.
  *         NULL: white, as at first
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds */
 noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error);

@@ -122,7 +122,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
-    if (!result && m->flags & ~15u) {
+    if (!result && m->flags & ~31u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
     if (!result && m->surface > NOH_SURFACE_TOON) {

@@ -289,6 +289,7 @@ typedef struct noh_node {
 #define NOH_MATERIAL_MASK 2u
 #define NOH_MATERIAL_DOUBLE_SIDED 4u
 #define NOH_MATERIAL_UNLIT 8u
+#define NOH_MATERIAL_UNTINTED 16u /* an instance's tint leaves its colour alone; the tint's alpha counts as ever */
 
 /* What the surface is made of: decides how it is lit. noh_material.surface_values and surface_more then are, of
  *   skin   x millimetres in a unit of the world, by which light scatters; 0: 1000. Then the inside of a mouth, in the

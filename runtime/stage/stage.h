@@ -366,8 +366,8 @@ typedef struct noh_look {
     uint32_t posed;     /* 1: posed in every frame in full detail, seen or not: for noh_actor_joint on a server */
     float pixels;       /* its own largest error; 0: that of the stage */
     uint32_t level;     /* 1 + the level to show whatever its error, with everything else in full; 0: chosen by error */
-    uint8_t tint[4];    /* sRGB and alpha, multiplied with its colours; alpha counts where a material blends. All 0:
-                         * white */
+    uint8_t tint[4];    /* sRGB and alpha, multiplied with its colours, of materials that take one; alpha counts where
+                         * a material blends. All 0: white */
     uint32_t texture_set;   /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
     uint8_t wrinkle_models; /* NOH_WRINKLE_BY_* of pack/format.h, in place of those of its materials; 0: those */
     uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: nothing is left of them */

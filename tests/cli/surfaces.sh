@@ -25,6 +25,26 @@ for option in eyes=wet eyes nose=eye; do
     check 'no pack of it' test ! -e "$work/none.noh"
 done
 
+# Tints: by surface, by extras, by option.
+noh info "$work/named.noh"
+for line in "material 'eyes': eye, opaque, without tint" "material 'paint': plain, opaque, without tint"; do
+    check "info: $line" grep -q "$line" "$work/out"
+done
+noh build "$mask" -o "$work/tinted.noh" --tint paint=on --tint eyes=on --quiet
+expect 0 'build --tint'
+noh info "$work/tinted.noh"
+check 'an option outdoes extras' grep -q "material 'paint': plain, opaque$" "$work/out"
+check 'and a surface' grep -q "material 'eyes': eye, opaque$" "$work/out"
+check 'what is not named stays' grep -q "material 'wood': plain, opaque, without tint" "$work/out"
+noh info "$work/tinted.noh" --json
+check 'info --json: tint' grep -q '"tint": true' "$work/out"
+for option in paint paint=red nose=on; do
+    noh build "$mask" -o "$work/none.noh" --tint $option
+    expect 1 "--tint $option"
+    says '--tint'
+    check 'no pack of that' test ! -e "$work/none.noh"
+done
+
 # Extras of a material, without a mesh that has it.
 gltf() {
     printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"materials":[{"name":"%s","extras":%s}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}' "$1" "$2" >"$work/extras.gltf"
@@ -34,11 +54,17 @@ noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras'
 noh info "$work/extras.noh"
 check 'extras outdo a name' grep -q "material 'leather': skin" "$work/out"
-gltf skin '{"surface":"wood","unitMm":-1}'
+gltf robe '{"tint":false}'
+noh build "$work/extras.gltf" -o "$work/extras.noh" --quiet
+expect 0 'extras of tint'
+noh info "$work/extras.noh"
+check 'take a tint away' grep -q "material 'robe': plain, opaque, without tint" "$work/out"
+gltf skin '{"surface":"wood","unitMm":-1,"tint":"no"}'
 noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras that say nothing'
 check 'are named' grep -q "the extra 'surface' is none of plain, skin, eye, teeth and toon" "$work/out"
 check 'each of them' grep -q "the extra 'unitMm' is no number" "$work/out"
+check 'that of tint, too' grep -q "the extra 'tint' is neither true nor false" "$work/out"
 noh info "$work/extras.noh"
 check 'and the name counts' grep -q "material 'skin': skin" "$work/out"
 

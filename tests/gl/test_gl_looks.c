@@ -39,7 +39,7 @@ static const uint8_t *texel_of(const noh_look *look)
     return look->texture_set == 2 ? cloth[1][0] : cloth[0][look->texture_set];
 }
 
-static uint8_t *quad_pack(uint32_t which, int alpha, size_t *count)
+static uint8_t *quad_pack(uint32_t which, int alpha, uint8_t tint, size_t *count)
 {
     const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
     model *m = test_model(&desc);
@@ -52,6 +52,7 @@ static uint8_t *quad_pack(uint32_t which, int alpha, size_t *count)
     for (int i = 0; i < 4; i++) material->base_color[i] = 1.0f;
     material->unlit = material->double_sided = 1;
     material->alpha = (model_alpha)alpha;
+    material->tint = tint;
     material->alpha_cutoff = 0.9f;
     m->textures = test_zeros(2 * sizeof *m->textures);
     m->texture_count = which ? 1 : 2;
@@ -87,12 +88,12 @@ typedef struct wardrobe {
     noh_stage_view view;
 } wardrobe;
 
-static void wardrobe_open(wardrobe *w, int alpha)
+static void wardrobe_open(wardrobe *w, int alpha, uint8_t tint)
 {
     memset(w, 0, sizeof *w);
     for (uint32_t i = 0; i < 2; i++) {
         size_t count;
-        w->bytes[i] = quad_pack(i, alpha, &count);
+        w->bytes[i] = quad_pack(i, alpha, tint, &count);
         w->packs[i] = test_open(w->bytes[i], count);
     }
     w->sets[0] = (noh_texture_set){ .name = "red", .suffix = "_red" };
@@ -199,8 +200,17 @@ static void draw_by_hand(const wardrobe *w, gpu *g, canvas *to, uint32_t *rgba)
     for (int set = 0; set < 3; set++) noh_gl_texture_delete(&g->gl, &g->ledger, &pictures[set][0]);
 }
 
-/* Actors side by side are the parts drawn by hand, pixel by pixel; their colours are texture times tint, of opaque and
- * alpha-cut materials whatever the tint's alpha, of blended ones by that over the background. */
+/* Actors side by side are the parts drawn by hand, pixel by pixel. */
+static void expect_looks(const uint32_t *by_stage, const uint32_t *by_hand, const uint32_t *empty)
+{
+    uint32_t drawn = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) drawn += by_stage[i] != empty[i];
+    assert_true(drawn > PIXELS / 5u);
+    assert_memory_equal(by_stage, by_hand, PIXELS * sizeof *by_stage);
+}
+
+/* Their colours are texture times tint, where the material takes one; of opaque and alpha-cut materials whatever the
+ * tint's alpha, of blended ones by that over the background, whether they take its colour or not. */
 static void actors_look_as_their_parts_drawn_by_hand(void **state)
 {
     static uint32_t by_stage[PIXELS], by_hand[PIXELS], empty[PIXELS];
@@ -211,26 +221,25 @@ static void actors_look_as_their_parts_drawn_by_hand(void **state)
     canvas_begin(&to);
     canvas_resolve(&to);
     assert_int_equal(canvas_read(&to, (uint8_t *)empty), 0);
-    for (int alpha = MODEL_ALPHA_OPAQUE; alpha <= MODEL_ALPHA_BLEND; alpha++) {
+    for (int turn = 0; turn < 6; turn++) {
+        const int alpha = turn % 3, takes = turn < 3;
         wardrobe w;
-        uint32_t drawn = 0;
-        wardrobe_open(&w, alpha);
+        wardrobe_open(&w, alpha, takes ? MODEL_TINT_ON : MODEL_TINT_OFF);
         wardrobe_make(&w, g);
         draw(&w, &to, NULL, by_stage);
         draw_by_hand(&w, g, &to, by_hand);
-        for (uint32_t i = 0; i < PIXELS; i++) drawn += by_stage[i] != empty[i];
-        assert_true(drawn > PIXELS / 5u);
-        assert_memory_equal(by_stage, by_hand, sizeof by_stage);
+        expect_looks(by_stage, by_hand, empty);
         for (uint32_t a = 0; a < ACTORS; a++) {
             const uint8_t *pixel = middle_of(&w, by_stage, a), *texel = texel_of(&looks[a]);
             const uint8_t *behind = middle_of(&w, empty, a), *tint = looks[a].tint;
             const int white = tint[3] == 0;
             const double share = alpha == MODEL_ALPHA_BLEND && !white ? tint[3] / 255.0 : 1.0;
             for (int i = 0; i < 3; i++) {
-                const double own = linear_of(texel[i]) * (white ? 1.0 : linear_of(tint[i]));
+                const double own = linear_of(texel[i]) * (white || !takes ? 1.0 : linear_of(tint[i]));
                 const double want = lit_quad_encoded(own * share + linear_of(behind[i]) * (1.0 - share));
                 if (fabs(pixel[i] - want) > 2.0)
-                    fail_msg("alpha %d, actor %u, channel %d: %u for %g", alpha, (unsigned)a, i, pixel[i], want);
+                    fail_msg("alpha %d, tint %s, actor %u, channel %d: %u for %g", alpha, takes ? "on" : "off",
+                             (unsigned)a, i, pixel[i], want);
             }
         }
         wardrobe_close(&w);
@@ -258,7 +267,7 @@ static void own_shaders_are_given_the_tint(void **state)
     canvas to;
     wardrobe w;
     (void)state;
-    wardrobe_open(&w, MODEL_ALPHA_OPAQUE);
+    wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
     wardrobe_make(&w, g);
     assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
     memory = test_aligned(NULL, noh_stage_shader_size(w.stage));
@@ -348,7 +357,7 @@ static void sets_take_what_is_planned(void **state)
     wardrobe w;
     (void)state;
     for (uint32_t sets = 0; sets < 3; sets++) {
-        wardrobe_open(&w, MODEL_ALPHA_OPAQUE);
+        wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
         w.kind.texture_set_count = sets;
         w.kind.actor_count = ACTORS;
         if (sets < 2) {
@@ -378,7 +387,7 @@ static void textures_are_shared_between_kinds(void **state)
     const noh_gl_ledger before = g->ledger;
     wardrobe w;
     (void)state;
-    wardrobe_open(&w, MODEL_ALPHA_OPAQUE);
+    wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
     kinds[0] = w.kind;
     kinds[1] = w.kind;
     kinds[1].mesh = &w.packs[1];
@@ -405,7 +414,7 @@ static void a_set_is_one_draw(void **state)
     memset(&g, 0, sizeof g);
     assert_int_equal(gpu_open(&g, "null"), 0);
     g.caps.blend_f32 = g.caps.blend_f32_exact = 1;
-    wardrobe_open(&w, MODEL_ALPHA_OPAQUE);
+    wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
     wardrobe_make(&w, &g);
     for (uint32_t f = 0; f < 200; f++) {
         uint32_t worn = 0, sets = 0;
@@ -433,7 +442,7 @@ static void sets_are_found_and_checked(void **state)
     gpu *g = fixture_gpu();
     wardrobe w;
     (void)state;
-    wardrobe_open(&w, MODEL_ALPHA_OPAQUE);
+    wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
     w.sets[0].suffix = "_blue";
     assert_int_equal(noh_stage_plan_make(&w.desc, &g->caps, &w.plan, &said), NOH_ERR_ARG);
     assert_non_null(strstr(said.what, "texture set"));
@@ -469,7 +478,7 @@ static void a_lost_context_brings_the_looks_back(void **state)
     (void)state;
     memset(&g, 0, sizeof g);
     if (gpu_open(&g, "egl")) test_skip("no context of the driver egl here");
-    wardrobe_open(&w, MODEL_ALPHA_BLEND);
+    wardrobe_open(&w, MODEL_ALPHA_BLEND, MODEL_TINT_ON);
     wardrobe_make(&w, &g);
     before = g.ledger;
     assert_int_equal(canvas_open(&to, &g, WIDTH, HEIGHT), 0);

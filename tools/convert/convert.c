@@ -10,6 +10,7 @@
 #include "convert/model/recipe_make.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
+#include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
 #include "clip/pack_clip.h"
 #include "convert/springs/springs_bind.h"
@@ -555,6 +556,9 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
 {
     for (uint32_t i = 0; i < options->surface_count; i++) {
         if (surface_kind_assign(s->m, options->surfaces[i], error)) return 1;
+    }
+    for (uint32_t i = 0; i < options->tint_count; i++) {
+        if (tint_assign(s->m, options->tints[i], error)) return 1;
     }
     return options->only != CONVERT_CLIPS && surface_shapes_find(s->m, options->report, error);
 }

@@ -1,6 +1,7 @@
 /* Tests of tools/convert/model/surface_kind.c and surface_shape.c: which materials are skin, eyes and teeth, by name
  * and by option; where irises and lids are found. */
 #include "convert/model/surface_kind.h"
+#include "convert/model/tint.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,6 +102,32 @@ static void options_name_a_material_and_a_surface(void **state)
     assert_int_equal(m->materials[0].surface, NOH_SURFACE_SKIN);
     assert_int_equal(m->materials[2].surface, NOH_SURFACE_SKIN);
     assert_int_equal(m->materials[1].surface, NOH_SURFACE_EYE);
+    model_free(m);
+}
+
+/* Who wears another robe keeps his face: skin, eyes and teeth take no tint, unless the author says so. */
+static void faces_take_no_tint(void **state)
+{
+    static const char *const names[] = { "robe", "skin", "Auge", "N00_000_Face_00_SKIN", "eyelashes", "paint" };
+    static const int by_name[] = { 1, 0, 0, 0, 1, 1 };
+    static const char *const refused[] = { "robe", "robe=", "robe=yes", "robes=on", "=off", "" };
+    model *m = model_of(names, 6);
+    model_error error;
+    (void)state;
+    for (uint32_t i = 0; i < 6; i++) assert_int_equal(tint_is_taken(&m->materials[i]), by_name[i]);
+    surface_kind_set(&m->materials[5], NOH_SURFACE_SKIN);
+    assert_false(tint_is_taken(&m->materials[5])); /* by surface */
+    surface_kind_set(&m->materials[3], NOH_SURFACE_TOON);
+    assert_false(tint_is_taken(&m->materials[3])); /* a toon's face by its name */
+    assert_int_equal(tint_assign(m, "skin=on", &error), 0);
+    assert_int_equal(tint_assign(m, "robe=off", &error), 0);
+    assert_true(tint_is_taken(&m->materials[1]));
+    assert_false(tint_is_taken(&m->materials[0]));
+    for (size_t i = 0; i < TEST_COUNT(refused); i++) {
+        memset(&error, 0, sizeof error);
+        assert_int_equal(tint_assign(m, refused[i], &error), 1);
+        assert_non_null(strstr(error.what, "--tint"));
+    }
     model_free(m);
 }
 
@@ -275,6 +302,7 @@ int main(void)
         cmocka_unit_test(names_tell_surfaces),
         cmocka_unit_test(long_names_have_words_too),
         cmocka_unit_test(options_name_a_material_and_a_surface),
+        cmocka_unit_test(faces_take_no_tint),
         cmocka_unit_test(reflectance_follows_the_surface),
         cmocka_unit_test(irises_and_lids_are_found),
         cmocka_unit_test(irises_are_found_where_eyes_look),

@@ -417,7 +417,7 @@ static float nan_value(void)
     X(material_toon, DATA, "hardness of a toon",                                                                     \
       (f->materials[0].surface = NOH_SURFACE_TOON, f->materials[0].surface_more[0] = 1.5f))                          \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
-    X(material_flags, DATA, "flags", f->materials[0].flags = 16)                                                     \
+    X(material_flags, DATA, "flags", f->materials[0].flags = 32)                                                     \
     X(material_wrinkles, DATA, "unknown models of wrinkles", f->materials[0].wrinkle_models = 1)                     \
     X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved[1] = 1)                      \
     X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
@@ -628,7 +628,7 @@ static void errors_say_where(void **state)
     X(texture->reserved[0], = 1)                        \
     X(texture->pixels_offset, += 16)                    \
     X(materials[1].base_color_texture, = 7)             \
-    X(materials[0].flags, = 16)                         \
+    X(materials[0].flags, = 32)                         \
     X(materials[1].normal_texture, = 0)                 \
     X(materials[1].surface, = 9)                        \
     X(materials[1].reserved[0], = 1)                    \

@@ -507,6 +507,17 @@ static void read_surface(file &f, size_t index, model_material &out, const std::
         leave_out(f, where, ": the extra 'unitMm' is no number of millimetres from 1e-6 to 1e9 and was ignored");
 }
 
+/* By "extras": {"tint": false}. */
+static void read_tint(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    if (!m.extras.IsObject() || !m.extras.Has("tint")) return;
+    const tinygltf::Value &taken = m.extras.Get("tint");
+    if (taken.IsBool())
+        out.tint = taken.Get<bool>() ? MODEL_TINT_ON : MODEL_TINT_OFF;
+    else
+        leave_out(f, where, ": the extra 'tint' is neither true nor false and was ignored");
+}
+
 static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
@@ -546,6 +557,7 @@ static void read_material(file &f, size_t index, model_material &out)
     read_f0(f, m, out, where);
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
     read_surface(f, index, out, where);
+    read_tint(f, m, out, where);
     read_maps(f, m, out, where);
 }
 

@@ -34,6 +34,11 @@ typedef struct model_texture {
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;
 
+/* Whether a material takes the tint of an instance. */
+#define MODEL_TINT_BY_SURFACE 0u /* as its surface and its name say: skin, eyes and teeth do not */
+#define MODEL_TINT_ON 1u
+#define MODEL_TINT_OFF 2u
+
 typedef struct model_material {
     char *name;
     float base_color[4];         /* linear */
@@ -42,6 +47,7 @@ typedef struct model_material {
     model_alpha alpha;
     float alpha_cutoff;
     uint8_t double_sided, unlit;
+    uint8_t tint; /* MODEL_TINT_* */
     float normal_scale, occlusion_strength, emissive[3], f0[3];
     /* as noh_material has them: indices into textures or MODEL_NONE */
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];

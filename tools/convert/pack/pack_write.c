@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/version.h"
+#include "convert/model/tint.h"
 #include "pack/format.h"
 #include "pack_clips.h"
 #include "pack_graph.h"
@@ -81,7 +82,8 @@ static uint32_t material_flags(const model_material *m)
 {
     return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) |
            (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
-           (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u);
+           (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u) |
+           (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED);
 }
 
 static void write_maps(const model_material *from, noh_material *to)

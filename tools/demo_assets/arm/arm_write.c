@@ -202,7 +202,7 @@ ArmCensus arm_write(Buffer *out)
     join(&json, "\"nodes\":[\n", &file.nodes, "],\n");
     join(&json, "\"skins\":[\n", &file.skins, "],\n");
     buffer_print(&json, "\"materials\":[");
-    material_write(&json, 1, "arm", 0.60);
+    material_write(&json, 1, "arm", 0.60, 1);
     join(&json, "],\n\"meshes\":[\n", &file.meshes, "],\n");
     write_animations(&file, &json);
     writer_finish(&file.w, &json, out);

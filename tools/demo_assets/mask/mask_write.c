@@ -226,6 +226,6 @@ void mask_materials_write(Buffer *json)
         { "paint", 0.55 }, { "wood", 0.30 }, { "eyes", 0.12 }, { "teeth", 0.25 }, { "mouth", 0.60 }
     };
     for (int i = 0; i < PART_COUNT; i++) {
-        material_write(json, i == 0, materials[i].name, materials[i].roughness);
+        material_write(json, i == 0, materials[i].name, materials[i].roughness, 0);
     }
 }

@@ -59,9 +59,9 @@ static void write_materials(Buffer *json)
 {
     buffer_print(json, "\"materials\":[");
     mask_materials_write(json);
-    material_write(json, 0, "cloth", 0.85);
-    material_write(json, 0, "skin", 0.55);
-    material_write(json, 0, "hair", 0.45);
+    material_write(json, 0, "cloth", 0.85, 1);
+    material_write(json, 0, "skin", 0.55, 0);
+    material_write(json, 0, "hair", 0.45, 0);
     buffer_print(json, "],\n");
 }
 

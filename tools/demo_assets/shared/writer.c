@@ -171,10 +171,10 @@ void writer_finish(Writer *w, Buffer *json, Buffer *file)
     buffer_free(&w->data);
 }
 
-void material_write(Buffer *json, int is_first, const char *name, double roughness)
+void material_write(Buffer *json, int is_first, const char *name, double roughness, int tint)
 {
     buffer_print(json,
                  "%s{\"name\":\"%s\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,1],"
-                 "\"metallicFactor\":0,\"roughnessFactor\":%.2f}}",
-                 is_first ? "" : ",\n", name, roughness);
+                 "\"metallicFactor\":0,\"roughnessFactor\":%.2f}%s}",
+                 is_first ? "" : ",\n", name, roughness, tint ? "" : ",\"extras\":{\"tint\":false}");
 }

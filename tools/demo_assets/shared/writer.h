@@ -40,8 +40,9 @@ int write_scalars(Writer *w, const double *values, int count, int with_range); /
 int write_joints(Writer *w, const int *joints, int count);        /* four for each of `count` vertices, below 256 */
 int write_indices(Writer *w, const uint32_t *indices, int count); /* below 65536 */
 
-/* Prints a material object, white and not metallic; the first has no comma before it. */
-void material_write(Buffer *json, int is_first, const char *name, double roughness);
+/* Prints a material object, white and not metallic; the first has no comma before it. tint: whether an instance's
+ * tint colours it. */
+void material_write(Buffer *json, int is_first, const char *name, double roughness, int tint);
 
 /* Appends accessors, views and buffer to a glTF object that is open and ends with a comma, closes
  * it, and appends the finished file. Frees what the writer holds. */

@@ -25,7 +25,8 @@ typedef struct build_args {
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
     double error_um, rate, error_cm, shell_cm, effort, influences, palette, bounce, wrinkle_size, terrain_size,
         terrain_height, terrain_points, texture_max;
-    option_list dual_quaternion, two_streams, surfaces, clip_errors, joint_errors, lod_from, spring_lines, attached;
+    option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
+        attached;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -107,6 +108,8 @@ static int set_skin(const build_args *a, convert_options *o)
     o->two_stream_count = (uint32_t)a->two_streams.count;
     o->surfaces = a->surfaces.items;
     o->surface_count = (uint32_t)a->surfaces.count;
+    o->tints = a->tints.items;
+    o->tint_count = (uint32_t)a->tints.count;
     o->skin.dual_quaternion = a->dual_quaternion.items;
     o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
     return 0;
@@ -492,6 +495,14 @@ static const option options[] = {
       .what =
           "draw a material as skin, as an eye, as teeth, gums and tongue, in the two tones of a toon, or as none of them; may repeat; default: what its extras say (\"surface\") or VRM's MToon, else the words of its name",
       .example = "face=skin",
+      .excludes = "--only=anim" },
+    { .name = "--tint",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, tints),
+      .value = "MATERIAL=on|off",
+      .what =
+          "let a material take the tint of an instance, or not; may repeat; default: what its extras say (\"tint\"), else off for skin, eyes and teeth, by surface or name",
+      .example = "hair=off",
       .excludes = "--only=anim" },
     { .name = "--identity",
       .kind = OPTION_INPUT,

@@ -45,6 +45,7 @@ void info_print_materials(const noh_pack *pack)
         printf("material '%s': %s, %s%s%s", noh_pack_string(pack, m->name), surface_of(m), alpha_of(m),
                m->flags & NOH_MATERIAL_DOUBLE_SIDED ? ", two-sided" : "",
                m->flags & NOH_MATERIAL_UNLIT ? ", unlit" : "");
+        if (m->flags & NOH_MATERIAL_UNTINTED) printf(", without tint");
         for (uint32_t k = 0; k < MAPS; k++) {
             if (maps[k].texture != NOH_NONE)
                 printf(", %s '%s'", maps[k].name, noh_pack_chunk_name(pack, pack->first_texture + maps[k].texture));
@@ -134,6 +135,7 @@ static void json_material(json *j, const noh_pack *pack, const noh_material *m)
     json_text(j, "surface", surface_of(m));
     json_text(j, "alpha", alpha_of(m));
     json_bool(j, "double_sided", (m->flags & NOH_MATERIAL_DOUBLE_SIDED) != 0);
+    json_bool(j, "tint", !(m->flags & NOH_MATERIAL_UNTINTED));
     json_open(j, "maps", '{');
     for (uint32_t k = 0; k < MAPS; k++) {
         if (maps[k].texture != NOH_NONE) json_integer(j, maps[k].key, maps[k].texture);
