@@ -16,12 +16,11 @@ typedef struct target {
     noh_stage_view view;
 } target;
 
-static void open_target(target *t)
+/* Of the cast's packs, as they are. */
+static void show_target(target *t)
 {
     const noh_look posed = { .posed = 1 };
     float sphere[4];
-    memset(t, 0, sizeof *t);
-    cast_open(&t->c);
     t->c.desc.full_detail = 1;
     cast_make(&t->c, NULL);
     assert_int_equal(noh_stage_spawn(t->c.stage, MASKS, NULL, &t->actor, NULL), NOH_OK);
@@ -30,6 +29,13 @@ static void open_target(target *t)
     assert_int_equal(noh_actor_sphere(t->c.stage, t->actor, sphere, NULL), NOH_OK);
     noh_view_orbit(&t->view, sphere, 0.3f, 0.1f, 1.0f * sphere[3], 640, 360);
     assert_int_equal(noh_stage_frame(t->c.stage, CAST_STEP, &t->view, NULL, NULL, NULL), NOH_OK);
+}
+
+static void open_target(target *t)
+{
+    memset(t, 0, sizeof *t);
+    cast_open(&t->c);
+    show_target(t);
 }
 
 static void close_target(target *t)
@@ -104,6 +110,40 @@ static void errata_C14_3_the_point_lies_in_its_triangle(void **state)
     }
     assert_true(ours < 1e-6 && book > 0.01);
     close_target(&t);
+}
+
+/* The source crosses up with the normal: on what lies flat there is nothing to divide by. Ours has up to -Z there. */
+static void errata_C14_5_up_along_the_normal(void **state)
+{
+    const noh_decal_desc look = { .size = 0.02f };
+    noh_decals ring;
+    noh_mesh mesh;
+    uint32_t at;
+    target t;
+    (void)state;
+    memset(&t, 0, sizeof t);
+    cast_open(&t.c);
+    const noh_file *file = &t.c.files[1];
+    uint8_t *copy = test_aligned(file->data, file->bytes);
+    t.c.packs[MASKS] = test_open(copy, file->bytes);
+    assert_int_equal(noh_pack_mesh_at(&t.c.packs[MASKS], 0, &mesh, NULL), NOH_OK);
+    for (uint32_t i = 0; i < 3; i++) /* laid flat */
+        ((float *)(uintptr_t)mesh.positions)[3u * noh_mesh_index(&mesh, i) + 1u] = 0.0f;
+    show_target(&t);
+    noh_stage_hit hit = { .actor = t.actor, .mesh = 0, .triangle = 0 };
+    memcpy(hit.bind_point, mesh.positions + 3u * noh_mesh_index(&mesh, 0), sizeof hit.bind_point);
+    noh_decals_init(&ring, 0, 0, 0);
+    assert_int_equal(noh_decals_strike(&ring, t.c.stage, &hit, &look, &at, NULL), NOH_OK);
+    const noh_decal *d = &ring.decals[at];
+    const float book[3] = { d->normal[2], 0.0f, -d->normal[0] }; /* (0, 1, 0) x normal */
+    assert_true(fabs(fabs((double)d->normal[1]) - 1.0) < 1e-6);
+    assert_true(dot3(book, book) < 1e-12);
+    assert_null(noh_decals_check(&ring));
+    assert_true(fabs(dot3(d->right, d->right) - 1.0) < 1e-5 && fabs(dot3(d->normal, d->right)) < 1e-5);
+    const double up_z = (double)d->normal[0] * (double)d->right[1] - (double)d->normal[1] * (double)d->right[0];
+    assert_true(up_z < -0.999);
+    close_target(&t);
+    free(copy);
 }
 
 /* How far a hit is from its triangle, as the mesh is with these weights. */
@@ -277,6 +317,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mark_lies_where_the_ray_hit),
         cmocka_unit_test(errata_C14_3_the_point_lies_in_its_triangle),
+        cmocka_unit_test(errata_C14_5_up_along_the_normal),
         cmocka_unit_test(errata_C14_2_a_face_is_hit_as_it_smiles),
         cmocka_unit_test(a_ring_is_never_full),
         cmocka_unit_test(marks_fade),

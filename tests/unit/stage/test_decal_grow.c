@@ -105,6 +105,33 @@ static void errata_C14_5_coordinates_for_any_size(void **state)
     }
 }
 
+/* The source takes the first triangle of the patch for the one that was hit, and sorts triangles by number: its mark is
+ * about another place. Ours begins with the hit one, and its coordinates ask the hit alone. */
+static void errata_C14_5_the_first_triangle_is_not_the_hit_one(void **state)
+{
+    static sheet s;
+    static const uint32_t hit = 300;
+    noh_decal_patch patch = with_room(ROOM);
+    noh_decal mark = at_front;
+    float book[3] = { 0.0f, 0.0f, 0.0f }, uv[2];
+    uint32_t first = hit;
+    (void)state;
+    sheet_open(&s);
+    sheet_add(&s, SIDE, 0.0f);
+    memset(mark.centre, 0, sizeof mark.centre);
+    for (uint32_t i = 0; i < 9; i++)
+        mark.centre[i % 3u] += s.positions[3u * noh_mesh_index(&s.mesh, 3u * hit + i / 3u) + i % 3u] / 3.0f;
+    noh_decal_grow(&mark, &s.mesh, hit, &patch);
+    assert_int_equal(patch.triangles[0], hit);
+    noh_decal_uv(&mark, mark.centre, uv);
+    assert_true(uv[0] == 0.5f && uv[1] == 0.5f);
+    for (uint32_t i = 0; i < patch.count; i++) first = patch.triangles[i] < first ? patch.triangles[i] : first;
+    for (uint32_t i = 0; i < 9; i++)
+        book[i % 3u] += s.positions[3u * noh_mesh_index(&s.mesh, 3u * first + i / 3u) + i % 3u] / 3.0f;
+    noh_decal_uv(&mark, book, uv);
+    assert_true(hypotf(uv[0] - 0.5f, uv[1] - 0.5f) > 0.25f);
+}
+
 /* Every place of the square on the sheet is in the patch, once; all else of it touches the sphere. */
 static void the_square_is_covered_once(void **state)
 {
@@ -274,6 +301,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errata_C14_4_a_mark_within_a_large_triangle_is_there),
         cmocka_unit_test(errata_C14_5_coordinates_for_any_size),
+        cmocka_unit_test(errata_C14_5_the_first_triangle_is_not_the_hit_one),
         cmocka_unit_test(the_square_is_covered_once),
         cmocka_unit_test(a_fold_that_touches_stays_clean),
         cmocka_unit_test(a_mark_keeps_its_fold_when_levels_change),
