@@ -117,7 +117,7 @@ help:
 	@echo 'make bench      ratios against the named baselines (the mask, and hero/head.glb and clips where they are)'
 	@echo 'make check-validator DIR=...  what noh build says to the glTF validator'"'"'s broken files'
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
-	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each), needs clang'
+	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each; NOH_LONG=1: of models, too), needs clang'
 	@echo 'make check-long  all that .ci/run does in its long form: hours; and memcheck, paths by gcc and clang, AFL++'
 	@echo 'make threads    poses on four threads under ThreadSanitizer'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
@@ -641,7 +641,7 @@ fuzz: deps-fuzz
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
 tests: $(TESTS) $(EXAMPLES) $(if $(SAN),,$(AMALGAM_TESTS) $(BUILD)/noh_without) $(BUILD)/tests/gl/window $(BUILD)/tests/gl/picture_diff $(BUILD)/platform/template.o \
-       $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/fuzz_wire $(BUILD)/tests/fuzz/corpus/.made
+       $(BUILD)/tests/fuzz/fuzz_import $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/fuzz_wire $(BUILD)/tests/fuzz/corpus/.made
 
 # The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
 # tests/support. Of the tool each takes what it calls, and the library has its asserts on.

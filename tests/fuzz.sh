@@ -2,12 +2,14 @@
 # fuzz.sh: runs libFuzzer on the pack reader, the clip decoder and the wire form's unpacker, with AddressSanitizer, UBSan and all asserts on,
 # all at once for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus, clips and wires. Closes like run.sh. A crash
 # is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or found_clips/ or found_wires/, where `make check`
-# replays it.
+# replays it. With NOH_LONG set also on what noh build reads (fuzz_import), from the files that the converter's tests
+# write; what is found there goes to tests/fuzz/found_imports.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 seconds=${FUZZ_SECONDS:-60}
 clang=${CLANG:-clang}
+clangxx=${CLANGXX:-clang++}
 work=$build/fuzz
 mkdir -p "$work"
 
@@ -34,12 +36,17 @@ if ! { find runtime -name '*.c' && find tests -name pack_walk.c && echo "$build/
     exit 1
 fi
 
+# link_target TARGET
+link_target() {
+    # shellcheck disable=SC2086
+    "$clang" $flags -fsanitize=fuzzer "tests/fuzz/$1.c" "$work"/objects/*.o -o "$work/$1"
+}
+
 # fuzz TARGET MAX_LEN FOUND SEEDS: succeeds when nothing was found
 fuzz() {
     target=$1 max_len=$2 found=$3
     mkdir -p "$work/$target.corpus"
-    # shellcheck disable=SC2086
-    "$clang" $flags -fsanitize=fuzzer "tests/fuzz/$target.c" "$work"/objects/*.o -o "$work/$target" || return 1
+    [ -n "${linked:-}" ] || link_target "$target" || return 1
     set -- "$work/$target.corpus" "$4"
     [ ! -d "$found" ] || set -- "$@" "$found"
     "$work/$target" -seed=1 -max_total_time="$seconds" -max_len="$max_len" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
@@ -51,6 +58,41 @@ fuzz fuzz_clip 4096 tests/fuzz/found_clips "$build/tests/fuzz/clips" &
 clips=$!
 fuzz fuzz_wire 16384 tests/fuzz/found_wires "$build/tests/fuzz/wires" &
 wires=$!
+
+# The converter on top of it: C and C++, with the libraries that it reads with.
+link_import() {
+    more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb"
+    if pkg-config --exists draco; then more="$more -DNOH_DRACO" libraries="$libraries -ldraco"; fi
+    if pkg-config --exists assimp; then more="$more -DNOH_ASSIMP" libraries="$libraries -lassimp"; fi
+    rm -rf "$work/import"
+    mkdir "$work/import"
+    # shellcheck disable=SC2016
+    { find tools/convert -name '*.c' -o -name '*.cpp'; echo platform/file.c; echo platform/file_write.c; echo tests/fuzz/fuzz_import.c; } |
+        xargs -P "${JOBS:-2}" -I '{}' sh -c 'compiler=$1 flags=$3
+            case $4 in *.cpp) compiler=$2 flags="-std=c++17 ${3#-std=c99}" ;; esac
+            $compiler $flags -c "$4" -o "$5/$(echo "$4" | tr / _).o"' sh "$clang" "$clangxx" "$flags $more" '{}' "$work/import" || return 1
+    # shellcheck disable=SC2086
+    "$clangxx" -fsanitize=fuzzer,address,undefined "$work"/import/*.o "$work"/objects/*.o -o "$work/fuzz_import" $libraries -ldl -lm
+}
+
+# Files of every kind, as the converter's tests write them.
+import_seeds() {
+    rm -rf "$work/imports"
+    mkdir "$work/imports"
+    for test in gltf_read gltf_draco gltf_left_out gltf_springs influences obj_read bvh_read rcl events_read; do
+        make --no-print-directory DEPS=0 BUILD="$build" "$build/tests/unit/convert/test_$test" >/dev/null || return 1
+        NOH_SEEDS=$work/imports "$build/tests/unit/convert/test_$test" >/dev/null 2>&1 || return 1
+    done
+    sh tests/support/small_glb.sh >"$work/imports/small"
+}
+
+imports=
+if [ -n "${NOH_LONG:-}" ]; then
+    # An allocation that fails gives NULL, as without sanitizers.
+    (link_import && import_seeds && export ASAN_OPTIONS=allocator_may_return_null=1 && linked=1 &&
+        fuzz fuzz_import 16384 tests/fuzz/found_imports "$work/imports") &
+    imports=$!
+fi
 
 # told TARGET RESULT: prints what its log says
 passed=0 failed=0
@@ -71,5 +113,9 @@ wait "$clips"
 told fuzz_clip $?
 wait "$wires"
 told fuzz_wire $?
+if [ -n "$imports" ]; then
+    wait "$imports"
+    told fuzz_import $?
+fi
 echo "$passed passed, $failed failed, 0 skipped"
 [ $failed = 0 ]

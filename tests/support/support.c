@@ -92,9 +92,62 @@ const char *test_path(const char *name)
 
 /* A file that is truncated and written again goes to the disk when it is closed (ext4's auto_da_alloc); a new one that
  * is soon removed never does. Tests that write twenty thousand files wait for the disk otherwise. */
+void test_keep_seed(const void *bytes, size_t count)
+{
+    const char *seeds = getenv("NOH_SEEDS");
+    const uint8_t *b = bytes;
+    uint32_t hash = 2166136261u;
+    char path[4096];
+    FILE *f;
+    if (!seeds || count > 65536) return;
+    for (size_t i = 0; i < count; i++) hash = (hash ^ b[i]) * 16777619u;
+    (void)snprintf(path, sizeof path, "%s/%08x", seeds, hash);
+    f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(bytes, 1, count, f), count);
+    assert_int_equal(fclose(f), 0);
+}
+
+void test_keep_glb_seed(const char *json, const void *bin, size_t count)
+{
+    const uint32_t text = (uint32_t)(strlen(json) + 3u) / 4u * 4u, rest = (uint32_t)(count + 3u) / 4u * 4u;
+    const uint32_t words[8] = { 0x46546c67u, 2u, 28u + text + rest, text, 0x4e4f534au, rest, 0x004e4942u, 0 };
+    uint8_t *glb = test_zeros(words[2]);
+    char *uri;
+    memcpy(glb, words, 20);
+    memset(glb + 20, ' ', text);
+    memcpy(glb + 20, json, strlen(json));
+    memcpy(glb + 20 + text, words + 5, 8);
+    memcpy(glb + 28 + text, bin, count);
+    uri = strstr((char *)glb + 20, "\"uri\"");
+    if (uri) memcpy(uri, "\"was\"", 5); /* the first buffer of a .glb is its second chunk */
+    test_keep_seed(glb, words[2]);
+    free(glb);
+}
+
+/* What has no beginning of its own gets one: the fuzzer tells files by their first bytes. */
+static void keep_if_read(const char *path, const void *bytes, size_t count)
+{
+    static const struct {
+        const char *ending, *before;
+    } kinds[] = { { ".bvh", "" }, { ".obj", "" }, { ".rcl", "" }, { ".txt", "text" } };
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < TEST_COUNT(kinds); i++) {
+        const size_t before = strlen(kinds[i].before);
+        uint8_t *file;
+        if (strcmp(dot, kinds[i].ending) != 0 || strstr(path, "mutated")) continue;
+        file = test_zeros(before + count + 1u);
+        memcpy(file, kinds[i].before, before);
+        memcpy(file + before, bytes, count);
+        test_keep_seed(file, before + count);
+        free(file);
+    }
+}
+
 void test_write_file(const char *path, const void *bytes, size_t count)
 {
     FILE *f;
+    keep_if_read(path, bytes, count);
     (void)remove(path);
     f = fopen(path, "wb");
     assert_non_null(f);

@@ -69,7 +69,14 @@ const char *test_folder(void);
 /* NAME in that folder; static buffers, the last 4 stay valid. */
 const char *test_path(const char *name);
 
+/* Models, recordings and texts are kept as seeds, too. */
 void test_write_file(const char *path, const void *bytes, size_t count);
+
+/* Keeps a file for the fuzzer of the importers: $NOH_SEEDS/HASH, where that is set. */
+void test_keep_seed(const void *bytes, size_t count);
+
+/* The same of a .gltf text whose one buffer is a file beside it: as a .glb. */
+void test_keep_glb_seed(const char *json, const void *bin, size_t count);
 
 /* ---- random numbers: xorshift64* ---- */
 

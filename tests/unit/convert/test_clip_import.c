@@ -647,6 +647,20 @@ static void key_rates_are_found(void **state)
     rate_is(turning(2, 0.5, 0.0, 0.0), 0.0, 1.0, 3); /* nothing turns: the lowest */
 }
 
+/* Keys that lie closer than a rate can say: the first is the clip. */
+static void a_moment_is_one_frame(void **state)
+{
+    (void)state;
+    const float times[2] = { 0.0f, 1e-40f }, moves[6] = { 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f };
+    scene *s = scene_new("{}");
+    add_move(s, 0, "LINEAR", times, 2, moves, 6);
+    loaded l = load(s, 0.0);
+    const raw_clip *clip = only_clip(&l);
+    assert_int_equal(clip->frame_count, 1);
+    assert_true(clip->sample_rate_hz == 30.0 && clip->translations[0] == 0.0f);
+    loaded_free(&l);
+}
+
 static void keys_are_taken_as_they_are(void **state)
 {
     (void)state;
@@ -1084,6 +1098,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(nan_and_backward_keys_are_refused),
     cmocka_unit_test(missing_targets_are_a_warning),
     cmocka_unit_test(key_rates_are_found),
+    cmocka_unit_test(a_moment_is_one_frame),
     cmocka_unit_test(keys_are_taken_as_they_are),
     cmocka_unit_test(a_first_frame_late_is_cut_off),
     cmocka_unit_test(rates_rise_where_playing_strays),

@@ -60,6 +60,7 @@ static const char *write_grid(const lie *l)
         l->vertices, l->vertices, INDICES, l->view, l->normal_id);
     test_write_file(test_path("grid.bin"), data, bytes);
     test_write_file(test_path("grid.gltf"), json, strlen(json));
+    test_keep_glb_seed(json, data, bytes);
     return test_path("grid.gltf");
 }
 

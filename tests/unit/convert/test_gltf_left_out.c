@@ -30,6 +30,7 @@ static const char *save(const char *attributes, const char *primitive, const cha
     assert_true(used > 0 && (size_t)used < sizeof json);
     test_write_file(test_path("left_out.bin"), data, sizeof data);
     test_write_file(test_path("left_out.gltf"), json, (size_t)used);
+    test_keep_glb_seed(json, data, sizeof data);
     return test_path("left_out.gltf");
 }
 

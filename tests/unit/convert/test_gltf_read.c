@@ -18,6 +18,7 @@
 #include <meshoptimizer.h>
 
 #include "convert/model/model.h"
+#include "support/support.h"
 #include "pack/format.h"
 
 enum { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
@@ -134,8 +135,16 @@ static void write_text(const char *name, const char *text)
 
 static void save_gltf(const scene *s)
 {
+    static char json[32768];
     snprintf(file_path, sizeof file_path, "%s/test.gltf", folder);
-    FILE *out = fopen(file_path, "wb");
+    FILE *out = fopen(file_path, "wb+");
+    assert_non_null(out);
+    write_json(s, out, 0);
+    rewind(out);
+    json[fread(json, 1, sizeof json - 1, out)] = 0;
+    test_keep_glb_seed(json, s->bytes, s->size);
+    fclose(out);
+    out = fopen(file_path, "wb");
     assert_non_null(out);
     write_json(s, out, 1);
     fclose(out);

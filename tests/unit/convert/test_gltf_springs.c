@@ -40,6 +40,7 @@ static const char *save(const char *scale, const char *rest)
     assert_true(used > 0 && (size_t)used < sizeof json);
     test_write_file(test_path("springs.bin"), bytes, sizeof bytes);
     test_write_file(test_path("springs.gltf"), json, (size_t)used);
+    test_keep_glb_seed(json, bytes, sizeof bytes);
     return test_path("springs.gltf");
 }
 

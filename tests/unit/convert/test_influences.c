@@ -51,6 +51,7 @@ static const char *save(const skinned *s)
     used += snprintf(json + used, sizeof json - (size_t)used, "]}]}");
     assert_true(used > 0 && (size_t)used < sizeof json);
     test_write_file(test_path("skinned.gltf"), json, (size_t)used);
+    test_keep_glb_seed(json, bytes, sizeof bytes);
     return test_path("skinned.gltf");
 }
 

@@ -191,11 +191,14 @@ static double error_of(const std::vector<track> &tracks, const timing &t, double
     return worst;
 }
 
+/* What ends before is one frame: no rate could be said of it. */
+static const double shortest_s = 1e-6;
+
 timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,
                      uint64_t frames_max, const std::string &where)
 {
     const double no_limit = std::numeric_limits<double>::infinity();
-    if (!(duration_s > 0.0)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0, 0.0 };
+    if (!(duration_s >= shortest_s)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0, 0.0 };
     std::vector<double> times = key_times(tracks);
     const double grid = grid_rate(times);
     const std::vector<track> curves = curves_of(tracks, grid);

@@ -1,0 +1,236 @@
+/* fuzz_import.c: any bytes as the files that noh build reads: glTF, VRM, OBJ with targets, BVH, raw clips, pictures, and
+ * the texts beside them. What is read is converted, and the pack used in full.
+ *
+ * The kind follows from the first bytes, so that seeds are files as they are. A .glb is tried as it is, then with the
+ * lengths of its chunks made right. An .obj file is also its own target. */
+#define _XOPEN_SOURCE 700
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "convert/base/hair_read.h"
+#include "convert/base/image_file.h"
+#include "convert/base/ragdoll_read.h"
+#include "convert/base/recipe_read.h"
+#include "convert/clips/events_read.h"
+#include "convert/convert.h"
+#include "convert/springs/springs_read.h"
+#include "noh.h"
+#include "support/fuzz_replay.h"
+#include "support/pack_walk.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
+
+static char folder[64], target_folder[80];
+static int converted; /* the last input, for the replay */
+
+static void remove_folders(void)
+{
+    char path[128];
+    static const char *const names[] = { "in.glb", "in.gltf", "in.obj", "in.bvh", "in.rcl", "in.txt", "targets/a.obj" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        (void)snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        (void)remove(path);
+    }
+    (void)rmdir(target_folder);
+    (void)rmdir(folder);
+}
+
+static void make_folders(void)
+{
+    const char *root = access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm";
+    (void)snprintf(folder, sizeof folder, "%s/noh_fuzz_XXXXXX", root);
+    if (!mkdtemp(folder)) abort();
+    (void)snprintf(target_folder, sizeof target_folder, "%s/targets", folder);
+    if (mkdir(target_folder, 0700)) abort();
+    (void)atexit(remove_folders);
+}
+
+static void write_to(const char *path, const uint8_t *bytes, size_t count)
+{
+    FILE *f = fopen(path, "wb");
+    if (!f || fwrite(bytes, 1, count, f) != count || fclose(f)) abort();
+}
+
+/* Defaults of noh build, but two levels of detail where `more` says so, and clips as they come. */
+static convert_options options_of(int more)
+{
+    convert_options o;
+    memset(&o, 0, sizeof o);
+    o.clip.clip.error_cm = 0.01;
+    o.clip.clip.shell_cm = 3.0;
+    o.clip.clip.effort = 1;
+    o.skin.influences = 4;
+    o.skin.palette = more ? 8 : NOH_PALETTE_JOINTS_MAX;
+    o.lod.mode = LOD_FAST;
+    o.lod.level_count = more ? 2 : 0;
+    o.clean = more ? ~0u : 0u;
+    o.split_eyes = more;
+    o.etc2 = 1;
+    o.texture_max = 256;
+    return o;
+}
+
+static void must_say(const model_error *e)
+{
+    if (e->what[0] && !strchr(e->what, '\n') && !strchr(e->where, '\n')) return;
+    fprintf(stderr, "an error without a what, or in lines: '%s' (%s)\n", e->what, e->where);
+    abort();
+}
+
+static void convert(const char *path, const char *targets, int more)
+{
+    const char *inputs[] = { path };
+    convert_options o = options_of(more);
+    convert_failure failure;
+    byte_buffer out = { NULL, 0, 0, 0 };
+    noh_pack pack;
+    noh_error error;
+    void *aligned;
+    memset(&failure, 0, sizeof failure);
+    o.targets = targets;
+    if (convert_files(inputs, 1, &o, &out, &failure)) {
+        must_say(&failure.error);
+        return;
+    }
+    if (posix_memalign(&aligned, 64, out.count)) abort();
+    memcpy(aligned, out.bytes, out.count);
+    if (noh_pack_open(aligned, out.count, &pack, &error) != NOH_OK) {
+        fprintf(stderr, "the pack does not open: %s\n", error.what);
+        abort();
+    }
+    pack_walk(&pack, 1);
+    converted = 1;
+    free(aligned);
+    buffer_free(&out);
+}
+
+static void try_as(const char *ending, const uint8_t *bytes, size_t count)
+{
+    char path[96], target[128];
+    const int is_obj = strcmp(ending, "obj") == 0, more = count > 0 && (bytes[count - 1] & 1);
+    (void)snprintf(path, sizeof path, "%s/in.%s", folder, ending);
+    write_to(path, bytes, count);
+    (void)snprintf(target, sizeof target, "%s/a.obj", target_folder);
+    if (is_obj) write_to(target, bytes, count);
+    convert(path, is_obj ? target_folder : NULL, more);
+}
+
+/* ---- .glb: the lengths made right ---- */
+
+static void put_word(uint8_t *to, size_t word)
+{
+    const uint32_t narrow = (uint32_t)word;
+    memcpy(to, &narrow, sizeof narrow);
+}
+
+/* The second chunk begins where its name is; what is before it is text, padded to four bytes. */
+static void try_repaired(const uint8_t *bytes, size_t count)
+{
+    size_t bin = 20, text, rest;
+    uint8_t *copy;
+    while (bin + 8 <= count && memcmp(bytes + bin + 4, "BIN", 4) != 0) bin++;
+    text = ((bin + 8 <= count ? bin : count) - 20 + 3) / 4 * 4;
+    rest = bin + 8 <= count ? (count - bin - 8 + 3) / 4 * 4 : 0;
+    copy = malloc(28 + text + rest);
+    if (!copy) abort();
+    memset(copy, 0, 28 + text + rest);
+    memcpy(copy, bytes, 20);
+    memset(copy + 20, ' ', text);
+    memcpy(copy + 20, bytes + 20, (bin + 8 <= count ? bin : count) - 20);
+    put_word(copy + 8, 28 + text + rest);
+    put_word(copy + 12, text);
+    memcpy(copy + 16, "JSON", 4);
+    put_word(copy + 20 + text, rest);
+    memcpy(copy + 24 + text, "BIN", 4);
+    if (bin + 8 <= count) memcpy(copy + 28 + text, bytes + bin + 8, count - bin - 8);
+    try_as("glb", copy, 28 + text + rest);
+    free(copy);
+}
+
+/* ---- what is no model ---- */
+
+static void try_picture(const uint8_t *bytes, size_t count)
+{
+    image_file image;
+    model_error error = { "", "" };
+    uint32_t width, height;
+    uint16_t *grey;
+    char path[96];
+    (void)snprintf(path, sizeof path, "%s/in.txt", folder);
+    write_to(path, bytes, count);
+    if (image_read(path, &image, &error)) must_say(&error);
+    free(image.rgba);
+    if (image_read_grey(path, &width, &height, &grey, &error)) must_say(&error);
+    free(grey);
+}
+
+static void try_texts(const uint8_t *bytes, size_t count)
+{
+    char path[96];
+    uint32_t line = 0;
+    model_error error = { "", "" };
+    hair_text *hair = NULL;
+    ragdoll_text *ragdoll = NULL;
+    recipe_text *recipe = NULL;
+    event_list *events = NULL;
+    springs_text *springs = springs_text_new();
+    (void)snprintf(path, sizeof path, "%s/in.txt", folder);
+    write_to(path, bytes, count);
+    if (hair_read(path, &hair, &line, &error)) must_say(&error);
+    if (ragdoll_read(path, &ragdoll, &line, &error)) must_say(&error);
+    if (recipe_read(path, &recipe, &line, &error)) must_say(&error);
+    if (events_read(path, &events, &error)) must_say(&error);
+    if (springs && springs_text_read(springs, path, &line, &error)) must_say(&error);
+    hair_free(hair);
+    ragdoll_free(ragdoll);
+    recipe_free(recipe);
+    events_free(events);
+    springs_text_free(springs);
+}
+
+static int begins(const uint8_t *bytes, size_t count, const char *with)
+{
+    return count >= strlen(with) && memcmp(bytes, with, strlen(with)) == 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
+{
+    if (!folder[0]) make_folders();
+    converted = 0;
+    if (begins(data, count, "glTF")) {
+        try_as("glb", data, count);
+        if (!converted && count >= 28) try_repaired(data, count);
+    } else if (begins(data, count, "{")) {
+        try_as("gltf", data, count);
+    } else if (begins(data, count, "HIER")) {
+        try_as("bvh", data, count);
+    } else if (begins(data, count, "RCL")) {
+        try_as("rcl", data, count);
+    } else if (begins(data, count, "\x89PNG") || begins(data, count, "\xff\xd8") || begins(data, count, "RIFF")) {
+        try_picture(data, count);
+    } else if (begins(data, count, "text")) {
+        try_texts(data + 4, count - 4);
+    } else {
+        try_as("obj", data, count);
+    }
+    return 0;
+}
+
+#ifndef NOH_LIBFUZZER
+
+static int try_input(const uint8_t *bytes, size_t count)
+{
+    LLVMFuzzerTestOneInput(bytes, count);
+    return converted;
+}
+
+int main(int argument_count, char **arguments)
+{
+    return fuzz_replay(argument_count, arguments, try_input);
+}
+
+#endif
