@@ -192,7 +192,9 @@ static void the_fastest_kernel_is_found(void **state)
     assert_int_equal(noh_morph_kernel_find("no such", &kernel, &error), NOH_ERR_UNSUPPORTED);
     assert_string_equal(kernel.name, "untouched");
     assert_int_equal(noh_morph_kernel_find("scalar", &kernel, NULL), NOH_OK);
-    assert_true(kernel.accumulate == noh_morph_accumulate_scalar);
+    assert_string_equal(kernel.name, "scalar");
+    /* without SIMD the ordinary function is a scalar one too, and is found first */
+    assert_true(kernel.accumulate == noh_morph_accumulate_scalar || strcmp(noh_morph_simd(), "scalar") == 0);
     assert_int_equal(noh_morph_kernel_find(NULL, &kernel, NULL), NOH_OK);
     print_message("# the fastest: %s\n", kernel.name);
     compare_with_scalar(kernel.accumulate, kernel.name);
