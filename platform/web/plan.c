@@ -16,7 +16,7 @@
 
 /* A device that does all that any path needs, and draws in software as that of the tests does: which one it will be is
  * found in the browser. */
-static noh_gl_caps any_device(void)
+static noh_gl_caps browser_device(void)
 {
     noh_gl_caps caps;
     memset(&caps, 0, sizeof caps);
@@ -29,7 +29,7 @@ static noh_gl_caps any_device(void)
     caps.uniform_block_bytes_max = 16384;
     caps.vertex_textures_max = caps.vertex_attributes_max = 16;
     caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
-    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = caps.block_points = 1;
     return caps;
 }
 
@@ -37,7 +37,7 @@ static noh_gl_caps any_device(void)
 static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_error *error)
 {
     static web_cast cast;
-    const noh_gl_caps caps = any_device();
+    const noh_gl_caps caps = browser_device();
     const size_t bytes = web_cast_scratch(pack);
     void *scratch = malloc(bytes + 1u);
     const int failed = !scratch || web_cast_plan(&cast, pack, wants, scratch, bytes, &caps, error);

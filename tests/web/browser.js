@@ -61,10 +61,19 @@ function slowly(page) {
     });
 }
 
+// How long a test waits for what has to come: a software rasteriser on a busy machine takes minutes where it takes seconds
+// on an idle one.
+const patienceMs = 300000;
+async function newPage(browser, options) {
+    const page = await browser.newPage(options);
+    page.setDefaultTimeout(patienceMs);
+    return page;
+}
+
 // Save a canvas as PNG.
 async function save(page, selector, file) {
     const url = await page.evaluate((s) => document.querySelector(s).toDataURL('image/png'), selector);
     fs.writeFileSync(file, Buffer.from(url.split(',')[1], 'base64'));
 }
 
-module.exports = { serve, launch, save, slowly };
+module.exports = { serve, launch, save, slowly, newPage };

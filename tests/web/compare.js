@@ -7,7 +7,7 @@
 const fs = require('fs');
 const path = require('path');
 const zlib = require('zlib');
-const { serve, launch, save } = require('./browser.js');
+const { serve, launch, newPage, save } = require('./browser.js');
 
 const [nohFolder, asset, executablePath, out] = process.argv.slice(2);
 const sides = ['noh', 'three', 'babylon'], small = 64, large = 512, pictureFrame = 7;
@@ -43,10 +43,10 @@ function row(name, rounds, values) {
 }
 
 async function compare(browser, address, forced) {
-    const page = await browser.newPage({ viewport: { width: 1536, height: 512 } });
+    const page = await newPage(browser, { viewport: { width: 1536, height: 512 } });
     page.on('console', (message) => { if (message.type() === 'error') console.log(`# ${message.text()}`); });
     await page.goto(`${address}/web/compare.html?path=${forced}`);
-    await page.waitForFunction(() => window.compare, null, { timeout: 120000 });
+    await page.waitForFunction(() => window.compare);
     const { about, error } = await page.evaluate(() => ({ about: window.compare.about, error: window.compare.error }));
     if (error) throw new Error(error);
     fs.writeFileSync(path.join(out, 'known.json'), JSON.stringify(about));
@@ -81,9 +81,9 @@ function downloads() {
 async function firstFrames(browser, address) {
     const times = Object.fromEntries(sides.map((side) => [side, []]));
     for (let i = 0; i < loads * sides.length; i++) {
-        const side = sides[i % sides.length], page = await browser.newPage();
+        const side = sides[i % sides.length], page = await newPage(browser);
         await page.goto(`${address}/web/compare.html?side=${side}`);
-        await page.waitForFunction(() => window.compare, null, { timeout: 120000 });
+        await page.waitForFunction(() => window.compare);
         const { first, error } = await page.evaluate(() => window.compare);
         if (error) throw new Error(error);
         times[side].push(first);

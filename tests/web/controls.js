@@ -70,12 +70,12 @@ async function tabbed(browser) {
     const before = await page.evaluate(() => window.noh.memory.all);
     await keep(page, 'one.png');
     await page.selectOption('#several', '3');
-    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all > n, before, { timeout: 60000 });
+    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all > n, before);
     await keep(page, 'three.png');
     check('tabs: three characters, in memory of their own', !same('one.png', 'three.png'));
     check('tabs: which cannot grow', await page.evaluate(() => { try { Module.memory.grow(1); return false; } catch { return true; } }));
     await page.selectOption('#several', '1');
-    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all === n, before, { timeout: 60000 });
+    await page.waitForFunction((n) => !opening && window.noh.whole && window.noh.memory.all === n, before);
     await page.screenshot({ path: path.join(out, 'tabs.png') });
     await close(page, 'tabs');
 }

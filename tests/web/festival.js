@@ -4,16 +4,16 @@
 'use strict';
 const path = require('path');
 const { out, check, keep, same, faults, run, address } = require('./harness.js');
+const { newPage } = require('./browser.js');
 
-const minute = { timeout: 120000 };
 
 async function open(browser, search) {
-    const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
+    const page = await newPage(browser, { viewport: { width: 900, height: 640 } });
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     await page.goto(`${address()}/festival/?${search}`);
-    await page.waitForFunction(() => (window.noh.ready && window.noh.frames > 0) || window.noh.error, null, minute);
+    await page.waitForFunction(() => (window.noh.ready && window.noh.frames > 0) || window.noh.error);
     return page;
 }
 
@@ -41,7 +41,7 @@ async function crowd(browser) {
     const frame = async (act) => {
         const frames = await page.evaluate(() => window.noh.frames);
         await act();
-        await page.waitForFunction((n) => window.noh.frames > n && !wanted, frames, minute);
+        await page.waitForFunction((n) => window.noh.frames > n && !wanted, frames);
     };
     await page.focus('#canvas');
     await frame(() => page.keyboard.press('ArrowLeft'));
@@ -54,12 +54,12 @@ async function crowd(browser) {
     await page.waitForFunction(() => window.noh.lost === 1);
     const restored = page.evaluate(() => window.noh.frames);
     await page.evaluate(() => window.taken.restoreContext());
-    await page.waitForFunction((n) => window.noh.restored === 1 && window.noh.frames > n && !wanted, await restored, minute);
+    await page.waitForFunction((n) => window.noh.restored === 1 && window.noh.frames > n && !wanted, await restored);
     await keep(page, 'festival_restored.png');
     check('crowd: after a lost context it is the same picture', same('festival_still.png', 'festival_restored.png'));
     const before = await page.evaluate(() => [window.noh.steps, window.noh.memory.buffer.byteLength]);
     await page.click('#play');
-    await page.waitForFunction((n) => window.noh.steps > n + 10, before[0], minute);
+    await page.waitForFunction((n) => window.noh.steps > n + 10, before[0]);
     check('crowd: it goes on', true);
     check('crowd: its memory does not grow', await page.evaluate(() => window.noh.memory.buffer.byteLength) === before[1]);
     await page.screenshot({ path: path.join(out, 'festival_page.png') });
@@ -77,7 +77,7 @@ async function rates(browser) {
         };
         await page.waitForTimeout(4000);
         const a = await read();
-        await page.waitForFunction((n) => window.noh.frames > n + 40, a.frames, minute);
+        await page.waitForFunction((n) => window.noh.frames > n + 40, a.frames);
         const b = await read(), frames = b.frames - a.frames, per = (type) => Object.entries(b.cpu).filter(([, p]) => p[0] === type)
             .reduce((sum, [id, p]) => sum + p[1] - (a.cpu[id] ? a.cpu[id][1] : 0), 0) * 1000 / frames;
         console.log(`# ${agents} people at 640 x 360: page ${per('renderer').toFixed(1)} ms, GPU process ${per('GPU').toFixed(1)} ms of CPU time a frame; ${((b.at - a.at) / frames).toFixed(1)} ms passed; ${await page.textContent('#said')}`);

@@ -5,12 +5,11 @@ const path = require('path');
 const { out, check, keep, same, drawn, slide, choose, toggle, open, close, loseAndRestore, run } = require('./harness.js');
 
 const size = process.argv[5];
-const minute = { timeout: 60000 };
 const wide = { viewport: { width: 1440, height: 900 } };
 const shot = (page, name) => page.screenshot({ path: path.join(out, name) });
 
 // Until nothing moves by itself any more.
-const still = (page) => page.waitForFunction(() => !character.wanted && performance.now() > character.busy, null, minute);
+const still = (page) => page.waitForFunction(() => !character.wanted && performance.now() > character.busy);
 
 async function hair(browser) {
     const page = await open(browser, wide, 'clip=none&size=256&light=studio');
@@ -41,16 +40,16 @@ async function wig(page) {
     check('hair: and it is there again', !same('bald.png', 'wig_restored.png'));
     await shot(page, 'wig_page.png');
     await slide(page, '#wind', 6);
-    await page.waitForFunction((n) => window.noh.frames > n + 8, await page.evaluate(() => window.noh.frames), minute);
+    await page.waitForFunction((n) => window.noh.frames > n + 8, await page.evaluate(() => window.noh.frames));
     await keep(page, 'wig_wind.png');
     check('hair: wind moves it', !same('wig.png', 'wig_wind.png'));
     await slide(page, '#wind', 0);
     await still(page);
     await page.click('#shake');
-    const turned = await page.waitForFunction(() => Math.abs(Module._web_shaken()) > 0.1, null, minute).then(() => 1, () => 0);
+    const turned = await page.waitForFunction(() => Math.abs(Module._web_shaken()) > 0.1).then(() => 1, () => 0);
     await keep(page, 'wig_shaken.png');
     check('hair: a head is shaken', turned === 1);
-    await page.waitForFunction(() => !Module._web_shakes(), null, minute);
+    await page.waitForFunction(() => !Module._web_shakes());
     await still(page);
     check('hair: and comes back', Math.abs(await page.evaluate(() => Module._web_shaken())) < 1e-3);
     await choose(page, '#light', 'plain');
@@ -94,7 +93,7 @@ async function transfer(browser) {
 }
 
 // Until the number of figures that fell is so.
-const fallen = (page, count) => page.waitForFunction((n) => character.fallen === n, count, { timeout: 120000 }).then(() => 1, () => 0);
+const fallen = (page, count) => page.waitForFunction((n) => character.fallen === n, count).then(() => 1, () => 0);
 
 async function pushes(browser) {
     const page = await open(browser, wide, 'light=room&size=256');
@@ -120,11 +119,11 @@ async function pushes(browser) {
 
 async function falls(page, by) {
     check(`push by ${by}: it falls`, await fallen(page, 1) === 1);
-    await page.waitForFunction((n) => window.noh.frames > n + 12, await page.evaluate(() => window.noh.frames), minute);
+    await page.waitForFunction((n) => window.noh.frames > n + 12, await page.evaluate(() => window.noh.frames));
     await shot(page, 'fall.png');
     check(`push by ${by}: it gets up`, await fallen(page, 0) === 1);
     const frames = await page.evaluate(() => window.noh.frames);
-    await page.waitForFunction((n) => window.noh.frames > n + 10, frames, minute);
+    await page.waitForFunction((n) => window.noh.frames > n + 10, frames);
     check(`push by ${by}: and goes on with its clip`, await page.evaluate(() => character.playing[0].clip === null || character.time > 0));
     await drawn(page, () => page.click('#fit'));
     await shot(page, 'got_up.png');

@@ -3,7 +3,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, save, slowly } = require('./browser.js');
+const { serve, launch, newPage, save, slowly } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
 let told = 0, failures = 0, address = '';
@@ -39,13 +39,13 @@ const asTested = { light: 'plain', alive: 'off', tab: 'all', size: 192, detail: 
 async function open(browser, options, search) {
     const asked = new URLSearchParams(search);
     for (const [name, value] of Object.entries(asTested)) if (!asked.has(name)) asked.set(name, value);
-    const page = await browser.newPage(options);
+    const page = await newPage(browser, options);
     await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     await page.goto(`${address}/?${asked}`);
-    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, { timeout: 60000 });
+    await page.waitForFunction(() => window.noh.whole || window.noh.error);
     return page;
 }
 

@@ -4,10 +4,12 @@
 const fs = require('fs');
 const path = require('path');
 const { folder, out, check, keep, same, drawn, setTarget, open, close, run, address } = require('./harness.js');
+const { newPage } = require('./browser.js');
 
-const minute = { timeout: 60000 }, wide = { viewport: { width: 1440, height: 900 } };
+const wide = { viewport: { width: 1440, height: 900 } };
 const sent = fs.readFileSync(path.join(folder, 'page.nohz'));
 const images = sent.readUInt32LE(16); // of the file's head: 2 where the coarsest levels come first
+const view = `clip=none&size=256${images > 1 ? '' : '&hair=off'}`; // hair swings: no two pictures of it are the same
 let release = null;
 
 // All but the end, which comes when the test says so.
@@ -24,17 +26,17 @@ function flipped(request, answer) {
 }
 
 async function arrives(browser) {
-    const plain = await open(browser, wide, 'clip=none&size=256&detail=0&pack=page.noh');
+    const plain = await open(browser, wide, `${view}&detail=0&pack=page.noh`);
     check('the pack as it is: it loads', await plain.evaluate(() => window.noh.whole && !window.noh.error));
     await drawn(plain, () => setTarget(plain, 'smile', 1));
     await keep(plain, 'as_it_is.png');
     await close(plain, 'the pack as it is');
-    const page = await browser.newPage(wide);
+    const page = await newPage(browser, wide);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
-    await page.goto(`${address()}/?clip=none&size=256&detail=0&light=plain&alive=off&pack=held`);
+    await page.goto(`${address()}/?${view}&detail=0&light=plain&alive=off&pack=held`);
     if (images > 1) {
-        await page.waitForFunction(() => window.noh.ready || window.noh.error, null, minute);
+        await page.waitForFunction(() => window.noh.ready || window.noh.error);
         check('the wire form: its coarsest levels are shown while the end is not there', await page.evaluate(() => window.noh.ready && !window.noh.whole));
         check('the wire form: and it says so', (await page.textContent('#progress-text')).startsWith('finer detail') && await page.isVisible('#progress-bar'));
         check('the wire form: there is one level', await page.evaluate(() => Module._web_level_count()) === 1);
@@ -42,11 +44,11 @@ async function arrives(browser) {
         await keep(page, 'coarse.png');
         await page.screenshot({ path: path.join(out, 'coarse_page.png') });
     } else {
-        await page.waitForFunction(() => document.getElementById('progress-text').textContent.startsWith('loading:'), null, minute);
+        await page.waitForFunction(() => document.getElementById('progress-text').textContent.startsWith('loading:'));
         check('the wire form: nothing is shown before its end', await page.evaluate(() => !window.noh.ready));
     }
     release();
-    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
+    await page.waitForFunction(() => window.noh.whole || window.noh.error);
     check('the wire form: then all of it', await page.evaluate(() => window.noh.error) === '' && !await page.isVisible('#progress'));
     if (images > 1) {
         check('the wire form: what was held stays', await page.inputValue('input[data-target="smile"]') === '1');
@@ -64,9 +66,9 @@ async function arrives(browser) {
 
 async function refused(browser) {
     for (const [pack, words] of [['cut', 'cut short'], ['flipped', 'damaged'], ['none.nohz', '404'], ['page.js', 'not']]) {
-        const page = await browser.newPage();
+        const page = await newPage(browser);
         await page.goto(`${address()}/?pack=${pack}`);
-        await page.waitForFunction(() => window.noh.error, null, minute);
+        await page.waitForFunction(() => window.noh.error);
         const said = await page.textContent('#message');
         check(`a pack that is ${pack}: it says so`, said.includes(words) && await page.evaluate(() => !window.noh.whole), said);
         await page.close();
@@ -75,12 +77,12 @@ async function refused(browser) {
 
 // A visitor's own file, chosen and dropped; one that is none or is broken leaves the page as it was.
 async function own(browser) {
-    const page = await open(browser, wide, 'clip=none&size=256&detail=0'), raw = path.join(folder, 'page.noh');
+    const page = await open(browser, wide, `${view}&detail=0`), raw = path.join(folder, 'page.noh');
     await keep(page, 'before_own.png');
     const said = () => page.textContent('#message');
     const give = async (name, buffer, words) => {
         await page.setInputFiles('#file', { name, mimeType: 'application/octet-stream', buffer });
-        await page.waitForFunction((w) => window.noh.whole && !opening && document.getElementById('message').textContent.includes(w), words, minute);
+        await page.waitForFunction((w) => window.noh.whole && !opening && document.getElementById('message').textContent.includes(w), words);
     };
     const shown = async (what, picture) => {
         if (await page.isVisible('#detail')) await drawn(page, () => page.selectOption('#detail', '0'));
@@ -97,7 +99,7 @@ async function own(browser) {
         data.items.add(new File([bytes], 'dropped.nohz'));
         document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
     });
-    await page.waitForFunction(() => document.getElementById('file-text').textContent === 'dropped.nohz', null, minute);
+    await page.waitForFunction(() => document.getElementById('file-text').textContent === 'dropped.nohz');
     await shown('a wire form that is dropped', 'own_wire.png');
     check('a file of one\'s own: clips are listed once', await page.locator('#clips option').count() === clips);
     const bad = fs.readFileSync(raw);
@@ -116,7 +118,7 @@ async function own(browser) {
 
 // By a slow network, in milliseconds since the page was asked for, and what had come by then.
 async function slow(browser) {
-    const page = await browser.newPage(wide), client = await page.context().newCDPSession(page);
+    const page = await newPage(browser, wide), client = await page.context().newCDPSession(page);
     let bytes = 0, rest = 0; // rest: of them, what is asked for after the first picture
     const later = new Set();
     await client.send('Network.enable');
@@ -127,9 +129,9 @@ async function slow(browser) {
     });
     await client.send('Network.emulateNetworkConditions', { offline: false, latency: 150, downloadThroughput: 200000, uploadThroughput: 93750 });
     const start = Date.now(), told = [];
-    await page.goto(`${address()}/?clip=none&size=256`, { waitUntil: 'commit' });
+    await page.goto(`${address()}/?${view}`, { waitUntil: 'commit' });
     for (const what of ['ready', 'whole']) {
-        await page.waitForFunction((w) => window.noh && (window.noh[w] || window.noh.error), what, { ...minute, polling: 20 });
+        await page.waitForFunction((w) => window.noh && (window.noh[w] || window.noh.error), what, { polling: 20 });
         told.push(`${what === 'ready' ? 'first picture' : 'complete'} after ${((Date.now() - start) / 1000).toFixed(1)} s and ${Math.round(bytes / 1000)} kB`);
     }
     console.log(`# 1.6 Mbit/s, 150 ms: ${told.join(', ')}`);

@@ -2,7 +2,7 @@
 // and OUT/NAME.png, PICTURE of noh and that one side by side.
 'use strict';
 const path = require('path');
-const { serve, launch, save } = require('./browser.js');
+const { serve, launch, newPage, save } = require('./browser.js');
 
 const [asset, picture, threeFolder, executablePath, out, name] = process.argv.slice(2);
 
@@ -12,10 +12,10 @@ const [asset, picture, threeFolder, executablePath, out, name] = process.argv.sl
     });
     const browser = await launch(executablePath);
     try {
-        const page = await browser.newPage({ viewport: { width: 2160, height: 1080 } });
+        const page = await newPage(browser, { viewport: { width: 2160, height: 1080 } });
         page.on('console', (message) => { if (message.type() === 'error') console.log(`# ${message.text()}`); });
         await page.goto(`${address}/web/look.html`);
-        await page.waitForFunction(() => window.look, null, { timeout: 120000 });
+        await page.waitForFunction(() => window.look);
         const about = await page.evaluate(() => window.look);
         if (about.error) throw new Error(about.error);
         await save(page, '#three', path.join(out, `${name}_three.png`));

@@ -5,10 +5,9 @@
 const fs = require('fs');
 const path = require('path');
 const { folder, out, check, faults, run, address } = require('./harness.js');
-const { slowly } = require('./browser.js');
+const { newPage, slowly } = require('./browser.js');
 
 const project = process.argv[5];
-const minute = { timeout: 60000 };
 const inside = path.join(project, 'node_modules/noh-character');
 
 // A page with this body. Elements of the page have their ids as names.
@@ -19,7 +18,7 @@ async function show(browser, body, options) {
 }
 
 async function visit(browser, name, options) {
-    const page = await browser.newPage({ viewport: { width: 200, height: 250 }, ...options });
+    const page = await newPage(browser, { viewport: { width: 200, height: 250 }, ...options });
     await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
@@ -28,7 +27,7 @@ async function visit(browser, name, options) {
     return page;
 }
 
-const whole = (page, ...ids) => page.waitForFunction((all) => all.every((id) => document.getElementById(id).whole || document.getElementById(id).error), ids, minute);
+const whole = (page, ...ids) => page.waitForFunction((all) => all.every((id) => document.getElementById(id).whole || document.getElementById(id).error), ids);
 const frames = (page, id, count) => page.evaluate(([i, n]) => new Promise((resolve) => {
     const element = document.getElementById(i);
     let left = n;
@@ -48,9 +47,9 @@ async function readme(browser) {
     fs.writeFileSync(path.join(project, 'index.html'), html);
     check('readme: it has ten lines at most', html.trim().split('\n').length <= 10);
     const page = await visit(browser, 'index.html', { viewport: { width: 120, height: 160 } }); // pixels are dear here
-    await page.waitForFunction(() => document.querySelector('noh-character').whole || document.querySelector('noh-character').error, null, minute);
+    await page.waitForFunction(() => document.querySelector('noh-character').whole || document.querySelector('noh-character').error);
     check('readme: it is there', await page.evaluate(() => document.querySelector('noh-character').error) === '');
-    const blinks = await page.waitForFunction(() => document.querySelector('noh-character').weight('eyeBlinkLeft') > 0.5, null, minute).then(() => true, () => false);
+    const blinks = await page.waitForFunction(() => document.querySelector('noh-character').weight('eyeBlinkLeft') > 0.5).then(() => true, () => false);
     check('readme: a face that blinks', blinks);
     check('readme: the poster has gone', !await page.isVisible('[slot=poster]'));
     await page.screenshot({ path: path.join(out, 'readme.png') });
@@ -140,7 +139,7 @@ async function used(browser) {
     await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
     check('used: a clip that is not there is told in words', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
     await page.evaluate(() => { document.getElementById('it').src = 'none.noh'; });
-    await page.waitForFunction(() => document.getElementById('it').error.includes('404'), null, minute);
+    await page.waitForFunction(() => document.getElementById('it').error.includes('404'));
     check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').ready));
     await close(page, 'used', 1);
 }
@@ -172,11 +171,11 @@ async function dropped(browser) {
         return over.defaultPrevented;
     }, names);
     check('dropped: it takes files', await drop('face.nohz'));
-    await page.waitForFunction(() => document.getElementById('it').whole, null, minute);
+    await page.waitForFunction(() => document.getElementById('it').whole);
     check('dropped: a pack', await page.evaluate(() => document.getElementById('it').targets.includes('smile')));
     const fails = async (name, words) => {
         await drop(name);
-        await page.waitForFunction(() => document.getElementById('it').error, null, minute);
+        await page.waitForFunction(() => document.getElementById('it').error);
         const said = await page.evaluate(() => document.getElementById('it').error);
         check(`dropped: ${name} is refused in words, and the pack stays`, said.startsWith(`${name} cannot be shown: `) && said.includes(words)
             && await page.evaluate(() => document.getElementById('it').targets.includes('smile')), said);
@@ -186,7 +185,7 @@ async function dropped(browser) {
     if (!fs.existsSync(path.join(inside, 'convert'))) return close(page, 'dropped');
     await fails('cut.glb', 'truncated');
     const arrives = async (what, has) => {
-        await page.waitForFunction((name) => document.getElementById('it').error || document.getElementById('it').clips.some((clip) => clip.name === name), has, minute);
+        await page.waitForFunction((name) => document.getElementById('it').error || document.getElementById('it').clips.some((clip) => clip.name === name), has);
         check(`dropped: ${what}`, await page.evaluate(() => document.getElementById('it').whole && document.getElementById('it').error) === '');
     };
     await drop('arm.glb');
@@ -205,7 +204,7 @@ async function still(browser) {
     const state = await page.evaluate(() => ({ paused: document.getElementById('it').character.paused, alive: document.getElementById('it').character.alive }));
     check('still: nothing moves by itself', state.paused && !state.alive);
     await page.emulateMedia({ reducedMotion: 'no-preference' });
-    await page.waitForFunction(() => document.getElementById('it').character.alive, null, minute);
+    await page.waitForFunction(() => document.getElementById('it').character.alive);
     check('still: until the visitor changes that', await page.evaluate(() => !document.getElementById('it').character.paused));
     await page.emulateMedia({ reducedMotion: 'reduce' });
     const gpu = () => page.evaluate(() => document.getElementById('it').memory.gpu);
@@ -217,7 +216,7 @@ async function still(browser) {
         taken.loseContext();
         setTimeout(() => taken.restoreContext(), 200);
     });
-    await page.waitForFunction(() => events.length === 2, null, minute);
+    await page.waitForFunction(() => events.length === 2);
     await frames(page, 'it', 1);
     check('still: a lost context comes back, to the byte', await gpu() === before && await page.evaluate(() => document.getElementById('it').character.program._web_check()) === 0);
     await close(page, 'still');

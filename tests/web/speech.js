@@ -4,10 +4,10 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, save, slowly } = require('./browser.js');
+const { serve, launch, newPage, save, slowly } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
-const rate = 16000, minute = { timeout: 60000 };
+const rate = 16000;
 let told = 0, failures = 0, address = '';
 
 function check(name, right, more) {
@@ -62,15 +62,14 @@ function wav() {
 // ---- the page ----
 
 async function open(browser, options, prepare) {
-    const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
-    const page = await context.newPage();
+    const page = await newPage(browser, { viewport: { width: 1000, height: 700 }, ...options });
     await slowly(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     if (prepare) await page.addInitScript(prepare);
     await page.goto(`${address}/?clip=none&light=plain&size=192&detail=3&tab=all`);
-    await page.waitForFunction(() => window.noh.whole || window.noh.error, null, minute);
+    await page.waitForFunction(() => window.noh.whole || window.noh.error);
     await page.click('#alive'); // a mouth that moves is then the speech's
     return page;
 }
@@ -80,11 +79,11 @@ async function close(page, name) {
     await page.context().close();
 }
 
-const words = (page, part) => page.waitForFunction((p) => document.getElementById('speech-text').textContent.includes(p), part, minute)
+const words = (page, part) => page.waitForFunction((p) => document.getElementById('speech-text').textContent.includes(p), part)
     .then(() => true, () => false);
 const jaw = () => Number(document.querySelector('input[data-target="jawOpen"], input[data-target="mouth-open"], input[data-target="jaw_open"]').value);
-const opens = (page) => page.waitForFunction(`(${jaw})() > 0.15`, null, minute).then(() => true, () => false);
-const shuts = (page) => page.waitForFunction(`Math.abs((${jaw})()) < 0.03`, null, minute).then(() => true, () => false);
+const opens = (page) => page.waitForFunction(`(${jaw})() > 0.15`).then(() => true, () => false);
+const shuts = (page) => page.waitForFunction(`Math.abs((${jaw})()) < 0.03`).then(() => true, () => false);
 
 async function microphone(browser) {
     const page = await open(browser, { permissions: ['microphone'] });
@@ -133,7 +132,7 @@ async function file(browser) {
     check('a file: open in the vowel', mean(115, 190) > 0.3, mean(115, 190));
     check('a file: silent after', mean(220, 290) < 0.05, mean(220, 290));
     check('a file: the mouth opens', await opens(page));
-    await page.waitForFunction(() => !character.speech.speaks, null, minute);
+    await page.waitForFunction(() => !character.speech.speaks);
     check('a file: and is shut at its end', await shuts(page));
     await close(page, 'a file');
 }

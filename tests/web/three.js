@@ -6,9 +6,9 @@ const childProcess = require('child_process');
 const fs = require('fs');
 const path = require('path');
 const { out, check, keep, same, run, address } = require('./harness.js');
+const { newPage } = require('./browser.js');
 
 const [project, noh] = process.argv.slice(5);
-const minute = { timeout: 60000 };
 
 // x, y, z of each vertex that `noh dump` writes.
 function dumped(pack, ...options) {
@@ -21,12 +21,12 @@ function dumped(pack, ...options) {
 const apart = (a, b) => a.reduce((most, v, i) => Math.max(most, Math.abs(v - b[i])), a.length === b.length ? 0 : Infinity);
 
 async function open(browser) {
-    const page = await browser.newPage({ viewport: { width: 340, height: 340 } });
+    const page = await newPage(browser, { viewport: { width: 340, height: 340 } });
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     await page.goto(`${address()}/web/three.html`);
-    await page.waitForFunction(() => window.scene, null, minute);
+    await page.waitForFunction(() => window.scene);
     return page;
 }
 
