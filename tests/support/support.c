@@ -39,6 +39,12 @@ int test_is_sanitized(void)
     return san && *san;
 }
 
+int test_rounds(int all)
+{
+    const int fewer = getenv("NOH_LONG") ? 1 : test_is_sanitized() || getenv("NOH_EMULATED") ? 8 : 2;
+    return all / fewer > 0 ? all / fewer : 1;
+}
+
 const char *test_asset(const char *name)
 {
     static char path[4096];

@@ -50,6 +50,10 @@
  * then. */
 int test_is_sanitized(void);
 
+/* How many rounds of `all` a test goes that takes long: all of them with NOH_LONG set, else a half, and an eighth under
+ * sanitizers and on an emulated processor; at least one. */
+int test_rounds(int all);
+
 #define TEST_COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* ---- memory, files ---- */

@@ -418,8 +418,9 @@ static uint32_t check_animations(asset *a)
             if (oracle_channel_node(a->o, i, c) < 0) {
                 continue;
             }
-            for (int step = -1; step <= TIMES; step++) {
-                check_time(a, i, c, name ? name : made, oracle_channel_end(a->o, i, c) * 1.03 * (double)step / TIMES);
+            const int times = test_rounds(TIMES);
+            for (int step = -1; step <= times; step++) {
+                check_time(a, i, c, name ? name : made, oracle_channel_end(a->o, i, c) * 1.03 * (double)step / times);
             }
             channels++;
         }

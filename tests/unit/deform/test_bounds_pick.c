@@ -6,11 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(__SANITIZE_ADDRESS__) /* minutes otherwise */
-#define TIMES 1
-#else
 #define TIMES 4
-#endif
 
 /* One mesh in one pose. */
 typedef struct scene_pose {
@@ -120,7 +116,7 @@ static void each_pose(const char *name, const char *dual_quaternion, int times, 
     test_random r = test_random_from(9);
     double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
     for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
-        for (int k = 0; k < times; k++) {
+        for (int k = 0; k < test_rounds(times); k++) {
             oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f),
                         locals);
             for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
