@@ -58,10 +58,17 @@ target() {
     done)
     # shellcheck disable=SC2016
     echo "$tests" | xargs -P "${JOBS:-2}" -I '{}' sh -c \
-        'test=$1; shift; timeout -k 5 900 "$@" "$test" >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"' sh '{}' "$@"
+        'test=$1; shift; timeout -k 5 900 "$@" "$test" >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"; times >"$test.times"' sh '{}' "$@"
     for test in $tests; do
         count "${test#"$folder"/cross/}" "$test.tap" "$(cat "$test.code")"
     done
+    for test in $tests; do
+        awk -v name="${test#"$folder"/cross/unit/}" 'NR == 2 { split($1 "m" $2, part, /[ms]+/)
+            printf "%d %s\n", part[1] * 60 + part[2] + part[3] * 60 + part[4], name }' "$test.times"
+    done | sort -rn | awk '
+        { all += $1 }
+        NR <= 6 && $1 > 4 { longest = longest sprintf("%s%s %d", longest == "" ? "" : ", ", $2, $1) }
+        END { printf "    seconds of processors: %d%s\n", all, longest == "" ? "" : "; of them " longest }'
     echo "    libnoh.a builds ($(wc -c <"$folder/libnoh.a") bytes), $((passed - before)) tests passed there"
 }
 
