@@ -154,7 +154,7 @@ fi
 echo '#include <stdio.h>
 int main(void) { return 0; }' >"$work/alone.c"
 if gcc -m32 "$work/alone.c" -o "$work/alone32" >/dev/null 2>&1; then
-    check '-m32: the amalgam builds' gcc -m32 -msse2 -mfpmath=sse -std=c99 -O2 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
+    check '-m32: the amalgam builds' gcc -m32 -msse2 -mfpmath=sse -std=c99 -O0 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
     check '-m32: the program links, without libm' gcc -m32 -std=gnu99 -O2 "-I$build/amalgam" "$work/smile.c" "$work/noh32.o" -o "$work/smile32"
     if "$work/alone32" 2>/dev/null; then runs '-m32' smile "$work/smile32"; else skip '-m32: the program runs' 'no 32-bit programs run here'; fi
 else
@@ -175,7 +175,7 @@ bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && 
 whole=$(size "$build/libnoh.a" | awk 'NR > 1 { sum += $1 + $2 } END { print sum }')
 echo "# the smallest program that morphs takes $bytes bytes of the library's $whole"
 check "the smallest program that morphs takes at most $largest bytes" test "$bytes" -gt 4096 -a "$bytes" -le $largest
-gcc -std=gnu99 -O2 -ffunction-sections -fdata-sections -ffp-contract=off -fno-math-errno "$work/smile.c" "-I$build/amalgam" "$build/amalgam/noh.c" \
+gcc -std=gnu99 -O2 "$work/smile.c" "-I$build/amalgam" "$build/amalgam/noh.o" \
     -Wl,--gc-sections -o "$work/smallest" && bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && $4 !~ /^_/ { sum += $2 } END { print sum + 0 }')
 echo "# from the amalgam: $bytes bytes"
 # as one source it is inlined more
