@@ -76,7 +76,7 @@ mkdir -p "$build"
 target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar -static qemu-aarch64-static
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static qemu-arm-static
 # node's fetch does not read files, and emscripten's older loader asks it to
-target wasm emcc emar '-s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
+target wasm emcc emar '--pre-js tests/cross/environment.js -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
 
 # Ten seconds of the demo's packs, where `make check` has made them.
 if [ -f "$build/demo/puppet_levels.noh" ] && [ -f "$build/demo/puppet.noh" ] && [ -f "$build/mask_levels.noh" ]; then
