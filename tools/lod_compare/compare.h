@@ -1,6 +1,7 @@
 /* compare.h: shared by the files of the comparison with meshoptimizer.
  *
- *   peer_levels     meshoptimizer's levels at our triangle counts
+ *   peer_levels     the levels of Debian's meshoptimizer at our triangle counts
+ *   peer_npm_*      those of npm's, which is given the targets, too
  *   shapes_*        poses that the builder did not see, named faces
  *   faults_of       turned UVs, non-manifold edges
  *   canvas_*        a software z-buffer, for what shows and for pictures
@@ -16,6 +17,27 @@
 
 /* meshopt_simplify for each submesh, down to our number of triangles. Ends the program when out of memory. */
 lod *peer_levels(const model_mesh *mesh, const lod *ours);
+/* Memory for a level with no more indices than the mesh; lod_free frees it. */
+void peer_level_new(const model_mesh *mesh, lod_level *out);
+
+/* ---- the peer from npm: peer_npm.c, principal.c, meshopt.mjs ---- */
+
+#define PEER_WEIGHTS 10u
+
+typedef struct peer_npm {
+    float weights[PEER_WEIGHTS]; /* of the targets: 0 is positions alone, 1 is as much as positions */
+    lod *levels[PEER_WEIGHTS];   /* with each weight */
+    float kept;                  /* of the sum of the targets' squares, what the attributes hold: 0 to 1 */
+} peer_npm;
+
+/* simplifyWithAttributes for each submesh and weight, down to our number of triangles, by node with the program
+ * `script`; files are left in `folder`. Returns 1, and *out is empty, if node, the package or the files fail. */
+int peer_npm_levels(const model_mesh *mesh, const lod *ours, const char *script, const char *folder, peer_npm *out);
+void peer_npm_free(peer_npm *p);
+
+/* The targets' deltas in sizes of the mesh, projected onto the `count` directions in which they vary most:
+ * [vertex_count][count], to be freed. *kept: see peer_npm. */
+float *principal_of(const model_mesh *mesh, uint32_t count, float *kept);
 
 /* ---- poses: shapes.c ---- */
 
@@ -75,7 +97,10 @@ typedef struct figures {
 } figures;
 
 void figures_of(const model *m, const model_mesh *mesh, const lod_level *level, const shapes *unseen, figures *out);
-void figures_print(const lod *l, const figures *ours, const figures *peer);
+/* The largest distance of the largest submesh over targets and mixes, in millimetres. */
+float figures_skin(const model_mesh *mesh, const lod_level *level, const shapes *unseen);
+/* [level_count] each; npm and weights (of npm's levels, each from 1 on) are NULL where that peer is left out. */
+void figures_print(const lod *l, const figures *ours, const figures *peer, const figures *npm, const float *weights);
 
 /* ---- pictures.c ---- */
 

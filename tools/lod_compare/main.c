@@ -1,10 +1,16 @@
 /* lod_compare: our LOD levels against meshoptimizer's, at equal triangle counts, in one run.
  *
- *   lod_compare FILE.glb [--fast] [--picture OUT.png]
+ *   lod_compare FILE.glb [--fast] [--picture OUT.png] [--npm SCRIPT FOLDER]
  *
- * The file's first mesh, at 50, 25 and 10 % of its triangles. The builder sees rest, targets, its own random mixes and,
- * of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each submesh of
- * meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches. */
+ * The mesh with the most vertices and targets, at 50, 25 and 10 % of its triangles. The builder sees rest, targets, its
+ * own random mixes and, of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each
+ * submesh of meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches.
+ *
+ * There are two peers. Debian's meshoptimizer sees positions alone. The npm package's, with --npm, sees the targets as
+ * attributes, too: at most 32 numbers for each vertex, so the directions in which the targets vary most. Of several
+ * weights each level has the one with the least error over targets and mixes. SCRIPT is meshopt.mjs; files for it are
+ * left in FOLDER; NODE_PATH says where the package is. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,70 +66,130 @@ static void show_progress(void *user, uint32_t done, uint32_t total)
     fprintf(stderr, "\r%3u %%", (uint32_t)(100.0 * done / (total ? total : 1u)));
 }
 
-static lod *build(const model *m, lod_mode mode, model_error *error)
+typedef struct settings {
+    const char *picture, *script, *folder; /* NULL: none */
+    lod_mode mode;
+    uint32_t mesh;
+} settings;
+
+/* The mesh with the most vertices times shapes. */
+static uint32_t largest_mesh(const model *m)
+{
+    uint32_t best = 0;
+    size_t most = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        size_t work = (size_t)m->meshes[i].vertex_count * (1u + m->meshes[i].target_count);
+        best = work > most ? i : best;
+        most = work > most ? work : most;
+    }
+    return best;
+}
+
+static lod *build(const model *m, const settings *s, model_error *error)
 {
     lod_options o = { 0 };
     lod_frames seen = { 0 };
     lod *l = NULL;
-    uint32_t node = lod_skinned_node(m, 0);
+    uint32_t node = lod_skinned_node(m, s->mesh);
     clock_t start = clock();
     if (node != MODEL_NONE && lod_frames_choose(m, node, SEEN_FRAMES, &seen)) {
         snprintf(error->what, sizeof error->what, "frames could not be skinned");
         return NULL;
     }
-    o.mode = mode;
+    o.mode = s->mode;
     o.poses = (const float *const *)seen.poses;
     o.pose_count = seen.count;
     o.progress = show_progress;
-    if (!lod_build(&m->meshes[0], &o, &l, error)) {
+    if (!lod_build(&m->meshes[s->mesh], &o, &l, error)) {
         printf("\r built in %.1f s of processor time\n", (double)(clock() - start) / CLOCKS_PER_SEC);
     }
     lod_frames_free(&seen);
     return l;
 }
 
-static int compare(const model *m, const lod *ours, const char *picture)
+/* Of each level but the full mesh, the figures with its best weight, and that weight. Returns 0 if that peer cannot be
+ * had. */
+static int measure_npm(const model *m, const lod *ours, const settings *s, const shapes *unseen, figures *out,
+                       float *weights)
 {
-    const model_mesh *mesh = &m->meshes[0];
+    const model_mesh *mesh = &m->meshes[s->mesh];
+    peer_npm peer;
+    if (!s->script) {
+        printf(" npm: no node, or no meshoptimizer from npm: left out\n");
+        return 0;
+    }
+    if (peer_npm_levels(mesh, ours, s->script, s->folder, &peer)) {
+        printf(" npm: meshoptimizer failed: left out\n");
+        return 0;
+    }
+    printf(" npm: its attributes hold %.2f %% of what the targets do\n", 100.0 * (double)peer.kept);
+    for (uint32_t i = 1; i < ours->level_count; i++) {
+        uint32_t best = 0;
+        float least = INFINITY;
+        for (uint32_t w = 0; w < PEER_WEIGHTS; w++) {
+            float error = figures_skin(mesh, &peer.levels[w]->levels[i], unseen);
+            best = error < least ? w : best;
+            least = error < least ? error : least;
+        }
+        figures_of(m, mesh, &peer.levels[best]->levels[i], unseen, &out[i]);
+        weights[i] = peer.weights[best];
+    }
+    peer_npm_free(&peer);
+    return 1;
+}
+
+static int compare(const model *m, const lod *ours, const settings *s)
+{
+    const model_mesh *mesh = &m->meshes[s->mesh];
     lod *peer = peer_levels(mesh, ours);
-    figures a[LOD_LEVELS_MAX], b[LOD_LEVELS_MAX];
-    float pixel_mm[LOD_LEVELS_MAX];
+    figures a[LOD_LEVELS_MAX], b[LOD_LEVELS_MAX], c[LOD_LEVELS_MAX];
+    float pixel_mm[LOD_LEVELS_MAX], weights[LOD_LEVELS_MAX];
     shapes unseen;
-    int failed = 0;
-    shapes_make(m, 0, UNSEEN_MIXES, UNSEEN_FRAMES, &unseen);
+    int failed = 0, npm;
+    shapes_make(m, s->mesh, UNSEEN_MIXES, UNSEEN_FRAMES, &unseen);
     for (uint32_t i = 0; i < ours->level_count; i++) {
         figures_of(m, mesh, &ours->levels[i], &unseen, &a[i]);
         figures_of(m, mesh, &peer->levels[i], &unseen, &b[i]);
         pixel_mm[i] = a[i].targets > a[i].mixes ? a[i].targets : a[i].mixes;
     }
-    figures_print(ours, a, b);
-    if (picture && !pictures_write(m, mesh, ours, peer, pixel_mm, picture)) {
-        failed = fail("cannot write", picture);
+    npm = measure_npm(m, ours, s, &unseen, c, weights);
+    figures_print(ours, a, b, npm ? c : NULL, npm ? weights : NULL);
+    if (s->picture && !pictures_write(m, mesh, ours, peer, pixel_mm, s->picture)) {
+        failed = fail("cannot write", s->picture);
     }
     shapes_free(&unseen);
     lod_free(peer);
     return failed;
 }
 
-int main(int argument_count, char **arguments)
+static int read_settings(int argument_count, char **arguments, settings *s)
 {
-    const char *picture = NULL;
-    lod_mode mode = LOD_QUALITY;
-    model_error error = { "", "" };
-    model *m = NULL;
-    lod *ours;
-    int failed;
+    s->picture = s->script = s->folder = NULL;
+    s->mode = LOD_QUALITY;
     for (int i = 2; i < argument_count; i++) {
         if (!strcmp(arguments[i], "--fast")) {
-            mode = LOD_FAST;
+            s->mode = LOD_FAST;
         } else if (!strcmp(arguments[i], "--picture") && i + 1 < argument_count) {
-            picture = arguments[++i];
+            s->picture = arguments[++i];
+        } else if (!strcmp(arguments[i], "--npm") && i + 2 < argument_count) {
+            s->script = arguments[++i];
+            s->folder = arguments[++i];
         } else {
             return fail("does not know", arguments[i]) + 1;
         }
     }
-    if (argument_count < 2) {
-        return fail("FILE.glb [--fast] [--picture OUT.png]", "") + 1;
+    return argument_count < 2 ? fail("FILE.glb [--fast] [--picture OUT.png] [--npm SCRIPT FOLDER]", "") + 1 : 0;
+}
+
+int main(int argument_count, char **arguments)
+{
+    settings s;
+    model_error error = { "", "" };
+    model *m = NULL;
+    lod *ours;
+    int failed = read_settings(argument_count, arguments, &s);
+    if (failed) {
+        return failed;
     }
     if (model_read_gltf(arguments[1], &m, &error)) {
         return fail(error.what, error.where);
@@ -131,12 +197,14 @@ int main(int argument_count, char **arguments)
     if (!m->mesh_count) {
         return fail("no mesh in", arguments[1]);
     }
-    printf("%s\n", arguments[1]);
-    ours = build(m, mode, &error);
+    s.mesh = largest_mesh(m);
+    printf("%s, mesh %s: %u triangles, %u targets\n", arguments[1], m->meshes[s.mesh].name,
+           m->meshes[s.mesh].index_count / 3u, m->meshes[s.mesh].target_count);
+    ours = build(m, &s, &error);
     if (!ours) {
         return fail(error.what, error.where);
     }
-    failed = compare(m, ours, picture);
+    failed = compare(m, ours, &s);
     lod_free(ours);
     model_free(m);
     return failed;

@@ -1,14 +1,19 @@
-/* peer.c: the levels that meshoptimizer makes. */
+/* peer.c: the levels that Debian's meshoptimizer makes. */
 #include <meshoptimizer.h>
 
 #include "compare.h"
 
-static void simplify(const model_mesh *mesh, const lod_level *ours, lod_level *out)
+void peer_level_new(const model_mesh *mesh, lod_level *out)
 {
-    uint32_t at = 0;
     out->indices = compare_zeros(mesh->index_count, sizeof *out->indices);
     out->submesh_first = compare_zeros((size_t)mesh->submesh_count * 2u, sizeof *out->submesh_first);
     out->submesh_count = out->submesh_first + mesh->submesh_count;
+}
+
+static void simplify(const model_mesh *mesh, const lod_level *ours, lod_level *out)
+{
+    uint32_t at = 0;
+    peer_level_new(mesh, out);
     for (uint32_t i = 0; i < mesh->submesh_count; i++) {
         const model_submesh *sub = &mesh->submeshes[i];
         size_t count = meshopt_simplify(out->indices + at, mesh->indices + sub->first_index, sub->index_count,

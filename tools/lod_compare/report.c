@@ -112,43 +112,92 @@ void figures_of(const model *m, const model_mesh *mesh, const lod_level *level, 
 
 /* ---- the table ---- */
 
-static void print_row(const char *name, const char *unit, float ours, float peer, float full)
-{
-    printf("  %-34s %-4s %9.3f %9.3f", name, unit, (double)ours, (double)peer);
-    if (full >= 0.0f) {
-        printf("   full mesh %.1f", (double)full);
-    } else if (ours > 0.0f) {
-        printf("   %5.2f times", (double)(peer / ours));
-    }
-    putchar('\n');
-}
-
 static float larger(float a, float b)
 {
     return a > b ? a : b;
 }
 
-void figures_print(const lod *l, const figures *ours, const figures *peer)
+float figures_skin(const model_mesh *mesh, const lod_level *level, const shapes *unseen)
+{
+    figures f = { 0 };
+    measure(mesh, level, unseen, &f);
+    return larger(f.targets, f.mixes);
+}
+
+static float both(const figures *f)
+{
+    return larger(f->targets, f->mixes);
+}
+
+static void print_values(const char *name, const char *unit, float ours, float peer, float npm)
+{
+    printf("  %-34s %-4s %9.3f %9.3f", name, unit, (double)ours, (double)peer);
+    if (npm >= 0.0f) {
+        printf(" %9.3f", (double)npm);
+    }
+}
+
+static void print_lengths(const char *name, float ours, float peer, float npm)
+{
+    print_values(name, "mm", ours, peer, npm);
+    if (ours > 0.0f) {
+        printf("   %5.2f", (double)(peer / ours));
+        if (npm >= 0.0f) {
+            printf(" %5.2f", (double)(npm / ours));
+        }
+        printf(" times");
+    }
+    putchar('\n');
+}
+
+static void print_areas(const char *name, float ours, float peer, float npm, float full)
+{
+    if (full >= 0.0f) {
+        print_values(name, "mm2", ours, peer, npm);
+        printf("   full mesh %.1f\n", (double)full);
+    }
+}
+
+static void print_faults(const char *name, const figures *f)
+{
+    printf("  %s: UV flips %u, non-manifold edges %u\n", name, f->faults.uv_flips, f->faults.non_manifold);
+}
+
+static void print_level(const figures *a, const figures *b, const figures *c, const figures *full)
+{
+#define OF_NPM(field) (c ? c->field : -1.0f)
+    print_lengths("skin, targets", a->targets, b->targets, OF_NPM(targets));
+    print_lengths("skin, unseen mixes", a->mixes, b->mixes, OF_NPM(mixes));
+    print_lengths("skin, targets and mixes", both(a), both(b), c ? both(c) : -1.0f);
+    if (b->frames > 0.0f) {
+        print_lengths("skin, unseen frames", a->frames, b->frames, OF_NPM(frames));
+    }
+    print_lengths("skin at rest, 99 % of the area", a->rest_p99, b->rest_p99, OF_NPM(rest_p99));
+    print_lengths("other parts, any of these poses", a->others, b->others, OF_NPM(others));
+    print_areas("eyes seen open", a->eyes_open, b->eyes_open, OF_NPM(eyes_open), full->eyes_open);
+    print_areas("eyes seen shut", a->eyes_shut, b->eyes_shut, OF_NPM(eyes_shut), full->eyes_shut);
+    print_areas("teeth and tongue, mouth open", a->teeth, b->teeth, OF_NPM(teeth), full->teeth);
+    print_areas("the same, only the skin simplified", a->teeth_skin, b->teeth_skin, OF_NPM(teeth_skin),
+                full->teeth_skin);
+#undef OF_NPM
+    print_faults("full mesh", full);
+    print_faults("ours", a);
+    print_faults("meshoptimizer, Debian's", b);
+    if (c) {
+        print_faults("meshoptimizer, npm's", c);
+    }
+}
+
+void figures_print(const lod *l, const figures *ours, const figures *peer, const figures *npm, const float *weights)
 {
     for (uint32_t i = 1; i < l->level_count; i++) {
-        const figures *a = &ours[i], *b = &peer[i], *full = &ours[0];
-        printf(" level %u: %u triangles (meshoptimizer %u), of the skin %u (%u); %u vertices\n", i, a->triangles,
-               b->triangles, a->main_triangles, b->main_triangles, l->levels[i].vertex_count);
-        printf("  %-34s %-4s %9s %9s   meshoptimizer over ours\n", "", "", "ours", "meshopt");
-        print_row("skin, targets", "mm", a->targets, b->targets, -1.0f);
-        print_row("skin, unseen mixes", "mm", a->mixes, b->mixes, -1.0f);
-        print_row("skin, targets and mixes", "mm", larger(a->targets, a->mixes), larger(b->targets, b->mixes), -1.0f);
-        if (b->frames > 0.0f) {
-            print_row("skin, unseen frames", "mm", a->frames, b->frames, -1.0f);
+        printf(" level %u: %u triangles, of the skin %u; %u vertices; meshoptimizer: Debian's %u (%u)", i,
+               ours[i].triangles, ours[i].main_triangles, l->levels[i].vertex_count, peer[i].triangles,
+               peer[i].main_triangles);
+        if (npm) {
+            printf(", npm's %u (%u) with weight %g", npm[i].triangles, npm[i].main_triangles, (double)weights[i]);
         }
-        print_row("skin at rest, 99 % of the area", "mm", a->rest_p99, b->rest_p99, -1.0f);
-        print_row("other parts, any of these poses", "mm", a->others, b->others, -1.0f);
-        print_row("eyes seen open", "mm2", a->eyes_open, b->eyes_open, full->eyes_open);
-        print_row("eyes seen shut", "mm2", a->eyes_shut, b->eyes_shut, full->eyes_shut);
-        print_row("teeth and tongue, mouth open", "mm2", a->teeth, b->teeth, full->teeth);
-        print_row("the same, only the skin simplified", "mm2", a->teeth_skin, b->teeth_skin, full->teeth_skin);
-        printf("  UV flips %u (%u), full mesh %u; non-manifold edges %u (%u), full mesh %u\n", a->faults.uv_flips,
-               b->faults.uv_flips, full->faults.uv_flips, a->faults.non_manifold, b->faults.non_manifold,
-               full->faults.non_manifold);
+        printf("\n  %-34s %-4s %9s %9s%s   over ours\n", "", "", "ours", "Debian's", npm ? "     npm's" : "");
+        print_level(&ours[i], &peer[i], npm ? &npm[i] : NULL, &ours[0]);
     }
 }
