@@ -115,8 +115,9 @@ static void each_pose(const char *name, const char *dual_quaternion, int times, 
     const skin_asset *a = open_asset(name, dual_quaternion);
     test_random r = test_random_from(9);
     double *locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a->o));
+    times = test_rounds(times);
     for (uint32_t clip = 0; clip < oracle_animation_count(a->o); clip++) {
-        for (int k = 0; k < test_rounds(times); k++) {
+        for (int k = 0; k < times; k++) {
             oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f),
                         locals);
             for (uint32_t m = 0; m < a->pack.mesh_count; m++) {

@@ -136,8 +136,9 @@ static void check_asset(const char *name, const skin_options *options, int times
     skin_asset a;
     skin_asset_open(&a, name, options);
     locals = test_zeros(sizeof *locals * 10 * oracle_node_count(a.o));
+    times = test_rounds(times);
     for (int clip = -1; clip < (int)oracle_animation_count(a.o); clip++) {
-        for (int k = 0; k < (clip < 0 ? 1 : test_rounds(times)); k++) {
+        for (int k = 0; k < (clip < 0 ? 1 : times); k++) {
             double end = clip < 0 ? 0.0 : oracle_animation_end(a.o, (uint32_t)clip);
             oracle_pose(a.o, clip, end * (double)test_random_float(&random, 0.0f, 1.0f), locals);
             for (uint32_t m = 0; m < a.pack.mesh_count; m++) {
