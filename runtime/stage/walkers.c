@@ -93,12 +93,12 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
 }
 
 /* Steps of two clips are told by their markers; without these their phases mean nothing to each other. */
-static uint32_t are_in_step(const noh_walkers *w, const noh_stage_kind *k)
+static uint16_t are_in_step(const noh_walkers *w, const noh_stage_kind *k)
 {
     if (w->clips[WALKER_RUN].clip == NOH_NONE) return 0;
     const noh_clip_entry *walk = &k->set.clips[w->clips[WALKER_WALK].clip],
                          *run = &k->set.clips[w->clips[WALKER_RUN].clip];
-    return walk->marker_count && noh_sync_fits(&k->set, walk, run);
+    return walk->marker_count && noh_sync_fits(&k->set, walk, run) ? 1u : 0u;
 }
 
 static noh_result measure_all(noh_walkers *w, const noh_walkers_desc *d, const noh_stage_kind *k, noh_error *error)

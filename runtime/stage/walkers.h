@@ -17,12 +17,16 @@
  *   noh_stage_frame_begin(stage, &view, 1, NULL);
  *
  * The crowd makes steps of 1/30 s; frames may have any rate. An actor follows the shown position of its agent
- * (noh_crowd_agent_at) at the pace of its own walk clip, forwards, backwards or in place. It turns at a limited speed,
- * about the foot that it stands on, so a standing foot does not slide. The actor then stays within a few centimetres
- * of its agent, and within 0.4 m where the agent turns or is pushed faster than feet can follow: beyond that the actor
- * is pulled along. Below a quarter of the walk's speed it takes shorter steps, the walk blended with standing. Above
- * the walk's speed it runs: blended where sync markers show that both clips are in step, by a change of clip otherwise.
- * The soles are known from feet_part; without it actors turn about their middle.
+ * (noh_crowd_agent_at) at the pace of its own walk clip, forwards or backwards. It turns at a limited speed, about the
+ * foot that it stands on, and only while the other foot is in the air, so a standing foot does not slide. Who stands
+ * sets out with a step and stops with one that brings the feet together; who turns on the spot steps, too. The actor
+ * then stays within a few centimetres of its agent; it may stop 0.2 m from it. It falls behind by up to 0.7 m where the
+ * agent turns or is pushed faster than feet can follow: beyond that the actor is pulled along. Behind an agent slower
+ * than a quarter of the walk's speed it makes a step now and then. Above the walk's speed it runs: blended where sync
+ * markers show that both clips are in step, by a change of clip otherwise.
+ * That wants feet_part, from which soles are known, two legs, a clip to stand by, and a walk in which each leg swings
+ * past the other above the ground. Without a clip to stand by it always walks; without soles it turns about its middle,
+ * at any time, and below a quarter of the walk's speed takes shorter steps, the walk blended with standing.
  *
  * The kind's clips must not move the actor themselves: set root_axes to NOH_ROOT_X | NOH_ROOT_Z (the heading of a root
  * stays in the pose), root_up to 1 and root_told to 1. Init measures how far the root moves in a pass; its sway about

@@ -121,7 +121,7 @@ static void take(noh_walkers *w, uint32_t index, float square)
     near[at].index = index;
 }
 
-static void set_near(noh_walkers *w, noh_stage *stage, uint32_t index, uint16_t is_near)
+static void set_near(noh_walkers *w, noh_stage *stage, uint32_t index, uint8_t is_near)
 {
     walker *r = noh_walker_at(w, index);
     near_feet *n = noh_actor_part(stage, (noh_actor){ r->actor }, w->feet_part - 1u);

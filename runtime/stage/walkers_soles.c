@@ -5,7 +5,9 @@
 #include "pose/local_to_model.h"
 #include "stage/walkers_internal.h"
 
-#define LOWER 0.0004f /* of a leg: lower by so much, and it stands on the other foot */
+#define LOWER 0.0004f   /* of a leg: lower by so much, and it stands on the other foot */
+#define AIR_FROM 0.002f /* of a leg, above the foot that it stands on: from here on a foot is in the air, */
+#define AIR_TO 0.008f   /* and here it is free */
 
 /* ---- init ---- */
 
@@ -22,6 +24,43 @@ static void parts_of(const noh_feet_leg *leg, const float *model, float parts[WA
         part[0] = p % 2u ? 0.5f * (part[0] + here[0]) : here[0];
         part[1] = p % 2u && part[1] < here[1] ? part[1] : here[1];
         part[2] = p % 2u ? 0.5f * (part[2] + here[2]) : here[2];
+    }
+}
+
+/* Where a leg is ahead of the other, and above it. */
+static void ahead_of(const noh_walkers *w, uint32_t clip, uint32_t i, uint32_t leg, float *ahead, float *above)
+{
+    float middle[2] = { 0.0f, 0.0f }, low[2] = { 1e30f, 1e30f };
+    for (uint32_t n = 0; n < 2u * WALKER_PARTS; n++) {
+        const uint32_t other = n / WALKER_PARTS;
+        const float *at = w->soles[clip].at[i][other ? 1u - leg : leg][n % WALKER_PARTS];
+        middle[other] += (at[0] * w->forward[0] + at[2] * w->forward[1]) * (1.0f / (float)WALKER_PARTS);
+        low[other] = at[1] < low[other] ? at[1] : low[other];
+    }
+    *ahead = middle[0] - middle[1];
+    *above = low[0] - low[1];
+}
+
+/* Where in the walk a leg that swings is as far ahead of the other as in standing. returns the share; below 0: nowhere */
+static float find_pass(const noh_walkers *w, uint32_t leg)
+{
+    float rest, ahead, above, before, above_before;
+    ahead_of(w, WALKER_IDLE, 0, leg, &rest, &above);
+    ahead_of(w, WALKER_WALK, 0, leg, &before, &above_before);
+    for (uint32_t i = 1; i <= WALKER_SWAY; i++, before = ahead, above_before = above) {
+        ahead_of(w, WALKER_WALK, i, leg, &ahead, &above);
+        if (above < AIR_TO * w->leg || above_before < AIR_TO * w->leg || (before < rest) == (ahead < rest)) continue;
+        return ((float)(i - 1u) + (rest - before) / (ahead - before)) / (float)WALKER_SWAY;
+    }
+    return -1.0f;
+}
+
+static void find_passes(noh_walkers *w)
+{
+    w->knows_steps = w->leg_count == 2u && w->clips[WALKER_IDLE].clip != NOH_NONE ? 1u : 0u;
+    for (uint32_t l = 0; l < 2u && w->knows_steps; l++) {
+        w->passes[l] = find_pass(w, l);
+        w->knows_steps = w->passes[l] >= 0.0f ? 1u : 0u;
     }
 }
 
@@ -45,6 +84,7 @@ void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage
             for (uint32_t l = 0; l < rig->leg_count; l++) parts_of(&rig->legs[l], scratch.model, w->soles[c].at[i][l]);
         }
     }
+    find_passes(w);
 }
 
 /* ---- a step ---- */
@@ -72,6 +112,22 @@ static uint32_t lowest_of(const float parts[WALKER_PARTS][3])
     return lowest;
 }
 
+/* Of the parts that are on the ground the one that is nearest to the body's axis: it turns about that, and stays where
+ * it is. */
+static uint32_t pivot_of(const float parts[WALKER_PARTS][3], float slack)
+{
+    const uint32_t lowest = lowest_of(parts);
+    uint32_t nearest = lowest;
+    float least = 1e30f;
+    for (uint32_t p = 0; p < WALKER_PARTS; p++) {
+        const float square = parts[p][0] * parts[p][0] + parts[p][2] * parts[p][2];
+        if (parts[p][1] > parts[lowest][1] + slack || square >= least) continue;
+        least = square;
+        nearest = p;
+    }
+    return nearest;
+}
+
 uint32_t noh_walkers_stand(const noh_walkers *w, const walker_feet *feet, uint32_t was)
 {
     uint32_t leg = was / WALKER_PARTS % NOH_FEET_LEGS_MAX, part = lowest_of(feet->at[leg]);
@@ -82,5 +138,13 @@ uint32_t noh_walkers_stand(const noh_walkers *w, const walker_feet *feet, uint32
             part = other;
         }
     }
-    return leg * WALKER_PARTS + part;
+    return leg * WALKER_PARTS + pivot_of(feet->at[leg], LOWER * w->leg);
+}
+
+float noh_walkers_free(const noh_walkers *w, const walker_feet *feet, uint32_t stands)
+{
+    const uint32_t leg = stands / WALKER_PARTS, other = 1u - leg;
+    const float above = feet->at[other][lowest_of(feet->at[other])][1] - feet->at[leg][stands % WALKER_PARTS][1];
+    const float part = (above - AIR_FROM * w->leg) / ((AIR_TO - AIR_FROM) * w->leg);
+    return part < 0.0f ? 0.0f : part > 1.0f ? 1.0f : part;
 }

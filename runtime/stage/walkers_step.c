@@ -6,17 +6,18 @@
 #include "base/trig.h"
 #include "stage/walkers_internal.h"
 
-#define TURN_HALF_LIFE_S 0.2f  /* of the velocity that headings follow */
+#define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */
 #define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */
 #define GOES 0.12f             /* of the walk's speed: slower ones have no direction */
-#define LONG_STEPS 0.25f       /* of the walk's speed: from here on its steps are not shortened */
-#define BLEND_PER_S 4.0f       /* how fast the walk comes and goes */
+#define BLEND_PER_S 4.0f       /* how fast the run comes and goes */
 #define ABOUT_M 0.08f          /* of a foot from the axis that it turns about: turning is stepping */
 #define BACK 0.8f              /* of the walk's speed: who wants to go back faster turns */
 #define CATCH_PER_S 3.0f       /* of the way to its agent */
 #define SLACK_M 0.06f          /* of that way: it stands */
-#define LOOKING_M 0.2f         /* likewise, of one who looks somewhere: it turns there, not back */
-#define LAG_M 0.4f             /* no body is farther from its agent */
+#define STANDING_M 0.2f        /* likewise, of one who stands: it does not set out for less */
+#define LOOKING_M 0.35f        /* likewise, of one who stands and looks somewhere: it turns there, not back */
+#define SLOW 0.12f             /* of the walk's speed: whose agent is slower goes no farther than to it */
+#define LAG_M 0.7f             /* no body is farther from its agent */
 #define RATE_MAX 2.5f          /* of the walk: faster than that is a stumble that does not end */
 #define CLIMB_RATE 14.0f       /* of the spring that follows the ground, 1/s */
 #define LEAP_M 1.0f            /* in a step: not a way that is walked */
@@ -30,12 +31,6 @@ typedef struct step {
     float seconds;
 } step;
 
-static float towards(float x, float goal, float most)
-{
-    const float off = goal - x;
-    return off > most ? x + most : off < -most ? x - most : goal;
-}
-
 static float within(float x, float low, float high)
 {
     return x >= low ? x <= high ? x : high : low;
@@ -48,7 +43,7 @@ static float dot2(const float a[2], const float b[2])
 
 /* ---- heading ---- */
 
-/* Turn to a unit vector, by an angle at most. returns the angle */
+/* Turn to a unit vector, by an angle at most. returns the angle that there was */
 static float turn(float heading[2], const float to[2], float most)
 {
     const float cross = heading[0] * to[1] - heading[1] * to[0];
@@ -59,31 +54,29 @@ static float turn(float heading[2], const float to[2], float most)
     const float per = 1.0f / noh_sqrt(x * x + z * z);
     heading[0] = x * per;
     heading[1] = z * per;
-    return by < 0.0f ? -by : by;
+    return angle < 0.0f ? -angle : angle;
 }
 
 /* Where it wants to go, or, standing, where it is asked to look. wish[2]: model units a second.
- * returns the angle that it turned by where it stands */
-static float find_heading(const step *s, walker *r, const float wish[2], float walk)
+ */
+static void find_heading(const step *s, walker *r, const float wish[2], walker_speed *g)
 {
-    const float square = dot2(wish, wish), least = GOES * walk, ahead = dot2(wish, r->heading);
-    const float most = s->w->turn_speed * s->seconds;
-    r->goes_back = ahead < 0.0f && ahead * ahead > (r->goes_back ? 0.25f : 0.75f) * square &&
-                   square < BACK * BACK * walk * walk;
-    if (square > least * least) {
+    const float square = dot2(wish, wish), walk = g->walk, least = GOES * walk, ahead = dot2(wish, r->heading);
+    const float free = s->w->knows_steps ? (float)r->free * (1.0f / 255.0f) : 1.0f;
+    const float most = s->w->turn_speed * s->seconds * free;
+    const int turns_back = ahead < 0.0f && ahead * ahead > (r->goes_back ? 0.25f : 0.75f) * square &&
+                           square < BACK * BACK * walk * walk;
+    if (r->gait != WALKER_CLOSES) r->goes_back = (uint8_t)turns_back; /* the last step ends as it began */
+    g->wants_to_go = square > least * least;
+    if (g->wants_to_go) {
         const float per = (r->goes_back ? -1.0f : 1.0f) / noh_sqrt(square), to[2] = { wish[0] * per, wish[1] * per };
-        return turn(r->heading, to, most);
+        g->angle = turn(r->heading, to, most);
+    } else if (r->face[0] != 0.0f || r->face[1] != 0.0f) {
+        g->angle = turn(r->heading, r->face, most);
     }
-    return r->face[0] != 0.0f || r->face[1] != 0.0f ? turn(r->heading, r->face, most) : 0.0f;
 }
 
 /* ---- clips ---- */
-
-/* Speeds in model units a second. */
-typedef struct gait {
-    float walk, run; /* of the clips */
-    float now, even; /* ahead in this step, and smoothed */
-} gait;
 
 /* What its clips show after the step: each at its share of a pass. */
 typedef struct played {
@@ -98,7 +91,7 @@ static float speed_of(const walker_clip *c)
 }
 
 /* How far it runs. Clips that are not in step are not blended but for the change. */
-static float runs_of(const noh_walkers *w, const walker *r, const gait *g)
+static float runs_of(const noh_walkers *w, const walker *r, const walker_speed *g)
 {
     if (!(g->run > g->walk)) return 0.0f;
     const float part = within((g->even - g->walk) / (g->run - g->walk), 0.0f, 1.0f);
@@ -106,22 +99,15 @@ static float runs_of(const noh_walkers *w, const walker *r, const gait *g)
     return part > (r->runs > 0.5f ? 0.3f : 0.6f) ? 1.0f : 0.0f;
 }
 
-static void blend(const step *s, walker *r, const gait *g)
-{
-    const float most = BLEND_PER_S * s->seconds;
-    const float goes = within(g->even / (LONG_STEPS * g->walk), 0.0f, 1.0f);
-    r->goes = s->w->clips[WALKER_IDLE].clip == NOH_NONE ? 1.0f : towards(r->goes, goes, most);
-    r->runs = towards(r->runs, runs_of(s->w, r, g), most);
-}
-
 /* Passes in a second at which the blend of the clips leads as far as the agent goes; way: model units that they lead.
  */
-static float pace(const step *s, const walker *r, const gait *g, float *way)
+static float pace(const step *s, const walker *r, const walker_speed *g, float share, float *way)
 {
     const walker_clip *walk = &s->w->clips[WALKER_WALK], *run = &s->w->clips[WALKER_RUN];
     const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
     const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* of the run, too */
-    const float rate = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
+    const float wanted = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
+    const float rate = noh_walkers_pace(s->w, r, g, wanted, share, s->seconds);
     *way = rate * stride * s->seconds;
     return rate;
 }
@@ -132,6 +118,31 @@ static float share_of(const walker_clip *c, const noh_track *track, int64_t spee
     const int64_t pass = noh_position_of(c->ticks);
     const int64_t at = pass ? (track->position + speed * (int64_t)ticks) % pass : 0;
     return pass ? (float)(at < 0 ? at + pass : at) / (float)pass : 0.0f;
+}
+
+/* One who walks to an agent that stands stops where its last step brings it next to it. */
+static void find_end(const step *s, const walker *r, const noh_controller *c, float scale, walker_speed *g)
+{
+    const walker_clip *walk = &s->w->clips[WALKER_WALK];
+    const float slow = SLOW * g->walk, off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] };
+    const float ahead = (r->goes_back ? -1.0f : 1.0f) * dot2(off, r->heading);
+    if (!s->w->knows_steps || r->gait != WALKER_WALKS || dot2(r->velocity, r->velocity) > slow * slow) return;
+    const uint32_t track = s->k->layers[s->w->layer].first_track;
+    const float share = share_of(walk, noh_controller_track(c, track), 0, 0);
+    g->wants_to_go = ahead > (noh_walkers_until_passing(s->w, r, share, NULL) + 0.25f) * walk->stride * scale;
+}
+
+/* It stands, steps on the spot or walks. */
+static float find_gait(const step *s, walker *r, noh_controller *c, const walker_speed *g)
+{
+    const uint32_t track = s->k->layers[s->w->layer].first_track;
+    const walker_clip *walk = &s->w->clips[WALKER_WALK];
+    const float share = share_of(walk, noh_controller_track(c, track), 0, 0);
+    const float to = noh_walkers_gait(s->w, r, g, s->seconds, share);
+    r->runs = noh_walker_towards(r->runs, runs_of(s->w, r, g), BLEND_PER_S * s->seconds);
+    if (to < 0.0f) return share;
+    (void)noh_controller_seek(c, &s->k->set, track, (int64_t)(to * (float)walk->ticks), NOH_SEEK_SKIP, NULL);
+    return to;
 }
 
 /* What a root sways about its straight way, in model units. */
@@ -240,15 +251,18 @@ static void go_on(const step *s, walker *r, const noh_place *was, const float ro
     turned_by(rotation, was->scale, f[0], f[2], to);
     for (int i = 0; i < 2 && r->begun == 1u; i++) r->body[i] += on[i] + from[i] - to[i];
     r->stands = noh_walkers_stand(s->w, &feet, r->stands);
+    r->free = s->w->knows_steps ? (uint8_t)(255.0f * noh_walkers_free(s->w, &feet, r->stands)) : 255u;
 }
 
 /* ---- a step ---- */
 
 /* How fast it wants to go: as its agent does, and to where that is. Model units a second. */
-static void find_wish(const walker *r, float scale, float wish[2])
+static void find_wish(const noh_walkers *w, const walker *r, float scale, float wish[2])
 {
     const float off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] }, length = noh_sqrt(dot2(off, off));
-    const float slack = r->face[0] != 0.0f || r->face[1] != 0.0f ? LOOKING_M : SLACK_M;
+    const int looks = r->face[0] != 0.0f || r->face[1] != 0.0f;
+    const int stands = w->knows_steps ? r->gait != WALKER_WALKS : looks;
+    const float slack = !stands ? SLACK_M : looks ? LOOKING_M : STANDING_M;
     const float catch = length > slack ? CATCH_PER_S * (length - slack) / (length * scale) : 0.0f;
     for (int i = 0; i < 2; i++) wish[i] = r->velocity[i] + catch * off[i];
 }
@@ -261,30 +275,42 @@ static void keep_near(walker *r)
     for (int i = 0; i < 2; i++) r->body[i] -= by * off[i];
 }
 
+/* From standing. */
+static void begin(walker *r)
+{
+    r->gait = WALKER_STANDS;
+    r->goes = r->runs = 0.0f;
+    r->free = 0;
+}
+
 static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[2])
 {
     const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] }, scale = a->place.scale;
     const float per = 1.0f / (s->seconds * scale); /* model units a second */
     const float keep = noh_exp2(-s->seconds / TURN_HALF_LIFE_S);
-    gait g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f };
+    walker_speed g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f, 0.0f, 0 };
+    noh_controller *c = noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a)));
     float wish[2], rotation[4];
     played p;
     noh_place was;
     if (dot2(way, way) > LEAP_M * LEAP_M) r->begun = 0;
     memcpy(r->at, to, sizeof r->at);
     if (!r->begun) memcpy(r->body, to, sizeof r->body);
+    if (r->begun != 1u) begin(r);
     for (int i = 0; i < 2 && r->begun; i++) {
         r->velocity[i] = per * way[i] + keep * (r->velocity[i] - per * way[i]);
     }
-    find_wish(r, scale, wish);
-    const float steps = ABOUT_M * find_heading(s, r, wish, g.walk) * per, ahead = dot2(wish, r->heading);
+    find_wish(s->w, r, scale, wish);
+    find_heading(s, r, wish, &g);
+    const float turns = within(g.angle, 0.0f, s->w->turn_speed * s->seconds), steps = ABOUT_M * turns * per;
+    const float ahead = dot2(wish, r->heading);
     g.now = !r->begun ? 0.0f : r->goes_back ? ahead : ahead > steps ? ahead : steps;
     const float fast = g.now < 0.0f ? -g.now : g.now;
     r->even = fast + noh_exp2(-s->seconds / EVEN_HALF_LIFE_S) * (r->even - fast);
     g.even = r->even;
-    blend(s, r, &g);
-    play(s, r, noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a))), pace(s, r, &g, &p.way),
-         &p);
+    find_end(s, r, c, scale, &g);
+    const float share = find_gait(s, r, c, &g);
+    play(s, r, c, pace(s, r, &g, share, &p.way), &p);
     climb(s, r);
     (void)noh_actor_place(s->stage, (noh_actor){ r->actor }, &was, NULL);
     rotation_of(s->w, r->heading, rotation);

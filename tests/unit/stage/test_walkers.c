@@ -167,17 +167,28 @@ static void frame(street *s, uint32_t ticks)
 
 /* ---- slides ---- */
 
-#define SLIDES_MAX 1024u
-#define SWITCH_M 0.0003f /* lower by so much: the other foot stands */
+#define SLIDES_MAX 4096u
+#define DOWN_M 0.0003f /* above the lowest point of both feet: a part of a foot that is down */
+#define UP_M 0.001f    /* likewise: a foot whose lowest part is higher has been lifted */
 
-/* Of the feet of an actor: the one that stands is the lower one, and what its lowest part moves adds up. */
+/* A foot of an actor, from where it comes down to where it is lifted. */
+typedef struct stance {
+    uint32_t is_down, counts;
+    float was[3][3], slid[2];
+} stance;
+
+/* Both feet count while they are down. What slides is the part that moves the least of those on the ground: a foot that
+ * turns about its heel or its ball does not. */
 typedef struct slides {
-    uint32_t foot, part, steps, ready;
-    float was[NOH_FEET_LEGS_MAX][3][3], slid[2], landed[2];
-    float sum, worst, length; /* of whole steps, metres */
-    uint32_t small;           /* of these, those that slid by at most 3 % of a step of 0.426 m */
-    float each[SLIDES_MAX];   /* what they slid */
-    float lag, lag_sum;       /* from the agent: the longest, and that of all frames */
+    stance feet[NOH_FEET_LEGS_MAX];
+    uint32_t steps, lengths, ready;
+    int lower_alone; /* 1: the other foot does not count: captured ones slide while both are down */
+    float landed[2];
+    float sum, worst;       /* of what whole steps slid, metres */
+    float length;           /* of all of `lengths`, from where one foot came down to where the next did */
+    uint32_t small;         /* of these, those that slid by at most 3 % of a step of 0.426 m */
+    float each[SLIDES_MAX]; /* what they slid */
+    float lag, lag_sum;     /* from the agent: the longest, and that of all frames */
     uint32_t frames;
 } slides;
 
@@ -208,40 +219,61 @@ static uint32_t lowest_of(float parts[3][3])
     return lowest;
 }
 
-static void land(slides *m, uint32_t foot, const float at[3])
+static void lift(slides *m, stance *f)
 {
-    const float slid = hypotf(m->slid[0], m->slid[1]);
-    if (m->ready > 1) { /* the first step began before */
-        m->sum += slid;
-        m->worst = fmaxf(m->worst, slid);
-        if (m->steps < SLIDES_MAX) m->each[m->steps] = slid;
+    const float slid = hypotf(f->slid[0], f->slid[1]);
+    f->is_down = 0;
+    if (!f->counts) return;
+    m->sum += slid;
+    m->worst = fmaxf(m->worst, slid);
+    if (m->steps < SLIDES_MAX) m->each[m->steps] = slid;
+    m->steps++;
+    m->small += slid <= 0.03f * 0.426f ? 1u : 0u;
+}
+
+static void land(slides *m, stance *f, const float at[3])
+{
+    f->counts = m->ready > (m->lower_alone ? 0u : 1u); /* the first step began before */
+    if (m->ready > 1) {
         m->length += hypotf(at[0] - m->landed[0], at[2] - m->landed[1]);
-        m->steps++;
-        m->small += slid <= 0.03f * 0.426f ? 1u : 0u;
+        m->lengths++;
     }
     m->ready++;
-    m->foot = foot;
     m->landed[0] = at[0];
     m->landed[1] = at[2];
-    m->slid[0] = m->slid[1] = 0.0f;
+    f->is_down = 1;
+    f->slid[0] = f->slid[1] = 0.0f;
+}
+
+/* What the part that moves the least of those on the ground moved. */
+static void slide(stance *f, float parts[3][3], float ground)
+{
+    const uint32_t low = lowest_of(parts);
+    float by[2] = { parts[low][0] - f->was[low][0], parts[low][2] - f->was[low][2] };
+    for (uint32_t p = 0; p < 3; p++) {
+        const float x = parts[p][0] - f->was[p][0], z = parts[p][2] - f->was[p][2];
+        if (parts[p][1] > ground + DOWN_M || hypotf(x, z) >= hypotf(by[0], by[1])) continue;
+        by[0] = x;
+        by[1] = z;
+    }
+    for (int i = 0; i < 2; i++) f->slid[i] += by[i];
 }
 
 static void measure(const street *s, noh_actor actor, slides *m)
 {
-    float parts[NOH_FEET_LEGS_MAX][3][3];
-    uint32_t low[2];
+    float parts[NOH_FEET_LEGS_MAX][3][3], ground = 1e9f;
     for (uint32_t l = 0; l < 2; l++) {
         parts_of(s, actor, l, parts[l]);
-        low[l] = lowest_of(parts[l]);
+        ground = fminf(ground, parts[l][lowest_of(parts[l])][1]);
     }
-    const uint32_t foot = m->foot, part = low[foot];
-    if (m->ready) {
-        for (int i = 0; i < 2; i++) m->slid[i] += parts[foot][part][2 * i] - m->was[foot][part][2 * i];
+    for (uint32_t l = 0; l < 2; l++) {
+        stance *f = &m->feet[l];
+        const float *low = parts[l][lowest_of(parts[l])], other = parts[1u - l][lowest_of(parts[1u - l])][1];
+        if (f->is_down && low[1] > ground + (m->lower_alone ? DOWN_M : UP_M)) lift(m, f);
+        if (f->is_down) slide(f, parts[l], ground);
+        if (!f->is_down && low[1] <= (m->lower_alone ? other - DOWN_M : ground + DOWN_M)) land(m, f, low);
+        memcpy(f->was, parts[l], sizeof f->was);
     }
-    if (parts[1u - foot][low[1u - foot]][1] < parts[foot][part][1] - SWITCH_M)
-        land(m, 1u - foot, parts[1u - foot][low[1u - foot]]);
-    memcpy(m->was, parts, sizeof parts);
-    if (!m->ready) m->ready = 1;
 }
 
 static int by_size(const void *a, const void *b)
@@ -250,25 +282,41 @@ static int by_size(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* In parts of a step: what 95 of 100 steps slide by at most. */
+/* ---- in parts of a step ---- */
+
+static float step_of(const slides *m)
+{
+    return m->length / (float)(m->lengths ? m->lengths : 1u);
+}
+
+static float mean_slide(const slides *m)
+{
+    return m->steps ? m->sum / (float)m->steps / step_of(m) : 1e9f;
+}
+
+/* What 95 of 100 steps slide by at most. */
 static float most_slide(const slides *m)
 {
     static float each[SLIDES_MAX];
     const uint32_t count = m->steps < SLIDES_MAX ? m->steps : SLIDES_MAX;
     memcpy(each, m->each, sizeof each);
     qsort(each, count, sizeof *each, by_size);
-    return each[count * 95u / 100u] * (float)m->steps / m->length;
+    return each[count * 95u / 100u] / step_of(m);
+}
+
+static float worst_slide(const slides *m)
+{
+    return m->worst / step_of(m);
 }
 
 static void tell(const char *name, float speed, uint32_t rate, const slides *m)
 {
-    const double step = (double)(m->length / (float)m->steps);
     printf(
         "  %-22s %.2f m/s, %3u Hz: %3u steps of %.3f m, slide %.2f %%, 95 of 100 %.2f %%, at worst %.2f %%; %u small; "
         "%.0f mm behind, at most %.0f\n",
-        name, (double)speed, rate, m->steps, step, 100.0 * (double)(m->sum / m->length), 100.0 * (double)most_slide(m),
-        100.0 * (double)m->worst / step, m->small, 1000.0 * (double)(m->lag_sum / (float)(m->frames ? m->frames : 1u)),
-        1000.0 * (double)m->lag);
+        name, (double)speed, rate, m->steps, (double)step_of(m), 100.0 * (double)mean_slide(m),
+        100.0 * (double)most_slide(m), 100.0 * (double)worst_slide(m), m->small,
+        1000.0 * (double)(m->lag_sum / (float)(m->frames ? m->frames : 1u)), 1000.0 * (double)m->lag);
 }
 
 /* From where its agent is. */
@@ -291,6 +339,7 @@ static slides walk_straight(float speed, uint32_t rate, float from, float to, ui
     slides m;
     street s;
     memset(&m, 0, sizeof m);
+    m.lower_alone = getenv("NOH_WALKERS_PACK") != NULL;
     open_street(&s, 1, near_max, 1);
     const noh_actor actor = enter(&s, 0, start, goal, speed);
     while ((float)s.ticks < 48000.0f * to) {
@@ -320,7 +369,7 @@ static void errata_C13_2_clips_play_at_their_own_speed(void **state)
             if (f > 60) measure(&s, actor, &m);
         }
         tell(literal ? "at its own speed" : "as fast as it goes", 0.9f, 60, &m);
-        share[literal] = m.sum / m.length;
+        share[literal] = mean_slide(&m);
         close_street(&s);
     }
     assert_true(share[0] <= 0.03f && share[1] > 0.25f);
@@ -338,7 +387,7 @@ static void feet_that_stand_do_not_slide(void **state)
         const slides m = walk_straight(speed, rates[i % 3], is_other ? 0.6f : 2.0f, is_other ? 2.6f / speed : 10.0f,
                                        (uint32_t)is_other);
         tell(is_other ? "straight on, held" : "straight on", speed, rates[i % 3], &m);
-        assert_true(m.steps > 0 && m.sum <= 0.03f * m.length);
+        assert_true(m.steps > 0 && mean_slide(&m) <= 0.03f && (is_other || worst_slide(&m) <= 0.03f));
     }
 }
 
@@ -413,6 +462,7 @@ static slides mill(const char *name, int where, uint32_t near_max)
         all.steps += m[i].steps;
         all.sum += m[i].sum;
         all.length += m[i].length;
+        all.lengths += m[i].lengths;
         all.small += m[i].small;
         all.worst = fmaxf(all.worst, m[i].worst);
     }
@@ -429,8 +479,9 @@ static void feet_do_not_slide_in_a_crowd(void **state)
     static const int wheres[] = { KNOT, ANYWHERE, AHEAD };
     for (uint32_t i = 0; i < 6; i++) {
         const slides m = mill(names[i / 2u], wheres[i / 2u], i % 2u ? COUNT : 0);
-        assert_true(m.steps > (i < 2 ? 50u : 100u) && m.sum <= 0.03f * m.length);
-        assert_true(m.lag <= 0.401f && m.lag_sum <= 0.1f * (float)m.frames);
+        assert_true(m.steps > (i < 2 ? 50u : 100u) && mean_slide(&m) <= 0.01f);
+        assert_true(most_slide(&m) <= 0.015f && worst_slide(&m) <= 0.03f);
+        assert_true(m.lag <= 0.701f && m.lag_sum <= 0.1f * (float)m.frames);
     }
 }
 
@@ -551,6 +602,57 @@ static void who_stands_turns(void **state)
     close_street(&s);
 }
 
+/* How far its agent is from it. */
+static float distance_of(const street *s, noh_actor actor, uint32_t agent)
+{
+    noh_crowd_agent a;
+    noh_place place;
+    assert_true(noh_crowd_agent_at(s->crowd, agent, &a));
+    assert_int_equal(noh_actor_place(s->cast.stage, actor, &place, NULL), NOH_OK);
+    return hypotf(place.position[0] - a.position[0], place.position[2] - a.position[1]);
+}
+
+/* How far one foot is ahead of the other. */
+static float apart(const street *s, noh_actor actor, const float heading[2])
+{
+    float parts[2][3][3];
+    for (uint32_t l = 0; l < 2; l++) parts_of(s, actor, l, parts[l]);
+    return fabsf((parts[0][1][0] - parts[1][1][0]) * heading[0] + (parts[0][1][2] - parts[1][1][2]) * heading[1]);
+}
+
+/* Who stops closes with a step and then stands, feet beside each other; who turns on the spot steps, too; and no foot on
+ * the ground slides meanwhile. Stops at eight moments of a pass. */
+static void stops_and_turns_are_steps(void **state)
+{
+    static const float back[2] = { 0.0f, -1.0f }, aside[2] = { 1.0f, 0.0f };
+    slides m;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    memset(&m, 0, sizeof m);
+    for (int k = 0; k < 8; k++) {
+        const float at[2] = { 0.0f, 0.0f }, goal[2] = { 0.0f, 2.0f + 0.0875f * (float)k };
+        float heading[2];
+        street s;
+        open_street(&s, 1, 0, 1);
+        const noh_actor actor = enter(&s, 0, at, goal, 0.4f + 0.05f * (float)k);
+        m.ready = 0;
+        memset(m.feet, 0, sizeof m.feet);
+        for (uint32_t f = 0; f < 800; f++) {
+            if (f == 560) noh_walkers_face(s.walkers, 0, k % 2 ? back : aside);
+            frame(&s, CAST_STEP);
+            measure(&s, actor, &m);
+            assert_true(noh_walkers_heading(s.walkers, 0, heading));
+            if (f == 559) assert_true(apart(&s, actor, heading) < 0.01f && distance_of(&s, actor, 0) < 0.26f);
+        }
+        assert_true(heading[0] * (k % 2 ? back : aside)[0] + heading[1] * (k % 2 ? back : aside)[1] > 0.9995f);
+        assert_true(apart(&s, actor, heading) < 0.01f);
+        for (uint32_t l = 0; l < 2; l++) lift(&m, &m.feet[l]); /* what they slid while it stood */
+        close_street(&s);
+    }
+    tell("it stops and turns", 0.6f, 60, &m);
+    assert_true(m.steps > 40 && mean_slide(&m) <= 0.02f && worst_slide(&m) <= 0.03f);
+}
+
 /* While it walks, with U-turns, no body turns faster than it was asked to. */
 static void nobody_turns_faster_than_asked(void **state)
 {
@@ -595,16 +697,6 @@ static uint32_t tend(street *s)
     const uint32_t down = noh_walkers_tend(s->walkers, s->crowd, s->cast.stage, 1, CAST_STEP, &said);
     if (said.result) fail_msg("%s", said.what);
     return down;
-}
-
-/* How far a walker's joints move in a frame at most, and how far its agent is from it. */
-static float distance_of(const street *s, noh_actor actor, uint32_t agent)
-{
-    noh_crowd_agent a;
-    noh_place place;
-    assert_true(noh_crowd_agent_at(s->crowd, agent, &a));
-    assert_int_equal(noh_actor_place(s->cast.stage, actor, &place, NULL), NOH_OK);
-    return hypotf(place.position[0] - a.position[0], place.position[2] - a.position[1]);
 }
 
 /* A push in a crowd: as many fall as the pool has ragdolls, the nearest of all; their agents lie under them, others
@@ -657,7 +749,7 @@ static void who_is_pushed_falls_and_goes_on(void **state)
             noh_crowd_agent a;
             assert_true(noh_crowd_agent_stepped(s.crowd, i, &a));
             assert_true(a.speed == pace[i]);
-            assert_true(distance_of(&s, actors[i], i) <= 0.401f);
+            assert_true(distance_of(&s, actors[i], i) <= 0.701f);
             assert_int_equal(noh_actor_body(s.cast.stage, actors[i]), NOH_BODY_STANDS);
         }
         printf("  %u of %u pushed, all walk again after %.1f s\n", DOLLS, COUNT, (double)frames / 60.0);
@@ -749,6 +841,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_nearest_have_their_feet_on_the_ground),
         cmocka_unit_test(what_walkers_cannot_use_is_refused),
         cmocka_unit_test(who_stands_turns),
+        cmocka_unit_test(stops_and_turns_are_steps),
         cmocka_unit_test(nobody_turns_faster_than_asked),
         cmocka_unit_test(who_is_pushed_falls_and_goes_on),
         cmocka_unit_test(it_gets_up_where_it_lies),
