@@ -27,14 +27,14 @@ static void parts_of(const noh_feet_leg *leg, const float *model, float parts[WA
     }
 }
 
-/* Where a leg is ahead of the other, and above it. */
+/* Where a leg is ahead of the other, summed over its parts, and above it. */
 static void ahead_of(const noh_walkers *w, uint32_t clip, uint32_t i, uint32_t leg, float *ahead, float *above)
 {
     float middle[2] = { 0.0f, 0.0f }, low[2] = { 1e30f, 1e30f };
     for (uint32_t n = 0; n < 2u * WALKER_PARTS; n++) {
         const uint32_t other = n / WALKER_PARTS;
         const float *at = w->soles[clip].at[i][other ? 1u - leg : leg][n % WALKER_PARTS];
-        middle[other] += (at[0] * w->forward[0] + at[2] * w->forward[1]) * (1.0f / (float)WALKER_PARTS);
+        middle[other] += at[0] * w->forward[0] + at[2] * w->forward[1];
         low[other] = at[1] < low[other] ? at[1] : low[other];
     }
     *ahead = middle[0] - middle[1];
