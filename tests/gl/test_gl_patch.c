@@ -295,6 +295,53 @@ static void sixty_four_are_one_draw_and_come_back(void **state)
     close_shot(&s);
 }
 
+/* The mark's part of a pixel's green, which it has none of: by the same picture without it. */
+static double part_of_mark(const uint8_t *without, const uint8_t *with, size_t pixel)
+{
+    double linear[2];
+    for (int i = 0; i < 2; i++) {
+        const double x = (i ? with : without)[4u * pixel + 1u] / 255.0;
+        linear[i] = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+    }
+    return 1.0 - linear[1] / linear[0];
+}
+
+/* Drawn once for each attribute group of the mesh below it, as the source draws its decals, a mark that is half
+ * transparent covers nearly all. */
+static void errata_C14_7_a_mark_is_drawn_once_for_all_groups(void **state)
+{
+    const double half = 128.0 / 255.0;
+    noh_stage_hit hit;
+    uint8_t *without, *once, *groups;
+    shot s;
+    (void)state;
+    open_shot_as(&s, MASKS, 1);
+    const noh_mesh mesh = test_mesh(&s.c.packs[MASKS], 0);
+    const uint32_t count = mesh.header->submesh_count;
+    const noh_decal_desc look = { .size = 0.12f * s.size, .color = { 255, 0, 0, 128 } };
+    assert_true(count > 1 && pick(&s, 90.0, 140.0, &hit));
+    assert_int_equal(noh_decals_strike(&s.ring, s.c.stage, &hit, &look, NULL, NULL), NOH_OK);
+    open_patches(&s, 16384);
+    without = picture(&s, WITHOUT);
+    once = picture(&s, GROWN);
+    canvas_begin(&s.to);
+    assert_int_equal(noh_stage_draw(s.c.stage, NOH_PASS_OPAQUE, 0, NULL, NULL), NOH_OK);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(noh_stage_patches_draw(&s.patches, 0, s.actor, &s.ring, NULL), NOH_OK);
+    }
+    groups = test_zeros(PIXELS * 4u);
+    assert_int_equal(canvas_read(&s.to, groups), 0);
+    const size_t at = 140u * WIDTH + 90u;
+    const double ours = part_of_mark(without, once, at), literal = part_of_mark(without, groups, at);
+    print_message("a mark of %.2f: %.2f drawn once, %.2f once for each of %u groups\n", half, ours, literal, count);
+    assert_true(fabs(ours - half) < 0.02);
+    assert_true(literal > half + 0.2);
+    free(without);
+    free(once);
+    free(groups);
+    close_shot(&s);
+}
+
 /* 10,000 hits in a ring of 64, drawn now and then, in room that they do not all fit: what is there stays as it was
  * planned, and the last mark shows. */
 static void ten_thousand_hits_take_nothing(void **state)
@@ -343,6 +390,7 @@ int main(void)
         cmocka_unit_test(what_touches_at_rest_does_not_share_a_mark),
         cmocka_unit_test(on_one_surface_both_ways_are_the_same_picture),
         cmocka_unit_test(sixty_four_are_one_draw_and_come_back),
+        cmocka_unit_test(errata_C14_7_a_mark_is_drawn_once_for_all_groups),
         cmocka_unit_test(ten_thousand_hits_take_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -483,6 +483,35 @@ static void rays_at_a_rigid_mesh(void **state)
     free(bytes);
 }
 
+/* The source looks at meshes with skin alone: where there is none, it says that nothing is hit. */
+static void errata_C14_2_rigid_meshes_are_passed_over(void **state)
+{
+    const test_model_desc desc = { 1, 6, 2, 0, 3 };
+    const float d[3] = { 0, 0, -1 };
+    size_t count;
+    uint32_t literal = 0, ours = 0;
+    uint8_t *bytes = test_pack(&desc, &count);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    const noh_pick_surface surface = { &mesh, NULL, NULL, NULL, NULL, NULL, NULL };
+    (void)state;
+    for (uint32_t i = 0; i < mesh.header->index_count; i += 3) {
+        float o[3] = { 0, 0, 20 };
+        noh_pick_hit hit;
+        for (uint32_t c = 0; c < 3; c++) {
+            noh_vertex v;
+            noh_mesh_vertex(&mesh, noh_mesh_index(&mesh, i + c), &v);
+            for (int k = 0; k < 3; k++) o[k] += v.position[k] / 3.0f;
+        }
+        const int is_hit = noh_pick(&surface, o, d, 100.0f, NULL, 0, &hit, NULL) == NOH_OK;
+        ours += is_hit ? 1u : 0u;
+        literal += is_hit && mesh.header->skin != NOH_NONE ? 1u : 0u;
+    }
+    assert_int_equal(literal, 0);
+    assert_int_equal(ours, mesh.header->index_count / 3u);
+    free(bytes);
+}
+
 static void bad_picks_say_why(void **state)
 {
     const skin_cylinder c = { 8, 9, 4, 2, 0, 0, 2.0f, 0.5f };
@@ -542,6 +571,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rays_at_robot),
     cmocka_unit_test(rays_by_dual_quaternions),
     cmocka_unit_test(rays_at_a_rigid_mesh),
+    cmocka_unit_test(errata_C14_2_rigid_meshes_are_passed_over),
     cmocka_unit_test(bad_picks_say_why),
 };
 

@@ -292,7 +292,7 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     assert_int_equal(noh_pick(&plain, o, d, 100.0f, scratch, 36 * sizeof(float), &hit, NULL), NOH_OK);
     assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &other, NULL), NOH_OK);
     assert_true(hit.distance - other.distance >
-                0.15f); /* the bulge of 0.2 comes first; a clone of the base misses it */
+                0.15f);    /* the bulge of 0.2 comes first; a clone of the base misses it */
     smiling.layers = NULL; /* where there is no memory for them, by the weights alone */
     assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &hit, NULL), NOH_OK);
     assert_memory_equal(&hit, &other, sizeof hit);
@@ -304,6 +304,102 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
     assert_int_equal(noh_pick(&smiling, o, d, 100.0f, scratch, 36 * sizeof(float), &miss, NULL), NOH_ERR_NOT_FOUND);
     assert_memory_equal(&miss, &hit, sizeof hit);
     free(layers.position);
+    free(scratch);
+    free_tube(t);
+}
+
+/* A clone of the mesh for each pick takes bytes by its vertices; ours takes two boxes a joint, of the caller's. */
+static void errata_C14_2_a_pick_copies_no_vertex(void **state)
+{
+    const skin_cylinder few = { 8, 9, 3, 2, 0, 0, 2.0f, 0.5f }, many = { 64, 90, 3, 2, 0, 0, 2.0f, 0.5f };
+    const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 };
+    tube *tubes[2] = { make_tube(&few, NULL), make_tube(&many, NULL) };
+    size_t cloned[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const noh_pick_surface surface = { &tubes[i]->mesh, NULL, tubes[i]->matrices, NULL, NULL, NULL, NULL };
+        const size_t bytes = noh_pick_scratch_size(&tubes[i]->mesh);
+        float *scratch = test_zeros(bytes + sizeof(float));
+        noh_pick_hit first, again;
+        scratch[bytes / sizeof(float)] = 12345.0f;
+        bend(tubes[i], 0.3f, 1, 1);
+        cloned[i] = sizeof(noh_vertex) * tubes[i]->mesh.header->vertex_count;
+        for (int click = 0; click < 100; click++) {
+            assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, bytes, click ? &again : &first, NULL), NOH_OK);
+            if (click) assert_memory_equal(&first, &again, sizeof first);
+        }
+        assert_true(scratch[bytes / sizeof(float)] == 12345.0f);
+        assert_int_equal(bytes, noh_pick_scratch_size(&tubes[0]->mesh));
+        free(scratch);
+    }
+    assert_true(cloned[1] > 50u * cloned[0] && cloned[1] > 100u * noh_pick_scratch_size(&tubes[1]->mesh));
+    free_tube(tubes[0]);
+    free_tube(tubes[1]);
+}
+
+/* A miss has the distance -1 in the source, and the texture coordinates that were there before: of several meshes, one
+ * that is missed is the nearest, and is hit where another was. */
+static void errata_C14_2_a_miss_is_not_the_nearest(void **state)
+{
+    const skin_cylinder c = { 24, 17, 3, 2, 0, 0, 2.0f, 0.5f };
+    const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 }, aside[3] = { 5, 40, 0 };
+    tube *t = make_tube(&c, NULL);
+    float *scratch = test_zeros(noh_pick_scratch_size(&t->mesh)), nearest = 1e30f, u = 0.0f;
+    const noh_pick_surface surface = { &t->mesh, NULL, t->matrices, NULL, NULL, NULL, NULL };
+    int literal = -1, ours = -1;
+    noh_pick_hit best;
+    (void)state;
+    bend(t, 0.0f, 1, 1);
+    memset(&best, 0, sizeof best);
+    best.distance = 1e30f;
+    for (int i = 0; i < 2; i++) { /* the first is hit, the second missed */
+        noh_pick_hit hit;
+        const noh_result result = noh_pick(&surface, i ? aside : o, d, 100.0f, scratch, noh_pick_scratch_size(&t->mesh),
+                                           &hit, NULL);
+        const float distance = result ? -1.0f : hit.distance;
+        u = result ? u : hit.barycentric[1]; /* not written where nothing is hit */
+        if (distance < nearest) nearest = distance, literal = i;
+        if (!result && hit.distance < best.distance) best = hit, ours = i;
+    }
+    assert_int_equal(literal, 1);
+    assert_true(nearest < 0.0f && u == best.barycentric[1]);
+    assert_int_equal(ours, 0);
+    assert_true(fabsf(best.distance - 4.5f) < 0.05f);
+    free(scratch);
+    free_tube(t);
+}
+
+/* Without an inverse transpose normals of the picked clone go by the bones' matrices: where these scale by axis, the
+ * normal at the hit is not that of the triangle that was hit. */
+static void errata_C14_2_normals_of_the_picked_face(void **state)
+{
+    const skin_cylinder c = { 64, 9, 2, 2, 0, 0, 2.0f, 0.5f };
+    const float o[3] = { 5, 1.03f, 0.4f }, d[3] = { -1, 0, 0 };
+    tube *t = make_tube(&c, NULL);
+    float *scratch = test_zeros(noh_pick_scratch_size(&t->mesh)), corner[3][3], a[3], b[3], face[3];
+    const noh_pick_surface surface = { &t->mesh, NULL, t->matrices, NULL, NULL, NULL, NULL };
+    float literal[3] = { 0, 0, 0 }, ours[3] = { 0, 0, 0 };
+    noh_pick_hit hit;
+    (void)state;
+    bend(t, 0.0f, 3.0f, 1.0f);
+    assert_int_equal(noh_pick(&surface, o, d, 100.0f, scratch, noh_pick_scratch_size(&t->mesh), &hit, NULL), NOH_OK);
+    for (uint32_t k = 0; k < 3; k++) {
+        const uint32_t v = noh_mesh_index(&t->mesh, 3u * hit.triangle + k);
+        noh_vertex rest, moved;
+        noh_mesh_vertex(&t->mesh, v, &rest);
+        noh_skin_vertex(&t->mesh, t->matrices, NULL, v, &moved);
+        memcpy(corner[k], moved.position, sizeof corner[k]);
+        for (int r = 0; r < 3; r++) {
+            literal[r] += hit.barycentric[k] * noh_dot3(t->matrices + 4 * r, rest.normal);
+            ours[r] += hit.barycentric[k] * moved.normal[r];
+        }
+    }
+    for (int r = 0; r < 3; r++) a[r] = corner[1][r] - corner[0][r], b[r] = corner[2][r] - corner[0][r];
+    for (int r = 0; r < 3; r++) face[r] = a[(r + 1) % 3] * b[(r + 2) % 3] - a[(r + 2) % 3] * b[(r + 1) % 3];
+    const float right = noh_dot3(face, ours) / sqrtf(noh_dot3(face, face) * noh_dot3(ours, ours));
+    const float wrong = noh_dot3(face, literal) / sqrtf(noh_dot3(face, face) * noh_dot3(literal, literal));
+    assert_true(fabsf(right) > 0.995f); /* 6 degrees: the tube has 64 sides */
+    assert_true(fabsf(wrong) < 0.9f);
     free(scratch);
     free_tube(t);
 }
@@ -618,6 +714,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(errata_C8_6_a_shift_turns_no_normal),
     cmocka_unit_test(morph_then_skin),
     cmocka_unit_test(picking_sees_the_morphed_and_posed_surface),
+    cmocka_unit_test(errata_C14_2_a_pick_copies_no_vertex),
+    cmocka_unit_test(errata_C14_2_a_miss_is_not_the_nearest),
+    cmocka_unit_test(errata_C14_2_normals_of_the_picked_face),
     cmocka_unit_test(the_mix_begins_with_the_source),
     cmocka_unit_test(a_ramp_without_a_duration_is_over),
     cmocka_unit_test(ping_pong_never_stalls),
