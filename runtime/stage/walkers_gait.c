@@ -21,8 +21,11 @@
 float noh_walkers_until_passing(const noh_walkers *w, const walker *r, float share, uint32_t *leg)
 {
     float least = 2.0f;
-    for (uint32_t l = 0; l < 2u; l++) {
-        float way = r->goes_back ? share - w->passes[l] : w->passes[l] - share;
+    for (uint32_t n = 0; n < 2u * WALKER_SWAY; n++) {
+        const uint32_t l = n / WALKER_SWAY, i = n % WALKER_SWAY;
+        if (!(w->passes[l] >> i & 1u)) continue;
+        float way = noh_walkers_pass_at(w, l, i) - share;
+        way = r->goes_back ? -way : way;
         way += way < -CLOSED ? 1.0f : 0.0f;
         if (way >= least) continue;
         least = way;
@@ -31,18 +34,26 @@ float noh_walkers_until_passing(const noh_walkers *w, const walker *r, float sha
     return least;
 }
 
+/* The first moment of the walk at which a leg swings past the other. */
+static float first_pass(const noh_walkers *w, uint32_t leg)
+{
+    uint32_t i = 0;
+    while (!(w->passes[leg] >> i & 1u)) i++;
+    return noh_walkers_pass_at(w, leg, i);
+}
+
 /* It stands on the other leg, at the moment of its walk at which this one swings. */
 static float lift(const noh_walkers *w, walker *r)
 {
     r->gait = WALKER_LIFTS;
     r->stands = (1u - r->swings) * WALKER_PARTS;
-    return w->passes[r->swings];
+    return first_pass(w, r->swings);
 }
 
 /* Who has lifted a foot goes on with its step, or puts it down. */
 static void lifted(const noh_walkers *w, walker *r, const walker_speed *g, float share)
 {
-    const float way = share - w->passes[r->swings];
+    const float way = share - first_pass(w, r->swings);
     if ((g->wants_to_go && g->angle < AHEAD) || way > CLOSED || way < -CLOSED) /* it has begun to go */
         r->gait = WALKER_WALKS;
     else if (!(g->angle > TURNED && g->angle < ENDS))

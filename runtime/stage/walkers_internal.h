@@ -77,7 +77,8 @@ struct noh_walkers {
     uint32_t leg_count; /* 0: nothing is known of feet */
     float leg;          /* its length, model units */
     walker_soles soles[WALKER_CLIPS];
-    float passes[NOH_FEET_LEGS_MAX]; /* shares of the walk at which each leg swings past the other */
+    uint32_t
+        passes[NOH_FEET_LEGS_MAX]; /* bit i: between samples i and i + 1 of the walk this leg swings past the other */
 };
 NOH_STATIC_ASSERT(sizeof(noh_walkers) == 8016, walkers);
 
@@ -90,6 +91,9 @@ void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage
 /* Soles in the blend of the clips, each at its share of a pass. */
 void noh_walkers_soles_at(const noh_walkers *w, const float shares[WALKER_CLIPS], const float weights[WALKER_CLIPS],
                           walker_feet *feet);
+
+/* The share of the walk at which a leg swings past the other between samples i and i + 1. */
+float noh_walkers_pass_at(const noh_walkers *w, uint32_t leg, uint32_t i);
 
 /* Feet of one who is near know which of them is kept still. */
 void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *r);

@@ -41,27 +41,35 @@ static void ahead_of(const noh_walkers *w, uint32_t clip, uint32_t i, uint32_t l
     *above = low[0] - low[1];
 }
 
-/* Where in the walk a leg that swings is as far ahead of the other as in standing. returns the share; below 0: nowhere */
-static float find_pass(const noh_walkers *w, uint32_t leg)
+float noh_walkers_pass_at(const noh_walkers *w, uint32_t leg, uint32_t i)
 {
+    float rest, before, after, above;
+    ahead_of(w, WALKER_IDLE, 0, leg, &rest, &above);
+    ahead_of(w, WALKER_WALK, i, leg, &before, &above);
+    ahead_of(w, WALKER_WALK, i + 1u, leg, &after, &above);
+    return ((float)i + (rest - before) / (after - before)) / (float)WALKER_SWAY;
+}
+
+/* Where in the walk a leg that swings comes to be as far ahead of the other as in standing: once in each of its steps. */
+static uint32_t find_passes(const noh_walkers *w, uint32_t leg)
+{
+    uint32_t passes = 0;
     float rest, ahead, above, before, above_before;
     ahead_of(w, WALKER_IDLE, 0, leg, &rest, &above);
     ahead_of(w, WALKER_WALK, 0, leg, &before, &above_before);
-    for (uint32_t i = 1; i <= WALKER_SWAY; i++, before = ahead, above_before = above) {
-        ahead_of(w, WALKER_WALK, i, leg, &ahead, &above);
-        if (above < AIR_TO * w->leg || above_before < AIR_TO * w->leg || (before < rest) == (ahead < rest)) continue;
-        return ((float)(i - 1u) + (rest - before) / (ahead - before)) / (float)WALKER_SWAY;
+    for (uint32_t i = 0; i < WALKER_SWAY; i++, before = ahead, above_before = above) {
+        ahead_of(w, WALKER_WALK, i + 1u, leg, &ahead, &above);
+        const float lower = above < above_before ? above : above_before;
+        if (before < rest && ahead >= rest && lower >= AIR_TO * w->leg) passes |= 1u << i;
     }
-    return -1.0f;
+    return passes;
 }
 
-static void find_passes(noh_walkers *w)
+static void know_steps(noh_walkers *w)
 {
-    w->knows_steps = w->leg_count == 2u && w->clips[WALKER_IDLE].clip != NOH_NONE ? 1u : 0u;
-    for (uint32_t l = 0; l < 2u && w->knows_steps; l++) {
-        w->passes[l] = find_pass(w, l);
-        w->knows_steps = w->passes[l] >= 0.0f ? 1u : 0u;
-    }
+    if (w->leg_count != 2u || w->clips[WALKER_IDLE].clip == NOH_NONE) return;
+    for (uint32_t l = 0; l < 2u; l++) w->passes[l] = find_passes(w, l);
+    w->knows_steps = w->passes[0] && w->passes[1] ? 1u : 0u;
 }
 
 void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage_kind *k, const noh_feet_rig *rig)
@@ -84,7 +92,7 @@ void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage
             for (uint32_t l = 0; l < rig->leg_count; l++) parts_of(&rig->legs[l], scratch.model, w->soles[c].at[i][l]);
         }
     }
-    find_passes(w);
+    know_steps(w);
 }
 
 /* ---- a step ---- */
