@@ -24,6 +24,11 @@ layout(location = 1) out LAYER o_normal;
 layout(location = 2) out LAYER o_tangent;
 #endif
 
+/* A product that was fused with the sum it goes into would be rounded once, not twice as on the CPU. So each passes
+ * through an exclusive or with a bit that no entry has set, which a compiler cannot know. `precise` is for ES 3.2 alone. */
+#define NEVER_SET 0x40000000u
+#define UNFUSED(product) uintBitsToFloat(floatBitsToUint(product) ^ (entry.w & NEVER_SET))
+
 void main()
 {
     uvec2 local = uvec2(gl_FragCoord.xy) - uvec2(f_tile.x & 0xffffu, f_tile.x >> 16);
@@ -38,12 +43,12 @@ void main()
         uvec4 texel = texelFetch(u_deltas, entry_tile(entry.w) + inside, 0);
         vec3 weights = uintBitsToFloat(entry.xyz);
 #ifdef OCCLUSION
-        occlusion += uintBitsToFloat(texel.w) * weights.x;
+        occlusion += UNFUSED(uintBitsToFloat(texel.w) * weights.x);
 #endif
-        position += delta_field(texel.xyz, entry_shifts(entry.w, 0), weights.x);
-        normal += delta_field(texel.xyz, entry_shifts(entry.w, 1), weights.y);
+        position += UNFUSED(delta_field(texel.xyz, entry_shifts(entry.w, 0), weights.x));
+        normal += UNFUSED(delta_field(texel.xyz, entry_shifts(entry.w, 1), weights.y));
 #ifndef TWO_LAYERS
-        tangent += delta_field(texel.xyz, entry_shifts(entry.w, 2), weights.z);
+        tangent += UNFUSED(delta_field(texel.xyz, entry_shifts(entry.w, 2), weights.z));
 #endif
         i++;
     } while (int(entry.w) >= 0);
