@@ -67,7 +67,8 @@ vec2 noh_eye_uv(vec3 position, vec3 normal, vec2 uv)
  * of the eye, in radii of the ball. */
 vec3 noh_from_lids(noh_surface s)
 {
-    float a = dot(s.geometric, normalize(noh_v_out)), height = dot(s.geometric, normalize(noh_v_up));
+    float a = dot(s.geometric, noh_v_out) * inversesqrt(max(dot(noh_v_out, noh_v_out), 1e-20)); /* zero where x = 0 */
+    float height = dot(s.geometric, normalize(noh_v_up));
     vec3 powers = vec3(1.0, a, a * a);
     return vec3(dot(noh_surface_more[0], powers) - height, height - dot(noh_surface_more[1], powers), a);
 }

@@ -25,7 +25,7 @@ void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec
     radius *= length(vec3(x.x, y.x, z.x));
     noh_v_gaze = max(radius, 1e-6) * normalize(vec3(dot(x.xyz, gaze), dot(y.xyz, gaze), dot(z.xyz, gaze)));
     noh_v_up = vec3(dot(x.xyz, upwards.xyz), dot(y.xyz, upwards.xyz), dot(z.xyz, upwards.xyz));
-    noh_v_out = cross(noh_v_up, noh_v_gaze) * sign(rest.x);
+    noh_v_out = cross(noh_v_up, noh_v_gaze) * (rest.x < 0.0 ? -1.0 : 1.0);
 }
 #endif
 
