@@ -373,7 +373,8 @@ static void a_broken_shader_says_where(void **state)
     assert_int_equal(error.where, GL_VERTEX_SHADER);
     assert_true(strncmp(log, "toon: vertex: ", 14) == 0);
     assert_non_null(strstr(log, "nowhere"));
-    assert_non_null(strstr(log, ":3")); /* line 3 of the text, not of what stands before it */
+    /* line 3 of the text, not of what stands before it, as Mesa writes it or NVIDIA */
+    assert_true(strstr(log, ":3") || strstr(log, "(3)"));
     own.vertex = NULL;
     own.fragment =
         "in vec3 v_elsewhere;\nlayout(location = 0) out vec4 o;\nvoid main() { o = vec4(v_elsewhere, 1.0); }\n";

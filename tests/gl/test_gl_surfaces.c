@@ -266,6 +266,7 @@ static void lids_darken_the_ball(void **state)
         const double y = i ? -0.02 : 0.46; /* in the middle of the eye, and close to the upper lid */
         const size_t p = 4 * ((size_t)((0.5 - 0.5 * y) * SIDE) * SIDE + SIDE / 2);
         const double share = decoded(rgba[1][p]) / decoded(rgba[0][p]);
+        print_message("# %s: %.3f of the light\n", i ? "in the middle of the eye" : "close to the upper lid", share);
         assert_true(i ? share > 0.88 : share < 0.85);
     }
     free(rgba[0]);
