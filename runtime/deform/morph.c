@@ -164,10 +164,23 @@ static void run_f16_rtz(const uint32_t *words, size_t count, const morph_field f
     }
 }
 
+static void run_f16_rtz_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+{
+    for (int l = 0; l < 3 && layers[l]; l++) {
+        for (size_t i = 0; i < count; i++) {
+            const float added = round_half(noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
+            layers[l][i] = round_half(layers[l][i] + added, NOH_HALF_RNE);
+        }
+    }
+}
+
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
                               const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, mode == NOH_HALF_RTZ ? run_f16_rtz : run_f16_rne);
+    noh_accumulate_targets(mesh, weights, layers, NULL,
+                           mode == NOH_HALF_RTZ       ? run_f16_rtz
+                           : mode == NOH_HALF_RTZ_RNE ? run_f16_rtz_rne
+                                                      : run_f16_rne);
 }
 
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)

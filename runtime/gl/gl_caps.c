@@ -134,19 +134,21 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
 
 /* --- comparing ---
  *
- * What was read is compared with three models: exact float32 sums, and halves that were rounded toward zero or to
- * nearest after each pass. The values are chosen so that the two roundings differ, ties included; the model that
- * matches every bit is how this driver rounds. If neither does, half-float results are only known within a bound. */
+ * What was read is compared with four models: exact float32 sums, and halves that were rounded toward zero after each
+ * pass, to nearest, or toward zero before it and to nearest after it. The values are chosen so that the roundings
+ * differ, ties included; the model that matches every bit is how this driver rounds. If none does, half-float results
+ * are only known within a bound. */
 
 /* What lies in the target after some passes, by each model. */
 typedef struct models {
-    float exact[LAYERS][FLOATS]; /* float32 sums */
-    float rtz[LAYERS][FLOATS];   /* halves rounded toward zero */
-    float rne[LAYERS][FLOATS];   /* halves rounded to nearest, ties to even */
+    float exact[LAYERS][FLOATS];   /* float32 sums */
+    float rtz[LAYERS][FLOATS];     /* halves rounded toward zero */
+    float rne[LAYERS][FLOATS];     /* halves rounded to nearest, ties to even */
+    float rtz_rne[LAYERS][FLOATS]; /* what is added toward zero, the sum to nearest */
 } models;
 
 typedef struct comparison {
-    int close, exact, rtz, rne;
+    int close, exact, rtz, rne, rtz_rne;
 } comparison;
 
 static void advance(models *m, uint32_t pass)
@@ -159,6 +161,8 @@ static void advance(models *m, uint32_t pass)
             m->exact[layer][i] = m->exact[layer][i] + value;
             m->rtz[layer][i] = round_to_half(m->rtz[layer][i] + value, NOH_HALF_RTZ);
             m->rne[layer][i] = round_to_half(m->rne[layer][i] + value, NOH_HALF_RNE);
+            m->rtz_rne[layer][i] = round_to_half(m->rtz_rne[layer][i] + round_to_half(value, NOH_HALF_RTZ),
+                                                 NOH_HALF_RNE);
         }
     }
 }
@@ -167,7 +171,7 @@ static void advance(models *m, uint32_t pass)
  * a pass that did not arrive is off by far more. */
 static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
 {
-    comparison out = { 1, 1, 1, 1 };
+    comparison out = { 1, 1, 1, 1, 1 };
     for (uint32_t layer = 0; layer < LAYERS; layer++) {
         for (uint32_t i = 0; i < FLOATS; i++) {
             float got = pixels[layer][i];
@@ -177,15 +181,17 @@ static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
             if (memcmp(&got, &m->exact[layer][i], sizeof got) != 0) out.exact = 0;
             if (memcmp(&got, &m->rtz[layer][i], sizeof got) != 0) out.rtz = 0;
             if (memcmp(&got, &m->rne[layer][i], sizeof got) != 0) out.rne = 0;
+            if (memcmp(&got, &m->rtz_rne[layer][i], sizeof got) != 0) out.rtz_rne = 0;
         }
     }
     return out;
 }
 
+/* Of what is stored alone, toward zero and then to nearest is toward zero: the plain modes come first. */
 static noh_half_mode mode_of(const comparison *c)
 {
-    if (c->rtz == c->rne) return NOH_HALF_UNKNOWN;
-    return c->rtz ? NOH_HALF_RTZ : NOH_HALF_RNE;
+    if (c->rtz && c->rne) return NOH_HALF_UNKNOWN;
+    return c->rtz ? NOH_HALF_RTZ : c->rne ? NOH_HALF_RNE : c->rtz_rne ? NOH_HALF_RTZ_RNE : NOH_HALF_UNKNOWN;
 }
 
 /* --- the probes --- */

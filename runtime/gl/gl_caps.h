@@ -50,7 +50,7 @@ typedef struct noh_gl_caps {
     int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
     int etc2;            /* not tried: that of noh_gl_api, for plans of textures */
 
-    /* How this GPU rounds a float to a half. UNKNOWN: like neither model, so results are only known within a bound. */
+    /* How this GPU rounds a float to a half. UNKNOWN: like no model, so results are only known within a bound. */
     noh_half_mode f16_store_mode; /* half(source) */
     noh_half_mode f16_blend_mode; /* half(stored + source), the sum in fp32 */
 } noh_gl_caps;

@@ -70,7 +70,8 @@ typedef enum noh_morph_path {
 typedef enum noh_accumulate {
     NOH_ACCUMULATE_AUTO = 0, /* f32 */
     NOH_ACCUMULATE_F32,
-    NOH_ACCUMULATE_F16 /* half the memory; positions are off by at most the mesh's f16_position_bound */
+    NOH_ACCUMULATE_F16 /* half the memory; positions are off by at most the mesh's f16_position_bound, and
+                        * half as much more where a GPU rounds what it adds, too (NOH_HALF_RTZ_RNE) */
 } noh_accumulate;
 
 /* "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams"; "auto", "f32", "f16". */

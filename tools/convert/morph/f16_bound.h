@@ -8,7 +8,8 @@
  * whether the driver rounds to nearest or toward zero.
  *
  * Each addition rounds a partial sum s by at most 2^-10 |s| (toward zero; to nearest, half of that), or by 2^-24 if s
- * is subnormal. |s| is bounded by the sum of 2 |delta| of the targets so far, plus the error so far. position:
+ * is subnormal. A GPU that rounds the summand toward zero, too, and the sum to nearest (NVIDIA), errs by half as much
+ * more at most. |s| is bounded by the sum of 2 |delta| of the targets so far, plus the error so far. position:
  * Euclidean, model units; direction: per component of normal or tangent. */
 void f16_bound(const morph_encoding *e, float *position, float *direction);
 

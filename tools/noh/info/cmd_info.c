@@ -103,7 +103,7 @@ static double half_bound_um(const noh_mesh *m)
         low[t] = 0.0f;
         high[t] = 1.0f;
     }
-    return 1e6 * (double)m->header->world_scale * half_bound(m, low, high, 0, NOH_HALF_RTZ);
+    return 1e6 * (double)m->header->world_scale * half_bound(m, &(half_range){ low, high, 0, NOH_HALF_RTZ });
 }
 
 static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)

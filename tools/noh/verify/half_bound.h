@@ -4,10 +4,21 @@
 
 #include "deform/morph.h"
 
-/* The sums are rounded to half after each target, in the targets' order; once: only at the end, as paths do that sum
- * in floats. mode: how; NOH_HALF_UNKNOWN: either way, and products may be rounded before they are added.
- * shapes   low[target_count], high[target_count]: the range of each weight; both 0: the target is not there
- * returns  the largest Euclidean distance of a vertex, model units; below 0: out of memory */
-double half_bound(const noh_mesh *mesh, const float *low, const float *high, int once, noh_half_mode mode);
+/* What is known of the weights, and of how sums are rounded. */
+typedef struct half_range {
+    const float *low, *high; /* [target_count]: the range of each weight; both 0: the target is not there */
+    int once;           /* sums are rounded at the end alone, as paths do that sum in floats; else after each target,
+                              * in the targets' order */
+    noh_half_mode mode; /* NOH_HALF_UNKNOWN: either way, and products may be rounded before they are added */
+} half_range;
+
+typedef enum half_layer { HALF_POSITION, HALF_NORMAL } half_layer;
+
+/* How far each accumulation texel of a layer may be off, errors[touched_count]: Euclidean distances, model units.
+ * Returns 0; below 0: out of memory. */
+int half_errors(const noh_mesh *mesh, const half_range *range, half_layer layer, double *errors);
+
+/* The largest distance of a position, model units; below 0: out of memory. */
+double half_bound(const noh_mesh *mesh, const half_range *range);
 
 #endif

@@ -13,6 +13,13 @@
 #include "verify_skin.h"
 
 #define ROUNDS 4 /* sets of random weights per path */
+#define HALF_PI 1.5707963267948966
+
+typedef struct verify_buffers {
+    float *weights, *got, *positions, *normals, *tangents, *uvs;
+    void *expected, *exact;
+    double *errors; /* of the accumulation texels' normals */
+} verify_buffers;
 
 /* xorshift64*: the same weights on every machine. */
 static double random_unit(uint64_t *state)
@@ -90,19 +97,37 @@ static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got,
     }
 }
 
-/* The fetched vertices: position is one exact sum; directions are compared within what a
- * GPU's normalize may differ. */
-static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers,
-                             const float *positions, const float *normals, const float *uvs)
+/* How far a unit normal may be off whose sum is off by errors[]: it turns by asin(error / length) at most, and asin x is
+ * at most pi / 2 x. errors NULL: not at all. */
+static double normal_allowance(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t v, const double *errors)
 {
+    const size_t texel = noh_mesh_accumulation_texel(mesh, v);
+    double square = 0.0;
+    noh_vertex rest;
+    if (!errors || texel >= mesh->header->touched_count) return 0.0;
+    noh_mesh_vertex(mesh, v, &rest);
+    for (size_t c = 0; c < 3; c++) {
+        const double sum = (double)rest.normal[c] + (double)layers->normal[3u * texel + c];
+        square += sum * sum;
+    }
+    return fmin(2.0, HALF_PI * errors[texel] / sqrt(square));
+}
+
+/* The fetched vertices: position is one exact sum; directions are compared within what a
+ * GPU's normalize may differ, and within what normal_errors[] of the sums allow. */
+static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers,
+                             const verify_buffers *b, const double *normal_errors)
+{
+    const float *positions = b->positions, *normals = b->normals, *uvs = b->uvs;
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        const double allowed = normal_allowance(mesh, layers, v, normal_errors);
         noh_vertex expected;
         noh_morph_vertex(mesh, layers, v, &expected);
         for (size_t c = 0; c < 3; c++) {
             row->vertex_values += 1;
             row->vertex_differing += positions[3 * v + c] != expected.position[c];
             row->max_normal_error = fmax(row->max_normal_error,
-                                         fabs((double)normals[3 * v + c] - (double)expected.normal[c]));
+                                         fabs((double)normals[3 * v + c] - (double)expected.normal[c]) - allowed);
         }
         for (size_t c = 0; c < 2; c++) {
             const double off = fabs((double)uvs[2 * v + c] - (double)expected.uv[c]);
@@ -110,11 +135,6 @@ static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_mo
         }
     }
 }
-
-typedef struct verify_buffers {
-    float *weights, *got, *positions, *normals, *tangents, *uvs;
-    void *expected, *exact;
-} verify_buffers;
 
 static int buffers_open(verify_buffers *b, const noh_mesh *mesh)
 {
@@ -127,8 +147,9 @@ static int buffers_open(verify_buffers *b, const noh_mesh *mesh)
     b->normals = malloc(vertices);
     b->tangents = malloc(vertices);
     b->uvs = malloc(vertices);
-    return !b->weights || !b->got || !b->expected || !b->exact || !b->positions || !b->normals || !b->tangents ||
-           !b->uvs;
+    b->errors = malloc(sizeof *b->errors * (mesh->header->touched_count + 1u));
+    return !b->errors || !b->weights || !b->got || !b->expected || !b->exact || !b->positions || !b->normals ||
+           !b->tangents || !b->uvs;
 }
 
 static void buffers_close(verify_buffers *b)
@@ -141,6 +162,7 @@ static void buffers_close(verify_buffers *b)
     free(b->normals);
     free(b->tangents);
     free(b->uvs);
+    free(b->errors);
 }
 
 /* Streams leave no sums to read: vertices are compared, and how far their positions are off. A GPU may fuse the
@@ -153,7 +175,7 @@ static int verify_streams(verify_row *row, readback *r, const noh_gl_mesh *gl_me
     const int status = readback_vertices_uv(r, gl_mesh, binding, b->positions, b->normals, b->tangents, b->uvs);
     if (status) return status;
     row->exact = 0;
-    compare_vertices(row, mesh, expected, b->positions, b->normals, b->uvs);
+    compare_vertices(row, mesh, expected, b, NULL);
     row->values += 3u * (uint64_t)mesh->header->vertex_count;
     row->differing += row->vertex_differing - differing;
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
@@ -186,7 +208,7 @@ static int verify_finished(verify_row *row, readback *r, const noh_gl_mesh *gl_m
         for (size_t i = 0; i < words; i++) row->differing += got[i] != want[i];
         status = readback_vertices_uv(r, gl_mesh, binding, b->positions, b->normals, b->tangents, b->uvs);
     }
-    if (!status) compare_vertices(row, mesh, expected, b->positions, b->normals, b->uvs);
+    if (!status) compare_vertices(row, mesh, expected, b, NULL);
     free(want);
     free(got);
     return status;
@@ -199,20 +221,31 @@ static void clear_layers(const verify_job *job, void *memory, size_t bytes, cons
     layers->tangent = job->without_tangents ? NULL : layers->tangent;
 }
 
-/* How far half floats may be off for these weights: a row's bound is that of the set of weights that allows the most.
- */
-static int raise_bound(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
-                       verify_row *row)
+static half_range half_range_of(const verify_job *job, const noh_gl_morph_plan *plan, const float *weights)
 {
     const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER;
     const noh_half_mode mode = plan->path == NOH_MORPH_CPU      ? NOH_HALF_RNE
                                : plan->path == NOH_MORPH_GATHER ? job->g.caps.f16_store_mode
                                                                 : job->g.caps.f16_blend_mode;
-    double bound;
-    if (plan->accumulate != NOH_ACCUMULATE_F16) return 0;
-    bound = half_bound(mesh, weights, weights, once, mode);
-    if (bound < 0.0) return tool_fail(job->file.path, "out of memory");
-    row->bound_um = fmax(row->bound_um, 1e6 * (double)mesh->header->world_scale * bound);
+    return (half_range){ weights, weights, once, mode };
+}
+
+/* Sums whose bits are known give the vertices that the CPU makes of them. Of other sums how far they may be off is
+ * known, for these weights: a row's bound of positions is that of the set of weights that allows the most, and normals
+ * are held to what their own sums allow. */
+static int verify_vertices(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh,
+                           const noh_morph_layers *expected, const noh_morph_layers *exact, const verify_buffers *b,
+                           verify_row *row)
+{
+    const half_range range = half_range_of(job, plan, b->weights);
+    const int inexact = plan->accumulate == NOH_ACCUMULATE_F16 && !row->exact;
+    if (plan->accumulate == NOH_ACCUMULATE_F16) {
+        const double bound = half_bound(mesh, &range);
+        if (bound < 0.0) return tool_fail(job->file.path, "out of memory");
+        row->bound_um = fmax(row->bound_um, 1e6 * (double)mesh->header->world_scale * bound);
+    }
+    if (inexact && half_errors(mesh, &range, HALF_NORMAL, b->errors)) return tool_fail(job->file.path, "out of memory");
+    compare_vertices(row, mesh, inexact ? exact : expected, b, inexact ? b->errors : NULL);
     return 0;
 }
 
@@ -253,9 +286,8 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
         }
         if (!status) {
             compare_layers(job, row, mesh, b.got, b.expected);
-            compare_vertices(row, mesh, &expected, b.positions, b.normals, b.uvs);
+            status = verify_vertices(job, plan, mesh, &expected, &exact, &b, row);
             measure_f16(row, mesh, b.got, b.exact);
-            status = raise_bound(job, plan, mesh, b.weights, row);
         }
     }
     buffers_close(&b);
