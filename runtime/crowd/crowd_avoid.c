@@ -21,11 +21,10 @@ typedef struct asked {
  * discs would just pass each other: a wish to be at p + u t, where they are nearest, as far apart as both are wide. */
 static void pass(asked *a, vec2 p, vec2 u, float radii, float share)
 {
-    const float nearing = v2_dot(p, u);
-    if (nearing >= 0.0f) return;
-    const float square = v2_dot(u, u), clear = v2_dot(p, p) - radii * radii;
+    const float nearing = v2_dot(p, u), square = v2_dot(u, u), clear = v2_dot(p, p) - radii * radii;
     const float root = nearing * nearing - square * clear;
-    if (root <= 0.0f || clear <= 0.0f) return;
+    /* one branch, which is seldom taken, in place of three that nothing predicts */
+    if ((nearing >= 0.0f) | (root <= 0.0f) | (clear <= 0.0f)) return;
     const float meet = clear / (noh_sqrt(root) - nearing), soon = 1.0f - meet * (1.0f / HORIZON_S);
     if (soon <= 0.0f) return;
     const float nearest = -nearing / square;

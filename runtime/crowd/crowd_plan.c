@@ -43,7 +43,8 @@ static float speed_along(const view *v, vec2 direction, float speed)
     for (uint32_t k = 0; k < v->count; k++) {
         const float along = v2_dot(v->to[k], direction), across = v2_cross(direction, v->to[k]), r = v->radii[k];
         const float lead = v2_dot(v->velocity[k], direction);
-        if (along <= 0.0f || across * across > IN_FRONT * IN_FRONT * r * r || lead < -ONCOMING * speed) continue;
+        /* one branch in place of three that nothing predicts */
+        if ((along <= 0.0f) | (across * across > IN_FRONT * IN_FRONT * r * r) | (lead < -ONCOMING * speed)) continue;
         const float gap = along - noh_sqrt(r * r - across * across);
         const float may = (lead > 0.0f ? lead : 0.0f) + (gap > 0.0f ? gap : 0.0f) * (1.0f / HEADWAY_S);
         if (may < most) most = may;
