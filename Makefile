@@ -664,6 +664,12 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
+# The tests of bits with the library as plain C (tests/check_plain_c.sh, which makes that one).
+$(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/plain/libnoh.a
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
 # The library's CPU tests, those that need neither C++ nor GL nor the tool, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=

@@ -64,7 +64,7 @@ costs() {
     check "$1: and pairs, within $3 times" awk -v most="$3" 'NR == 1 { v = $1; p = $4 } $4 / p > most * $1 / v { bad = 1 } END { exit bad }' "$work/levels"
 }
 
-zooms 'the mask' 4 "$pack" $every $mask
+zooms 'the mask' 4 "$pack" $few $every $mask
 holds 'targets were left out' "$(field targets_left_out) > 0"
 costs 'the mask' "$pack" 1.1
 models=head
