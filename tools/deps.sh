@@ -138,12 +138,23 @@ if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null 2>&1 || { echo 'deps.sh: not root and no sudo; install them yourself' >&2; exit 1; }
     sudo=sudo
 fi
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C
+
+# apt-get ARGUMENT...: on a fresh machine another process often holds one of apt's locks; apt itself waits for dpkg's,
+# not for that of the package lists. Tries for five minutes.
+apt() {
+    deadline=$(($(date +%s) + 300))
+    until said=$($sudo apt-get -o DPkg::Lock::Timeout=300 -qq "$@" 2>&1); do
+        case $said in *'Could not get lock'* | *'Unable to lock'*) ;; *) deadline=0 ;; esac
+        [ "$(date +%s)" -lt "$deadline" ] || { echo "$said" >&2; return 1; }
+        sleep 1
+    done
+}
+
+apt update
 # shellcheck disable=SC2086
-export DEBIAN_FRONTEND=noninteractive
-# On a fresh machine another process often holds apt's lock: wait for it.
-apt="$sudo apt-get -o DPkg::Lock::Timeout=300 -qq"
-$apt update
-[ -z "$names" ] || $apt install -y --no-install-recommends $names >/dev/null
-for name in $optional; do
-    $apt install -y --no-install-recommends "$name" >/dev/null 2>&1 || echo "  $name is not available: what needs it is left out"
+[ -z "$names" ] || apt install -y --no-install-recommends $names
+# shellcheck disable=SC2086
+[ -z "$optional" ] || apt install -y --no-install-recommends $optional 2>/dev/null || for name in $optional; do
+    apt install -y --no-install-recommends "$name" 2>/dev/null || echo "  $name is not available: what needs it is left out"
 done
