@@ -88,7 +88,7 @@ if [ "${1:-}" = --one ]; then
     timeout -k 10 "$limit" "$@" >"$log.txt" 2>&1 </dev/null
     status=$?
     times >"$log.times" # not in a subshell: it counts the children of the shell that calls it
-    seconds=$(awk 'NR == 2 { split($1 "m" $2, part, /[ms]+/); printf "%d", part[1] * 60 + part[2] + part[3] * 60 + part[4] }' "$log.times")
+    seconds=$(awk -f tests/support/processor_seconds.awk "$log.times")
     awk -v status=$status -v seconds=$seconds "$count" "$log.txt" >"$log.told"
     echo $status >"$log.status"
     # shellcheck disable=SC2046
@@ -150,9 +150,6 @@ if [ -s "$logs/skips" ]; then
     echo 'skipped, and why:'
     sort "$logs/skips"
 fi
-sort -rn "$logs/seconds" | awk '
-    { all += $1 }
-    NR <= 12 && $1 > 4 { longest = longest sprintf("%s%s %d", longest == "" ? "" : ", ", $2, $1) }
-    END { if (longest != "") printf "seconds of processors: %d; of them %s\n", all, longest }'
+sort -rn "$logs/seconds" | awk -v most=12 -f tests/support/longest.awk
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ] && [ $passed != 0 ]
