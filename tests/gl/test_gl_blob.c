@@ -1,6 +1,7 @@
 /* Spots on the ground: every pixel by the formula, in one draw for 32, behind what is nearer, and back after a lost
  * context. */
 #include "support/gl_fixture.h"
+#include "support/srgb.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,11 +27,6 @@ static void picture(gpu *g, noh_stage_blob *b, const noh_blob *blobs, uint32_t c
     noh_stage_blob_draw(b, &above, blobs, count);
     assert_int_equal(canvas_read(&c, rgba), 0);
     canvas_close(&c);
-}
-
-static double encoded(double linear)
-{
-    return 255.0 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055);
 }
 
 /* What a spot leaves at a place, by its definition. */

@@ -64,7 +64,7 @@ static void what_is_unlit_is_its_color(void **state)
     q.unlit = 1;
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
     for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
-        expect_color(lit_quad_at(rgba, x), lit_quad_encoded(0.8), lit_quad_encoded(0.6), lit_quad_encoded(0.4));
+        expect_color(lit_quad_at(rgba, x), encoded(0.8), encoded(0.6), encoded(0.4));
     }
     free(rgba);
 }
@@ -155,8 +155,8 @@ static void vertex_colors_multiply_the_base(void **state)
         color[i] = one[i % 4];
     }
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
-    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), lit_quad_encoded(0.25 * 0.8), lit_quad_encoded(0.6),
-                 lit_quad_encoded(0.5 * 0.4));
+    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), encoded(0.25 * 0.8), encoded(0.6),
+                 encoded(0.5 * 0.4));
     free(rgba);
     q.alpha = MODEL_ALPHA_MASK;
     for (int below = 0; below < 2; below++) { /* alpha too: 0.75 of 1 against the cutoff */
@@ -181,9 +181,9 @@ static void blended_materials_have_a_pass_of_their_own(void **state)
     assert_true(draws_nothing(rgba));
     free(rgba);
     rgba = drawn(&q, NOH_DRAW_BLENDED);
-    expect_color(lit_quad_at(rgba, 5), lit_quad_encoded(0.25 * 0.8 + 0.75 * background[0]),
-                 lit_quad_encoded(0.25 * 0.6 + 0.75 * background[1]),
-                 lit_quad_encoded(0.25 * 0.4 + 0.75 * background[2]));
+    expect_color(lit_quad_at(rgba, 5), encoded(0.25 * 0.8 + 0.75 * background[0]),
+                 encoded(0.25 * 0.6 + 0.75 * background[1]),
+                 encoded(0.25 * 0.4 + 0.75 * background[2]));
     free(rgba);
     q.alpha = MODEL_ALPHA_OPAQUE;
     rgba = drawn(&q, NOH_DRAW_BLENDED);

@@ -89,8 +89,7 @@ static void the_fitted_integral_is_near(void **state)
             double all, edge, right, found;
             integrate((double)material[1], nv, &all, &edge);
             right = metal ? (0.5 * (all - edge) + edge) * (1.0 + 0.5 * (1.0 / all - 1.0)) : edge;
-            found = rgba[4 * (SIDE / 2 * SIDE + x)] / 255.0;
-            found = found <= 0.04045 ? found / 12.92 : pow((found + 0.055) / 1.055, 2.4);
+            found = decoded(rgba[4 * (SIDE / 2 * SIDE + x)]);
             worst = fmax(worst, fabs(found - right));
         }
         free(rgba);

@@ -9,6 +9,7 @@
 #include "support/lit_quad.h"
 #include "support/skin_asset.h"
 #include "support/renderer.h"
+#include "support/srgb.h"
 
 #include <math.h>
 
@@ -151,12 +152,6 @@ static const uint8_t *middle_of(const wardrobe *w, const uint32_t *rgba, uint32_
     return (const uint8_t *)&rgba[HEIGHT / 2u * WIDTH + column];
 }
 
-static double linear_of(uint8_t byte)
-{
-    const double c = byte / 255.0;
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
 /* ---- by hand ---- */
 
 /* The same actors, each drawn alone by noh_gl_draw_mesh. */
@@ -235,8 +230,8 @@ static void actors_look_as_their_parts_drawn_by_hand(void **state)
             const int white = tint[3] == 0;
             const double share = alpha == MODEL_ALPHA_BLEND && !white ? tint[3] / 255.0 : 1.0;
             for (int i = 0; i < 3; i++) {
-                const double own = linear_of(texel[i]) * (white || !takes ? 1.0 : linear_of(tint[i]));
-                const double want = lit_quad_encoded(own * share + linear_of(behind[i]) * (1.0 - share));
+                const double own = decoded(texel[i]) * (white || !takes ? 1.0 : decoded(tint[i]));
+                const double want = encoded(own * share + decoded(behind[i]) * (1.0 - share));
                 if (fabs(pixel[i] - want) > 2.0)
                     fail_msg("alpha %d, tint %s, actor %u, channel %d: %u for %g", alpha, takes ? "on" : "off",
                              (unsigned)a, i, pixel[i], want);

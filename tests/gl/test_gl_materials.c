@@ -265,7 +265,7 @@ static void dark_strands_are_as_they_were_painted(void **state)
             const double linear = alpha * pow(shade, 2.2) + (1.0 - alpha) * pow(0.75, 2.2);
             const double painted = 255.0 * (alpha * shade + (1.0 - alpha) * 0.75);
             worst = fmax(worst, fabs(rgba[4u * (row * LIT_QUAD_SIDE + x)] - painted));
-            literal = fmax(literal, fabs(lit_quad_encoded(linear) - painted));
+            literal = fmax(literal, fabs(encoded(linear) - painted));
         }
     }
     print_message("# off by at most %.1f of 255; as their alpha says %.1f\n", worst, literal);

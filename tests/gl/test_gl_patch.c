@@ -1,6 +1,7 @@
 /* Marks drawn as triangles that were grown: coordinates to a texel through smiles, walks and levels; nothing on what
  * only touches at rest; all of a mesh in one draw; room, fades, a lost context. */
 #include "support/decal_fixture.h"
+#include "support/srgb.h"
 
 #include <math.h>
 
@@ -298,12 +299,7 @@ static void sixty_four_are_one_draw_and_come_back(void **state)
 /* The mark's part of a pixel's green, which it has none of: by the same picture without it. */
 static double part_of_mark(const uint8_t *without, const uint8_t *with, size_t pixel)
 {
-    double linear[2];
-    for (int i = 0; i < 2; i++) {
-        const double x = (i ? with : without)[4u * pixel + 1u] / 255.0;
-        linear[i] = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-    }
-    return 1.0 - linear[1] / linear[0];
+    return 1.0 - decoded(with[4u * pixel + 1u]) / decoded(without[4u * pixel + 1u]);
 }
 
 /* Drawn once for each attribute group of the mesh below it, as the source draws its decals, a mark that is half

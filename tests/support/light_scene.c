@@ -9,18 +9,6 @@
 const float scene_identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
 const noh_environment scene_black = { .name = "black" };
 
-double encoded(double linear)
-{
-    const double c = fmin(fmax(linear, 0.0), 1.0);
-    return 255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055);
-}
-
-double decoded(uint8_t byte)
-{
-    const double c = byte / 255.0;
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
 double pixel_at(uint32_t i)
 {
     return (2.0 * i + 1.0) / SIDE - 1.0;

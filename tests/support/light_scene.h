@@ -6,6 +6,7 @@
 #include "convert/model/model.h"
 #include "gpu/canvas.h"
 #include "support/gl_fixture.h"
+#include "support/srgb.h"
 
 #define SIDE 65u
 #define PI 3.14159265358979323846
@@ -26,10 +27,6 @@ typedef struct scene {
     float eye[3]; /* highlights are seen from there; the picture stays that along -z */
     float key[3]; /* of the plain light, unit */
 } scene;
-
-/* sRGB of a linear colour, 0..255, and back. */
-double encoded(double linear);
-double decoded(uint8_t byte);
 
 /* Two-sided, of base colour, roughness, metallic and f0. */
 model_material scene_material(const float values[4]);

@@ -200,12 +200,6 @@ int lit_quad_is_background(const uint8_t *pixel)
 
 /* ---- the closed form ---- */
 
-double lit_quad_encoded(double linear)
-{
-    double c = fmin(fmax(linear, 0.0), 1.0);
-    return 255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055);
-}
-
 static double dot(const double *a, const double *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -325,6 +319,6 @@ void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int
     }
     c = cosines_of(q, n, at, held);
     for (int i = 0; i < 3; i++) {
-        out[i] = lit_quad_encoded(shade(q, &c, i));
+        out[i] = encoded(shade(q, &c, i));
     }
 }

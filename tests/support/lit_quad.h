@@ -9,6 +9,7 @@
 #include "gpu/gpu.h"
 #include "convert/model/model.h"
 #include "gl/gl_variants.h"
+#include "support/srgb.h"
 
 #define LIT_QUAD_SIDE 33u  /* pixels of the picture's side */
 #define LIT_QUAD_CLOSE 1.5 /* of 255: what rounding may leave between a pixel and its closed form */
@@ -59,8 +60,5 @@ void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, do
 /* mesh.frag's light on a column of the middle row, in sRGB 0..255. world must be diagonal.
  * held: what faces away from the light gets none; 0: as in the source */
 void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3]);
-
-/* Linear light as a byte of sRGB. */
-double lit_quad_encoded(double linear);
 
 #endif

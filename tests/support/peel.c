@@ -2,6 +2,7 @@
 
 #include "gpu/canvas.h"
 #include "renderer.h"
+#include "srgb.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -139,17 +140,6 @@ uint8_t *peel_read(const peel *p)
 
 /* ---- blending ---- */
 
-static double linear_of(uint8_t byte)
-{
-    const double c = byte / 255.0;
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
-static uint8_t encoded(double c)
-{
-    return (uint8_t)(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055) + 0.5);
-}
-
 /* Front to back: sums[side * side][4] of the light so far, and how much of what lies behind is let through. Returns
  * whether the layer has anything. */
 static int add_layer(const peel *p, const uint8_t *layer, double *sums)
@@ -159,7 +149,7 @@ static int add_layer(const peel *p, const uint8_t *layer, double *sums)
         const double alpha = layer[4u * i + 3u] / 255.0;
         if (alpha == 0.0) continue;
         any = 1;
-        for (uint32_t c = 0; c < 3; c++) sums[4u * i + c] += sums[4u * i + 3u] * alpha * linear_of(layer[4u * i + c]);
+        for (uint32_t c = 0; c < 3; c++) sums[4u * i + c] += sums[4u * i + 3u] * alpha * decoded(layer[4u * i + c]);
         sums[4u * i + 3u] *= 1.0 - alpha;
     }
     return any;
@@ -208,7 +198,8 @@ uint8_t *peel_picture(peel *p, const noh_mesh *blended, const noh_gl_camera *cam
     noh_gl_mesh_delete(&p->g->gl, &p->ledger, &mesh);
     for (uint32_t i = 0; i < p->side * p->side; i++) {
         for (uint32_t c = 0; c < 3; c++) {
-            rgba[4u * i + c] = encoded(sums[4u * i + c] + sums[4u * i + 3u] * linear_of(rgba[4u * i + c]));
+            rgba[4u * i + c] =
+                (uint8_t)(encoded(sums[4u * i + c] + sums[4u * i + 3u] * decoded(rgba[4u * i + c])) + 0.5);
         }
     }
     free(sums);
