@@ -53,22 +53,31 @@ static void keep_streamed(const noh_mesh *mesh, float *weights)
     }
 }
 
+static half_range half_range_of(const verify_job *job, const noh_gl_morph_plan *plan, const float *weights)
+{
+    const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER;
+    const noh_half_mode mode = plan->path == NOH_MORPH_CPU      ? NOH_HALF_RNE
+                               : plan->path == NOH_MORPH_GATHER ? job->g.caps.f16_store_mode
+                                                                : job->g.caps.f16_blend_mode;
+    return (half_range){ weights, weights, once, mode };
+}
+
 /* The exact model of the accumulator of this path and format; 0 if the driver's rounding is unknown. */
 static int reference(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh, const float *weights,
                      const noh_morph_layers *layers)
 {
+    const half_range range = half_range_of(job, plan, weights);
     if (plan->accumulate != NOH_ACCUMULATE_F16) {
         noh_morph_accumulate_scalar(mesh, weights, layers);
-        return plan->path == NOH_MORPH_GATHER || plan->path == NOH_MORPH_CPU || job->g.caps.blend_f32_exact;
+        return range.once || job->g.caps.blend_f32_exact;
     }
-    if (plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER) {
-        noh_half_mode mode = plan->path == NOH_MORPH_CPU ? NOH_HALF_RNE : job->g.caps.f16_store_mode;
+    if (range.once) {
         noh_morph_accumulate_scalar(mesh, weights, layers);
-        noh_morph_round_f16(mesh, mode, layers);
-        return mode != NOH_HALF_UNKNOWN;
+        noh_morph_round_f16(mesh, range.mode, layers);
+    } else {
+        noh_morph_accumulate_f16(mesh, weights, range.mode, layers);
     }
-    noh_morph_accumulate_f16(mesh, weights, job->g.caps.f16_blend_mode, layers);
-    return job->g.caps.f16_blend_mode != NOH_HALF_UNKNOWN;
+    return range.mode != NOH_HALF_UNKNOWN;
 }
 
 static void compare_layers(const verify_job *job, verify_row *row, const noh_mesh *mesh, const float *got,
@@ -219,15 +228,6 @@ static void clear_layers(const verify_job *job, void *memory, size_t bytes, cons
 {
     noh_morph_layers_init(memory, bytes, mesh, layers, NULL);
     layers->tangent = job->without_tangents ? NULL : layers->tangent;
-}
-
-static half_range half_range_of(const verify_job *job, const noh_gl_morph_plan *plan, const float *weights)
-{
-    const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER;
-    const noh_half_mode mode = plan->path == NOH_MORPH_CPU      ? NOH_HALF_RNE
-                               : plan->path == NOH_MORPH_GATHER ? job->g.caps.f16_store_mode
-                                                                : job->g.caps.f16_blend_mode;
-    return (half_range){ weights, weights, once, mode };
 }
 
 /* Sums whose bits are known give the vertices that the CPU makes of them. Of other sums how far they may be off is
