@@ -61,6 +61,9 @@ typedef struct noh_clip_bank_desc {
      * made */
     const noh_pack *const *clip_packs;
     uint32_t clip_pack_count; /* 0 with `clips` */
+    /* frames per second that are enough: clips of twice as many take half of the cache and less time (clip_codec.h);
+     * default (0) all */
+    uint32_t sample_rate_enough;
 } noh_clip_bank_desc;
 
 /* What is known before there is memory: the bytes, and counts to size the rest by. */

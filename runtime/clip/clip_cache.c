@@ -552,13 +552,11 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
     return spent;
 }
 
-/* The frames that a sample needs of the segment it begins in, as noh_clip_quad_bit. Of a next one it is the first. */
+/* The slots that a sample needs of the segment it begins in, as noh_clip_quad_bit. Of a next one it is the first. */
 static uint32_t quads_of(const noh_clip_place *p)
 {
-    const uint32_t frames = noh_clip_segment_first(p->clip, p->segment + 1u) -
-                            noh_clip_segment_first(p->clip, p->segment);
-    const uint32_t here = noh_clip_quad_bit(p->frame, frames);
-    return p->crosses || p->fraction == 0.0f ? here : here | noh_clip_quad_bit(p->frame + 1u, frames);
+    const uint32_t here = noh_clip_quad_bit(p->slot, p->slots);
+    return p->crosses || p->fraction == 0.0f ? here : here | noh_clip_quad_bit(p->slot + 1u, p->slots);
 }
 
 void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,

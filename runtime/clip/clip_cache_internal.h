@@ -57,28 +57,43 @@ typedef struct noh_clip_place {
     const noh_clip *clip;
     uint32_t joints, tracks; /* to be sampled, and to be decoded for that */
     uint32_t segment, frame; /* frame: in the segment */
-    float fraction;          /* towards the next frame */
+    uint32_t slot, slots;    /* where it is decoded, and how many the segment has */
+    float fraction;          /* towards the next slot */
     int crosses;             /* 1: the next frame is the first of the next segment */
 } noh_clip_place;
+
+static inline uint32_t noh_clip_segment_frames(const noh_clip *clip, uint32_t segment)
+{
+    return noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
+}
 
 static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t ticks, uint32_t joint_count)
 {
     noh_clip_place p;
-    const uint32_t frame = noh_clip_frame_at(clip, ticks, &p.fraction);
+    const uint32_t frame = noh_clip_frame_at(clip, ticks, &p.fraction), halved = clip->info.halved;
+    uint32_t frames, here;
     p.clip = clip;
     p.joints = joint_count < clip->info.joint_count ? joint_count : clip->info.joint_count;
     p.tracks = clip->prefixes[p.joints].tracks;
     p.segment = noh_clip_segment_of(clip, frame);
     p.frame = frame - noh_clip_segment_first(clip, p.segment);
     p.crosses = p.fraction > 0.0f && frame + 1u == noh_clip_segment_first(clip, p.segment + 1u);
+    frames = noh_clip_segment_frames(clip, p.segment);
+    p.slots = noh_clip_slots(frames, halved);
+    p.slot = noh_clip_slot_of(p.frame, frames, halved);
+    here = noh_clip_slot_frame(p.slot, frames, halved);
+    if (halved && p.slot + 1u < p.slots) {
+        p.fraction = ((float)(p.frame - here) + p.fraction) /
+                     (float)(noh_clip_slot_frame(p.slot + 1u, frames, halved) - here);
+    }
     return p;
 }
 
-/* Blend two decoded frames. `next`: the frames of the next segment, read only where the place crosses into it. */
+/* Blend two slots. `next`: the frames of the next segment, read only where the place crosses into it. */
 static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next,
                                         noh_transform *out, float *floats)
 {
-    const uint8_t *a = frames + (size_t)p->frame * p->clip->frame_bytes;
+    const uint8_t *a = frames + (size_t)p->slot * p->clip->frame_bytes;
     const uint8_t *b = p->crosses ? next : p->fraction > 0.0f ? a + p->clip->frame_bytes : a;
     noh_clip_blend_frames(p->clip, a, b, p->fraction, p->joints, out, floats);
 }
@@ -86,9 +101,9 @@ static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *
 static inline noh_clip_basis noh_clip_cache_basis(const noh_clip_cache *cache, const noh_clip *clip, uint32_t segment,
                                                   uint32_t skip)
 {
-    const uint32_t frames = noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
+    const uint32_t frames = noh_clip_segment_frames(clip, segment);
     const noh_clip_basis basis = { frames, noh_clip_basis_half(frames),
-                                   cache->rows[noh_clip_basis_of(&clip->info)][frames], skip };
+                                   cache->rows[noh_clip_basis_of(&clip->info)][frames], skip, clip->info.halved };
     return basis;
 }
 
@@ -101,7 +116,7 @@ static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const 
     if (track_end > before) {
         noh_clip_decode(clip, &basis, cursor, track_end, out);
     }
-    return (cursor->track - before) * basis.frames;
+    return (cursor->track - before) * noh_clip_slots(basis.frames, basis.halved);
 }
 
 #endif

@@ -28,6 +28,10 @@ typedef struct noh_clip_desc {
     /* [joint_count] the skeleton's bind pose, the one that the clip was built with; needed by init only */
     const noh_transform *bind;
     uint32_t joint_count; /* of the skeleton; must be the clip's; 0 for a clip that animates floats only */
+    /* frames per second that are enough; default (0) all of them. A clip of at least twice as many (less a hundredth)
+     * is halved: about every second of its frames is decoded and kept in the cache, and what lies between is
+     * interpolated, so that its certificate no longer holds between those frames */
+    uint32_t sample_rate_enough;
 } noh_clip_desc;
 
 typedef struct noh_clip noh_clip;
@@ -46,6 +50,7 @@ typedef struct noh_clip_info {
     uint32_t max_error_joint;
     double max_error_time_s;
     uint32_t segment_frames_max;
+    uint32_t halved;          /* 1: half of its frames are enough (noh_clip_desc.sample_rate_enough) */
     size_t segment_bytes_max; /* of the longest segment, decoded in the cache */
 } noh_clip_info;
 

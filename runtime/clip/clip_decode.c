@@ -33,20 +33,24 @@ static float raw_float(noh_bits *b)
 }
 
 /* A raw track keeps its frames as floats: the encoder's last resort where coefficients do not keep to the bound. */
-static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, uint32_t frames, uint8_t *out)
+static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
+                       uint8_t *out)
 {
     const int wide = (clip->info.flags & NOH_CLIP_FLAG_WIDE) != 0u;
-    const uint32_t components = track->kind == NOH_CLIP_ROTATION ? 4u : 3u;
-    for (uint32_t f = 0; f < frames; f++, out += clip->frame_bytes) {
+    const uint32_t components = track->kind == NOH_CLIP_ROTATION ? 4u : 3u, frames = basis->frames;
+    for (uint32_t f = 0, slot = 0; f < frames; f++) {
         float v[4];
         for (uint32_t i = 0; i < components; i++) {
             v[i] = raw_float(b);
         }
+        if (noh_clip_slot_frame(slot, frames, basis->halved) != f) continue;
         if (track->kind == NOH_CLIP_ROTATION) {
             noh_clip_store_rotation(v, wide, out);
         } else {
             memcpy(out, v, LINEAR_BYTES);
         }
+        out += clip->frame_bytes;
+        slot++;
     }
 }
 
@@ -120,7 +124,7 @@ void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip
         uint8_t *out = frames + (track->kind == NOH_CLIP_ROTATION ? track->entry * rotation_bytes
                                                                   : clip->linear_offset + track->entry * LINEAR_BYTES);
         if (cursor->raw_tracks && noh_bits_get(&b, 1u)) {
-            decode_raw(&b, clip, track, basis->frames, out);
+            decode_raw(&b, clip, track, basis, out);
         } else {
             decode_track(&b, clip, track, basis, cursor, out);
         }

@@ -22,8 +22,8 @@ typedef struct noh_clip_cursor {
 /* A cursor at the first track of a segment. */
 noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment);
 
-/* Decode tracks up to `track_end` (at most the clip's track_count) into frames, clip->frame_bytes apart. `basis` is
- * that of the segment's length. Whatever the bits are, some frames come out, and nothing is written out of bounds. */
+/* Decode tracks up to `track_end` (at most the clip's track_count) into slots, clip->frame_bytes apart. `basis` is that
+ * of the segment's length. Whatever the bits are, some frames come out, and nothing is written out of bounds. */
 void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip_cursor *cursor, uint32_t track_end,
                      uint8_t *frames);
 

@@ -332,6 +332,13 @@ static uint32_t weight_one(uint32_t sample_rate_uhz)
     return (uint32_t)(NOH_CLIP_WEIGHT_MAX / step * step);
 }
 
+/* A rate of 119.88 is twice 60. */
+static uint32_t is_halved(const noh_clip_desc *desc, uint32_t sample_rate_uhz)
+{
+    return desc->sample_rate_enough &&
+           (uint64_t)sample_rate_uhz * 100u >= 2u * 99u * (uint64_t)desc->sample_rate_enough * NOH_CLIP_MICRO;
+}
+
 static noh_result parse(parser *p)
 {
     noh_clip *clip = p->clip;
@@ -350,7 +357,9 @@ static noh_result parse(parser *p)
     clip->frame_bytes = (clip->linear_offset + clip->linear_count * LINEAR_BYTES + FRAME_ALIGN - 1u) &
                         ~(FRAME_ALIGN - 1u);
     clip->segments_per_frame = ((uint64_t)clip->info.segment_count << 32) / clip->info.frame_count;
-    clip->info.segment_bytes_max = (size_t)clip->frame_bytes * clip->info.segment_frames_max;
+    clip->info.halved = is_halved(p->desc, clip->info.sample_rate_uhz);
+    clip->info.segment_bytes_max = (size_t)clip->frame_bytes *
+                                   noh_clip_slots(clip->info.segment_frames_max, clip->info.halved);
     return NOH_OK;
 }
 

@@ -197,18 +197,24 @@ void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, c
     }
 }
 
-/* Four frames of three components, and the four that mirror them. Basis row k is even about the middle of the segment
+/* Four slots of three components, and the four that mirror them. Basis row k is even about the middle of the segment
  * for even k and odd for odd k, so one sum over even frequencies and one over odd ones give two frames: their sum is
  * the frame in the first half, their difference its mirror in the second. That halves the products. */
 typedef struct quad {
     noh_v4 front[3], back[3];
 } quad;
 
-static inline void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t first,
-                                  quad *out)
+/* The numbers of four slots in a row: neighbours, or every second of eight; `next`: where the last four of these lie. */
+NOH_ALWAYS_INLINE noh_v4 load_slots(const float *row, int halved, uint32_t next)
+{
+    return halved ? noh_v4_even(noh_v4_load(row), noh_v4_load(row + next)) : noh_v4_load(row);
+}
+
+NOH_ALWAYS_INLINE void transform_slots(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                                       uint32_t first, int halved, quad *out)
 {
     const float *row = basis->rows + first;
-    const uint32_t half = basis->half;
+    const uint32_t half = basis->half, next = first + 4u < half ? 4u : 0u; /* 0: past the middle, not used */
     noh_v4 even[3], odd[3];
     uint32_t k = 0;
     for (int c = 0; c < 3; c++) {
@@ -216,14 +222,14 @@ static inline void transform_quad(const noh_clip_basis *basis, const float (*coe
         odd[c] = noh_v4_set(0.0f);
     }
     for (; k + 1u < last; k += 2u, row += 2u * half) {
-        const noh_v4 a = noh_v4_load(row), b = noh_v4_load(row + half);
+        const noh_v4 a = load_slots(row, halved, next), b = load_slots(row + half, halved, next);
         for (int c = 0; c < 3; c++) {
             even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
             odd[c] = noh_v4_add(odd[c], noh_v4_mul(b, noh_v4_set(coefs[k + 1u][c])));
         }
     }
     if (k < last) {
-        const noh_v4 a = noh_v4_load(row);
+        const noh_v4 a = load_slots(row, halved, next);
         for (int c = 0; c < 3; c++) {
             even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
         }
@@ -231,6 +237,16 @@ static inline void transform_quad(const noh_clip_basis *basis, const float (*coe
     for (int c = 0; c < 3; c++) {
         out->front[c] = noh_v4_add(even[c], odd[c]);
         out->back[c] = noh_v4_sub(even[c], odd[c]);
+    }
+}
+
+static void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t slot,
+                           quad *out)
+{
+    if (basis->halved) {
+        transform_slots(basis, coefs, last, 2u * slot, 1, out);
+    } else {
+        transform_slots(basis, coefs, last, slot, 0, out);
     }
 }
 
@@ -269,21 +285,22 @@ static inline void store_quat(uint8_t *out, noh_v4 q, int wide)
 static inline void synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
                                   const float reference[4], int wide, uint8_t *out, size_t stride)
 {
-    const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
+    const uint32_t slots = noh_clip_slots(basis->frames, basis->halved);
+    const uint32_t fronts = noh_clip_front_slots(basis->frames, basis->halved);
     noh_v4 r[4], front[4], back[4];
     for (int i = 0; i < 4; i++) {
         r[i] = noh_v4_set(reference[i]);
     }
-    for (uint32_t f = 0; f < middle; f += 4u) {
-        const uint32_t lanes = middle - f < 4u ? middle - f : 4u;
+    for (uint32_t s = 0; s < fronts; s += 4u) {
+        const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
         quad u;
-        if (basis->skip >> f / 4u & 1u) continue;
-        transform_quad(basis, coefs, last, f, &u);
+        if (basis->skip >> s / 4u & 1u) continue;
+        transform_quad(basis, coefs, last, s, &u);
         rotate_quad(u.front, r, front);
         rotate_quad(u.back, r, back);
         for (uint32_t i = 0; i < lanes; i++) {
-            store_quat(out + (frames - 1u - f - i) * stride, back[i], wide);
-            store_quat(out + (f + i) * stride, front[i], wide);
+            store_quat(out + (slots - 1u - s - i) * stride, back[i], wide);
+            store_quat(out + (s + i) * stride, front[i], wide);
         }
     }
 }
@@ -301,14 +318,15 @@ void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4
 void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
                            const float reference[3], uint8_t *out, size_t stride)
 {
-    const uint32_t frames = basis->frames, middle = (frames + 1u) / 2u;
-    for (uint32_t f = 0; f < middle; f += 4u) {
-        const uint32_t lanes = middle - f < 4u ? middle - f : 4u;
+    const uint32_t slots = noh_clip_slots(basis->frames, basis->halved);
+    const uint32_t fronts = noh_clip_front_slots(basis->frames, basis->halved);
+    for (uint32_t s = 0; s < fronts; s += 4u) {
+        const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
         float front[4][4], back[4][4];
         noh_v4 v[4];
         quad u;
-        if (basis->skip >> f / 4u & 1u) continue;
-        transform_quad(basis, coefs, last, f, &u);
+        if (basis->skip >> s / 4u & 1u) continue;
+        transform_quad(basis, coefs, last, s, &u);
         for (int side = 0; side < 2; side++) {
             for (int c = 0; c < 3; c++) {
                 v[c] = noh_v4_add(noh_v4_set(reference[c]), side ? u.back[c] : u.front[c]);
@@ -320,8 +338,8 @@ void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4],
             }
         }
         for (uint32_t i = 0; i < lanes; i++) {
-            memcpy(out + (frames - 1u - f - i) * stride, back[i], 3u * sizeof(float));
-            memcpy(out + (f + i) * stride, front[i], 3u * sizeof(float));
+            memcpy(out + (slots - 1u - s - i) * stride, back[i], 3u * sizeof(float));
+            memcpy(out + (s + i) * stride, front[i], 3u * sizeof(float));
         }
     }
 }

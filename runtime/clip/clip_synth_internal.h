@@ -22,14 +22,44 @@ typedef struct noh_clip_basis {
     uint32_t frames;
     uint32_t half;     /* (frames + 1) / 2, up to a multiple of 4 */
     const float *rows; /* [frames][half], zeros past the middle */
-    uint32_t skip;     /* bit i: frames 4 i to 4 i + 3 and their mirrors are not wanted and stay as they are */
+    uint32_t skip;     /* bit i: slots 4 i to 4 i + 3 and their mirrors are not wanted and stay as they are */
+    uint32_t halved;   /* 1: only the frames of slots */
 } noh_clip_basis;
 
-/* The bit of `skip` that a frame lies under. */
-static inline uint32_t noh_clip_quad_bit(uint32_t frame, uint32_t frames)
+/* Decoded frames lie in slots, one for each frame; in a halved segment one for each even frame of the first half, and
+ * one for what mirrors it, because both are made at once. So first and last frame are there, two frames apart each, and
+ * one to three in the middle. How many slots the first half has, its middle included, and the segment: */
+static inline uint32_t noh_clip_front_slots(uint32_t frames, uint32_t halved)
 {
-    const uint32_t mirror = frames - 1u - frame;
-    return 1u << (frame < mirror ? frame : mirror) / 4u;
+    return ((frames + 1u) / 2u + halved) >> halved;
+}
+static inline uint32_t noh_clip_slots(uint32_t frames, uint32_t halved)
+{
+    const uint32_t fronts = noh_clip_front_slots(frames, halved);
+    const uint32_t last = (fronts - 1u) << halved; /* a frame; it may be its own mirror */
+    return 2u * fronts - (2u * last + 1u == frames);
+}
+
+/* The frame of a slot. */
+static inline uint32_t noh_clip_slot_frame(uint32_t slot, uint32_t frames, uint32_t halved)
+{
+    const uint32_t mirror = noh_clip_slots(frames, halved) - 1u - slot;
+    return slot <= mirror ? slot << halved : frames - 1u - (mirror << halved);
+}
+
+/* The last slot whose frame is not after `frame`. */
+static inline uint32_t noh_clip_slot_of(uint32_t frame, uint32_t frames, uint32_t halved)
+{
+    const uint32_t last = noh_clip_front_slots(frames, halved) - 1u, mirror = frames - 1u - frame;
+    if (mirror <= last << halved) return noh_clip_slots(frames, halved) - 1u - ((mirror + halved) >> halved);
+    return frame >> halved < last ? frame >> halved : last;
+}
+
+/* The bit of `skip` that a slot lies under. */
+static inline uint32_t noh_clip_quad_bit(uint32_t slot, uint32_t slots)
+{
+    const uint32_t mirror = slots - 1u - slot;
+    return 1u << (slot < mirror ? slot : mirror) / 4u;
 }
 
 /* How many floats half a row has, and a whole basis. */
@@ -64,7 +94,7 @@ void noh_clip_mix_matrix(const float q[4], float m[9]);
 void noh_clip_dequantise(const int32_t (*coefs)[4], uint32_t last, float step, const float *mix, float out[][4]);
 
 /* Frames of a rotation track: reference * rodrigues(components).
- * shapes  coefs[last][4]; frame f goes to out + f * stride, 4 int16 (times 32767) or 4 floats
+ * shapes  coefs[last][4]; slot s goes to out + s * stride, 4 int16 (times 32767) or 4 floats
  * source  Shuster, "A survey of attitude representations", 1993, section on modified Rodrigues parameters */
 void noh_clip_synth_rotation(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
                              const float reference[4], int wide, uint8_t *out, size_t stride);

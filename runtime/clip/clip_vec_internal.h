@@ -94,6 +94,10 @@ static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
     __m128i i = _mm_sub_epi32(_mm_cvttps_epi32(_mm_add_ps(v, _mm_set1_ps(32768.5f))), _mm_set1_epi32(32768));
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packs_epi32(i, i));
 }
+static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b)
+{
+    return _mm_shuffle_ps(a, b, 0x88);
+} /* lanes 0 and 2 of a, then of b */
 static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
 {
     switch (lane) { /* constant after inlining */
@@ -174,6 +178,10 @@ static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
 {
     int32x4_t i = vsubq_s32(vcvtq_s32_f32(vaddq_f32(v, vdupq_n_f32(32768.5f))), vdupq_n_s32(32768));
     vst1_s16(p, vqmovn_s32(i));
+}
+static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b)
+{
+    return vuzp1q_f32(a, b);
 }
 static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
 {
@@ -287,6 +295,11 @@ static inline void noh_v4_store_i16(int16_t *p, noh_v4 v)
         const int32_t r = (int32_t)(v.f[i] + 32768.5f) - 32768;
         p[i] = (int16_t)(r > 32767 ? 32767 : r);
     }
+}
+static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b)
+{
+    const noh_v4 r = { { a.f[0], a.f[2], b.f[0], b.f[2] } };
+    return r;
 }
 static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
 {

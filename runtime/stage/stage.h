@@ -120,9 +120,11 @@ typedef struct noh_kind_desc {
                                 * none */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
     uint32_t root_up;          /* axis of the heading: 0 x, 1 y, 2 z; not used without root_axes */
-    int root_told;             /* 1: root motion does not move the actor, it is only told (noh_actor_root) */
-    int inertia;               /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
-    int unpickable;            /* 1: noh_stage_pick passes through */
+    uint32_t sample_rate_enough; /* frames per second of clips that are enough: of clips that have twice as many half
+                                  * are decoded, into half of the bytes (clip/clip_codec.h); default (0) all */
+    int root_told;               /* 1: root motion does not move the actor, it is only told (noh_actor_root) */
+    int inertia;                 /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
+    int unpickable;              /* 1: noh_stage_pick passes through */
     const noh_texture_set *texture_sets; /* [texture_set_count] that its actors may wear (noh_look); borrowed */
     uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
 } noh_kind_desc;

@@ -269,9 +269,10 @@ static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
     return 1;
 }
 
-static int same_roots(const noh_kind_desc *a, const noh_kind_desc *b)
+static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 {
-    return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up);
+    return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
+           a->sample_rate_enough == b->sample_rate_enough;
 }
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
@@ -280,7 +281,7 @@ uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
     for (uint32_t i = 0; i < kind; i++) {
         const noh_kind_desc other = noh_stage_kind_desc(desc, i);
         if (other.mesh->bytes == own.mesh->bytes && other.skeleton == own.skeleton && same_clips(&own, &other) &&
-            same_roots(&own, &other)) {
+            same_play(&own, &other)) {
             return i;
         }
     }
@@ -299,6 +300,7 @@ noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_sta
     bank.skeleton = d.skeleton;
     bank.root_axes = d.root_axes;
     bank.root_up = d.root_up;
+    bank.sample_rate_enough = d.sample_rate_enough;
     bank.cached_segment_count = plan->kinds[kind].cached_segment_count;
     if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
         bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;

@@ -130,12 +130,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
         return 0;
     }
     memcpy(copy, data, count);
+    memset(&desc, 0, sizeof desc);
     desc.bytes = copy;
     desc.byte_count = count;
     desc.bind = bind_pose();
     desc.joint_count = 0;
     accepted = 0;
     desc.joint_count = joints_of(&desc);
+    open_clip(&desc);
+    desc.sample_rate_enough = 1; /* most are halved */
     open_clip(&desc);
     free(copy);
     return 0;

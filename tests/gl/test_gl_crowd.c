@@ -118,7 +118,7 @@ static void add_cap_errors(const noh_mesh *mesh, const float *matrices, float er
 /* The levels do not come out of the converter, which would have measured this. */
 static void measure_caps(void)
 {
-    const noh_clip_bank_desc desc = { &levels.pack, NULL, 0, 0, 0, 0, 0, 0, NULL, 0 };
+    const noh_clip_bank_desc desc = { .clips = &levels.pack };
     const size_t bytes = noh_clip_bank_size(&desc, NULL);
     float errors[3] = { 0.0f, 0.0f, 0.0f }, placed[12u * JOINTS], matrices[12u * JOINTS], floats[8];
     void *memory = test_aligned(NULL, bytes);

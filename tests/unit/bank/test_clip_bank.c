@@ -193,6 +193,7 @@ static void alone_open(alone *a, const noh_pack *p, uint32_t index)
     noh_pack_clip_at(p, index, &m, NULL);
     memset(&skeleton, 0, sizeof skeleton);
     (void)noh_pack_skeleton_at(p, m.header->skeleton, &skeleton, NULL, NULL);
+    memset(&desc, 0, sizeof desc);
     desc.bytes = m.bytes;
     desc.byte_count = m.header->clip_bytes;
     desc.bind = skeleton.bind_pose;

@@ -737,6 +737,7 @@ static void other_skeletons_and_versions_are_refused(void **state)
     size_t size;
     (void)state;
     assert_null(fixture_build(&x, fixture_swing(5, 30, 1, 10.0f, 0.5, 0.5), NULL, 2));
+    memset(&desc, 0, sizeof desc);
     desc.bytes = x.blob.bytes;
     desc.byte_count = x.blob.count;
     desc.bind = x.bind;

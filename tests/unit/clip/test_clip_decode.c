@@ -366,7 +366,7 @@ static void skipped_frames_stay(void **state)
 {
     float rows[40 * 20], coefs[40][4], reference[4] = { 0.0f, 0.6f, 0.0f, 0.8f };
     uint8_t whole[40 * 16], part[sizeof whole];
-    noh_clip_basis basis = { 37, noh_clip_basis_half(37), rows, 0 };
+    noh_clip_basis basis = { 37, noh_clip_basis_half(37), rows, 0, 0 };
     (void)state;
     noh_clip_basis_build(37, 1, rows);
     for (uint32_t k = 0; k < 160u; k++) coefs[k / 4u][k % 4u] = 0.3f / (float)(1u + k % 7u);

@@ -160,12 +160,13 @@ static void frames_are_the_scalar_twins(void **state)
     uint32_t seed = 5;
     (void)state;
     for (uint32_t frames = 1; frames <= NOH_CLIP_SEGMENT_FRAMES_MAX; frames++) {
-        const noh_clip_basis basis = { frames, noh_clip_basis_half(frames), rows, frames % 3u ? 0u : 2u };
+        noh_clip_basis basis = { frames, noh_clip_basis_half(frames), rows, frames % 3u ? 0u : 2u, 0 };
         basis_build_scalar(frames, frames % 2u, rows);
         for (uint32_t i = 0; i < 12u; i++) {
             float coefs[NOH_CLIP_SEGMENT_FRAMES_MAX][4], reference[4];
             uint8_t here[NOH_CLIP_SEGMENT_FRAMES_MAX * STRIDE], there[sizeof here];
             const uint32_t last = next_random(&seed) % (frames + 1u), size = next_random(&seed) % 3u;
+            basis.halved = i % 2u;
             for (uint32_t k = 0; k < frames * 4u; k++)
                 coefs[k / 4u][k % 4u] = random_float(&seed, size == 2u ? 1e9f : 1.0f);
             for (uint32_t k = 0; k < 4u; k++) reference[k] = random_float(&seed, 0.5f);

@@ -355,6 +355,46 @@ static void a_walk_takes_the_actor_along(void **state)
     cast_close(&c);
 }
 
+static uint64_t bytes_of_puppets(cast *c, uint32_t first_enough, uint32_t second_enough)
+{
+    c->kinds[0].sample_rate_enough = first_enough;
+    c->kinds[1].sample_rate_enough = second_enough;
+    assert_int_equal(noh_stage_plan_make(&c->desc, NULL, &c->plan, &said), NOH_OK);
+    return c->plan.cpu_bytes;
+}
+
+/* Two kinds of one pack's clips, which have 30 frames a second: where half of them are enough for both, less is cached;
+ * for one of them alone, each kind has clips of its own. The walk leads to the same place, but for what it is off
+ * between the frames that are left. */
+static void half_of_the_frames_may_be_enough(void **state)
+{
+    noh_actor actors[2];
+    noh_place places[2];
+    uint64_t whole, halved, both;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[1] = c.kinds[PUPPETS];
+    c.kinds[0] = c.kinds[PUPPETS];
+    c.desc.kind_count = 2;
+    whole = bytes_of_puppets(&c, 0, 0);
+    halved = bytes_of_puppets(&c, 15, 15);
+    both = bytes_of_puppets(&c, 0, 15);
+    assert_true(halved < whole && whole < both);
+    cast_make(&c, NULL);
+    for (uint32_t k = 0; k < 2u; k++) {
+        assert_int_equal(noh_stage_spawn(c.stage, k, NULL, &actors[k], NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c.stage, actors[k], 0, "walk", NULL, NULL), NOH_OK);
+    }
+    for (int f = 0; f < 120; f++) step(c.stage, CAST_STEP);
+    for (uint32_t k = 0; k < 2u; k++) {
+        assert_int_equal(noh_actor_place(c.stage, actors[k], &places[k], NULL), NOH_OK);
+        assert_true(places[k].position[2] > 0.5f);
+    }
+    for (int i = 0; i < 3; i++) assert_true(fabsf(places[0].position[i] - places[1].position[i]) < 0.01f);
+    cast_close(&c);
+}
+
 /* Every joint of a puppet in the world: out[joint_count][12]. */
 static void take_joints(const cast *c, noh_actor actor, float *out)
 {
@@ -1104,6 +1144,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(actor_levels_rise_in_error),
         cmocka_unit_test(a_bound_is_kept_or_refused),
         cmocka_unit_test(kinds_that_share_clips_tell_the_same_cached_segments),
+        cmocka_unit_test(half_of_the_frames_may_be_enough),
         cmocka_unit_test(desc_fields_broken_in_turn),
         cmocka_unit_test(a_byte_less_is_refused),
         cmocka_unit_test(a_stale_actor_is_an_error),

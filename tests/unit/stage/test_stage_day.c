@@ -78,7 +78,9 @@ static void a_day_of_every_clip(void **state)
     for (uint32_t kind = PUPPETS; kind <= MASKS; kind++) {
         noh_pack_clip clip;
         for (uint32_t i = 0; noh_pack_clip_at(&c.packs[kind], i, &clip, NULL) == NOH_OK; i++) {
-            noh_clip_desc desc = { clip.bytes, clip.header->clip_bytes, NULL, clip.header->joint_count };
+            noh_clip_desc desc = { .bytes = clip.bytes,
+                                   .byte_count = clip.header->clip_bytes,
+                                   .joint_count = clip.header->joint_count };
             noh_skeleton skeleton;
             noh_clip_info info;
             size_t bytes;

@@ -22,6 +22,7 @@ static int open_blob(certifier *c, const byte_buffer *blob, size_t begin)
     encoder *e = c->e;
     noh_clip_desc desc;
     size_t size;
+    memset(&desc, 0, sizeof desc);
     desc.bytes = blob->bytes + begin;
     desc.byte_count = blob->count - begin;
     desc.bind = e->bind;

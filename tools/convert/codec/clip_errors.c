@@ -36,7 +36,9 @@ static void sample(void *user, uint32_t entry, uint32_t tick, uint32_t joint_cou
 
 static int open_clip(const byte_buffer *bytes, player *p)
 {
-    noh_clip_desc desc = { bytes->bytes, bytes->count, p->bind, p->skeleton.joint_count };
+    noh_clip_desc desc = {
+        .bytes = bytes->bytes, .byte_count = bytes->count, .bind = p->bind, .joint_count = p->skeleton.joint_count
+    };
     const noh_clip *clips[1];
     noh_clip_cache_desc cache = { clips, 1, CACHED_SEGMENTS };
     size_t clip_size = noh_clip_size(&desc, NULL), cache_size;

@@ -1,7 +1,8 @@
 /* bench_clip.c: rows clip/: poses out of compressed clips, against raw keys and memcpy.
  *
  *   warm     one instance, every segment decoded before
- *   alone    one instance at 60 Hz with a cache of its own, decoding included
+ *   alone    one instance at 60 Hz with a cache of its own, decoding included; of clips with 100 frames a second and
+ *            more also halved
  *   shared   a hundred instances at random phases of all clips, one cache that holds them; with
  *            the requests and frame begins of a game
  *   seek     random times, a cache of two segments: nearly every sample of a long clip decodes */
@@ -21,7 +22,9 @@
 
 typedef struct clip_bench {
     const bench_clip_set *set;
-    bench_cache all, alone, two;  /* all segments of all clips; what a player needs; the least that works */
+    bench_clip_set halved;       /* the longest clip, if it has frames to spare */
+    bench_cache all, alone, two; /* all segments of all clips; what a player needs; the least that works */
+    bench_cache alone_halved;
     noh_transform *poses, *other; /* [BENCH_INSTANCES][joints_max] */
     uint32_t clip_of[BENCH_INSTANCES];
     uint64_t phases[BENCH_INSTANCES];
@@ -61,13 +64,24 @@ static void run_warm_copy(void *self, uint32_t frame)
     b->seen = b->poses;
 }
 
+static void play_alone(clip_bench *b, noh_clip_cache *cache, uint32_t frame)
+{
+    const bench_clip *c = &b->set->clips[0];
+    noh_clip_cache_begin_frame(cache);
+    noh_clip_sample(cache, 0, bench_clip_time(c, frame, 0), c->info.joint_count, b->poses, NULL);
+    b->seen = b->poses;
+}
+
 static void run_alone(void *self, uint32_t frame)
 {
     clip_bench *b = self;
-    const bench_clip *c = &b->set->clips[0];
-    noh_clip_cache_begin_frame(b->alone.cache);
-    noh_clip_sample(b->alone.cache, 0, bench_clip_time(c, frame, 0), c->info.joint_count, b->poses, NULL);
-    b->seen = b->poses;
+    play_alone(b, b->alone.cache, frame);
+}
+
+static void run_alone_halved(void *self, uint32_t frame)
+{
+    clip_bench *b = self;
+    play_alone(b, b->alone_halved.cache, frame);
 }
 
 /* Times that are independent of one another (murmur3's finaliser): which two segments a cache keeps then makes no
@@ -203,6 +217,10 @@ static int open_bench(clip_bench *b, const bench_clip_set *set)
     status = bench_cache_open(&b->all, set, set->count, 0);
     if (!status) status = bench_cache_open(&b->alone, set, 1, NOH_CLIP_CACHE_SEGMENTS_MIN);
     if (!status) status = bench_cache_open(&b->two, set, 1, NOH_CLIP_CACHE_SEGMENTS_MIN);
+    if (!status) status = bench_clip_set_halve(set, &b->halved);
+    if (!status && b->halved.count) {
+        status = bench_cache_open(&b->alone_halved, &b->halved, 1, NOH_CLIP_CACHE_SEGMENTS_MIN);
+    }
     b->poses = calloc((size_t)BENCH_INSTANCES * set->joints_max, sizeof *b->poses);
     b->other = calloc((size_t)set->joints_max, sizeof *b->other);
     if (!status && (!b->poses || !b->other)) {
@@ -220,11 +238,14 @@ static void close_bench(clip_bench *b)
     bench_cache_close(&b->all);
     bench_cache_close(&b->alone);
     bench_cache_close(&b->two);
+    bench_cache_close(&b->alone_halved);
+    bench_clip_set_close(&b->halved);
     free(b->poses);
     free(b->other);
 }
 
-enum { WARM, WARM_KEYS, WARM_COPY, ALONE, SHARED, SHARED_KEYS, SEEK, SEEK_KEYS, CELLS };
+/* ALONE_HALVED comes last: it is left out of clips without frames to spare. */
+enum { WARM, WARM_KEYS, WARM_COPY, ALONE, SHARED, SHARED_KEYS, SEEK, SEEK_KEYS, ALONE_HALVED, CELLS };
 
 static void add_rows(bench_job *job, const clip_bench *b, const bench_cells *cells)
 {
@@ -232,7 +253,7 @@ static void add_rows(bench_job *job, const clip_bench *b, const bench_cells *cel
                  seek = 1e-3 * SEEK_JOINTS / joints;
     double cost[CELLS];
     char name[64];
-    for (uint32_t i = 0; i < CELLS; i++) {
+    for (uint32_t i = 0; i < cells->count; i++) {
         cost[i] = bench_median(cells, i);
     }
     bench_add_row(&job->rows, "clip/warm", "raw-keys", cost[WARM_KEYS] / joints, cost[WARM] / joints, "ns/joint",
@@ -241,6 +262,10 @@ static void add_rows(bench_job *job, const clip_bench *b, const bench_cells *cel
                   cells->rounds);
     bench_add_row(&job->rows, "clip/alone", "raw-keys", cost[WARM_KEYS] / joints, cost[ALONE] / joints, "ns/joint",
                   cells->rounds);
+    if (b->halved.count) {
+        bench_add_row(&job->rows, "clip/alone-halved", "clip/alone", cost[ALONE] / joints, cost[ALONE_HALVED] / joints,
+                      "ns/joint", cells->rounds);
+    }
     snprintf(name, sizeof name, "clip/shared-%ux%u", (unsigned)BENCH_INSTANCES, (unsigned)b->set->count);
     bench_add_row(&job->rows, name, "raw-keys", cost[SHARED_KEYS] / crowd, cost[SHARED] / crowd, "ns/joint",
                   cells->rounds);
@@ -252,11 +277,12 @@ static int measure(bench_job *job, clip_bench *b)
 {
     static void (*const works[CELLS])(void *self, uint32_t frame) = { run_warm,  run_warm_keys, run_warm_copy,
                                                                       run_alone, run_shared,    run_shared_keys,
-                                                                      run_seek,  run_seek_keys };
+                                                                      run_seek,  run_seek_keys, run_alone_halved };
+    const uint32_t count = b->halved.count ? CELLS : ALONE_HALVED;
     bench_cells cells;
     int status = check_caches(b);
     memset(&cells, 0, sizeof cells);
-    for (uint32_t i = 0; i < CELLS && !status; i++) {
+    for (uint32_t i = 0; i < count && !status; i++) {
         bench_add_cell(&cells, works[i], b);
     }
     if (!status) status = bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "clip");

@@ -15,6 +15,7 @@
 /* A clip, and the raw keys that the baseline plays. */
 typedef struct bench_clip {
     const char *name;
+    noh_clip_desc desc;
     void *memory;
     noh_clip *clip;
     noh_clip_info info;
@@ -39,6 +40,10 @@ typedef struct bench_cache {
 /* The clips with the most joints x frames of all packs; count 0 where there are none. */
 int bench_clip_set_open(bench_clip_set *set, const bench_job *job);
 void bench_clip_set_close(bench_clip_set *set);
+
+/* Another set, of the first clip alone, halved (clip/clip_codec.h) and without keys; count 0 where the clip has less
+ * than 100 frames a second. */
+int bench_clip_set_halve(const bench_clip_set *set, bench_clip_set *halved);
 
 /* A cache for the first `clip_count` clips; slots 0: one for every segment. */
 int bench_cache_open(bench_cache *c, const bench_clip_set *set, uint32_t clip_count, uint32_t slots);

@@ -7,16 +7,27 @@
 #include <string.h>
 
 #define TICKS_PER_SECOND 48000.0
+#define HALVED_RATE_MIN 100u
 
 /* ---- clips ---- */
+
+/* Opens c->desc. */
+static int open_clip(bench_clip *c, const char *path)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const size_t bytes = noh_clip_size(&c->desc, &error);
+    c->memory = bytes ? malloc(bytes) : NULL;
+    if (!c->memory) return bytes ? tool_fail(path, "out of memory") : tool_fail_error(path, &error);
+    if (noh_clip_init(c->memory, bytes, &c->desc, &c->clip, &error)) return tool_fail_error(path, &error);
+    noh_clip_info_of(c->clip, &c->info);
+    return 0;
+}
 
 static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_pack_clip clip;
     noh_skeleton skeleton;
-    noh_clip_desc desc;
-    size_t bytes;
     memset(c, 0, sizeof *c);
     noh_pack_clip_at(&file->pack, index, &clip, NULL);
     if (clip.header->joint_count == 0u) {
@@ -25,21 +36,12 @@ static int init_clip(bench_clip *c, const pack_file *file, uint32_t index)
     if (noh_pack_bind_clip(&file->pack, &clip, &skeleton, NULL, &error)) {
         return tool_fail(file->path, "clip '%s': %s", clip.name, error.what);
     }
-    desc.bytes = clip.bytes;
-    desc.byte_count = clip.header->clip_bytes;
-    desc.bind = skeleton.bind_pose;
-    desc.joint_count = skeleton.joint_count;
-    bytes = noh_clip_size(&desc, &error);
     c->name = clip.name;
-    c->memory = bytes ? malloc(bytes) : NULL;
-    if (!c->memory) {
-        return bytes ? tool_fail(file->path, "out of memory") : tool_fail_error(file->path, &error);
-    }
-    if (noh_clip_init(c->memory, bytes, &desc, &c->clip, &error)) {
-        return tool_fail_error(file->path, &error);
-    }
-    noh_clip_info_of(c->clip, &c->info);
-    return 0;
+    c->desc.bytes = clip.bytes;
+    c->desc.byte_count = clip.header->clip_bytes;
+    c->desc.bind = skeleton.bind_pose;
+    c->desc.joint_count = skeleton.joint_count;
+    return open_clip(c, file->path);
 }
 
 static void free_clip(bench_clip *c)
@@ -121,6 +123,20 @@ void bench_clip_set_close(bench_clip_set *set)
         free_clip(&set->clips[i]);
     }
     set->count = 0;
+}
+
+int bench_clip_set_halve(const bench_clip_set *set, bench_clip_set *halved)
+{
+    const uint32_t rate = set->clips[0].info.sample_rate_uhz / NOH_CLIP_MICRO;
+    bench_clip *c = &halved->clips[0];
+    memset(halved, 0, sizeof *halved);
+    if (rate < HALVED_RATE_MIN) return 0;
+    c->name = set->clips[0].name;
+    c->desc = set->clips[0].desc;
+    c->desc.sample_rate_enough = rate / 2u;
+    halved->count = 1;
+    halved->joints_max = set->clips[0].info.joint_count;
+    return open_clip(c, c->name);
 }
 
 /* ---- caches ---- */

@@ -108,6 +108,7 @@ static int open_clip(crowd *c, const pack_file *file, uint32_t index)
     if (noh_pack_bind_clip(&file->pack, &clip, &bound, &skeleton, NULL) || skeleton != 0) {
         return 0;
     }
+    memset(&desc, 0, sizeof desc);
     desc.bytes = clip.bytes;
     desc.byte_count = clip.header->clip_bytes;
     desc.bind = bound.bind_pose;

@@ -320,6 +320,7 @@ static const setting settings[] = {
     { "finest_level", SET_COUNT, 1, 0, offsetof(noh_kind_desc, finest_level), 0, NOH_LOD_LEVELS_MAX - 1u },
     { "inertia", SET_FLAG, 1, 0, offsetof(noh_kind_desc, inertia), 0, 1 },
     { "held_float_count", SET_HELD, 1, 0, offsetof(noh_kind_desc, held_float_count), 0, NOH_FLOATS_MAX },
+    { "sample_rate_enough", SET_COUNT, 1, 0, offsetof(noh_kind_desc, sample_rate_enough), 1, 1000 },
     { "root_axes", SET_ROOT, 1, 0, 0, 0, 0 },
     { "layer", SET_LAYER, 1, 1, 0, 0, 0 },
     { "finer", SET_FINER, 1, 0, 0, 0, 0 },

@@ -53,6 +53,7 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     memset(o, 0, sizeof *o);
     noh_pack_clip_at(&file->pack, index, &o->packed, NULL);
     (void)noh_pack_skeleton_at(&file->pack, o->packed.header->skeleton, &o->skeleton, NULL, NULL);
+    memset(&desc, 0, sizeof desc);
     desc.bytes = o->packed.bytes;
     desc.byte_count = o->packed.header->clip_bytes;
     desc.bind = o->skeleton.bind_pose;

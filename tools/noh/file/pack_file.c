@@ -89,6 +89,7 @@ int tool_clip_info(const pack_file *file, uint32_t index, noh_pack_clip *clip, n
     memset(&skeleton, 0, sizeof skeleton);
     noh_pack_clip_at(&file->pack, index, clip, NULL);
     (void)noh_pack_skeleton_at(&file->pack, clip->header->skeleton, &skeleton, NULL, NULL);
+    memset(&desc, 0, sizeof desc);
     desc.bytes = clip->bytes;
     desc.byte_count = clip->header->clip_bytes;
     desc.bind = skeleton.bind_pose;

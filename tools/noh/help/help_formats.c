@@ -174,6 +174,7 @@ const char *const help_formats_text[] = {
     "     face joints | face X Y Z X Y Z              faces live: eyes by joints, or centres of the left and the right one",
     "     ragdolls N                                  characters that may fall at one time (none)",
     "     held_float_count N                          floats that the game may hold (8; 0: none)",
+    "     sample_rate_enough N                        frames a second that are enough: clips of twice as many are halved (all)",
     "     root_axes ground|x,y,z,heading              axes that clips move the character by; ground: x,z,heading. y is up",
     "     layer NAME [base|over|add] [joints=NAMES] [floats=NAMES] [tracks=N]",
     "Options of noh budget go over what the file says. Without layers a kind has body, face and add. NAMES are separated by blanks, '-' before "

@@ -163,7 +163,10 @@ static int check_times(mesh_job *m, noh_clip_cache *cache, const noh_clip *clip)
 
 static int check_clip(mesh_job *m, const noh_pack_clip *chosen)
 {
-    noh_clip_desc desc = { chosen->bytes, chosen->header->clip_bytes, m->skeleton.bind_pose, m->skeleton.joint_count };
+    noh_clip_desc desc = { .bytes = chosen->bytes,
+                           .byte_count = chosen->header->clip_bytes,
+                           .bind = m->skeleton.bind_pose,
+                           .joint_count = m->skeleton.joint_count };
     size_t bytes = noh_clip_size(&desc, NULL), cache_bytes;
     noh_clip_cache_desc cache_desc = { NULL, 1, 2 };
     const noh_clip *clips[1];
