@@ -107,7 +107,8 @@ typedef struct noh_gl_morph_desc {
 
 /* What `auto` weighs, for one update of one instance of each mesh with the expected share of its targets active. The
  * costs of paths are in texels blended into three layers of RGBA32F; a path has one also where it cannot run. Factors
- * for software rasterisers were measured, those for GPUs reasoned (gl_morph_cost.c); noh_gl_morph_calibrate measures */
+ * for software rasterisers were measured, those for GPUs on one of them (gl_morph_cost.c); noh_gl_morph_calibrate
+ * measures on the GPU at hand */
 typedef struct noh_gl_morph_costs {
     float texels, quads, blocks, pairs; /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
     float touched;                      /* vertices that any target moves */

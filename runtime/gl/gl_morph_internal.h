@@ -90,6 +90,9 @@ struct noh_gl_morph {
 noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                                noh_gl_morph_plan *plan, noh_error *error);
 
+/* Whether the path cpu writes finished vertices. */
+int noh_gl_morph_finishes(const noh_gl_morph_desc *desc, noh_accumulate accumulate);
+
 /* Fill plan->costs. The plan has accumulate and layer_count. */
 void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan);
 

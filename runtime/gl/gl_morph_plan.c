@@ -152,14 +152,17 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
     return NOH_OK;
 }
 
+int noh_gl_morph_finishes(const noh_gl_morph_desc *desc, noh_accumulate accumulate)
+{
+    return desc->vertices && accumulate != NOH_ACCUMULATE_F16 && !has_occlusion(desc) && !desc->coarse &&
+           !has_uv_targets(desc);
+}
+
 /* How many buffers finished vertices take turns in. A software rasteriser is at most a frame behind, and two stay in
  * its caches; a GPU may be two frames behind. */
 static uint32_t vertex_ring(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, const noh_gl_morph_plan *plan)
 {
-    if (!desc->vertices || plan->path != NOH_MORPH_CPU || plan->accumulate == NOH_ACCUMULATE_F16 || plan->occlusion ||
-        desc->coarse || !plan->pair_count || has_uv_targets(desc)) {
-        return 0;
-    }
+    if (plan->path != NOH_MORPH_CPU || !plan->pair_count || !noh_gl_morph_finishes(desc, plan->accumulate)) return 0;
     return noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) ? 2u : NOH_VERTEX_RING_MAX;
 }
 

@@ -18,7 +18,7 @@ void budget_why_print(const noh_gl_morph_plan *plan)
     } else {
         puts("none, or not known");
     }
-    puts("costs, in texels blended into three layers of RGBA32F (of GPUs reasoned, not measured):");
+    puts("costs, in texels blended into three layers of RGBA32F (factors for GPUs were measured on one of them):");
     printf("  %-10s %12.0f\n  %-10s %12.0f\n  %-10s %12.0f\n  %-10s %12.0f\n", "mrt", (double)c->mrt, "per-layer",
            (double)c->per_layer, "gather", (double)c->gather, "cpu", (double)c->cpu);
     printf("an update of all instances sends at most %llu bytes\n", (unsigned long long)plan->update_bytes);
