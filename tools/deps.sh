@@ -67,7 +67,8 @@ packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'
 packages_long='?valgrind:memcheck
 ?afl++:fuzzing noh build
-?frama-c-base:proofs of the checkers'
+?frama-c-base:proofs of the checkers
+?firefox-esr:the page in a second browser'
 packages_ear='libespeak-ng-dev:formants in every language
 flite:statistics of four voices
 festival:voices cut out of recordings

@@ -1,9 +1,12 @@
 # find_browser.sh, to be sourced. find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH so that node finds the npm
-# packages; those that are missing are installed into FOLDER. If something cannot be had, it calls leave_out with the
-# reason.
+# packages; those that are missing are installed into FOLDER. find_packages does the latter alone. If something cannot be
+# had, leave_out is called with the reason.
 find_browser() {
-    command -v node >/dev/null 2>&1 || leave_out 'no node here'
     chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || leave_out 'no chromium here'
+    find_packages "$@"
+}
+find_packages() {
+    command -v node >/dev/null 2>&1 || leave_out 'no node here'
     folder=$1
     shift
     mkdir -p "$folder"

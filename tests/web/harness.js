@@ -89,11 +89,11 @@ function tell(name, seconds, before, after) {
 }
 
 // { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served beside the
-// page.
-async function main(parts, flags, places) {
+// page; start: opens another browser than Chromium.
+async function main(parts, flags, places, start = launch) {
     const served = await serve({ ...places, '/': folder });
     address = served.address;
-    const browser = await launch(executablePath, flags);
+    const browser = await start(executablePath, flags);
     const only = (process.env.NOH_WEB_ONLY || '').split(',').filter((name) => name);
     try {
         for (const name of Object.keys(parts)) {
@@ -109,7 +109,7 @@ async function main(parts, flags, places) {
     console.log(`1..${told}`);
 }
 
-const run = (parts, flags, places) => main(parts, flags, places).then(() => process.exit(failures ? 1 : 0))
+const run = (...given) => main(...given).then(() => process.exit(failures ? 1 : 0))
     .catch((error) => { console.log(`not ok ${told + 1} - ${error}`); process.exit(1); });
 
 module.exports = { folder, out, check, keep, same, drawn, slide, setTarget, choose, toggle, open, close, loseAndRestore, faults, run, address: () => address };
