@@ -1,7 +1,8 @@
 // page.js: panels around a character (package/character.js): clips, sliders, the table of memory.
 // The query: ?path=gather forces a path; ?clip=NAME begins with that
 // clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
-// the camera where it is; ?actors=3 shows so many characters; ?size=512 draws a canvas of so many pixels across. load.js,
+// the camera where it is; ?actors=3 shows so many characters; ?size=512 draws a canvas of so many pixels across;
+// ?pixels=all draws all pixels, however long frames take. load.js,
 // light.js, hair.js, faces.js, speech.js and tabs.js have parts of the query of their own.
 'use strict';
 
@@ -49,7 +50,7 @@ byId('follow').addEventListener('change', () => {
 function showDetail() {
     if (byId('details').hidden) return;
     const shown = Module._web_level(), error = Module._web_error_pixels();
-    byId('detail-text').textContent = `${shown ? `level ${shown}` : 'full'}, off by at most ${error.toFixed(2)} pixels`;
+    byId('detail-text').textContent = `${shown ? `level ${shown}` : 'the full mesh'} is drawn, off by at most ${error.toFixed(2)} pixels`;
 }
 
 byId('detail').addEventListener('change', () => { character.level = Number(byId('detail').value); });
@@ -62,6 +63,17 @@ function listDetail() {
     byId('details').hidden = count < 2;
     byId('detail').value = character.level < count ? character.level : -1;
 }
+
+// ---- sharpness ----
+
+const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+function showSharpness() {
+    const { share } = character, slow = software.test(window.noh.renderer) ? 'no GPU draws here, so frames take long' : 'frames take long';
+    byId('sharpness-text').textContent = share < 1 ? `${Math.round(100 * share)} % of the pixels across while it moves: ${slow}. All of them at rest.` : 'All pixels are drawn.';
+}
+
+byId('sparing').addEventListener('change', () => { character.sparing = byId('sparing').checked; });
 
 // ---- clips ----
 
@@ -87,7 +99,7 @@ byId('time').addEventListener('input', () => {
     character.time = Number(byId('time').value);
 });
 byId('speed').addEventListener('input', () => {
-    byId('speed-text').textContent = Number(byId('speed').value).toFixed(2);
+    byId('speed-text').textContent = `${Number(byId('speed').value).toFixed(2)}\u00d7`;
     character.speed = Number(byId('speed').value);
 });
 
@@ -103,6 +115,11 @@ function begin(select, name, otherwise) {
     select.value = first ? first.value : -1;
 }
 
+// What the button does, not what is.
+function showPaused() {
+    byId('play').textContent = character.paused ? 'play' : 'pause';
+}
+
 // A face is offered where clips may move a body beside it.
 function beginClips() {
     const moves = Module._web_joint_count() > 0;
@@ -114,6 +131,7 @@ function beginClips() {
     begin(byId('clips'), 'clip', 1);
     begin(byId('face'), 'face', 0);
     character.paused = named(byId('clips')) === null || matchMedia('(prefers-reduced-motion: reduce)').matches;
+    showPaused();
     choose(0);
     if (named(byId('face')) !== null) character.play(named(byId('face')), { layer: 'face' });
 }
@@ -140,7 +158,7 @@ function showMemory() {
     addRow(['its block', memory.room, '']);
     addRow(['the pack', memory.pack, '']);
     addRow(['WebAssembly, cannot grow', memory.all, '']);
-    byId('device').textContent = (window.noh.path ? `path ${window.noh.path}, ` : '') + window.noh.renderer;
+    byId('device').textContent = `${window.noh.path ? `Targets are added by path ${window.noh.path}. ` : ''}Drawn by ${window.noh.renderer}${software.test(window.noh.renderer) ? ', without a GPU' : ''}.`;
 }
 
 // A pack as it begins.
@@ -175,6 +193,7 @@ function showLoaded({ whole }) {
 function showFrame() {
     window.noh.frames = character.frames;
     showDetail();
+    showSharpness();
     showTime();
     sliders.forEach(showWeight);
 }
@@ -188,10 +207,10 @@ function listen() {
     on('push', showPush);
     on('speech', showSaid);
     on('pick', ({ mesh, joint }) => { byId('picked').textContent = [mesh, joint].filter((name) => name).join(', joint '); });
-    on('pause', ({ paused }) => { byId('play').textContent = paused ? 'play' : 'pause'; });
+    on('pause', showPaused);
     on('lost', () => {
         window.noh.lost++;
-        say('the context is lost');
+        say('The browser has taken the graphics context away; the picture goes on when it comes back.');
     });
     on('restored', () => {
         window.noh.restored++;
@@ -202,10 +221,11 @@ function listen() {
 async function start() {
     const { Character, addPointers, addGaze } = await arriving;
     character = new Character(canvas, {
-        path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')),
+        path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
         follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),
     });
     byId('follow').checked = character.camera.follows;
+    byId('sparing').checked = character.sparing;
     Object.defineProperty(window.noh, 'due', { get: () => character.due });
     listen();
     addPointers(canvas, character);

@@ -19,6 +19,7 @@ function showTab(chosen) {
 function listTabs() {
     if (byId('tabs').hidden) return;
     for (const tab of tabs) tab.hidden = !has(tab);
+    byId('tabs').style.setProperty('--columns', Math.ceil(tabs.filter((tab) => !tab.hidden).length / 2)); // two rows
     const chosen = tabs.find((tab) => tab.getAttribute('aria-selected') === 'true');
     if (!chosen || chosen.hidden) showTab(tabs.find((tab) => !tab.hidden));
 }

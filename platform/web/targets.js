@@ -12,6 +12,12 @@ const groups = [ // the first that fits
     ['feelings', /happy|joy|angry|anger|sad|sorrow|fun|surpris|relax|fear|disgust|contempt|neutral/i],
     ['others', /./],
 ];
+
+// A name as words: browInnerUp is "brow inner up", eyeBlinkLeft "eye blink, left". What the pack says is its tooltip.
+function wordsOf(name) {
+    const words = name.replace(/([a-z\d])([A-Z])/g, '$1 $2').replace(/[_\-.\s]+/g, ' ').trim().toLowerCase();
+    return words.replace(/^(.+) (left|right|l|r)$/, (all, what, side) => `${what}, ${{ l: 'left', r: 'right' }[side] || side}`) || name;
+}
 const groupOf = (name) => groups.find((g) => g[1].test(name))[0];
 
 function showWeight(s) {
@@ -19,7 +25,7 @@ function showWeight(s) {
     if (weight === s.shown) return;
     s.shown = weight;
     s.slider.value = weight;
-    s.output.textContent = weight.toFixed(2);
+    s.output.textContent = Math.abs(weight) < 0.015 && !character.weights.has(s.name) ? '0.00' : weight.toFixed(2); // clips are rounded
 }
 
 function hold(s, weight) {
@@ -38,10 +44,10 @@ function setRange(s) {
 function addSlider(name, to) {
     const label = document.createElement('label'), span = document.createElement('span');
     const slider = document.createElement('input'), output = document.createElement('output');
-    span.textContent = span.title = name;
+    Object.assign(span, { textContent: wordsOf(name), title: name });
     Object.assign(slider, { type: 'range', step: 0.01 });
     slider.dataset.target = name;
-    const s = { label, slider, output, name, shown: NaN };
+    const s = { label, slider, output, name, found: `${name} ${span.textContent}`.toLowerCase(), shown: NaN };
     slider.addEventListener('input', () => hold(s, Number(slider.value)));
     label.classList.toggle('held', character.weights.has(name));
     label.append(span, slider, output);
@@ -76,7 +82,7 @@ function listTargets() {
 
 byId('search').addEventListener('input', () => {
     const part = byId('search').value.trim().toLowerCase();
-    for (const s of sliders) s.label.hidden = !s.name.toLowerCase().includes(part);
+    for (const s of sliders) s.label.hidden = !s.found.includes(part);
     for (const group of byId('targets').children) group.hidden = ![...group.querySelectorAll('label')].some((label) => !label.hidden);
 });
 byId('beyond').addEventListener('change', () => sliders.forEach(setRange));

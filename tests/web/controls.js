@@ -80,6 +80,68 @@ async function tabbed(browser) {
     await close(page, 'tabs');
 }
 
+// ---- how many pixels are drawn ----
+
+// A machine's frames, in ms by the share of pixels across, for so many seconds: what the share was in the end, the least of
+// them, and how often it changed.
+function play(pixels, seconds, frame, start = 0) {
+    const told = { least: 1, changes: 0, at: start };
+    for (const end = start + 1000 * seconds; told.at < end;) {
+        const ms = frame(pixels.share, told.at);
+        told.at += ms;
+        if (pixels.tell(ms, told.at)) told.changes++;
+        told.least = Math.min(told.least, pixels.share);
+    }
+    return told;
+}
+
+async function spared() {
+    const { Pixels } = await import(path.join(__dirname, '../../platform/web/package/pixels.js'));
+    const quick = new Pixels(), slow = new Pixels(), vertices = new Pixels();
+    check('sharpness: with a GPU all pixels are drawn', play(quick, 60, () => 16.7).least === 1);
+    check('sharpness: one long frame in a second changes nothing', play(quick, 60, (share, at) => (at % 1000 < 17 ? 300 : 16.7)).least === 1);
+    const down = play(slow, 15, (share) => 15 + 120 * share ** 2);
+    check('sharpness: fewer where pixels take long, until frames are short enough', 15 + 120 * slow.share ** 2 < 50 && slow.share > 0.3 && slow.share < 0.6, slow.share);
+    check('sharpness: and not to and fro', down.changes <= 3, down.changes);
+    play(slow, 60, () => 16.7, down.at);
+    check('sharpness: all again when frames are short', slow.share === 1);
+    const vain = play(vertices, 15, () => 200);
+    check('sharpness: all where fewer are no help', vertices.share === 1 && vain.changes === 2, `${vertices.share} after ${vain.changes}`);
+}
+
+// While it moves and at rest.
+async function sharpness(browser) {
+    await spared();
+    const page = await open(browser, { viewport: { width: 600, height: 300 } }, `clip=${clip}&size=0&pixels=auto`);
+    const width = () => page.evaluate(() => canvas.width);
+    await page.evaluate(() => { Object.assign(character.pixels, { share: 0.5, tell: () => false, forget() {} }); });
+    await page.waitForFunction(() => canvas.width * 2 === canvas.clientWidth);
+    check('sharpness: it says so', (await page.textContent('#sharpness-text')).startsWith('50 %'));
+    await page.evaluate(() => { character.paused = true; });
+    await page.waitForFunction(() => canvas.width === canvas.clientWidth);
+    check('sharpness: at rest it has all of them', (await page.textContent('#sharpness-text')).startsWith('All'));
+    await page.evaluate(() => { character.paused = false; });
+    await page.waitForFunction(() => canvas.width * 2 === canvas.clientWidth);
+    await drawn(page, () => page.click('#sparing'));
+    check('sharpness: or always, if asked for', await width() === await page.evaluate(() => canvas.clientWidth));
+    await close(page, 'sharpness');
+}
+
+// What the panels say.
+async function worded(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=${clip}`);
+    check('words: what plays can be paused', await page.textContent('#play') === 'pause');
+    const names = await page.evaluate(() => ['browInnerUp', 'eyeBlinkLeft', 'viseme_aa', 'Fcl_BRW_Angry', 'A', 'mouth-open', '_'].map(wordsOf));
+    check('words: of names', names.join('; ') === 'brow inner up; eye blink, left; viseme aa; fcl brw angry; a; mouth open; _', names.join('; '));
+    await page.fill('#search', 'brow inner');
+    const left = await page.locator('#targets label:visible input').evaluateAll((inputs) => inputs.map((input) => input.dataset.target));
+    check('words: are searched for, too', left.join() === 'browInnerUp', left.join());
+    await close(page, 'words');
+    const still = await open(browser, { viewport: { width: 1000, height: 700 }, reducedMotion: 'reduce' }, `clip=${clip}`);
+    check('words: what stands still can be played', await still.textContent('#play') === 'play');
+    await close(still, 'words, still');
+}
+
 // What axe finds wrong: nothing, in both colour schemes, wide and narrow.
 async function access(browser) {
     for (const [colorScheme, width, height, tab] of [['dark', 1440, 900, 'all'], ['light', 1440, 900, 'face'], ['light', 390, 844, 'motion'], ['dark', 844, 390, 'several']]) {
@@ -125,4 +187,4 @@ async function served() {
     check('served: no page, no port, no such host', refused('/nowhere') && refused(folder, 'x') && refused(folder, '70000') && refused(folder, '0', 'everybody'));
 }
 
-run({ served, keyboard, grouped, tabbed, access });
+run({ served, keyboard, grouped, tabbed, sharpness, worded, access });

@@ -1,6 +1,7 @@
 // character.js: a character on a canvas: its pack arrives, is drawn, plays clips, looks, feels and speaks. What is chosen
 // is kept here, so that it holds for the coarsest levels of a pack, for the whole of it, and for another pack.
 import { Camera, front } from './camera.js';
+import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
 import { Speech } from './speech.js';
 
@@ -9,6 +10,8 @@ export const backgrounds = ['plain', 'gradient', 'light'];
 export const shadows = ['off', 'on', 'blob'];
 const transition = 0.3; // seconds from one clip into another
 const mostPixels = 2; // of the canvas to one of the page
+const restsAfter = 300; // ms without a frame, after which one is drawn with all pixels
+const longest = 4000; // of a frame, ms: what takes longer was not drawn meanwhile
 const settles = 2500; // ms in which a gaze and a feeling arrive
 const swings = 2000; // in which hair comes to rest
 const shakes = 4000;
@@ -21,12 +24,12 @@ const asMade = { light: 'studio', degrees: 0, shadow: 'on', tonemap: true, backg
 
 export class Character extends EventTarget {
     // options: { program: where noh.wasm is, path, characters, alive, size: pixels across instead of the canvas's own,
-    // follows: whether the camera does, elsewhere: another renderer draws (three.js) }, and what `asMade` has.
+    // pixels: 'auto': fewer while it moves and frames take long, or 'all', follows: whether the camera does, elsewhere: another renderer draws (three.js) }, and what `asMade` has.
     constructor(canvas, options = {}) {
         super();
-        const { program, path = 'auto', characters = 1, alive = true, size = 0, follows = true, elsewhere = false, ...chosen } = options;
+        const { program, path = 'auto', characters = 1, alive = true, size = 0, pixels = 'auto', follows = true, elsewhere = false, ...chosen } = options;
         this.wants = { path, characters, alive, elsewhere };
-        Object.assign(this, { canvas, size, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
+        Object.assign(this, { canvas, size, pixels: new Pixels(), spares: pixels !== 'all', sharp: false, goesOn: false, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
         Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
         Object.assign(this, { ready: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
         this.speech = new Speech(this);
@@ -136,6 +139,7 @@ export class Character extends EventTarget {
     }
 
     begin() {
+        this.pixels.forget();
         this.weights.clear();
         this.playing = layers.map(() => ({ clip: null }));
         this.fallen = 0;
@@ -165,8 +169,10 @@ export class Character extends EventTarget {
     draw() {
         this.wanted = false;
         if (this.lost || !this.ready) return;
-        const now = performance.now(), seconds = Math.min(now - this.drawn, 100) / 1000;
+        const now = performance.now(), passed = now - this.drawn, seconds = Math.min(passed, 100) / 1000;
         this.drawn = now;
+        if (this.goesOn && passed < longest && this.spares && !this.size) this.pixels.tell(passed, now);
+        this.resizeCanvas();
         try {
             this.advance(seconds);
         } catch (error) { // nobody waits for a frame
@@ -174,7 +180,32 @@ export class Character extends EventTarget {
             this.emit('fault', { message: String(error.message || error) });
             return;
         }
-        if (this.moves(now)) this.redraw();
+        this.goesOn = this.moves(now);
+        if (this.goesOn) this.redraw();
+        else this.rest();
+    }
+
+    // With all pixels, once nothing moves.
+    rest() {
+        clearTimeout(this.resting);
+        if (this.share === 1) return;
+        this.resting = setTimeout(() => {
+            if (this.wanted || this.goesOn || this.ended.signal.aborted) return;
+            this.sharp = true;
+            this.draw();
+            this.sharp = false;
+        }, restsAfter);
+    }
+
+    // Of the pixels across, with which the next frame is drawn.
+    get share() { return this.sharp || !this.spares || this.size ? 1 : this.pixels.share; }
+
+    // Whether fewer pixels are drawn while it moves and frames take long.
+    get sparing() { return this.spares; }
+    set sparing(on) {
+        this.spares = on;
+        this.pixels.forget();
+        this.redraw();
     }
 
     // Move time on.
@@ -223,12 +254,16 @@ export class Character extends EventTarget {
         this.redraw();
     }
 
-    resize() {
-        const { canvas, size } = this, scale = Math.min(window.devicePixelRatio || 1, mostPixels);
+    resizeCanvas() {
+        const { canvas, size } = this, scale = Math.min(window.devicePixelRatio || 1, mostPixels) * this.share;
         const [width, height] = size ? [size, size] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
-        if (width === canvas.width && height === canvas.height) return;
-        Object.assign(canvas, { width, height });
-        if (this.ready) this.draw(); // at once, because resizing clears a canvas
+        const changes = width !== canvas.width || height !== canvas.height;
+        if (changes) Object.assign(canvas, { width, height });
+        return changes;
+    }
+
+    resize() {
+        if (this.resizeCanvas() && this.ready) this.draw(); // at once, because resizing clears a canvas
     }
 
     // ---- the camera ----
@@ -333,8 +368,9 @@ export class Character extends EventTarget {
     // { light, degrees, shadow, tonemap, background, transfer }, or some of them. In a lost context nothing is made: it
     // is, once that is back.
     setLight(what) {
-        const before = this.chosen.transfer;
+        const { transfer: before, light, shadow } = this.chosen;
         Object.assign(this.chosen, what);
+        if (light !== this.chosen.light || shadow !== this.chosen.shadow) this.pixels.forget();
         if (!this.program) return;
         this.tellLighting();
         this.emit('light', { ...this.chosen });

@@ -111,7 +111,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     wishes() {
         const text = (name, otherwise) => this.getAttribute(name) ?? otherwise;
         return {
-            program: this.program || undefined, path: text('path', 'auto'), characters: Number(text('characters', 1)), light: text('light', 'studio'),
+            program: this.program || undefined, path: text('path', 'auto'), pixels: text('pixels', 'auto'), characters: Number(text('characters', 1)), light: text('light', 'studio'),
             degrees: Number(text('degrees', 0)), shadow: text('shadow', 'on'), tonemap: text('tonemap', 'on') !== 'none', background: text('background', 'light'),
             level: Number(text('level', -1)), speed: Number(text('speed', 1)), paused: this.rests(), calm: !this.lives(),
         };

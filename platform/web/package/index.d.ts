@@ -69,6 +69,8 @@ export interface CharacterOptions extends Partial<Light> {
     alive?: boolean;
     /** Pixels across, instead of the canvas's own size. */
     size?: number;
+    /** `auto`, the default: fewer pixels while it moves and frames take long, and all of them at rest. Not with `size`. */
+    pixels?: 'auto' | 'all';
     /** Whether the camera follows who walks. */
     follows?: boolean;
     level?: number;
@@ -100,6 +102,10 @@ export class Character extends EventTarget {
     paused: boolean;
     level: number;
     alive: boolean;
+    /** Whether fewer pixels are drawn while it moves and frames take long. */
+    sparing: boolean;
+    /** Of the pixels across, with which the next frame is drawn. */
+    readonly share: number;
     load(source: PackSource): Promise<void>;
     play(name: string | null, options?: PlayOptions): void;
     setWeight(target: string, weight: number): void;
