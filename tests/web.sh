@@ -173,7 +173,7 @@ if [ "${NOH_LONG:-0}" = 1 ] && [ -f "$build/web/mask/index.html" ]; then # the c
     name=festival out=$build/web-check/festival
     mkdir -p "$out"
     make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web-festival WEB_PACK="$build/page/mask.noh" >/dev/null || not_ok 'the crowd does not build'
-    timeout -k 5 1500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
+    NOH_WEB_RATES=1 timeout -k 5 1500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
     count $? "$out/log.txt"
 fi
 [ "${NOH_LONG:-0}" != 1 ] || [ ! -f "$build/web/mask/index.html" ] || add tests/web_firefox.sh "$build/web/mask"

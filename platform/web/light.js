@@ -36,10 +36,18 @@ function chooseLight() {
     showMemory();
 }
 
+// Spots lie under feet: what has no joints has none, and hangs over a floor that is not there. Who asks for them gets them.
+function offerSpots() {
+    const spots = byId('shadow').querySelector('[value=blob]');
+    spots.disabled = spots.hidden = !Module._web_joint_count() && query.get('shadow') !== 'blob';
+    if (spots.disabled && character.chosen.shadow === 'blob') character.setLight({ shadow: 'on' });
+}
+
 // Whether meshes shade themselves by what was worked out when the pack was built. It is told in words of a pack without.
 function beginTransfer() {
     const has = Module._web_has_transfer();
     byId('transfer-row').hidden = !has;
+    offerSpots();
     showLight(character.chosen);
     if (query.has('transfer') && !has) say('the pack has no precomputed light: build it with noh build --transfer');
 }

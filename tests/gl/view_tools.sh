@@ -291,6 +291,23 @@ frames 20
 expect "turning"
 expect "seen 1.0000"
 HAND
+# In every frame of every clip at least 95 % of the silhouette; with NOH_LONG of all of it, else of its first second.
+inside_script() { # PACK
+    "$build/noh" info "$1" | sed -n "s/^clip '\([^']*\)': \([0-9.]*\) s, \([0-9]*\) joints.*/\1 \2 \3/p" | while read -r clip seconds joints; do
+        [ "$joints" != 0 ] || continue
+        frames=$(awk -v s="$seconds" -v long="${NOH_LONG:-0}" 'BEGIN { n = int(s * 60) + 1; print long == 1 || n < 60 ? n : 60 }')
+        printf 'click "stop all"\nclick "%s/play"\nexpect "body %s "\ninside 0.95 %s\n' "$clip" "$clip" "$frames"
+    done
+}
+inside_script "$puppet" >"$work/inside.txt"
+check 'the puppet has clips' grep -q 'dance/play' "$work/inside.txt"
+hand 'every clip of the puppet stays in the picture' "$puppet" <"$work/inside.txt"
+view_size=700x900 hand 'as in a narrow one' "$puppet" <"$work/inside.txt"
+printf 'key f\nwheel 400 200 12\ninside 0.95 1\n' >"$work/near.txt"
+noh view "$puppet" --face off --size 900x600 --script "$work/near.txt"
+expect 1 'and what is outside is found'
+says 'of the silhouette'
+
 body=${NOH_ASSETS:-}/hero/body.glb
 if [ ! -f "$body" ]; then
     skip 'every clip of a body' 'no assets'
@@ -301,4 +318,6 @@ for clip in walk jump dance_jetes punch; do
     printf 'click %s/play\nframes 2\nexpect "seen 1.0000"\ndrag "body %s/at" 0.35\nframes 2\nexpect "seen 1.0000"\ndrag "body %s/at" 0.7\nframes 2\nexpect "seen 1.0000"\n' $clip $clip $clip
 done >"$work/clips.txt"
 hand 'every clip of a body is seen whole' "$work/body.noh" <"$work/clips.txt"
+inside_script "$work/body.noh" >"$work/inside.txt"
+hand 'and stays in the picture' "$work/body.noh" <"$work/inside.txt"
 finish

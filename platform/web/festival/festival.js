@@ -1,5 +1,6 @@
-// festival.js: the page around the crowd's program (festival.c). The query: ?agents=600; ?shadow=on; ?size=640x360 draws a
-// canvas of so many pixels; ?still=30 shows that second and stops.
+// festival.js: the page around the crowd's program (festival.c). Where no GPU draws there are fewer people, without samples,
+// and fewer pixels while frames take long. The query: ?agents=600; ?shadow=on; ?size=640x360 draws a
+// canvas of so many pixels; ?still=30 shows that second and stops; ?antialias=on|off, else off where no GPU draws.
 'use strict';
 
 const query = new URLSearchParams(location.search), byId = (id) => document.getElementById(id), canvas = byId('canvas');
@@ -8,6 +9,7 @@ const counts = [100, 200, 300, 400, 600, 1000];
 const home = { azimuth: 0.31, elevation: 0.23, distance: 24, x: 0, z: 0 };
 const orbit = { ...home };
 const step = 1 / 30; // seconds
+let pixels = null; // how many are drawn (package/pixels.js)
 let Module = null, playing = true, lost = false, wanted = false, before = 0, owed = 0;
 const times = []; // of the last frames, ms
 
@@ -38,6 +40,7 @@ function draw(now) {
     if (lost) return;
     const passed = before ? Math.min(now - before, 500) / 1000 : 0;
     before = now;
+    if (playing && passed && pixels && pixels.tell(1000 * passed, now)) resize();
     if (playing) {
         owed = Math.min(owed + passed, 4 * step);
         const steps = Math.floor(owed / step + 1e-3);
@@ -54,13 +57,13 @@ function draw(now) {
 }
 
 function tell() {
-    const sum = times.reduce((a, b) => a + b, 0), rate = sum ? `, ${(1000 * times.length / sum).toFixed(0)} frames a second` : '';
+    const sum = times.reduce((a, b) => a + b, 0), rate = sum ? `, ${(1000 * times.length / sum).toFixed(0)} frames a second${software ? ' without a GPU' : ''}` : '';
     const number = (n) => n.toLocaleString('en');
     byId('said').textContent = `${number(Module._festival_seen())} seen${rate}; ${number(Module._festival_stage_bytes())} bytes of the CPU, ${number(Module._festival_gpu_bytes())} of the GPU`;
 }
 
 function resize() {
-    const fixed = /^(\d+)x(\d+)$/.exec(query.get('size') || ''), scale = Math.min(window.devicePixelRatio || 1, 2);
+    const fixed = /^(\d+)x(\d+)$/.exec(query.get('size') || ''), scale = Math.min(window.devicePixelRatio || 1, 2) * (pixels && playing ? pixels.share : 1);
     const [width, height] = fixed ? [Number(fixed[1]), Number(fixed[2])] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
     if (width !== canvas.width || height !== canvas.height) Object.assign(canvas, { width, height });
     redraw();
@@ -109,6 +112,7 @@ function setPlaying(on) {
     before = 0;
     times.length = 0;
     byId('play').textContent = on ? 'pause' : 'play';
+    if (Module) resize(); // at rest with all pixels
     redraw();
 }
 byId('play').addEventListener('click', () => setPlaying(!playing));
@@ -128,7 +132,7 @@ canvas.addEventListener('webglcontextlost', (event) => {
     event.preventDefault();
     lost = true;
     window.noh.lost++;
-    say('the context is lost');
+    say('The browser has taken the graphics context away; the picture goes on when it comes back.');
 });
 canvas.addEventListener('webglcontextrestored', () => {
     check(Module._festival_restore());
@@ -147,9 +151,21 @@ async function fetched(name) {
 }
 const asked = Promise.all(files.map(fetched)); // beside the program
 
+// Whether no GPU draws, which only a context tells.
+function findSoftware() {
+    const gl = document.createElement('canvas').getContext('webgl2');
+    if (!gl) return false;
+    const info = gl.getExtension('WEBGL_debug_renderer_info'), name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+    gl.getExtension('WEBGL_lose_context')?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+const software = findSoftware();
+const smooths = query.has('antialias') ? query.get('antialias') !== 'off' : !software; // a frame takes nearly twice as long with samples
+const asksFor = Number(query.get('agents') || (software ? 25 : 300));
+
 // GL comes from the package, as the page's does.
 async function program() {
-    const gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true });
+    const gl = canvas.getContext('webgl2', { antialias: smooths, depth: true, alpha: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error('this browser gives no WebGL 2 context');
     const { importsOf } = await import('../package/gl.js'), heap = {}, { imports } = importsOf(gl, heap);
     return nohFestival({
@@ -168,7 +184,8 @@ async function program() {
 
 async function start() {
     Module = window.Module = await program();
-    const asks = Number(query.get('agents') || 300), agents = Math.min(1000, Math.max(1, Number.isFinite(asks) ? Math.floor(asks) : 300));
+    const agents = Math.min(1000, Math.max(1, Number.isFinite(asksFor) ? Math.floor(asksFor) : 300));
+    if (!query.has('size')) pixels = new (await import('../package/pixels.js')).Pixels();
     for (const count of [...new Set([...counts, agents])].sort((a, b) => a - b)) byId('agents').add(new Option(count, count, false, count === agents));
     byId('shadow').checked = query.get('shadow') === 'on';
     (await asked).forEach((bytes, i) => Module.FS.writeFile(files[i], bytes));

@@ -1,7 +1,7 @@
 /* A camera that follows keeps a figure in the picture (tools/noh/draw/framing.h): at every frame of every clip of a
- * body, at least 95 % of its silhouette. The silhouette is what the triangles of the skinned mesh cover, in the picture
- * and up to two pictures beside it. Without NOH_LONG every fourth frame is looked at. */
+ * body, at least 95 % of its silhouette (draw/silhouette.h). Without NOH_LONG every fourth frame is looked at. */
 #include "draw/framing.h"
+#include "draw/silhouette.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,6 @@
 #include "convert/convert.h"
 #include "support/support.h"
 
-#define CELLS 320    /* of the raster's side */
-#define PICTURES 5.0 /* the raster's side, in pictures */
 #define SEEN_LEAST 0.95
 
 typedef struct scene {
@@ -19,7 +17,6 @@ typedef struct scene {
     pack_file file;
     figure figure;
     framing *framing;
-    uint8_t raster[CELLS][CELLS];
 } scene;
 
 static void open_scene(scene *s, const char *asset)
@@ -46,73 +43,6 @@ static void close_scene(scene *s)
     free(s);
 }
 
-/* ---- the silhouette ---- */
-
-static void cover(scene *s, float corners[3][2])
-{
-    const float *a = corners[0], *b = corners[1], *c = corners[2];
-    const int left = (int)fmaxf(floorf(fminf(a[0], fminf(b[0], c[0]))), 0.0f);
-    const int right = (int)fminf(ceilf(fmaxf(a[0], fmaxf(b[0], c[0]))), CELLS - 1.0f);
-    const int low = (int)fmaxf(floorf(fminf(a[1], fminf(b[1], c[1]))), 0.0f);
-    const int high = (int)fminf(ceilf(fmaxf(a[1], fmaxf(b[1], c[1]))), CELLS - 1.0f);
-    for (int y = low; y <= high; y++) {
-        for (int x = left; x <= right; x++) {
-            const float px = (float)x + 0.5f, py = (float)y + 0.5f;
-            const float u = (b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0]);
-            const float v = (c[0] - b[0]) * (py - b[1]) - (c[1] - b[1]) * (px - b[0]);
-            const float w = (a[0] - c[0]) * (py - c[1]) - (a[1] - c[1]) * (px - c[0]);
-            if ((u >= 0.0f && v >= 0.0f && w >= 0.0f) || (u <= 0.0f && v <= 0.0f && w <= 0.0f)) s->raster[y][x] = 1;
-        }
-    }
-}
-
-/* Where a vertex is in the raster, and 0 where it is behind the camera. */
-static int project(const float m[16], const float world[12], const float p[3], float out[2])
-{
-    float at[3], clip[4];
-    for (int r = 0; r < 3; r++)
-        at[r] = world[4 * r] * p[0] + world[4 * r + 1] * p[1] + world[4 * r + 2] * p[2] + world[4 * r + 3];
-    for (int r = 0; r < 4; r++) clip[r] = m[r] * at[0] + m[4 + r] * at[1] + m[8 + r] * at[2] + m[12 + r];
-    for (int i = 0; i < 2; i++) out[i] = (float)(CELLS / 2.0 * (1.0 + (double)clip[i] / (double)clip[3] / PICTURES));
-    return clip[3] > 0.0f;
-}
-
-static void rasterise(scene *s, uint32_t kind, uint32_t index, const noh_gl_camera *camera)
-{
-    noh_mesh mesh;
-    noh_actor_mesh shown;
-    noh_vertex *vertices = figure_deform(&s->figure, kind, index, 0, &mesh, &shown);
-    assert_non_null(vertices);
-    for (uint32_t i = 0; i < mesh.header->index_count; i += 3) {
-        float corners[3][2];
-        for (uint32_t c = 0; c < 3; c++) {
-            const float *p = vertices[noh_mesh_index(&mesh, i + c)].position;
-            assert_true(project(camera->view_projection, shown.world, p, corners[c]));
-        }
-        cover(s, corners);
-    }
-    free(vertices);
-}
-
-/* The share of the silhouette that is inside the picture. */
-static double share_inside(scene *s, const noh_gl_camera *camera)
-{
-    const int margin = (int)(CELLS * (0.5 - 0.5 / PICTURES));
-    uint32_t all = 0, inside = 0;
-    memset(s->raster, 0, sizeof s->raster);
-    for (uint32_t k = 0; k < s->figure.stage_desc.kind_count; k++) {
-        for (uint32_t i = 0; i < s->figure.plan.kinds[k].mesh_count; i++) rasterise(s, k, i, camera);
-    }
-    for (int y = 0; y < CELLS; y++) {
-        for (int x = 0; x < CELLS; x++) {
-            all += s->raster[y][x];
-            inside += s->raster[y][x] && x >= margin && x < CELLS - margin && y >= margin && y < CELLS - margin;
-        }
-    }
-    assert_true(all > 10);
-    return (double)inside / (double)all;
-}
-
 /* ---- clips ---- */
 
 static double watch(scene *s, const char *clip, double azimuth, double aspect, double *largest)
@@ -129,6 +59,7 @@ static double watch(scene *s, const char *clip, double azimuth, double aspect, d
     assert_int_equal(figure_clip_seconds(&s->figure, clip, &seconds), 0);
     for (uint32_t frame = 0; frame <= (uint32_t)(seconds * 30.0); frame += step) {
         noh_gl_camera camera;
+        silhouette seen;
         const uint32_t ticks = frame ? step * (uint32_t)(NOH_TICKS_PER_SECOND / 30) : 1u;
         assert_int_equal(noh_stage_step(s->figure.stage, ticks, NULL, NULL, NULL), NOH_OK);
         assert_int_equal(figure_pose(&s->figure), 0);
@@ -136,16 +67,9 @@ static double watch(scene *s, const char *clip, double azimuth, double aspect, d
         for (int c = 0; c < 3; c++) o.center[c] += anchor[c] - before[c];
         memcpy(before, anchor, sizeof before);
         orbit_camera(&o, &camera);
-        const double share = share_inside(s, &camera);
-        worst = fmin(worst, share);
-        /* of the picture's height, so that a camera from too far away does not pass */
-        uint32_t low = CELLS, high = 0;
-        for (uint32_t y = 0; y < CELLS; y++) {
-            for (uint32_t x = 0; x < CELLS; x++) {
-                if (s->raster[y][x]) low = y < low ? y : low, high = y > high ? y : high;
-            }
-        }
-        *largest = fmax(*largest, (high - low + 1.0) / (CELLS / PICTURES));
+        assert_int_equal(silhouette_measure(&s->figure, &camera, 0, &seen), 0);
+        worst = fmin(worst, seen.inside);
+        *largest = fmax(*largest, seen.height); /* so that a camera from too far away does not pass */
     }
     return worst;
 }

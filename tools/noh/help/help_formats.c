@@ -259,6 +259,7 @@ const char *const help_formats_text[] = {
     "   drop FILE; loaded                           as if dropped; wait until a conversion is done",
     "   state; expect TEXT; expect-not TEXT         print the state; a line of it has this text, or none has",
     "   until TEXT N                                draw frames until a line has it, N at most",
+    "   inside SHARE N                              draw N frames; in each at least this share of the silhouette is in the picture",
     "   save FILE; window FILE                      a picture of the figure, of the window",
     "# outputs (-o)",
     "A file is replaced as a whole or left as it was. Of a symbolic link the target is replaced; devices, FIFOs and /dev/stdout are "

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "cli/message.h"
+#include "draw/silhouette.h"
 
 #define QUEUE_MAX 512u
 #define WORDS_MAX 8
@@ -30,6 +31,7 @@ struct view_script {
     unsigned first, count;
     uint32_t frames; /* to be drawn yet */
     char until[256]; /* "": nothing is waited for */
+    double inside;   /* of the silhouette, at least, in each of these frames; 0: whatever is seen */
     int loading;
 };
 
@@ -315,6 +317,9 @@ static int other_line(view_script *s, view_window *w, char *words[WORDS_MAX], in
     } else if (strcmp(word, "until") == 0 && count == 3) {
         snprintf(s->until, sizeof s->until, "%s", what);
         s->frames = (uint32_t)number(words[2]);
+    } else if (strcmp(word, "inside") == 0 && count == 3) {
+        s->inside = (double)number(what);
+        s->frames = (uint32_t)number(words[2]);
     } else if (strcmp(word, "loaded") == 0) {
         s->loading = 1;
     } else if ((strcmp(word, "save") == 0 || strcmp(word, "window") == 0) && count == 2) {
@@ -325,10 +330,26 @@ static int other_line(view_script *s, view_window *w, char *words[WORDS_MAX], in
     return 0;
 }
 
+/* Enough of the silhouette is in the picture that was drawn last. */
+static int stays_inside(const view_script *s, view_app *a)
+{
+    noh_gl_camera camera;
+    silhouette seen;
+    char text[64];
+    orbit_camera(&a->orbit, &camera);
+    if (silhouette_measure(a->model->figure, &camera, NOH_LOD_LEVELS_MAX, &seen)) return -1;
+    if (seen.inside >= s->inside) return 0;
+    view_print(a, stdout);
+    snprintf(text, sizeof text, "%.4f", seen.inside);
+    return fail(s, "of the silhouette there is in the picture", text);
+}
+
 /* Whether a frame is to be drawn before the next line. */
 static int waits(view_script *s, view_app *a)
 {
     const struct timespec moment = { 0, 20000000 };
+    if (s->inside > 0.0 && stays_inside(s, a)) return -1;
+    if (!s->frames) s->inside = 0.0;
     if (s->until[0] && state_has(a, s->until)) s->until[0] = 0, s->frames = 0;
     if (s->until[0] && !s->frames) {
         view_print(a, stdout);

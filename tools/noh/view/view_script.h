@@ -13,6 +13,7 @@
  *   state                    print the state
  *   expect TEXT              a line of the state contains this; expect-not TEXT: none does
  *   until TEXT N             draw frames until one does, at most N
+ *   inside SHARE N           draw N frames; in each at least this share of the silhouette is in the picture
  *   loaded                   wait until a conversion is done, without drawing more than it takes
  *   save FILE, window FILE   a picture of the figure, of the window
  *

@@ -44,7 +44,8 @@ void status_line(view_app *a)
         ImGui::TextWrapped("%s", text);
         ImGui::PopStyleColor();
     } else {
-        ImGui::TextDisabled("space: play   drag: turn   right drag: move   wheel: zoom   F: fit   F1: all keys");
+        ImGui::TextDisabled("space: %s   drag: turn   right drag: move   wheel: zoom   F: fit   F1: all keys",
+                            a->playing && view_plays(a->model) ? "pause" : "play");
     }
 }
 
