@@ -257,18 +257,50 @@ noh build "$work/nowhere.fbx" -o "$work/x.noh"
 expect 1 'a file that is not there'
 check 'and no pack' test ! -f "$work/x.noh"
 
-# Bytes that are flipped give a pack or a message, whatever Assimp makes of them.
-seed=1 broken=0
-for round in 1 2 3 4 5 6 7 8 9 10 11 12; do
-    seed=$(((seed * 1103515245 + 12345) % 2147483648))
-    at=$((seed % $(wc -c <"$work/strip.fbx")))
-    { head -c $at "$work/strip.fbx"; printf '%d' $((round % 10)); tail -c +$((at + 2)) "$work/strip.fbx"; } >"$work/flip.fbx"
-    noh build "$work/flip.fbx" -o "$work/flip.noh"
-    [ "$code" -le 1 ] || broken=$((broken + 1))
-done
-check 'twelve files with a byte changed' test $broken = 0
-
+# Bytes that are changed, and files that are cut, give a pack or a message, whatever Assimp makes of them: in the short
+# form twelve, with NOH_LONG=1 thirty of each file of Assimp's tests, too.
 models=/usr/share/assimp/models/FBX
+seed=1 broken=0 tried=0
+next_random() { # BELOW: $random
+    seed=$(((seed * 1103515245 + 12345) % 2147483648))
+    random=$((seed / 64 % $1))
+}
+damage() { # FILE: damaged in one to three places, in one of four also cut, as $work/damaged.fbx
+    cp "$1" "$work/damaged.fbx"
+    size=$(wc -c <"$1")
+    next_random 3
+    for place in $(seq 0 "$random"); do
+        next_random "$size"
+        at=$random
+        next_random 256
+        # shellcheck disable=SC2059
+        printf "\\$(printf '%o' "$random")" |
+            dd of="$work/damaged.fbx" bs=1 seek="$at" conv=notrunc 2>/dev/null
+    done
+    next_random 4
+    [ "$random" != 0 ] || { next_random "$size"; head -c "$random" "$work/damaged.fbx" >"$work/cut.fbx"; mv "$work/cut.fbx" "$work/damaged.fbx"; }
+}
+try_damaged() { # FILE TIMES
+    for round in $(seq 1 "$2"); do
+        damage "$1"
+        rm -f "$work/damaged.noh"
+        noh build "$work/damaged.fbx" -o "$work/damaged.noh"
+        tried=$((tried + 1))
+        case $code in
+        0) [ -s "$work/damaged.noh" ] || broken=$((broken + 1)) ;;
+        1) grep -q '^noh: ' "$work/err" && [ ! -e "$work/damaged.noh" ] || broken=$((broken + 1)) ;;
+        *) broken=$((broken + 1)) && cp "$work/damaged.fbx" "$build/tests/log/damaged_$tried.fbx" ;;
+        esac
+    done
+}
+try_damaged "$work/strip.fbx" 12
+if [ -n "${NOH_LONG:-}" ]; then
+    for file in "$work/strip.fbx" $models/*.fbx $models/*/*.fbx; do
+        [ ! -f "$file" ] || try_damaged "$file" 30
+    done
+fi
+check "$tried damaged files" test $broken = 0
+
 if [ -f $models/huesitos.fbx ]; then
     noh build $models/huesitos.fbx -o "$work/bones.noh" --quiet
     expect 0 'a skinned cylinder by Blender'
