@@ -77,7 +77,8 @@ byId('sparing').addEventListener('change', () => { character.sparing = byId('spa
 
 // ---- clips ----
 
-const named = (select) => (Number(select.value) < 0 ? null : select.selectedOptions[0].text);
+const nameOf = (option) => option.dataset.name || option.text; // as the pack has it
+const named = (select) => (Number(select.value) < 0 ? null : nameOf(select.selectedOptions[0]));
 
 function showTime() {
     const time = character.time;
@@ -105,13 +106,17 @@ byId('speed').addEventListener('input', () => {
 
 function listClips(select) {
     select.length = 1; // none
-    for (const clip of character.clips) select.add(new Option(clip.name, clip.index));
+    for (const clip of character.clips) {
+        const option = new Option(wordsOf(clip.name), clip.index);
+        option.dataset.name = clip.name;
+        select.add(option);
+    }
 }
 
 // The clip of the query; without one the option that is given, or none.
 function begin(select, name, otherwise) {
     const options = [...select.options], asked = query.get(name);
-    const first = asked ? options.find((o) => o.text === asked) : options[otherwise];
+    const first = asked ? options.find((o) => nameOf(o) === asked) : options[otherwise];
     select.value = first ? first.value : -1;
 }
 

@@ -57,5 +57,5 @@ byId('several').addEventListener('change', showSeveral);
 byId('crowd').addEventListener('click', async () => {
     const answer = await fetch('festival/index.html', { method: 'HEAD' }).catch(() => ({ ok: false }));
     if (answer.ok) location.href = 'festival/';
-    else byId('crowd-text').textContent = 'This page was built without the crowd: make web-festival builds it.';
+    else byId('crowd-text').textContent = 'The crowd is not on this server. Who builds the page adds it with make web-festival.';
 });

@@ -133,6 +133,12 @@ async function worded(browser) {
     check('words: what plays can be paused', await page.textContent('#play') === 'pause');
     const names = await page.evaluate(() => ['browInnerUp', 'eyeBlinkLeft', 'viseme_aa', 'Fcl_BRW_Angry', 'A', 'mouth-open', '_'].map(wordsOf));
     check('words: of names', names.join('; ') === 'brow inner up; eye blink, left; viseme aa; fcl brw angry; a; mouth open; _', names.join('; '));
+    const [asMade, shown] = await page.evaluate(() => {
+        byId('clips').add(Object.assign(new Option(wordsOf('get_up_left'), 0), { selected: true }));
+        byId('clips').lastChild.dataset.name = 'get_up_left';
+        return [named(byId('clips')), byId('clips').selectedOptions[0].text];
+    });
+    check('words: of a clip, which is played by its name', asMade === 'get_up_left' && shown === 'get up, left', `${asMade}, ${shown}`);
     await page.fill('#search', 'brow inner');
     const left = await page.locator('#targets label:visible input').evaluateAll((inputs) => inputs.map((input) => input.dataset.target));
     check('words: are searched for, too', left.join() === 'browInnerUp', left.join());

@@ -125,6 +125,9 @@ void columns(const view_app *a)
         snprintf(second, sizeof second, "%s", noh_morph_path_name(c->is.path));
     } else {
         view_lod_text(&a->lod, first, sizeof first);
+        if (!a->lod.coarsest && !a->lod.fading) {
+            snprintf(first, sizeof first, "full"); // as beside it
+        }
         snprintf(second, sizeof second, c->is.level ? "level %u" : "full", c->is.level);
     }
     snprintf(third, sizeof third, "difference x %.0f", static_cast<double>(c->gain));

@@ -88,7 +88,7 @@ void lod_section(view_app *a)
         view_lod_pixels(d);
     }
     view_lod_text(d, text, sizeof text);
-    ImGui::TextColored(amber, "%s", text);
+    ImGui::TextColored(amber, "%s", d->coarsest || d->fading ? text : "full,"); // as in the table
     ImGui::SameLine();
     ImGui::Text("off by at most %.2f pixels", static_cast<double>(d->error_px));
     if (d->by_pixels) { // also when empty, so that what is below does not move

@@ -44,8 +44,10 @@ void status_line(view_app *a)
         ImGui::TextWrapped("%s", text);
         ImGui::PopStyleColor();
     } else {
-        ImGui::TextDisabled("space: %s   drag: turn   right drag: move   wheel: zoom   F: fit   F1: all keys",
-                            a->playing && view_plays(a->model) ? "pause" : "play");
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+        ImGui::TextWrapped("space: %s   drag: turn   right drag: move   wheel: zoom   F: fit   F1: all keys",
+                           a->playing && view_plays(a->model) ? "pause" : "play");
+        ImGui::PopStyleColor();
     }
 }
 
