@@ -26,6 +26,10 @@ noh build "$arm" -o "$work/again.noh" --lod 4 --lod-fast --quiet
 expect 0 'build it again, quietly'
 check 'prints nothing' test ! -s "$work/out"
 check 'gives the same bytes' cmp "$work/four.noh" "$work/again.noh"
+noh build "$arm" -o "$work/again.noh" --lod 4 --lod-fast --lod-color 0.24 --quiet
+check 'and with the weight of colours that is its own' cmp "$work/four.noh" "$work/again.noh"
+noh build "$arm" -o "$work/painted.noh" --lod 4 --lod-fast --lod-color 20 --quiet
+check 'with a larger one the levels are others' sh -c '! cmp -s "$1" "$2"' - "$work/four.noh" "$work/painted.noh"
 noh verify "$work/four.noh"
 expect 0 'verify of a pack with levels'
 noh info "$work/four.noh"
@@ -44,6 +48,13 @@ for value in 0 9 -1 2.5 x '' 4x; do
     expect 2 "build --lod '$value'"
     says "--lod wants auto or a whole number from 1 to 8, not '$value'"
 done
+for value in 0 -1 101 x; do
+    noh build "$arm" -o "$work/refused.noh" --lod 4 --lod-color "$value"
+    expect 2 "build --lod-color $value"
+done
+says '--lod-color'
+noh build "$arm" -o "$work/refused.noh" --lod-color 1
+expect 2 'build --lod-color without levels'
 noh build "$arm" -o "$work/refused.noh" --lod
 expect 2 'build --lod without a value'
 check 'no pack was written by any of these' test ! -e "$work/refused.noh"

@@ -326,7 +326,7 @@ static double target_error(const noh_mesh *mesh)
 static void a_face_is_as_near_as_certified(void **state)
 {
     const lod_face shape = { 22, 16, LOD_FACE_TARGETS, 1, 0 };
-    const lod_settings settings = { 4, 0, LOD_FAST, NULL };
+    const lod_settings settings = { 4, 0, LOD_FAST, 0.0f, NULL };
     model *m = lod_face_model(&shape);
     test_random r = test_random_from(31);
     kind kinds[KINDS];
@@ -360,7 +360,7 @@ static void a_face_is_as_near_as_certified(void **state)
 static void a_tube_is_as_near_as_certified(void **state)
 {
     const skin_cylinder tube = { 14, 30, 6, 4, 2, 1, 2.0f, 0.5f };
-    const lod_settings settings = { 4, 0, LOD_FAST, NULL };
+    const lod_settings settings = { 4, 0, LOD_FAST, 0.0f, NULL };
     model *m = lod_tube_model(&tube);
     test_random r = test_random_from(32);
     kind kinds[KINDS];
@@ -393,7 +393,7 @@ static void a_tube_is_as_near_as_certified(void **state)
 static void check_names(const char *left, const char *right, int expected)
 {
     const lod_face shape = { 10, 8, 2, 0, 0 };
-    const lod_settings settings = { 2, 0, LOD_FAST, NULL };
+    const lod_settings settings = { 2, 0, LOD_FAST, 0.0f, NULL };
     model *m = lod_face_model(&shape);
     lod_pack p;
     for (int i = 0; i < 2; i++) {

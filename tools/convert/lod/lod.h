@@ -46,8 +46,9 @@ typedef struct lod_options {
     float pose_weight;  /* factor on distances in `poses`; 0: 0.4, because in motion a body is seen less closely */
     float face_weight;  /* factor on distances at vertices that targets move; 0: 1.2 with poses, else 1 */
     float uv_weight;    /* factor on the length by which UVs slide; 0: 0.1; below 0: ignored */
-    float color_length; /* a colour difference of 1 counts as this length, three times that in small parts; 0: 0.24 of
-                           the mean edge; below 0: ignored */
+    float color_length; /* a colour difference of 1 counts as this length, three times that in small parts; 0: see
+                           color_edges; below 0: ignored */
+    float color_edges;  /* color_length in mean edges; 0: 0.24 */
     float skin_length; /* skin weights that go to other joints entirely count as this length; 0: the mean edge; below 0:
                           ignored */
     uint32_t asset_triangles; /* of all meshes of the asset: a part with few of them is a small part; 0: this mesh's */

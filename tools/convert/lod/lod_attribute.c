@@ -54,7 +54,7 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
 {
     const model_mesh *mesh = s->mesh;
     float uv = chosen(o->uv_weight, UV_WEIGHT) * uv_length(mesh);
-    float color = chosen(o->color_length, COLOR_EDGES * s->edge);
+    float color = chosen(o->color_length, (o->color_edges > 0.0f ? o->color_edges : COLOR_EDGES) * s->edge);
     s->attribute = calloc((size_t)mesh->vertex_count + 1u, LOD_ATTRIBUTES * sizeof *s->attribute);
     if (!s->attribute) {
         return 1;

@@ -193,6 +193,7 @@ static int build(const model *m, uint32_t index, const lod_settings *settings, l
     float errors[NOH_LOD_LEVELS_MAX];
     lod_options o = { 0 };
     o.mode = settings->mode;
+    o.color_edges = settings->color_edges;
     o.poses = (const float *const *)frames->poses;
     o.pose_count = frames->count < FRAMES_BUILT ? frames->count : FRAMES_BUILT;
     o.level_count = (settings->by_error ? LEVELS_BY_ERROR : settings->level_count) - 1u;

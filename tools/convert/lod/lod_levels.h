@@ -19,7 +19,8 @@ typedef struct lod_settings {
     int by_error; /* instead: up to four coarser levels, with costs of 1/4000 of the box's diagonal, and four times as
                      much for each further one */
     lod_mode mode;
-    FILE *progress; /* a terminal, for progress; NULL: none */
+    float color_edges; /* of lod_options */
+    FILE *progress;    /* a terminal, for progress; NULL: none */
 } lod_settings;
 
 #define LOD_SHARES                                            \

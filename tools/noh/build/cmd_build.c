@@ -23,8 +23,8 @@ typedef struct build_args {
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
         *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
-    double error_um, rate, error_cm, shell_cm, effort, influences, palette, bounce, wrinkle_size, terrain_size,
-        terrain_height, terrain_points, texture_max;
+    double error_um, rate, error_cm, shell_cm, effort, influences, palette, bounce, lod_color, wrinkle_size,
+        terrain_size, terrain_height, terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
         attached;
 } build_args;
@@ -126,6 +126,10 @@ static int set_lod(const build_args *a, convert_options *o)
         }
     }
     o->lod_from = (strip_levels){ a->lod_from.items, (uint32_t)a->lod_from.count };
+    if (!(a->lod_color > 0.0 && a->lod_color <= 100.0)) {
+        return tool_usage("--lod-color wants a number over 0, up to 100");
+    }
+    o->lod.color_edges = (float)a->lod_color;
     o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
     return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
 }
@@ -360,6 +364,15 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, lod_fast),
       .what = "simplify in seconds, with larger errors",
+      .needs = "--lod" },
+    { .name = "--lod-color",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, lod_color),
+      .value = "EDGES",
+      .initial = "0.24",
+      .what =
+          "what black in place of white costs a level, in edges of the mesh: more keeps what is painted with vertex colours, and shapes less",
+      .example = "1.2",
       .needs = "--lod" },
     { .name = "--transfer",
       .kind = OPTION_TEXT,
