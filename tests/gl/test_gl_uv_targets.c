@@ -182,6 +182,51 @@ static void depth_fetches_them_where_alpha_cuts(void **state)
     fixture_expect_no_errors();
 }
 
+/* One accumulator for a mesh with them and one without: the first alone asks for sums in place of finished vertices, so
+ * both have them, and the other's vertices are the CPU's as ever. */
+static void a_mesh_with_them_beside_one_without(void **state)
+{
+    const skin_cylinder c = { 12, 9, 5, 4, TARGETS, 1, 2.0f, 0.35f };
+    const lod_settings one_level = { .level_count = 1, .mode = LOD_FAST };
+    model *m = tube_model(), *plain = lod_tube_model(&c);
+    uint32_t ways = 0;
+    lod_pack with, without;
+    (void)state;
+    make(m, 1, &with);
+    lod_pack_make(plain, &one_level, 0, &without);
+    assert_false(without.mesh.header->flags & NOH_MESH_UV_TARGETS);
+    for (size_t i = 0; i < FIXTURE_WAYS; i++) {
+        const noh_mesh both[2] = { with.mesh, without.mesh };
+        noh_gl_morph_desc desc = { .meshes = both,
+                                   .mesh_count = 2,
+                                   .path = fixture_ways[i].path,
+                                   .accumulate = fixture_ways[i].accumulate,
+                                   .vertices = 1 };
+        noh_gl_morph_desc alone = desc;
+        noh_gl_morph_plan plan;
+        fixture_morph morph;
+        test_random random = test_random_from(11);
+        if (noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, NULL) != NOH_OK) continue;
+        assert_int_equal(plan.vertex_ring, 0);
+        alone.meshes = &without.mesh;
+        alone.mesh_count = 1;
+        assert_int_equal(noh_gl_morph_plan_make(&alone, &fixture_gpu()->caps, &plan, NULL), NOH_OK);
+        assert_int_equal(plan.vertex_ring != 0, plan.path == NOH_MORPH_CPU && plan.accumulate == NOH_ACCUMULATE_F32);
+        fixture_morph_open(&morph, &desc, NULL);
+        for (uint32_t k = 0; k < 2u; k++) fixture_set_random(&morph, k, &random);
+        noh_gl_morph_update(morph.morph, NULL);
+        fixture_expect_all(&morph);
+        fixture_morph_close(&morph);
+        ways++;
+    }
+    assert_true(ways >= 2);
+    lod_pack_free(&with);
+    lod_pack_free(&without);
+    model_free(m);
+    model_free(plain);
+    fixture_expect_no_errors();
+}
+
 static void streams_refuse_them(void **state)
 {
     model *m = tube_model();
@@ -202,6 +247,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_way_moves_them),
     cmocka_unit_test(each_of_a_crowd_has_its_own),
     cmocka_unit_test(depth_fetches_them_where_alpha_cuts),
+    cmocka_unit_test(a_mesh_with_them_beside_one_without),
     cmocka_unit_test(streams_refuse_them),
 };
 
