@@ -134,10 +134,6 @@ add() {
     failed=$((failed + $(echo "$said" | sed -n 's/^[0-9]* passed, \([0-9]*\) failed.*/\1/p')))
 }
 
-spent() { # WHAT: the clock and the processors' time so far, with NOH_WEB_TIMES=1
-    [ "${NOH_WEB_TIMES:-0}" != 1 ] || { echo "# $1: $(date +%T)"; times; }
-}
-
 for pack in "$@"; do
     case $pack in /*) ;; *) pack=$PWD/$pack ;; esac
     name=$(basename "$pack" .noh) clip=smile time=0.5 all=1 paths='auto mrt gather'
