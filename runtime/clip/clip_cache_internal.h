@@ -62,16 +62,11 @@ typedef struct noh_clip_place {
     int crosses;             /* 1: the next frame is the first of the next segment */
 } noh_clip_place;
 
-static inline uint32_t noh_clip_segment_frames(const noh_clip *clip, uint32_t segment)
-{
-    return noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
-}
-
 static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t ticks, uint32_t joint_count)
 {
     noh_clip_place p;
     const uint32_t frame = noh_clip_frame_at(clip, ticks, &p.fraction), halved = clip->info.halved;
-    uint32_t frames, here;
+    uint32_t frames;
     p.clip = clip;
     p.joints = joint_count < clip->info.joint_count ? joint_count : clip->info.joint_count;
     p.tracks = clip->prefixes[p.joints].tracks;
@@ -81,10 +76,10 @@ static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t tic
     frames = noh_clip_segment_frames(clip, p.segment);
     p.slots = noh_clip_slots(frames, halved);
     p.slot = noh_clip_slot_of(p.frame, frames, halved);
-    here = noh_clip_slot_frame(p.slot, frames, halved);
     if (halved && p.slot + 1u < p.slots) {
+        const uint32_t here = noh_clip_slot_frame(p.slot, frames, 1);
         p.fraction = ((float)(p.frame - here) + p.fraction) /
-                     (float)(noh_clip_slot_frame(p.slot + 1u, frames, halved) - here);
+                     (float)(noh_clip_slot_frame(p.slot + 1u, frames, 1) - here);
     }
     return p;
 }

@@ -116,8 +116,7 @@ void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip
     const uint32_t rotation_bytes = clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW;
     noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]);
     NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
-    NOH_ASSERT(basis->frames ==
-               noh_clip_segment_first(clip, cursor->segment + 1u) - noh_clip_segment_first(clip, cursor->segment));
+    NOH_ASSERT(basis->frames == noh_clip_segment_frames(clip, cursor->segment));
     noh_bits_seek(&b, cursor->position);
     for (; cursor->track < track_end; cursor->track++) {
         const noh_clip_track *track = &clip->tracks[cursor->track];

@@ -73,6 +73,11 @@ static inline uint32_t noh_clip_segment_first(const noh_clip *clip, uint32_t seg
     return clip->segment_firsts[segment];
 }
 
+static inline uint32_t noh_clip_segment_frames(const noh_clip *clip, uint32_t segment)
+{
+    return noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
+}
+
 /* The segment that holds a frame (below frame_count). Multiplied by a reciprocal that was rounded down, the guess is
  * never too high and hardly ever too low. */
 static inline uint32_t noh_clip_segment_of(const noh_clip *clip, uint32_t frame)
