@@ -2,8 +2,9 @@
 # web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js,
 # figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh). Its canvas is compared with
 # `noh render`, its bytes with the plan that sized its memory, and with `noh budget`. `make web-check` runs it;
-# NOH_WEB_ONLY=lights,hair runs these parts alone, without a comparison. The last line is as that of tests/run.sh. Skipped
-# with the reason if emscripten, Chromium or playwright cannot be had.
+# NOH_WEB_ONLY=lights,hair runs these parts alone, without a comparison; with NOH_WEB_TIMES=1 each part says what it took
+# (tests/web/harness.js). The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or
+# playwright cannot be had.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
