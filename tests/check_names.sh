@@ -1,7 +1,7 @@
 #!/bin/sh
 # check_names.sh: every noh_ and NOH_ name in a comment or a document is one that the sources have: no text speaks of a
 # function that was renamed. A name that ends in _ stands for all that begin so; noh.h's noh_noun_verb and noh_x are
-# patterns.
+# patterns. And the top level has no file that nobody meant to be there.
 set -u
 . tests/cli/lib.sh
 
@@ -42,4 +42,15 @@ awk 'NR == FNR { known[$0] = 1; all = all "\n" $0; next }
      !($0 in known) && !index(all, "\n" $0) { print }' "$work/names" "$work/spoken" >"$work/strange"
 while read -r name; do grep -m 1 -wF "$name" "$work/text"; done <"$work/strange" | sed 's/^/#   /'
 check 'no comment or document names what does not exist' test ! -s "$work/strange"
+
+# What a command left behind by mistake has been committed before.
+if git ls-files >"$work/files" 2>/dev/null && [ -s "$work/files" ]; then
+    sed 's|/.*||' "$work/files" | sort -u |
+        grep -vxE '\..+|CHANGELOG\.md|CONTRIBUTING\.md|LICENSE|Makefile|README\.md|platform|runtime|shaders_es|tests|tools' |
+        sed 's/^/# at the top level: /' >"$work/odd"
+    cat "$work/odd"
+    check 'the top level holds what README.md says, and nothing else' test ! -s "$work/odd"
+else
+    skip 'the top level holds what README.md says, and nothing else' 'not a checkout of git'
+fi
 finish
