@@ -48,16 +48,19 @@ static const enc_tuning tunings[] = {
 };
 
 /* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
+typedef enum which_basis { BASIS_GUESSED, BASIS_OTHER, BASIS_OF_SMALLEST } which_basis;
 typedef struct attempt {
     uint32_t effort;
     uint32_t first, count;   /* tunings */
     uint32_t segment_frames; /* 0: the usual ones */
+    which_basis basis;
 } attempt;
 static const attempt attempts[] = {
-    { 1, 1, 1, 0 },
-    { 2, 0, 2, 0 },
-    { 3, 0, 5, 0 },
-    { 3, 0, 5, LONG_SEGMENT },
+    { 1, 1, 1, 0, BASIS_GUESSED },
+    { 2, 1, 1, 0, BASIS_OTHER },
+    { 2, 0, 2, 0, BASIS_OF_SMALLEST },
+    { 3, 0, 5, 0, BASIS_OF_SMALLEST },
+    { 3, 0, 5, LONG_SEGMENT, BASIS_OF_SMALLEST },
 };
 #define ATTEMPTS (sizeof attempts / sizeof *attempts)
 
@@ -227,6 +230,7 @@ static int encode_attempt(encoder *e, const encoder *from, byte_buffer *out, cli
         if (!failed && worst_part <= 1.0) {
             *report = e->report;
             report->level = level;
+            report->parabola = e->parabola;
         }
         if (decoded && level < LEVELS - 1 && worst_part < TIGHTEN_MAX && tight > TIGHT_MIN) {
             tight *= TIGHTEN /
@@ -259,6 +263,7 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
     encoder *e = calloc(2, sizeof *e); /* their bases are too large for some stacks */
     encoder *from;
     byte_buffer best;
+    uint32_t parabola = 0;
     int failed = 0, found = 0;
     if (!e) {
         if (error) snprintf(error->what, sizeof error->what, "out of memory");
@@ -275,6 +280,9 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
         clip_report r;
         if (!is_tried(from, &attempts[i])) continue;
         from->attempt = &attempts[i];
+        from->basis = attempts[i].basis == BASIS_GUESSED                       ? ENC_BASIS_GUESSED
+                      : (attempts[i].basis == BASIS_OTHER) != (parabola != 0u) ? ENC_BASIS_PARABOLA
+                                                                               : ENC_BASIS_COSINES;
         memset(&bytes, 0, sizeof bytes);
         failed = encode_attempt(e, from, &bytes, &r);
         if (!failed && (!found || bytes.count < best.count)) {
@@ -282,6 +290,7 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
             best = bytes;
             bytes = swap;
             if (report) *report = r;
+            parabola = r.parabola;
             found = 1;
         }
         buffer_free(&bytes);

@@ -42,6 +42,7 @@ typedef struct clip_report {
     uint32_t segment_count, track_count, raw_track_segments;
     int level; /* 0 = normal; higher: what it took to hold the bound, see clip_encode.c */
     int wide;
+    uint32_t parabola; /* 1: the transform begins with a parabola; 0: the DCT */
 } clip_report;
 
 /* Encode a clip and append its bytes to `out`. report may be NULL.

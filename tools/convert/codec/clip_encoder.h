@@ -104,12 +104,15 @@ typedef struct enc_model {
     enc_probe probes[ENC_FRAMES_MAX * ENC_PROBES];
 } enc_model;
 
+typedef enum enc_basis { ENC_BASIS_GUESSED, ENC_BASIS_COSINES, ENC_BASIS_PARABOLA } enc_basis;
+
 typedef struct encoder {
     const raw_skeleton *skeleton;
     const raw_clip *clip;
     clip_options options;
     enc_tuning tuning; /* of the current attempt */
     const struct attempt *attempt;
+    enc_basis basis; /* that is wanted */
     const enc_tuning *tunings; /* [tuning_count] every segment is encoded with each; the smallest result is kept */
     uint32_t tuning_count;
     model_error *error;

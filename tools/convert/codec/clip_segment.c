@@ -629,23 +629,36 @@ static double fast(double turn)
 static int can_aim_lower(const encoder *e, uint32_t joint, uint32_t f)
 {
     const enc_joint *t = &e->joints[joint];
-    const double *floor = &e->loop->floor[(size_t)joint * ENC_FRAMES_MAX];
+    const double *floor = &e->loop->floor[(size_t)joint * ENC_FRAMES_MAX], *slack = slack_of(e, joint);
+    if (!(slack[f] > SLACK_MIN)) return 0;
     if (t->tracks[TRANSLATION] != ENC_NONE || t->tracks[SCALE] != ENC_NONE) return 1;
-    return t->tracks[ROTATION] != ENC_NONE && floor[f] < slack_of(e, joint)[f];
+    return t->tracks[ROTATION] != ENC_NONE && floor[f] < slack[f];
 }
 
-/* The joint, or its nearest parent that can, aims at less; late, it is stored raw, or if it is, the next one above. */
-static void lower_slack(const encoder *e, uint32_t joint, uint32_t f, double violation)
+static void lower_slack_of(const encoder *e, uint32_t joint, uint32_t f, double violation)
 {
-    double *slack;
-    while (!can_aim_lower(e, joint, f) && e->joints[joint].parent != ENC_NONE) joint = e->joints[joint].parent;
-    while (e->loop->gives_up && is_raw(e, joint) && e->joints[joint].parent != ENC_NONE)
-        joint = e->joints[joint].parent;
-    if (e->loop->gives_up) e->loop->raw[joint] = 1;
+    double *slack = &slack_of(e, joint)[f];
     if (!e->loop->stale[joint]) e->loop->stale[joint] = STALE;
-    slack = &slack_of(e, joint)[f];
     *slack *= violation > 2.0 ? 0.5 : 0.97 / violation;
     if (!(*slack >= SLACK_MIN)) *slack = SLACK_MIN;
+}
+
+/* The joint, or its nearest parent that can, aims at less, or where none can all of them, which have room above what
+ * their parents leave them; late, it is stored raw, or if it is, the next one above. */
+static void lower_slack(const encoder *e, uint32_t joint, uint32_t f, double violation)
+{
+    uint32_t who = joint;
+    while (who != ENC_NONE && !can_aim_lower(e, who, f)) who = e->joints[who].parent;
+    if (e->loop->gives_up) {
+        if (who == ENC_NONE) who = joint;
+        while (is_raw(e, who) && e->joints[who].parent != ENC_NONE) who = e->joints[who].parent;
+        e->loop->raw[who] = 1;
+    }
+    if (who != ENC_NONE) {
+        lower_slack_of(e, who, f, violation);
+        return;
+    }
+    for (; joint != ENC_NONE; joint = e->joints[joint].parent) lower_slack_of(e, joint, f, violation);
 }
 
 /* A joint is off between frame f - 1 and f: of it and its parents the one that turns most there. */

@@ -1,0 +1,122 @@
+/* A looser bound is never larger: bytes of made-up and real clips over bounds, from tight to loose. With NOH_LONG set
+ * all real clips, over more bounds. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+
+#include "support/clip_fixture.h"
+#include "support/support.h"
+#include "convert/clips/rcl.h"
+
+/* From tight to loose: what keeps to one bound keeps to the next. (At ten thirds of the distance a turn moves points
+ * ten thirds as far.) */
+typedef struct bound {
+    double error_cm, shell_cm;
+} bound;
+static const bound quick_bounds[] = { { 0.01, 3.0 }, { 0.1, 10.0 }, { 1.0, 10.0 } };
+static const bound long_bounds[] = { { 0.001, 3.0 }, { 0.003, 3.0 }, { 0.01, 3.0 }, { 0.02, 3.0 }, { 0.1, 10.0 },
+                                     { 0.2, 10.0 },  { 0.4, 10.0 },  { 1.0, 10.0 }, { 3.0, 10.0 }, { 10.0, 10.0 } };
+
+static size_t bytes_at(const raw_set *set, const bound *b)
+{
+    model_error error;
+    byte_buffer out;
+    clip_options o;
+    size_t bytes;
+    memset(&o, 0, sizeof o);
+    memset(&out, 0, sizeof out);
+    o.error_cm = b->error_cm;
+    o.shell_cm = b->shell_cm;
+    clip_report r; if (clip_encode(&set->skeleton, &set->clips[0], &o, &out, &r, &error)) fail_msg("%s", error.what);
+    printf("@ %g %g effort %u: %u bytes hdr %u segtab %u level %d wide %d tracks %u raw %u err %g segs %u\n", b->error_cm, b->shell_cm, effort, (unsigned)r.bytes, (unsigned)r.header_bytes, (unsigned)r.segment_table_bytes, r.level, r.wide, r.track_count, r.raw_track_segments, r.max_error_cm, r.segment_count);
+    bytes = out.count;
+    buffer_free(&out);
+    return bytes;
+}
+
+/* Takes the set. bytes_max: of any bound. */
+static void looser_is_never_larger(raw_set *set, const char *name, size_t bytes_max)
+{
+    const int is_long = getenv("NOH_LONG") != NULL;
+    const bound *bounds = is_long ? long_bounds : quick_bounds;
+    const size_t count = is_long ? sizeof long_bounds / sizeof *bounds : sizeof quick_bounds / sizeof *bounds;
+    size_t before = SIZE_MAX;
+    for (size_t i = 0; i < count; i++) {
+        const size_t bytes = bytes_at(set, &bounds[i]);
+        if (bytes > before)
+            fail_msg("%s: %u bytes at %g cm, %g cm from each joint, %u at the tighter bound before", name,
+                     (unsigned)bytes, bounds[i].error_cm, bounds[i].shell_cm, (unsigned)before);
+        if (bytes > bytes_max) fail_msg("%s: %u bytes", name, (unsigned)bytes);
+        before = bytes;
+    }
+    raw_set_free(set);
+}
+
+/* What comes into being: its root grows from (almost) nothing in some frames, or shrinks to it. */
+static raw_set *grows(float least, uint32_t branch, int at, int shrinks)
+{
+    raw_set *set = fixture_swing(20, 60, branch, 15.0f, 0.5, 0.3);
+    for (uint32_t f = 0; f < 60u; f++) {
+        const uint32_t step = shrinks ? 59u - f : f;
+        float *s = fixture_scale(&set->clips[0], f, (uint32_t)at);
+        s[0] = s[1] = s[2] = step >= 12u ? 1.0f : least + (1.0f - least) * (float)step / 12.0f;
+        for (uint32_t j = 1; j < 20u; j++)
+            fixture_translation(&set->clips[0], f, j)[0] += 0.3f * (float)sin(0.3 * (double)f + (double)j);
+    }
+    return set;
+}
+
+/* Where a parent is next to nothing, what would make up for its error is without bound; that of a few frames used to
+ * store all tracks raw, 13 KB of them. */
+static void clips_that_grow_from_nothing(void **state)
+{
+    (void)state;
+    test_skip_emulated("the encoder");
+    looser_is_never_larger(grows(0.001f, 2, 0, 0), "from a thousandth", 8000);
+    looser_is_never_larger(grows(0.0f, 2, 0, 0), "from nothing", 8000);
+    looser_is_never_larger(grows(1e-5f, 2, 3, 1), "to a hundred-thousandth", 8000);
+}
+
+static const char *const real_clips[] = { "Fox__Walk", "Knight__Idle", "RobotExpressive__Wave",
+                                          /* from here on when long only */
+                                          "CesiumMan", "Fox__Run", "Fox__Survey", "Knight__1H_Melee_Attack_Chop",
+                                          "Knight__2H_Melee_Attack_Spin", "Knight__Cheer", "Knight__Death_B",
+                                          "Knight__Jump_Full_Long", "Knight__Lie_StandUp", "Knight__Running_A",
+                                          "Knight__Spellcast_Long", "Knight__Unarmed_Melee_Attack_Kick",
+                                          "Knight__Walking_A", "Knight__Walking_Backwards", "RobotExpressive__Dance",
+                                          "RobotExpressive__Walking", "ad_zombie", "cmu_01_01", "cmu_01_03",
+                                          "cmu_indian_04", "cmu_martial_03", "cmu_salsa_01" };
+#define REAL_CLIPS_QUICK 3u
+
+static void known_clips(void **state)
+{
+    const size_t count = getenv("NOH_LONG") ? sizeof real_clips / sizeof *real_clips : REAL_CLIPS_QUICK;
+    const char *base = getenv("NOH_ASSETS");
+    (void)state;
+    test_skip_emulated("the encoder");
+    for (size_t i = 0; i < count; i++) {
+        char path[512];
+        raw_set *set = NULL;
+        model_error error;
+        snprintf(path, sizeof path, "%s/clips/%s.rcl", base && *base ? base : "../shared/assets", real_clips[i]);
+        if (rcl_read(path, &set, &error)) {
+            print_message("SKIP: %s is not there (set NOH_ASSETS to the assets' folder)\n", path);
+            skip();
+        }
+        if (set->clips[0].sample_rate_hz > 60.0) fixture_decimate(&set->clips[0], 4);
+        looser_is_never_larger(set, real_clips[i], SIZE_MAX);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clips_that_grow_from_nothing),
+        cmocka_unit_test(known_clips),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
