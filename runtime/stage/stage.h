@@ -530,8 +530,8 @@ typedef struct noh_stage_hit {
 } noh_stage_hit;
 
 /* The nearest of the actors that were shown in the last frame along origin + distance * direction, as they are morphed
- * and posed. What alpha cuts away is gone through (deform/pick.h), by the textures of
- * the kind's own pack, whatever texture set an actor wears.
+ * and posed; of one that was cut since then (noh_actor_cut) no skinned mesh is hit. What alpha cuts away is gone
+ * through (deform/pick.h), by the textures of the kind's own pack, whatever texture set an actor wears.
  * errors  NOT_FOUND nothing is hit; ARG direction has no length, or distance_max is not above 0 */
 noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float direction[3], float distance_max,
                           noh_stage_hit *hit, noh_error *error);

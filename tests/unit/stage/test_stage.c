@@ -911,6 +911,15 @@ static void a_ray_meets_the_nearest_actor(void **state)
         assert_true(fabsf(hit.point[2] - (30.0f - 2.0f * hit.distance)) < 1e-4f && fabsf(hit.point[2]) < 1.0f);
         assert_true(hit.joint < c.plan.kinds[PUPPETS].joint_count);
     }
+    { /* one that was cut has no pose until the next frame */
+        const float origin[3] = { -4.0f, 0.9f, 30.0f };
+        assert_int_equal(noh_actor_cut(c.stage, actors[0], &said), NOH_OK);
+        if (noh_stage_pick(c.stage, origin, direction, 100.0f, &hit, &said) == NOH_OK)
+            assert_int_not_equal(hit.actor.id, actors[0].id);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_pick(c.stage, origin, direction, 100.0f, &hit, NULL), NOH_OK);
+        assert_int_equal(hit.actor.id, actors[0].id);
+    }
     direction[2] = 2.0f;
     assert_int_equal(noh_stage_pick(c.stage, sphere, direction, 0.0f, &hit, &said), NOH_ERR_ARG);
     {

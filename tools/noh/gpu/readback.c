@@ -76,7 +76,7 @@ static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_sour
     desc.name = "readback";
     desc.vertex = vertex;
     desc.fragment = fragment;
-    desc.defines = defines[two_layers][is_uint];
+    desc.defines = defines[two_layers][is_uint != 0];
     desc.samplers = samplers;
     desc.sampler_count = 1;
     if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
