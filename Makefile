@@ -609,7 +609,11 @@ $(WEB_FESTIVAL)/program.js: $(WEB_FESTIVAL_O) $(filter-out $(WEB_OBJECTS)/platfo
 	    -s MODULARIZE=1 -s EXPORT_NAME=nohFestival -s EXPORTED_RUNTIME_METHODS=UTF8ToString,FS -s FORCE_FILESYSTEM=1 \
 	    -s INCOMING_MODULE_JS_API=instantiateWasm -s ERROR_ON_UNDEFINED_SYMBOLS=0 -o $@ 2>$(WEB_OBJECTS)/festival.log || { cat $(WEB_OBJECTS)/festival.log; exit 1; }
 	$(Q)! grep 'undefined symbol' $(WEB_OBJECTS)/festival.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
-$(WEB_FESTIVAL)/people.nohz: $(BUILD)/demo/puppet_levels.noh $(BUILD)/noh
+# From the third level down: a camera that is 3 m away sees no finer one.
+$(WEB_OBJECTS)/festival/people.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh build $< -o $@ --lod 8 --lod-from 2 --graph $(PUPPET_MOVES) --quiet
+$(WEB_FESTIVAL)/people.nohz: $(WEB_OBJECTS)/festival/people.noh
 	@mkdir -p $(@D)
 	$(Q)$(BUILD)/noh pack $< -o $@ --error-um 10 --quiet
 $(WEB_FESTIVAL)/festival.nohz: $(BUILD)/demo_assets $(BUILD)/noh

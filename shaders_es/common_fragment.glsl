@@ -59,11 +59,13 @@ void noh_fade()
 #endif
 }
 
-/* A linear colour as the target wants it. */
+/* A linear colour as the target wants it. sRGB's power is our fit of two roots, off by a tenth of a byte at most and by
+ * nothing at white: where no GPU draws, pow takes a third of what a plain pixel does. */
 vec3 noh_encode(vec3 c)
 {
 #ifdef NOH_ENCODE_SRGB
-    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
+    vec3 root = sqrt(c), curve = 0.827702 * root + 0.302118 * sqrt(root) - 0.052254 * c - 0.077566;
+    return mix(curve, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
 #else
     return c;
 #endif

@@ -44,6 +44,9 @@ vec2 noh_albedo_of(float roughness, float nv)
  * S. Lagarde, C. de Rousiers: Moving Frostbite to physically based rendering, SIGGRAPH 2014, listing 26. */
 float noh_gloss_occlusion(float nv, float occlusion, float roughness)
 {
+    if (occlusion >= 1.0) {
+        return 1.0; /* as below, without its powers */
+    }
     return clamp(pow(nv + occlusion, exp2(-16.0 * roughness * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 

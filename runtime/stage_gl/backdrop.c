@@ -81,18 +81,33 @@ static void corner_rays(const noh_stage_view *view, float rays[3][4])
     }
 }
 
+/* The light from below and from above, as noh_ambient of common_environment.glsl has it. rows: of noh_lighting_pack */
+static void gradient_ends(float (*rows)[4], float ends[2][4])
+{
+    memset(ends, 0, 8 * sizeof(float));
+    for (int i = 0; i < 2; i++) {
+        const float y = i ? 1.0f : -1.0f;
+        for (int k = 0; k < 3; k++) {
+            const float c = rows[0][k] + y * rows[1][k] - rows[6][k] - rows[8][k];
+            ends[i][k] = c > 0.0f ? c : 0.0f;
+        }
+    }
+}
+
 void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, const noh_gl_light *light,
                        const noh_lighting *lighting, const noh_stage_view *view)
 {
     const noh_gl_api *gl = backdrop->gl;
     const GLuint program = backdrop->program;
-    float rows[NOH_LIGHTING_ROWS][4], rays[3][4];
+    float rows[NOH_LIGHTING_ROWS][4], rays[3][4], ends[2][4];
     NOH_ASSERT(backdrop && light && lighting && view);
     noh_lighting_pack(lighting, 0, rows);
     corner_rays(view, rays);
+    gradient_ends(rows, ends);
     gl->UseProgram(program);
     gl->Uniform4fv(gl->GetUniformLocation(program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
     gl->Uniform4fv(gl->GetUniformLocation(program, "u_rays"), 3, rays[0]);
+    gl->Uniform4fv(gl->GetUniformLocation(program, "u_ends"), 2, ends[0]);
     gl->Uniform4f(gl->GetUniformLocation(program, "u_kind"), kind == NOH_BACKDROP_LIGHT ? 1.0f : 0.0f, 0.0f, 0.0f,
                   0.0f);
     gl->ActiveTexture(GL_TEXTURE0);

@@ -75,7 +75,7 @@ async function frameOf(browser, agents, frames = 30) {
         const { processInfo } = await client.send('SystemInfo.getProcessInfo');
         return { frames: await page.evaluate(() => window.noh.frames), at: Date.now(), cpu: Object.fromEntries(processInfo.map((p) => [p.id, [p.type, p.cpuTime]])) };
     };
-    await page.waitForFunction(() => window.noh.frames > 5);
+    await page.waitForFunction(() => window.noh.frames > 50); // levels have been chosen, and their programs compiled
     const a = await read();
     await page.waitForFunction((n) => window.noh.frames >= n, a.frames + frames);
     const b = await read(), count = b.frames - a.frames, per = (type) => Object.entries(b.cpu).filter(([, p]) => p[0] === type)

@@ -33,17 +33,19 @@ static int open_context(gpu *g)
     return 0;
 }
 
-/* The files people.nohz, festival.nohz and festival.place are there. shadow: 1: everybody has one */
-EMSCRIPTEN_KEEPALIVE int festival_open(uint32_t agents, uint32_t width, uint32_t height, int shadow)
+/* The files people.nohz, festival.nohz and festival.place are there. shadow: 1: everybody has one; pixels: the largest
+ * error of levels of detail; plain_sky: a gradient, which costs less than the light itself */
+EMSCRIPTEN_KEEPALIVE int festival_open(uint32_t agents, uint32_t width, uint32_t height, int shadow, float pixels,
+                                       int plain_sky)
 {
     place_draw_options *o = &festival.options;
     int status = open_context(&festival.g);
     memset(o, 0, sizeof *o);
     o->agents = agents;
     o->seed = 1;
-    o->pixels = 1.0f;
+    o->pixels = pixels;
     o->scenery = "festival.nohz";
-    o->light = (light_options){ "sky", NULL, shadow ? "on" : "off", NULL, "light", 0.0 };
+    o->light = (light_options){ "sky", NULL, shadow ? "on" : "off", NULL, plain_sky ? "gradient" : "light", 0.0 };
     o->width = width;
     o->height = height;
     o->encode_srgb = 1; /* a canvas does not */

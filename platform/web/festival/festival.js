@@ -1,6 +1,7 @@
 // festival.js: the page around the crowd's program (festival.c). Where no GPU draws there are fewer people, without samples,
-// and fewer pixels while frames take long. The query: ?agents=600; ?shadow=on; ?size=640x360 draws a
-// canvas of so many pixels; ?still=30 shows that second and stops; ?antialias=on|off, else off where no GPU draws.
+// coarser figures, a plain sky, and fewer pixels while frames take long. The query: ?agents=600; ?shadow=on; ?size=640x360 draws a
+// canvas of so many pixels; ?still=30 shows that second and stops; ?antialias=on|off, else off where no GPU draws; ?error=8:
+// levels of detail may be off by so many pixels.
 'use strict';
 
 const query = new URLSearchParams(location.search), byId = (id) => document.getElementById(id), canvas = byId('canvas');
@@ -161,7 +162,8 @@ function findSoftware() {
 }
 const software = findSoftware();
 const smooths = query.has('antialias') ? query.get('antialias') !== 'off' : !software; // a frame takes nearly twice as long with samples
-const asksFor = Number(query.get('agents') || (software ? 25 : 300));
+const error = Math.max(0.1, Number(query.get('error')) || (software ? 8 : 1)); // of levels of detail, pixels
+const asksFor = Number(query.get('agents') || (software ? 10 : 300));
 
 // GL comes from the package, as the page's does.
 async function program() {
@@ -192,7 +194,7 @@ async function start() {
     say('people arrive');
     await new Promise((resolve) => setTimeout(resolve)); // so that this is seen
     resize();
-    check(Module._festival_open(agents, canvas.width, canvas.height, byId('shadow').checked ? 1 : 0));
+    check(Module._festival_open(agents, canvas.width, canvas.height, byId('shadow').checked ? 1 : 0, error, software ? 1 : 0));
     const still = Number(query.get('still'));
     if (matchMedia('(prefers-reduced-motion: reduce)').matches || still) setPlaying(false);
     advance(still ? Math.round(still / step) : 2);
