@@ -60,7 +60,7 @@ void noh_fade()
 }
 
 /* A linear colour as the target wants it. sRGB's power is our fit of two roots, off by a tenth of a byte at most and by
- * nothing at white: where no GPU draws, pow takes a third of what a plain pixel does. */
+ * nothing at white: where no GPU draws, powers took a sixteenth of a frame. */
 vec3 noh_encode(vec3 c)
 {
 #ifdef NOH_ENCODE_SRGB
