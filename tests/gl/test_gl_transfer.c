@@ -429,10 +429,12 @@ static double compare_pixels(const scene *s, const uint8_t *rgba, const noh_ligh
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         const double x = ((double)mesh->positions[3u * v] + 1.0) * SIDE / 2.0 - 0.5;
         const double y = (1.0 - (double)mesh->positions[3u * v + 1u]) * SIDE / 2.0 - 0.5;
-        const uint32_t column = (uint32_t)(x + 0.5), row = (uint32_t)(y + 0.5);
+        uint32_t column, row;
         float rgb[3];
         noh_vertex vertex;
         if (x < 0.5 || y < 0.5 || x > SIDE - 1.5 || y > SIDE - 1.5) continue;
+        column = (uint32_t)(x + 0.5);
+        row = (uint32_t)(y + 0.5);
         noh_mesh_vertex(mesh, v, &vertex);
         if (by_normal) {
             noh_light_irradiance(&lighting->rest, vertex.normal, rgb);
