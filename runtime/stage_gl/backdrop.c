@@ -81,16 +81,16 @@ static void corner_rays(const noh_stage_view *view, float rays[3][4])
     }
 }
 
-/* The light from below and from above, as noh_ambient of common_environment.glsl has it. rows: of noh_lighting_pack */
-static void gradient_ends(float (*rows)[4], float ends[2][4])
+/* The light from below and from above, of as many bands as shaders have. */
+static void gradient_ends(const noh_lighting *lighting, float ends[2][4])
 {
+    static const float normals[2][3] = { { 0.0f, -1.0f, 0.0f }, { 0.0f, 1.0f, 0.0f } };
+    noh_light rest = lighting->rest;
+    if (rest.order > 3u) rest.order = 3u;
     memset(ends, 0, 8 * sizeof(float));
     for (int i = 0; i < 2; i++) {
-        const float y = i ? 1.0f : -1.0f;
-        for (int k = 0; k < 3; k++) {
-            const float c = rows[0][k] + y * rows[1][k] - rows[6][k] - rows[8][k];
-            ends[i][k] = c > 0.0f ? c : 0.0f;
-        }
+        noh_light_irradiance(&rest, normals[i], ends[i]);
+        for (int k = 0; k < 3; k++) ends[i][k] = ends[i][k] > 0.0f ? ends[i][k] : 0.0f;
     }
 }
 
@@ -103,7 +103,7 @@ void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, con
     NOH_ASSERT(backdrop && light && lighting && view);
     noh_lighting_pack(lighting, 0, rows);
     corner_rays(view, rays);
-    gradient_ends(rows, ends);
+    gradient_ends(lighting, ends);
     gl->UseProgram(program);
     gl->Uniform4fv(gl->GetUniformLocation(program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
     gl->Uniform4fv(gl->GetUniformLocation(program, "u_rays"), 3, rays[0]);

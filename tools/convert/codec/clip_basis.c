@@ -3,8 +3,8 @@
  * Both are tried on the raw values of all tracks, with the step that each track's search begins at. A coefficient of
  * x steps takes about log2(1 + 4 x^2) / 2 bits; the transform of fewer bits is taken. Motion that goes on beyond its
  * segments is smaller with the parabola, up to 30 % where its rate is high; what swings about a mean, within segments
- * that begin and end alike, is up to 5 % smaller with cosines alone. Where clips jump the guess has been off by a quarter,
- * so from effort 2 on the other one is tried, too. */
+ * that begin and end alike, is up to 5 % smaller with cosines alone. Where clips jump the guess has been off by a
+ * quarter, so from effort 2 on the other one is tried, too. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"

@@ -47,8 +47,9 @@ static const enc_tuning tunings[] = {
     { 0.7, 0.9, 0.05, 0.65, 0.2, 0.5, 0.06, 8, 1, 1 },
 };
 
-/* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
 typedef enum which_basis { BASIS_GUESSED, BASIS_OTHER, BASIS_OF_SMALLEST } which_basis;
+
+/* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
 typedef struct attempt {
     uint32_t effort;
     uint32_t first, count;   /* tunings */
@@ -257,6 +258,14 @@ static int is_tried(const encoder *from, const attempt *a)
            (!o->segment_frames && c->joint_count && c->sample_rate_hz > FAST_HZ && c->frame_count > LONG_SEGMENT);
 }
 
+/* parabola: whether the smallest attempt so far has it */
+static enc_basis basis_of(const attempt *a, uint32_t parabola)
+{
+    if (a->basis == BASIS_GUESSED) return ENC_BASIS_GUESSED;
+    if (a->basis == BASIS_OTHER) parabola = !parabola;
+    return parabola ? ENC_BASIS_PARABOLA : ENC_BASIS_COSINES;
+}
+
 int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
                 clip_report *report, model_error *error)
 {
@@ -280,9 +289,7 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
         clip_report r;
         if (!is_tried(from, &attempts[i])) continue;
         from->attempt = &attempts[i];
-        from->basis = attempts[i].basis == BASIS_GUESSED                       ? ENC_BASIS_GUESSED
-                      : (attempts[i].basis == BASIS_OTHER) != (parabola != 0u) ? ENC_BASIS_PARABOLA
-                                                                               : ENC_BASIS_COSINES;
+        from->basis = basis_of(&attempts[i], parabola);
         memset(&bytes, 0, sizeof bytes);
         failed = encode_attempt(e, from, &bytes, &r);
         if (!failed && (!found || bytes.count < best.count)) {
