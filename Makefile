@@ -510,7 +510,7 @@ $(WEB)/page.js: $(WEB_SCRIPTS)
 	@cat $^ >$@
 $(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
 	@mkdir -p $(@D)
-	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze' $(WEB_MODULES)
+	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
 $(WEB)/package/noh.wasm: $(WEB_OBJECTS)/noh.wasm
 	@mkdir -p $(@D)
 	@cp $< $@

@@ -66,10 +66,8 @@ function listDetail() {
 
 // ---- sharpness ----
 
-const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-
 function showSharpness() {
-    const { share } = character, slow = software.test(window.noh.renderer) ? 'no GPU draws here, so frames take long' : 'frames take long';
+    const { share } = character, slow = window.noh.software ? 'no GPU draws here, so frames take long' : 'frames take long';
     byId('sharpness-text').textContent = share < 1 ? `${Math.round(100 * share)} % of the pixels across while it moves: ${slow}. All of them at rest.` : 'All pixels are drawn.';
 }
 
@@ -163,7 +161,7 @@ function showMemory() {
     addRow(['its block', memory.room, '']);
     addRow(['the pack', memory.pack, '']);
     addRow(['WebAssembly, cannot grow', memory.all, '']);
-    byId('device').textContent = `${window.noh.path ? `Targets are added by path ${window.noh.path}. ` : ''}Drawn by ${window.noh.renderer}${software.test(window.noh.renderer) ? ', without a GPU' : ''}.`;
+    byId('device').textContent = `${window.noh.path ? `Targets are added by path ${window.noh.path}. ` : ''}Drawn by ${window.noh.renderer}${window.noh.software ? ', without a GPU' : ''}.`;
 }
 
 // A pack as it begins.
@@ -224,7 +222,8 @@ function listen() {
 }
 
 async function start() {
-    const { Character, addPointers, addGaze } = await arriving;
+    const { Character, addPointers, addGaze, isSoftware } = await arriving;
+    Object.defineProperty(window.noh, 'software', { get: () => isSoftware(window.noh.renderer) });
     character = new Character(canvas, {
         path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
         follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),

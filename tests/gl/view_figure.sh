@@ -82,10 +82,11 @@ save back.png
 click light
 click light/studio
 frames 1
-expect "light turned 20"
+expect "light turned 20.0, studio"
 save studio.png
 key ctrl+z
 frames 1
+expect "light turned 20.0, room"
 save undone.png
 HAND
 draw room.png rest.png "$mask" --light room --rotate 20
@@ -97,6 +98,18 @@ check '[ turns it back' same rest.png back.png
 draw studio_render.png rest.png "$mask" --light studio --rotate 20
 check 'another light, turned as much' same studio.png studio_render.png
 check 'is undone' same rest.png undone.png
+hand 'the light of a file, by its name' "$mask" --play off --light ./rest.png <<'HAND'
+expect "light turned 0.0, rest.png"
+save file.png
+click light
+click light/none
+frames 1
+click light
+click light/rest.png
+frames 1
+save file_again.png
+HAND
+check 'can be had again' same file.png file_again.png
 
 # ---- LOD levels ----
 

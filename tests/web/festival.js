@@ -34,9 +34,15 @@ async function crowd(browser) {
     for (const [colorScheme, width, height] of [['dark', 900, 640], ['light', 390, 844]]) {
         await again.emulateMedia({ colorScheme });
         await again.setViewportSize({ width, height });
+        const said = await again.locator('aside').innerText();
+        check(`crowd: it says how many are seen, and counts no bytes, ${width} x ${height}`, /\d in view/.test(said) && !said.includes('bytes'), said);
+        await again.click('summary');
+        check(`crowd: until it is asked to, ${width} x ${height}`, /[\d,]{9,} bytes/.test(await again.locator('aside').innerText())
+            && await again.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
         const wrong = await faults(again);
         check(`crowd: axe finds nothing, ${colorScheme}, ${width} x ${height}`, wrong.length === 0, wrong.join(' | '));
         await again.screenshot({ path: path.join(out, `festival_${width}.png`) });
+        await again.click('summary');
     }
     await close(again, 'crowd, again');
     const frame = async (act) => {

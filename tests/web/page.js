@@ -116,6 +116,10 @@ async function held(browser) {
     check('held: and does after the reset', await value() !== 1.5, await value());
     check('picked: a tap names what is there', /^(mask|body)/.test(await pickAt(page, 316, 350)), await page.textContent('#picked'));
     check('picked: and beside the figure nothing', await pickAt(page, 5, 5) === '');
+    const across = await page.evaluate(() => [[300, 300], [400, 300], [300, 400]].map(([x, y]) => character.pixelOf(x, y)));
+    const step = [across[1][0] - across[0][0], across[2][1] - across[0][1]];
+    check('size: pixels are square on a page that is not', Math.abs(step[0] - step[1]) < 1e-6 && step[0] > 0
+        && await page.evaluate(() => getComputedStyle(canvas).objectFit) === 'contain', step.join(' '));
     await close(page, 'held');
 }
 

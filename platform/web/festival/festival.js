@@ -11,7 +11,7 @@ const home = { azimuth: 0.31, elevation: 0.23, distance: 24, x: 0, z: 0 };
 const orbit = { ...home };
 const step = 1 / 30; // seconds
 let pixels = null; // how many are drawn (package/pixels.js)
-let Module = null, playing = true, lost = false, wanted = false, before = 0, owed = 0;
+let Module = null, software = false, playing = true, lost = false, wanted = false, before = 0, owed = 0;
 const times = []; // of the last frames, ms
 
 // Tests wait for these.
@@ -60,7 +60,8 @@ function draw(now) {
 function tell() {
     const sum = times.reduce((a, b) => a + b, 0), rate = sum ? `, ${(1000 * times.length / sum).toFixed(0)} frames a second${software ? ' without a GPU' : ''}` : '';
     const number = (n) => n.toLocaleString('en');
-    byId('said').textContent = `${number(Module._festival_seen())} seen${rate}; ${number(Module._festival_stage_bytes())} bytes of the CPU, ${number(Module._festival_gpu_bytes())} of the GPU`;
+    byId('said').textContent = `${number(Module._festival_seen())} in view${rate}`;
+    byId('bytes').textContent = `The stage takes ${number(Module._festival_stage_bytes())} bytes of memory, and ${number(Module._festival_gpu_bytes())} of the GPU's.`;
 }
 
 function resize() {
@@ -152,21 +153,18 @@ async function fetched(name) {
 }
 const asked = Promise.all(files.map(fetched)); // beside the program
 
-// Whether no GPU draws, which only a context tells.
-function findSoftware() {
+// Who draws, which only a context tells.
+function findRenderer() {
     const gl = document.createElement('canvas').getContext('webgl2');
-    if (!gl) return false;
+    if (!gl) return '';
     const info = gl.getExtension('WEBGL_debug_renderer_info'), name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
     gl.getExtension('WEBGL_lose_context')?.loseContext();
-    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+    return name;
 }
-const software = findSoftware();
-const smooths = query.has('antialias') ? query.get('antialias') !== 'off' : !software; // a frame takes nearly twice as long with samples
-const error = Math.max(0.1, Number(query.get('error')) || (software ? 8 : 1)); // of levels of detail, pixels
-const asksFor = Number(query.get('agents') || (software ? 10 : 300));
 
 // GL comes from the package, as the page's does.
 async function program() {
+    const smooths = query.has('antialias') ? query.get('antialias') !== 'off' : !software; // a frame takes nearly twice as long with samples
     const gl = canvas.getContext('webgl2', { antialias: smooths, depth: true, alpha: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error('this browser gives no WebGL 2 context');
     const { importsOf } = await import('../package/gl.js'), heap = {}, { imports } = importsOf(gl, heap);
@@ -185,9 +183,13 @@ async function program() {
 }
 
 async function start() {
+    const { Pixels, isSoftware } = await import('../package/pixels.js');
+    software = isSoftware(findRenderer());
     Module = window.Module = await program();
+    const error = Math.max(0.1, Number(query.get('error')) || (software ? 8 : 1)); // of levels of detail, pixels
+    const asksFor = Number(query.get('agents') || (software ? 10 : 300));
     const agents = Math.min(1000, Math.max(1, Number.isFinite(asksFor) ? Math.floor(asksFor) : 300));
-    if (!query.has('size')) pixels = new (await import('../package/pixels.js')).Pixels();
+    if (!query.has('size')) pixels = new Pixels();
     for (const count of [...new Set([...counts, agents])].sort((a, b) => a - b)) byId('agents').add(new Option(count, count, false, count === agents));
     byId('shadow').checked = query.get('shadow') === 'on';
     (await asked).forEach((bytes, i) => Module.FS.writeFile(files[i], bytes));

@@ -221,7 +221,7 @@ export class Character extends EventTarget {
     advance(seconds) {
         const p = this.program;
         this.step(seconds);
-        this.camera.write(p.floats(p._web_view(), 22), p.floats(p._web_walked(), 3), this.canvas.width / this.canvas.height, this.canvas.clientHeight || this.canvas.height);
+        this.camera.write(p.floats(p._web_view(), 22), p.floats(p._web_walked(), 3), this.canvas.width / this.canvas.height, this.shownHeight());
         p.check(p._web_draw());
         this.frames++;
         this.emit('frame', { seconds });
@@ -259,7 +259,14 @@ export class Character extends EventTarget {
         const [width, height] = size ? [size, size] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
         const changes = width !== canvas.width || height !== canvas.height;
         if (changes) Object.assign(canvas, { width, height });
+        canvas.style.objectFit = size ? 'contain' : ''; // its picture keeps its proportions, in the middle
         return changes;
+    }
+
+    // Of the picture on the page: of a `size` of its own, as much as fits.
+    shownHeight() {
+        const { canvas, size } = this, height = canvas.clientHeight || canvas.height;
+        return size && canvas.clientWidth ? Math.min(height, canvas.clientWidth * canvas.height / canvas.width) : height;
     }
 
     resize() {
@@ -423,8 +430,9 @@ export class Character extends EventTarget {
     }
 
     pixelOf(x, y) {
-        const r = this.canvas.getBoundingClientRect();
-        return [(x - r.left) * this.canvas.width / r.width, (y - r.top) * this.canvas.height / r.height];
+        const { width, height } = this.canvas, r = this.canvas.getBoundingClientRect(), each = [width / r.width, height / r.height];
+        if (this.size) each.fill(Math.max(...each));
+        return [width / 2 + (x - r.left - r.width / 2) * each[0], height / 2 + (y - r.top - r.height / 2) * each[1]];
     }
 
     // At a point of the page, as if it hung in the air before the figure.

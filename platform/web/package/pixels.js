@@ -1,5 +1,5 @@
 // pixels.js: how many pixels a character is drawn with: all of them, or fewer across while it moves and frames take long, as
-// they do where no GPU draws.
+// they do where no GPU draws; and whether one does.
 
 const looksAt = 16, atLeast = 5, enough = 1200; // frames whose mean counts; fewer, if they took so many ms: browsers ask for several at once
 const underWay = 5; // frames after a change, which may be of what was before
@@ -8,6 +8,9 @@ const drop = 0.4, rise = 1.25; // at once
 const fewest = 0.4; // of the pixels across
 const helps = 0.9; // of a frame's time: what fewer pixels must bring it down to
 const waits = 20000; // ms until what did not work is tried again
+
+// Whether a renderer is a program, by the name that a context gives it.
+export const isSoftware = (renderer) => /swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 
 export class Pixels {
     constructor() {

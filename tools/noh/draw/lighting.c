@@ -78,6 +78,7 @@ int lighting_open(lighting *l, const light_options *o)
     int tonemap, shadow, transfer, background;
     int status;
     memset(l, 0, sizeof *l);
+    l->name = o->light;
     status = choose("--tonemap", o->tonemap, tonemaps, 2, &tonemap);
     if (!status) status = choose("--shadow", o->shadow, switches, 3, &shadow);
     if (!status) status = choose("--transfer", o->transfer, switches, 2, &transfer);

@@ -16,6 +16,7 @@ typedef enum lighting_background { BACKGROUND_PLAIN, BACKGROUND_GRADIENT, BACKGR
 
 /* Must not move once a figure is lit by it. */
 typedef struct lighting {
+    const char *name; /* light_options.light */
     void *texels;
     noh_reflection reflection;
     noh_light light; /* not turned */

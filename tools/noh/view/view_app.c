@@ -40,7 +40,7 @@ static void set_defaults(view_app *a, const view_model_desc *desc)
     a->over.joint = NOH_NONE;
     a->compare.gain = 8.0f;
     a->export_hz = 30;
-    a->lights.first = desc->light;
+    view_lights_open(&a->lights, desc->light);
     if (!a->export_path[0]) snprintf(a->export_path, sizeof a->export_path, "noh.gif");
 }
 

@@ -8,6 +8,31 @@
 
 const char *const view_light_names[VIEW_LIGHT_COUNT] = { "none", "studio", "room", "sky", "white" };
 
+static int is_built_in(const char *name)
+{
+    int found = 0;
+    for (uint32_t i = 0; i < VIEW_LIGHT_COUNT; i++) found |= strcmp(name, view_light_names[i]) == 0;
+    return found;
+}
+
+void view_lights_open(view_lights *l, lighting *first)
+{
+    const char *name = first ? first->name : view_light_names[0];
+    l->first = first;
+    snprintf(l->name, sizeof l->name, "%s", is_built_in(name) ? name : "");
+}
+
+const char *view_lights_file(const view_lights *l)
+{
+    const char *name = l->first ? l->first->name : view_light_names[0], *slash = strrchr(name, '/');
+    return is_built_in(name) ? NULL : slash ? slash + 1 : name;
+}
+
+const char *view_lights_shown(const view_lights *l)
+{
+    return l->name[0] ? l->name : view_lights_file(l);
+}
+
 /* As the light before it, but for its name. */
 static int open_as(lighting *l, const char *name, const lighting *before)
 {

@@ -16,8 +16,17 @@ typedef struct view_lights {
     lighting slots[2];
     int opened[2];
     lighting *first;            /* of the command line; NULL: none */
-    char name[VIEW_LIGHT_NAME]; /* "": first */
+    char name[VIEW_LIGHT_NAME]; /* "": first, which is a file's */
 } view_lights;
+
+/* Begin with that of the command line. */
+void view_lights_open(view_lights *l, lighting *first);
+
+/* The name of the one that is shown. */
+const char *view_lights_shown(const view_lights *l);
+
+/* The file that the command line named, without its folders; NULL: its light is one of those built in. */
+const char *view_lights_file(const view_lights *l);
 
 struct view_app;
 /* name: of view_light_names, or "". Turned, with shadow and background as the one before. Takes effect with

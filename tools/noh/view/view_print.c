@@ -121,7 +121,7 @@ void view_print(const view_app *a, FILE *out)
     fprintf(out, "place %.4f %.4f %.4f\n", (double)place.position[0], (double)place.position[1],
             (double)place.position[2]);
     fprintf(out, "center %.4f %.4f %.4f\n", a->orbit.center[0], a->orbit.center[1], a->orbit.center[2]);
-    if (a->desc.light) fprintf(out, "light turned %.1f\n", a->desc.light->degrees);
+    if (a->desc.light) fprintf(out, "light turned %.1f, %s\n", a->desc.light->degrees, view_lights_shown(&a->lights));
     view_lod_text(&a->lod, text, sizeof text);
     fprintf(out, "%s\n", text);
     print_set(out, a);

@@ -14,8 +14,11 @@ void light_combo(view_app *a)
     for (uint32_t i = 0; i < VIEW_LIGHT_COUNT; i++) {
         names[count++] = view_light_names[i];
     }
-    names[count++] = "as opened";
-    at = static_cast<int>(VIEW_LIGHT_COUNT);
+    const char *file = view_lights_file(&a->lights);
+    if (file) {
+        names[count++] = file;
+        at = static_cast<int>(VIEW_LIGHT_COUNT);
+    }
     for (uint32_t i = 0; i < VIEW_LIGHT_COUNT; i++) {
         at = std::strcmp(a->lights.name, view_light_names[i]) == 0 ? static_cast<int>(i) : at;
     }
