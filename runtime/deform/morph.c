@@ -8,12 +8,13 @@
 #include "deform/morph_accumulate_internal.h"
 #include "deform/morph_finish_internal.h"
 
-NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                                float *const layers[3])
 {
     if (layers[2]) {
-        noh_add_run(words, count, f, layers, 3);
+        noh_add_run(words, count, lead, f, layers, 3);
     } else {
-        noh_add_run(words, count, f, layers, 2);
+        noh_add_run(words, count, lead, f, layers, 2);
     }
 }
 
@@ -63,8 +64,9 @@ const char *noh_morph_simd(void)
     return NOH_MORPH_SIMD;
 }
 
-static void run_scalar(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+static void run_scalar(const uint32_t *words, size_t count, size_t lead, const morph_field f[3], float *const layers[3])
 {
+    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         noh_add_run_scalar(words, count, f[l], layers[l]);
     }
@@ -146,8 +148,10 @@ static float round_half(float value, noh_half_mode mode)
     return noh_half_to_float(noh_half_from_float(value, mode));
 }
 
-static void run_f16_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+static void run_f16_rne(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                        float *const layers[3])
 {
+    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
@@ -155,8 +159,10 @@ static void run_f16_rne(const uint32_t *words, size_t count, const morph_field f
     }
 }
 
-static void run_f16_rtz(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+static void run_f16_rtz(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                        float *const layers[3])
 {
+    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
@@ -164,8 +170,10 @@ static void run_f16_rtz(const uint32_t *words, size_t count, const morph_field f
     }
 }
 
-static void run_f16_rtz_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+static void run_f16_rtz_rne(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                            float *const layers[3])
 {
+    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             const float added = round_half(noh_field_value(words[i], f[l]), NOH_HALF_RTZ);

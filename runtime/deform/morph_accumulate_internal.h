@@ -24,7 +24,9 @@ static inline void noh_target_fields(const noh_target *t, float weight, morph_fi
     f[2] = noh_make_field((unsigned)t->position_bits + t->normal_bits, t->tangent_bits, t->tangent_scale * weight);
 }
 
-typedef void (*noh_run_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
+/* lead: morph_run_template.h */
+typedef void (*noh_run_function)(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                                 float *const layers[3]);
 
 /* Whether any of the groups of NOH_MORPH_GROUP texels that a run lies in is wanted. groups NULL: all are */
 static inline int noh_is_wanted(const uint8_t *groups, size_t texel, size_t count)
@@ -43,17 +45,26 @@ NOH_ALWAYS_INLINE void noh_accumulate_target(const noh_mesh *mesh, const noh_tar
                                              const noh_morph_layers *layers, const uint8_t *groups,
                                              noh_run_function run)
 {
+    const noh_mesh_header *h = mesh->header;
     const noh_rect *rect = mesh->rects + t->first_rect;
-    const uint32_t *words = mesh->texels + 3u * (size_t)t->first_texel;
+    const size_t stride = (size_t)3u << h->morph_width_log2, floats = h->morph_height * stride;
+    const noh_target *last = mesh->targets + h->target_count - 1u;
+    const size_t end = 3u * ((size_t)last->first_texel + last->texel_count);
+    size_t word = 3u * (size_t)t->first_texel;
     for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
-        size_t row = 3u * (((size_t)rect->y << mesh->header->morph_width_log2) + rect->x);
-        size_t count = 3u * (size_t)rect->w;
+        size_t row = rect->y * stride + 3u * (size_t)rect->x;
+        const size_t count = 3u * (size_t)rect->w;
         for (unsigned y = 0; y < rect->h; y++) {
             float *at[3] = { layers->position + row, layers->normal + row,
                              layers->tangent ? layers->tangent + row : NULL };
-            if (noh_is_wanted(groups, row / 3u, rect->w)) run(words, count, f, at);
-            words += count;
-            row += (size_t)3u << mesh->header->morph_width_log2;
+            size_t lead = (size_t)(uintptr_t)at[0] / sizeof(float) % NOH_MORPH_LANES;
+            if (lead > row || lead > word || row + count + NOH_MORPH_LANES > floats ||
+                word + count + NOH_MORPH_LANES > end) {
+                lead = NOH_MORPH_ALONE;
+            }
+            if (noh_is_wanted(groups, row / 3u, rect->w)) run(mesh->texels + word, count, lead, f, at);
+            word += count;
+            row += stride;
         }
     }
 }

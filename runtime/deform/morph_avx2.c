@@ -4,13 +4,13 @@
 
 #ifdef NOH_AVX2_AT_RUN_TIME
 
-NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void run_wide(const uint32_t *words, size_t count, const morph_field f[3],
-                                                float *const layers[3])
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void run_wide(const uint32_t *words, size_t count, size_t lead,
+                                                const morph_field f[3], float *const layers[3])
 {
     if (layers[2]) {
-        noh_add_run_wide(words, count, f, layers, 3);
+        noh_run8(words, count, lead, f, layers, 3);
     } else {
-        noh_add_run_wide(words, count, f, layers, 2);
+        noh_run8(words, count, lead, f, layers, 2);
     }
 }
 

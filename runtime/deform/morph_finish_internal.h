@@ -14,6 +14,10 @@
 #define NOH_VANISHES 1e-30f
 #define NOH_OVERFLOWS 1e30f
 
+/* Blocks that go through each half of the kernel together: the chain of one is some 200 cycles long, and a processor
+ * looks ahead by about as many instructions as a block has, so that it would wait. */
+#define NOH_FINISH_BLOCKS 4u
+
 #ifdef NOH_AVX2_AT_RUN_TIME
 /* noh_morph_finish with AVX2, for processors that have it. */
 void noh_morph_finish_wide(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count,

@@ -84,34 +84,49 @@ LANES_INLINE int LANES(are_directions)(LANES_TYPE square)
     return !LANES(any)(LANES(choose)(LANES(less)(LANES(set)(NOH_VANISHES), square), small, no));
 }
 
-/* The vertices from v on, whose texels are as many from `texel` on. Returns 0, and has written nothing, where one of
- * them has no direction. */
-LANES_INLINE int LANES(finish_block)(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t v, uint32_t texel,
-                                     int has_tangents, float *out)
+/* One block, between its two halves. */
+typedef struct LANES(moved) {
+    LANES_TYPE n[3], t[3]; /* with their deltas */
+    uint32_t v, texel;     /* of the first lane */
+} LANES(moved);
+
+/* The first half: the directions of the vertices from b->v on, with the deltas of as many texels from b->texel on. */
+LANES_INLINE void LANES(move_block)(const noh_mesh *mesh, const noh_morph_layers *layers, int has_tangents,
+                                    LANES(moved) * b)
 {
-    const size_t stride = mesh->header->attribute_stride / 4u, at = 3u * (size_t)texel;
-    LANES_TYPE words[4], p[4], d[4], n[3], t[3], square;
+    const size_t stride = mesh->header->attribute_stride / 4u, at = 3u * (size_t)b->texel;
+    LANES_TYPE words[4];
+    LANES(columns)((const float *)(const void *)mesh->attributes + (size_t)b->v * stride, stride, words);
+    LANES(unfold)(words[0], 0, b->n);
+    LANES(move)(b->n, layers->normal + at);
+    if (!has_tangents) return;
+    LANES(unfold)(words[1], 1, b->t);
+    LANES(move)(b->t, layers->tangent ? layers->tangent + at : NULL);
+}
+
+/* The second: folded, and written with the positions. Returns 0, and has written nothing, where a lane has no direction.
+ */
+LANES_INLINE int LANES(write_block)(const noh_mesh *mesh, const noh_morph_layers *layers, int has_tangents,
+                                    const LANES(moved) * b, float *out)
+{
+    const size_t stride = mesh->header->attribute_stride / 4u, at = 3u * (size_t)b->texel;
+    const LANES_TYPE square = LANES(dot3)(b->n, b->n);
+    LANES_TYPE p[4], d[4], words[4];
     float tangents[LANES_COUNT];
-    LANES(columns)((const float *)(const void *)mesh->attributes + (size_t)v * stride, stride, words);
-    LANES(unfold)(words[0], 0, n);
-    LANES(move)(n, layers->normal + at);
-    square = LANES(dot3)(n, n);
     if (!LANES(are_directions)(square)) return 0;
     if (has_tangents) {
-        LANES_TYPE along;
-        LANES(unfold)(words[1], 1, t);
-        LANES(move)(t, layers->tangent ? layers->tangent + at : NULL);
-        along = LANES(div)(LANES(dot3)(t, n), square);
+        LANES_TYPE along = LANES(div)(LANES(dot3)(b->t, b->n), square), t[3];
         NOH_UNROLL
-        for (int i = 0; i < 3; i++) t[i] = LANES(sub)(t[i], LANES(mul)(n[i], along));
+        for (int i = 0; i < 3; i++) t[i] = LANES(sub)(b->t[i], LANES(mul)(b->n[i], along));
         if (!LANES(are_directions)(LANES(dot3)(t, t))) return 0;
+        LANES(columns)((const float *)(const void *)mesh->attributes + (size_t)b->v * stride, stride, words);
         LANES(store)(tangents, LANES(tangent_words)(t, words[1]));
     }
-    LANES(columns)(mesh->positions + 3u * (size_t)v, 3, p);
+    LANES(columns)(mesh->positions + 3u * (size_t)b->v, 3, p);
     LANES(columns)(layers->position + at, 3, d);
     NOH_UNROLL
     for (int i = 0; i < 3; i++) p[i] = LANES(add)(p[i], d[i]);
-    p[3] = LANES(normal_words)(n);
+    p[3] = LANES(normal_words)(b->n);
     LANES(rows)(p, out, has_tangents ? 5 : 4);
     for (size_t i = 0; has_tangents && i < LANES_COUNT; i++) memcpy(out + 5u * i + 4u, tangents + i, 4);
     return 1;
@@ -140,14 +155,21 @@ LANES_INLINE void LANES(finish)(const noh_mesh *mesh, const noh_morph_layers *la
     const int has_tangents = (mesh->header->flags & NOH_MESH_TANGENTS) != 0;
     uint32_t i = 0;
     NOH_ASSERT(first <= mesh->header->vertex_count && count <= mesh->header->vertex_count - first && (out || !count));
-    for (; layers && i + LANES_COUNT <= count; i += LANES_COUNT) {
-        const uint32_t texel = LANES(texel_of_block)(mesh, first + i);
-        uint8_t *to = (uint8_t *)out + (size_t)i * stride;
-        int done = 0;
-        if (texel != NOH_NONE) {
-            done = LANES(finish_block)(mesh, layers, first + i, texel, has_tangents, (float *)(void *)to);
+    while (layers && i + LANES_COUNT <= count) {
+        LANES(moved) blocks[NOH_FINISH_BLOCKS];
+        uint32_t n = 0;
+        for (; n < NOH_FINISH_BLOCKS && i + (n + 1u) * LANES_COUNT <= count; n++) {
+            blocks[n].v = first + i + n * LANES_COUNT;
+            blocks[n].texel = LANES(texel_of_block)(mesh, blocks[n].v);
+            if (blocks[n].texel != NOH_NONE) LANES(move_block)(mesh, layers, has_tangents, &blocks[n]);
         }
-        if (!done) noh_morph_finish_scalar(mesh, layers, first + i, LANES_COUNT, to);
+        for (uint32_t k = 0; k < n; k++, i += LANES_COUNT) {
+            const LANES(moved) *b = &blocks[k];
+            uint8_t *to = (uint8_t *)out + (size_t)i * stride;
+            if (b->texel == NOH_NONE || !LANES(write_block)(mesh, layers, has_tangents, b, (float *)(void *)to)) {
+                noh_morph_finish_scalar(mesh, layers, b->v, LANES_COUNT, to);
+            }
+        }
     }
     noh_morph_finish_scalar(mesh, layers, first + i, count - i, (uint8_t *)out + (size_t)i * stride);
 }

@@ -36,6 +36,9 @@ typedef struct morph_field {
     float weight;
 } morph_field;
 
+#define NOH_MORPH_LANES 8u    /* of the widest vectors */
+#define NOH_MORPH_ALONE 0xffu /* in place of a lead: nothing beside the run may be touched */
+
 static inline float noh_field_value(uint32_t word, morph_field f)
 {
     /* C99 leaves the right shift of a negative value to the compiler; all known ones shift in the sign, and a test says
@@ -50,115 +53,136 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, morph
     }
 }
 
-#if defined(NOH_SSE2) /* AVX2 has it too */
-NOH_ALWAYS_INLINE __m128 noh_add_four(__m128i q, morph_field f, __m128 layer)
+static inline void noh_run_scalar(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
+                                  int layer_count)
 {
+    for (int l = 0; l < layer_count; l++) noh_add_run_scalar(words, count, f[l], layers[l]);
+}
+
+/* For each width of vectors: load, store, the sum of a layer and of what words add to it, the lanes first to end - 1 as
+ * a mask, and what a mask chooses of two. The runs themselves are morph_run_template.h. */
+#if defined(NOH_SSE2) /* AVX2 has it too */
+NOH_ALWAYS_INLINE __m128 noh_load4(const float *from)
+{
+    return _mm_loadu_ps(from);
+}
+
+NOH_ALWAYS_INLINE void noh_store4(float *to, __m128 v)
+{
+    _mm_storeu_ps(to, v);
+}
+
+NOH_ALWAYS_INLINE __m128 noh_sum4(const uint32_t *words, morph_field f, __m128 layer)
+{
+    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
     q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
 }
 
-NOH_ALWAYS_INLINE void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
+NOH_ALWAYS_INLINE __m128 noh_mask4(size_t first, size_t end)
 {
-    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
-    _mm_storeu_ps(layer, noh_add_four(q, f, _mm_loadu_ps(layer)));
+    const __m128i lane = _mm_setr_epi32(0, 1, 2, 3), below = _mm_cmplt_epi32(lane, _mm_set1_epi32((int)first));
+    return _mm_castsi128_ps(_mm_andnot_si128(below, _mm_cmplt_epi32(lane, _mm_set1_epi32((int)end))));
 }
 
-/* The last one to three words of a run, in one register. Runs are rows of rectangles, so they end often: this saves a
- * sixth of the whole time with AVX2. Nothing past the run is read or written. */
-NOH_ALWAYS_INLINE __m128i noh_load_tail(const void *from, size_t count)
+NOH_ALWAYS_INLINE __m128 noh_choose4(__m128 mask, __m128 yes, __m128 no)
 {
-    __m128i low = count >= 2 ? _mm_loadl_epi64((const __m128i *)from) : _mm_setzero_si128();
-    int32_t last;
-    if (count == 2) {
-        return low;
-    }
-    memcpy(&last, (const uint8_t *)from + 4 * (count - 1), 4);
-    return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
+    return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
 
-NOH_ALWAYS_INLINE void noh_add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
-{
-    __m128 sum = noh_add_four(noh_load_tail(words, count), f, _mm_castsi128_ps(noh_load_tail(layer, count)));
-    if (count == 1) {
-        _mm_store_ss(layer, sum);
-    } else {
-        _mm_storel_epi64((__m128i *)(void *)layer, _mm_castps_si128(sum));
-        if (count == 3) {
-            _mm_store_ss(layer + 2, _mm_movehl_ps(sum, sum));
-        }
-    }
-}
-#endif
-
-#if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
-NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_add_step8(const uint32_t *words, morph_field f, float *layer)
-{
-    __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
-    q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
-    _mm256_storeu_ps(
-        layer, _mm256_add_ps(_mm256_loadu_ps(layer), _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight))));
-}
+#define RUN(name) noh_##name##4
+#define RUN_LANES 4u
+#define RUN_TYPE __m128
+#define RUN_MASK __m128
+#define RUN_INLINE NOH_ALWAYS_INLINE
+#include "deform/morph_run_template.h"
 #elif defined(NOH_NEON)
-NOH_ALWAYS_INLINE void noh_add_step4(const uint32_t *words, morph_field f, float *layer)
+NOH_ALWAYS_INLINE float32x4_t noh_load4(const float *from)
+{
+    return vld1q_f32(from);
+}
+
+NOH_ALWAYS_INLINE void noh_store4(float *to, float32x4_t v)
+{
+    vst1q_f32(to, v);
+}
+
+NOH_ALWAYS_INLINE float32x4_t noh_sum4(const uint32_t *words, morph_field f, float32x4_t layer)
 {
     int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
     q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
-    vst1q_f32(layer, vaddq_f32(vld1q_f32(layer), vmulq_f32(vcvtq_f32_s32(q), vdupq_n_f32(f.weight))));
+    return vaddq_f32(layer, vmulq_f32(vcvtq_f32_s32(q), vdupq_n_f32(f.weight)));
 }
-#endif
 
-#if defined(NOH_SSE2)
-/* What is left of a run behind its wide steps: four words at a time, then a tail. */
-NOH_ALWAYS_INLINE void noh_add_rest(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
-                                    int layer_count, size_t i)
+NOH_ALWAYS_INLINE uint32x4_t noh_mask4(size_t first, size_t end)
 {
-    for (; i + 4u <= count; i += 4u) {
-        noh_add_step4(words + i, f[0], layers[0] + i);
-        noh_add_step4(words + i, f[1], layers[1] + i);
-        if (layer_count == 3) noh_add_step4(words + i, f[2], layers[2] + i);
-    }
-    for (int l = 0; l < layer_count && i < count; l++) {
-        noh_add_tail(words + i, count - i, f[l], layers[l] + i);
-    }
+    static const uint32_t lanes[4] = { 0, 1, 2, 3 };
+    const uint32x4_t lane = vld1q_u32(lanes);
+    return vandq_u32(vcgeq_u32(lane, vdupq_n_u32((uint32_t)first)), vcltq_u32(lane, vdupq_n_u32((uint32_t)end)));
 }
+
+NOH_ALWAYS_INLINE float32x4_t noh_choose4(uint32x4_t mask, float32x4_t yes, float32x4_t no)
+{
+    return vbslq_f32(mask, yes, no);
+}
+
+#define RUN(name) noh_##name##4
+#define RUN_LANES 4u
+#define RUN_TYPE float32x4_t
+#define RUN_MASK uint32x4_t
+#define RUN_INLINE NOH_ALWAYS_INLINE
+#include "deform/morph_run_template.h"
 #endif
 
 #if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
-NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_add_run_wide(const uint32_t *words, size_t count, const morph_field f[3],
-                                                        float *const layers[3], int layer_count)
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_load8(const float *from)
 {
-    size_t i = 0;
-    for (; i + 8u <= count; i += 8u) {
-        noh_add_step8(words + i, f[0], layers[0] + i);
-        noh_add_step8(words + i, f[1], layers[1] + i);
-        if (layer_count == 3) noh_add_step8(words + i, f[2], layers[2] + i);
-    }
-    noh_add_rest(words, count, f, layers, layer_count, i);
+    return _mm256_loadu_ps(from);
 }
+
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_store8(float *to, __m256 v)
+{
+    _mm256_storeu_ps(to, v);
+}
+
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_sum8(const uint32_t *words, morph_field f, __m256 layer)
+{
+    __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
+    q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
+    return _mm256_add_ps(layer, _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight)));
+}
+
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_mask8(size_t first, size_t end)
+{
+    const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256i below = _mm256_cmpgt_epi32(_mm256_set1_epi32((int)first), lane);
+    return _mm256_castsi256_ps(_mm256_andnot_si256(below, _mm256_cmpgt_epi32(_mm256_set1_epi32((int)end), lane)));
+}
+
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_choose8(__m256 mask, __m256 yes, __m256 no)
+{
+    return _mm256_blendv_ps(no, yes, mask);
+}
+
+#define RUN(name) noh_##name##8
+#define RUN_LANES 8u
+#define RUN_TYPE __m256
+#define RUN_MASK __m256
+#define RUN_INLINE NOH_TARGET_AVX2 NOH_ALWAYS_INLINE
+#include "deform/morph_run_template.h"
 #endif
 
-/* A run into all layers, of which there are two or three: a constant wherever this is inlined. Left to itself gcc calls
- * it, and looks shifts and weights up in every step, as it does in a loop over the layers: with SSE2 that takes up to
- * twice as long. */
-NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
-                                   int layer_count)
+/* The run of the widest vectors that the whole library is compiled for. */
+NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                                   float *const layers[3], int layer_count)
 {
 #if defined(NOH_AVX2)
-    noh_add_run_wide(words, count, f, layers, layer_count);
-#elif defined(NOH_SSE2)
-    noh_add_rest(words, count, f, layers, layer_count, 0);
+    noh_run8(words, count, lead, f, layers, layer_count);
+#elif defined(NOH_SSE2) || defined(NOH_NEON)
+    noh_run4(words, count, lead, f, layers, layer_count);
 #else
-    size_t i = 0;
-#if defined(NOH_NEON)
-    for (; i + 4u <= count; i += 4u) {
-        noh_add_step4(words + i, f[0], layers[0] + i);
-        noh_add_step4(words + i, f[1], layers[1] + i);
-        if (layer_count == 3) noh_add_step4(words + i, f[2], layers[2] + i);
-    }
-#endif
-    for (int l = 0; l < layer_count; l++) {
-        noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
-    }
+    (void)lead;
+    noh_run_scalar(words, count, f, layers, layer_count);
 #endif
 }
 

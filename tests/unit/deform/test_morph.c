@@ -98,6 +98,34 @@ static void expect_two_layers(const noh_mesh *mesh, const float *weights, accumu
     free(two.position);
 }
 
+/* A layer that begins `offset` floats behind an alignment and ends with its memory, with something in it: what no target
+ * moves keeps its bits, -0 too. */
+static float *layer_at(size_t offset, size_t floats)
+{
+    float *memory = test_zeros((offset + floats) * sizeof *memory);
+    for (size_t i = 0; i < offset + floats; i++) memory[i] = i % 3u ? 0.25f * (float)(i % 7u) : -0.0f;
+    return memory;
+}
+
+static void expect_scalar_bits_at(const noh_mesh *mesh, const float *weights, accumulate_function accumulate,
+                                  size_t offset)
+{
+    const size_t floats = noh_morph_layers_size(mesh) / 12u;
+    float *expected[3], *got[3];
+    for (size_t l = 0; l < 3; l++) {
+        expected[l] = layer_at(offset, floats);
+        got[l] = layer_at(offset, floats);
+    }
+    noh_morph_accumulate_scalar(
+        mesh, weights, &(noh_morph_layers){ expected[0] + offset, expected[1] + offset, expected[2] + offset });
+    accumulate(mesh, weights, &(noh_morph_layers){ got[0] + offset, got[1] + offset, got[2] + offset });
+    for (size_t l = 0; l < 3; l++) {
+        assert_memory_equal(got[l], expected[l], (offset + floats) * sizeof(float));
+        free(expected[l]);
+        free(got[l]);
+    }
+}
+
 static void compare_with_scalar(accumulate_function accumulate, const char *name)
 {
     test_random r = test_random_from(21);
@@ -113,6 +141,7 @@ static void compare_with_scalar(accumulate_function accumulate, const char *name
         accumulate(&m.mesh, weights, &got);
         test_same_floats(got.position, expected.position, noh_morph_layers_size(&m.mesh) / 4, name);
         expect_two_layers(&m.mesh, weights, accumulate, &expected);
+        expect_scalar_bits_at(&m.mesh, weights, accumulate, (size_t)round % 8u);
         free(expected.position);
         free(got.position);
         free(m.texels);

@@ -1,7 +1,7 @@
-/* bench_before.c: the path cpu against what it was in version 0.1, before its kernel was compiled once for each caller and
- * vertices were finished: SSE2 or NEON behind a pointer that is called for each row of a rectangle, and sums in a
- * texture. Many short samples of four cells, of which the low tenth counts. What came before the tables of mrt,
- * per-layer and gather is not kept here: those were tables and shaders of their own. */
+/* bench_before.c: the path cpu against what it was in version 0.1, before its kernel was compiled once for each caller
+ * and vertices were finished: SSE2 or NEON behind a pointer that is called for each row of a rectangle, vectors that
+ * begin where a row does, and sums in a texture. Many short samples of four cells, of which the low tenth counts. What
+ * came before the tables of mrt, per-layer and gather is not kept here: those were tables and shaders of their own. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +19,51 @@ typedef struct before {
     GLint u_morph[BENCH_PASS_COUNT];
 } before;
 
-NOH_NEVER_INLINE static void run(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
+#if defined(NOH_SSE2)
+/* The last one to three words of a run in one register, by a branch for each count. */
+static __m128i load_tail(const void *from, size_t count)
 {
-    noh_add_run(words, count, f, layers, 3);
+    __m128i low = count >= 2 ? _mm_loadl_epi64((const __m128i *)from) : _mm_setzero_si128();
+    int32_t last;
+    if (count == 2) return low;
+    memcpy(&last, (const uint8_t *)from + 4 * (count - 1), 4);
+    return count == 3 ? _mm_unpacklo_epi64(low, _mm_cvtsi32_si128(last)) : _mm_cvtsi32_si128(last);
+}
+
+static void add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
+{
+    uint32_t four[4];
+    __m128 sum;
+    _mm_storeu_si128((__m128i *)(void *)four, load_tail(words, count));
+    sum = noh_sum4(four, f, _mm_castsi128_ps(load_tail(layer, count)));
+    if (count == 1) {
+        _mm_store_ss(layer, sum);
+    } else {
+        _mm_storel_epi64((__m128i *)(void *)layer, _mm_castps_si128(sum));
+        if (count == 3) _mm_store_ss(layer + 2, _mm_movehl_ps(sum, sum));
+    }
+}
+#endif
+
+NOH_NEVER_INLINE static void run(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
+                                 float *const layers[3])
+{
+    size_t i = 0;
+    (void)lead;
+#if defined(NOH_SSE2) || defined(NOH_NEON)
+    for (; i + 4u <= count; i += 4u) {
+        noh_add4(words + i, f[0], layers[0] + i);
+        noh_add4(words + i, f[1], layers[1] + i);
+        noh_add4(words + i, f[2], layers[2] + i);
+    }
+#endif
+    for (int l = 0; l < 3 && i < count; l++) {
+#if defined(NOH_SSE2)
+        add_tail(words + i, count - i, f[l], layers[l] + i);
+#else
+        noh_add_run_scalar(words + i, count - i, f[l], layers[l] + i);
+#endif
+    }
 }
 
 NOH_NEVER_INLINE static void add_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],

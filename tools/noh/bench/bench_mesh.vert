@@ -117,8 +117,7 @@ void morph(inout vec3 position, inout vec3 normal)
 void morph(inout vec3 position, inout vec3 normal)
 {
     vec3 tangent = vec3(0.0);
-    noh_morph_fetch(gl_VertexID, position, normal, tangent);
-    normal = normalize(normal);
+    if (noh_morph_fetch(gl_VertexID, position, normal, tangent)) normal = normalize(normal);
 }
 #else
 void morph(inout vec3 position, inout vec3 normal)
