@@ -34,6 +34,7 @@
 #include "stage_gl/stage_gl.h"      /* a stage, drawn */
 #include "stage_gl/backdrop.h"      /* what is behind it, where it is lit */
 #include "stage_gl/stage_blob.h"    /* soft spots under them, where there is no shadow map */
+#include "stage_gl/stage_floor.h"   /* their shadow, where there is no mesh for it to fall on */
 #include "stage_gl/stage_decal.h"   /* marks on them */
 #include "stage_gl/stage_patch.h"   /* as triangles that were grown */
 #include "stage_gl/stage_hair.h"    /* hair of its actors */

@@ -50,21 +50,29 @@ noh_result web_light_open(void)
         (void)noh_blob_rig_make(&web.cast.kinds[k], &web.light.rigs[k], NULL); /* draws nothing: no spots */
     }
     result = noh_backdrop_create(&device, 1, &web.light.backdrop, &web.error);
-    return result ? result : noh_stage_blob_create(&device, &web.light.blob, &web.error);
+    if (!result) result = noh_stage_blob_create(&device, &web.light.blob, &web.error);
+    if (result || !web_joint_count()) return result; /* what has no joints stands on no floor */
+    return noh_stage_floor_create(&device, 1, &web.light.ground, &web.error);
 }
 
 void web_light_close(void)
 {
     if (web.light.backdrop.gl) noh_backdrop_delete(&web.light.backdrop);
     if (web.light.blob.gl) noh_stage_blob_delete(&web.light.blob);
+    if (web.light.ground.gl) noh_stage_floor_delete(&web.light.ground);
+    memset(&web.light.ground, 0, sizeof web.light.ground);
     memset(&web.light.backdrop, 0, sizeof web.light.backdrop);
     memset(&web.light.blob, 0, sizeof web.light.blob);
 }
 
 noh_result web_light_restore(void)
 {
-    const noh_result result = is_lit() ? noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error) : NOH_OK;
-    return result || !is_lit() ? result : noh_stage_blob_restore(&web.light.blob, NULL, 0, &web.error);
+    noh_result result = NOH_OK;
+    if (!is_lit()) return result;
+    result = noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error);
+    if (!result) result = noh_stage_blob_restore(&web.light.blob, NULL, 0, &web.error);
+    if (!result && web.light.ground.gl) result = noh_stage_floor_restore(&web.light.ground, NULL, 0, &web.error);
+    return result;
 }
 
 /* ---- a frame ---- */
@@ -72,7 +80,7 @@ noh_result web_light_restore(void)
 int web_light_shadow(noh_stage_view *view)
 {
     noh_place place;
-    float sphere[4], square = 0.0f;
+    float *sphere = web.light.sphere, square = 0.0f;
     if (!is_lit() || web.light.shadow != WEB_SHADOW_MAP) return 0;
     (void)noh_actor_place(web.stage, web.figures[0].actor, &place, NULL);
     for (int i = 0; i < 3; i++) {
@@ -94,12 +102,20 @@ void web_light_backdrop(void)
                       &web.light.told, &web.view);
 }
 
-#define LEVEL 0.05f /* of their height: a floor so near to 0 is there */
+#define FLOOR_REACHES 3.0f /* radii of what casts a shadow on it */
+#define LEVEL 0.05f        /* of their height: a floor so near to 0 is there */
 
 void web_light_find_floor(void)
 {
     const float low = web.bounds[1], height = web.bounds[4] - low;
     web.light.floor = fabsf(low) < LEVEL * height ? 0.0f : low;
+}
+
+void web_light_floor(void)
+{
+    const float *s = web.light.sphere, disc[4] = { s[0], web.light.floor, s[2], FLOOR_REACHES * s[3] };
+    if (!is_lit() || web.light.shadow != WEB_SHADOW_MAP || !web.light.on_floor || !web.light.ground.gl) return;
+    noh_stage_floor_draw(&web.light.ground, noh_stage_light_of(web.stage), &web.light.told, &web.view, disc);
 }
 
 /* Behind the figures. */
@@ -137,6 +153,12 @@ EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonema
     web.light.tonemap = tonemap;
     web.light.background = background;
     if (web.stage) tell();
+}
+
+/* 1: the shadow falls on the floor, too. Before web_open, too. */
+EMSCRIPTEN_KEEPALIVE void web_set_floor(int on)
+{
+    web.light.on_floor = on;
 }
 
 /* An environment, or -1: the plain renderer's own light, for which the stage is made anew. Before web_open, too. */

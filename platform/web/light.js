@@ -1,5 +1,5 @@
 // light.js: the light that the figures stand in, by the words of `noh render`: ?light=none|white|studio|room|sky,
-// ?rotate=DEGREES, ?shadow=on|off|blob, ?tonemap=none, ?transfer=off, ?background=light|gradient|plain.
+// ?rotate=DEGREES, ?shadow=on|off|blob, ?floor=off (it falls on the figure alone), ?tonemap=none, ?transfer=off, ?background=light|gradient|plain.
 'use strict';
 
 const firstLight = 'studio'; // as pictures of `noh render` have it
@@ -9,7 +9,7 @@ const plainLight = 'plain'; // no environment
 function lightAsked() {
     const offered = (select, asked, otherwise) => ([...byId(select).options].some((o) => o.value === asked) ? asked : otherwise);
     return {
-        light: query.get('light') || firstLight, degrees: Number(query.get('rotate') || 0), shadow: offered('shadow', query.get('shadow'), 'on'),
+        light: query.get('light') || firstLight, degrees: Number(query.get('rotate') || 0), shadow: offered('shadow', query.get('shadow'), 'on'), floor: query.get('floor') !== 'off',
         tonemap: query.get('tonemap') !== 'none', background: offered('background', query.get('background'), 'light'), transfer: query.get('transfer') !== 'off',
     };
 }

@@ -492,6 +492,7 @@ static void begin_frame(uint32_t width, uint32_t height)
     web.gl.ClearBufferfv(GL_COLOR, 0, background);
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
     web_light_backdrop();
+    web_light_floor();
     web_light_spots();
 }
 

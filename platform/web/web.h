@@ -6,6 +6,7 @@
 #include "context.h"
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_blob.h"
+#include "stage_gl/stage_floor.h"
 #include "wire/wire.h"
 
 #define WEB_PARTS_MAX 128u
@@ -34,7 +35,10 @@ typedef struct web_light {
     noh_light all;                   /* not turned */
     noh_lighting told;
     noh_backdrop backdrop;
-    noh_stage_blob blob; /* spots on the floor */
+    noh_stage_blob blob;    /* spots on the floor */
+    noh_stage_floor ground; /* the shadow on it */
+    int on_floor;           /* 1: it falls there */
+    float sphere[4];        /* what casts it */
     noh_blob_rig rigs[NOH_STAGE_KINDS_MAX];
     float floor; /* its height */
 } web_light;
@@ -99,6 +103,7 @@ noh_result web_light_restore(void);
 int web_light_shadow(noh_stage_view *view);
 void web_light_backdrop(void);
 void web_light_spots(void);
+void web_light_floor(void);      /* the shadow on the floor */
 void web_light_find_floor(void); /* after the figures were measured at rest */
 
 /* The hair of all characters, if the pack has some: made with the stage, closed before it goes. */
@@ -114,6 +119,7 @@ void web_hair_shake(double seconds);
 noh_result web_rise(uint32_t ticks);
 
 /* What main.c and touch.c tell the page, too. */
+uint32_t web_joint_count(void);
 float *web_measure(void);
 int web_pick(float x, float y);
 

@@ -33,9 +33,10 @@ const slide = (page, selector, value) => drawn(page, () => page.locator(selector
 }, value));
 const setTarget = (page, target, value) => slide(page, `input[data-target="${target}"]`, value);
 
-// In plain light, without faces that live and with all panels, unless the search says otherwise; in a small picture at a
-// coarse level, since a software rasteriser pays for each pixel and triangle.
-const asTested = { light: 'plain', alive: 'off', tab: 'all', size: 192, detail: 3, pixels: 'all' };
+// In plain light, without faces that live, without a shadow on the floor, as `noh render` has it, and with all panels,
+// unless the search says otherwise; in a small picture at a coarse level, since a software rasteriser pays for each pixel
+// and triangle.
+const asTested = { light: 'plain', floor: 'off', alive: 'off', tab: 'all', size: 192, detail: 3, pixels: 'all' };
 async function open(browser, options, search) {
     const asked = new URLSearchParams(search);
     for (const [name, value] of Object.entries(asTested)) if (!asked.has(name)) asked.set(name, value);

@@ -159,6 +159,32 @@ async function faces(browser) {
     await close(page, 'face');
 }
 
+// The shadow of a body falls on the floor, not on nothing: below its middle, and darker than without.
+async function floors(browser) {
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&light=room&background=plain&floor=on');
+    const lines = (name) => keep(page, name).then(() => page.evaluate(() => {
+        const gl = canvas.getContext('webgl2'), { width, height } = canvas, rgba = new Uint8Array(4 * width * height);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rgba); // the lowest line first
+        return Array.from({ length: height }, (_, y) => rgba.subarray(4 * width * y, 4 * width * (y + 1)).reduce((a, b) => a + b, 0));
+    }));
+    const tell = (what) => drawn(page, () => page.evaluate((w) => character.setLight(w), what));
+    const on = await lines('floor_on.png');
+    await tell({ floor: false });
+    const off = await lines('floor_off.png'), half = on.length / 2;
+    check('floor: the shadow on it is dark', on.every((sum, y) => sum <= off[y]) && on.some((sum, y) => sum < off[y] - 500));
+    check('floor: and lies below', on.every((sum, y) => y < half || sum === off[y]));
+    await tell({ floor: true });
+    await loseAndRestore(page);
+    await keep(page, 'floor_again.png');
+    check('floor: after a lost context it is the same picture', same('floor_on.png', 'floor_again.png'));
+    await drawn(page, () => page.evaluate(() => character.turn(0, -0.6)));
+    await keep(page, 'floor_below.png');
+    await tell({ floor: false });
+    await keep(page, 'floor_below_off.png');
+    check('floor: from below there is none', same('floor_below.png', 'floor_below_off.png'));
+    await close(page, 'floor');
+}
+
 async function bodies(browser) {
     const page = await open(browser, {}, 'clip=none');
     const has = await page.evaluate(() => Module._web_joint_count() > 0);
@@ -166,6 +192,7 @@ async function bodies(browser) {
         await page.isVisible('#face') === has && await page.isVisible('#follow') === has);
     await close(page, 'bodies');
     if (!has) return;
+    await floors(browser);
     for (const camera of ['follow', 'fixed']) await walks(browser, camera);
     await faces(browser);
 }

@@ -19,7 +19,7 @@ const strength = 90; // of a push, newton seconds
 const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
 
 // How a character is shown, where nothing else was asked for.
-const asMade = { light: 'studio', degrees: 0, shadow: 'on', tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
+const asMade = { light: 'studio', degrees: 0, shadow: 'on', floor: true, tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
     emotion: null, amount: 1, hair: true, wind: 0, speed: 1, paused: false };
 
 export class Character extends EventTarget {
@@ -370,9 +370,10 @@ export class Character extends EventTarget {
     tellLighting() {
         const c = this.chosen;
         this.program._web_set_lighting(c.degrees, Math.max(0, shadows.indexOf(c.shadow)), c.tonemap ? 1 : 0, Math.max(0, backgrounds.indexOf(c.background)));
+        this.program._web_set_floor(c.floor ? 1 : 0);
     }
 
-    // { light, degrees, shadow, tonemap, background, transfer }, or some of them. In a lost context nothing is made: it
+    // { light, degrees, shadow, floor, tonemap, background, transfer }, or some of them. In a lost context nothing is made: it
     // is, once that is back.
     setLight(what) {
         const { transfer: before, light, shadow } = this.chosen;

@@ -24,13 +24,13 @@ const body = `<style>${style}</style>
 <div class="message" part="message" role="status"></div>`;
 
 const byKeys = 'drag or arrow keys turn it, pinch, plus and minus bring it closer, two fingers or arrows with shift move it, home frames it, space plays and pauses';
-const ofLight = ['light', 'degrees', 'shadow', 'tonemap', 'background'];
+const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background'];
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
 // Its own class where there is no page (a server that renders).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
-    static observedAttributes = ['src', 'clip', 'face', 'light', 'degrees', 'shadow', 'tonemap', 'background', 'level', 'speed', 'emotion', 'alt', 'aria-label',
+    static observedAttributes = ['src', 'clip', 'face', 'light', 'degrees', 'shadow', 'floor', 'tonemap', 'background', 'level', 'speed', 'emotion', 'alt', 'aria-label',
         'camera-orbit', 'auto-life', 'paused'];
 
     constructor() {
@@ -112,7 +112,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         const text = (name, otherwise) => this.getAttribute(name) ?? otherwise;
         return {
             program: this.program || undefined, path: text('path', 'auto'), pixels: text('pixels', 'auto'), characters: Number(text('characters', 1)), light: text('light', 'studio'),
-            degrees: Number(text('degrees', 0)), shadow: text('shadow', 'on'), tonemap: text('tonemap', 'on') !== 'none', background: text('background', 'light'),
+            degrees: Number(text('degrees', 0)), shadow: text('shadow', 'on'), floor: text('floor', 'on') !== 'off', tonemap: text('tonemap', 'on') !== 'none', background: text('background', 'light'),
             level: Number(text('level', -1)), speed: Number(text('speed', 1)), paused: this.rests(), calm: !this.lives(),
         };
     }

@@ -23,6 +23,8 @@ export interface Light {
     /** How far it is turned, -180 to 180. */
     degrees: number;
     shadow: Shadow;
+    /** Whether a shadow falls on a floor under a body, too; default true. */
+    floor: boolean;
     tonemap: boolean;
     background: Background;
     /** Light that was worked out for each vertex when the pack was built. */

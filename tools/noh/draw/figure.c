@@ -303,6 +303,7 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     if (!status) status = figure_open_hair(f);
     if (!status) status = open_actors(f);
     if (!status) status = figure_open_blobs(f);
+    if (!status) status = figure_open_floor(f);
     if (!status) status = figure_open_decals(f);
     if (status) figure_close(f);
     return status;
@@ -313,6 +314,7 @@ void figure_close(figure *f)
     if (f->shader) noh_stage_shader_delete(f->shader);
     if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
     if (f->blob.gl) noh_stage_blob_delete(&f->blob);
+    if (f->level.gl) noh_stage_floor_delete(&f->level);
     figure_close_decals(f);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->hair.gl) noh_stage_hair_delete(&f->hair);
@@ -331,6 +333,7 @@ int figure_restore(figure *f)
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
     if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
     if (!result && f->blob.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
+    if (!result && f->level.gl) result = noh_stage_floor_restore(&f->level, log, sizeof log, &error);
     if (!result && f->decals.gl) result = figure_restore_decals(f, log, sizeof log, &error);
     if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
@@ -448,6 +451,7 @@ int figure_draw(figure *f)
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
     if (f->blob.gl) figure_draw_blobs(f);
+    if (f->shows_floor) figure_draw_floor(f);
     result = in_parts ? draw_in_parts(f, &error) : noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     return result ? tool_fail_error(f->desc.file->path, &error) : 0;
 }

@@ -29,6 +29,7 @@
 #include "gpu/gpu.h"
 #include "stage_gl/backdrop.h"
 #include "stage_gl/stage_blob.h"
+#include "stage_gl/stage_floor.h"
 #include "stage_gl/stage_decal.h"
 #include "stage_gl/stage_patch.h"
 #include "stage_gl/stage_hair.h"
@@ -78,6 +79,7 @@ typedef struct figure_desc {
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
     uint32_t mark_count;
     int grown;       /* 1: marks are grown as triangles */
+    int on_floor;    /* 1: its shadow may fall on a floor (figure_set_floor) */
     lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
 } figure_desc;
 
@@ -109,8 +111,10 @@ typedef struct figure {
     noh_stage_patches patches[NOH_STAGE_KINDS_MAX]; /* of desc.grown; zeros: none */
     void *patch_memory[NOH_STAGE_KINDS_MAX];
     noh_blob_rig blob_rigs[NOH_STAGE_KINDS_MAX];
-    float floor;         /* y of the ground where the body has none */
-    noh_stage_hair hair; /* zeros: none */
+    noh_stage_floor level; /* zeros: no shadow falls on a floor */
+    int shows_floor;       /* 1: it does just now */
+    float floor;           /* y of the ground where the body has none */
+    noh_stage_hair hair;   /* zeros: none */
     void *hair_memory;
     noh_stage_view seen; /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
@@ -123,6 +127,9 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps);
 void figure_plan_free(figure *f); /* of a figure that is not opened */
 /* What it takes as planned: the stage and its hair. Lights, marks and debug views are not of it. */
 void figure_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
+
+/* Whether its shadow falls on a floor at a height, where figure_desc.on_floor and a light with a shadow map allow it. */
+void figure_set_floor(figure *f, int on, float height);
 
 /* g  NULL: nothing is drawn, as above */
 int figure_open(figure *f, const figure_desc *desc, gpu *g);
@@ -187,6 +194,8 @@ int figure_live(figure *f, double seconds, double turn);
 /* The spots under a figure (--shadow blob): opened with its actors, closed; drawn, before the figure. */
 int figure_open_blobs(figure *f);
 void figure_draw_blobs(figure *f);
+int figure_open_floor(figure *f);
+void figure_draw_floor(const figure *f);
 
 /* --decal X,Y[,SIZE[,RRGGBB]] and --decal-kind rest|grown. marks: [NOH_DECALS_MAX], that desc has afterwards */
 int figure_read_marks(const option_list *texts, const char *kind, figure_mark *marks, figure_desc *desc);

@@ -1,4 +1,4 @@
-/* figure_blobs.c: the soft spots under a figure (--shadow blob). */
+/* figure_blobs.c: the soft spots under a figure (--shadow blob), and its shadow on a floor. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -48,4 +48,35 @@ void figure_draw_blobs(figure *f)
         const uint32_t count = noh_actor_blobs(f->stage, f->actors[k], &f->blob_rigs[k], &ground, blobs);
         noh_stage_blob_draw(&f->blob, &f->seen, blobs, count);
     }
+}
+
+/* ---- a shadow on a floor ---- */
+
+#define REACHES 3.0f /* radii of what casts it */
+
+int figure_open_floor(figure *f)
+{
+    char log[4096] = "";
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_gl_device device;
+    if (!f->g || !f->desc.on_floor || !f->desc.light || !f->desc.light->has_shadow) return 0;
+    device = (noh_gl_device){ &f->g->gl, &f->g->caps, &f->g->ledger, log, sizeof log };
+    if (noh_stage_floor_create(&device, 0, &f->level, &error)) {
+        fputs(log, stderr);
+        return tool_fail_error("a shadow on a floor", &error);
+    }
+    return 0;
+}
+
+void figure_set_floor(figure *f, int on, float height)
+{
+    f->shows_floor = on && f->level.gl && f->desc.view == NOH_VIEW_LIT;
+    if (f->shows_floor) f->floor = height;
+}
+
+void figure_draw_floor(const figure *f)
+{
+    const lighting *l = f->desc.light;
+    const float disc[4] = { l->sphere[0], f->floor, l->sphere[2], REACHES * l->sphere[3] };
+    noh_stage_floor_draw(&f->level, noh_stage_light_of(f->stage), &l->told, &f->seen, disc);
 }

@@ -118,7 +118,7 @@ void lighting_turn(lighting *l, double degrees)
 noh_stage_view lighting_shadow_view(lighting *l, const bounds *box)
 {
     noh_stage_view view;
-    float sphere[4];
+    float *sphere = l->sphere;
     double square = 0.0;
     for (int i = 0; i < 3; i++) {
         const double half = 0.5 * (box->high[i] - box->low[i]);

@@ -23,7 +23,8 @@ typedef struct lighting {
     noh_gl_light_desc desc;
     noh_lighting told;
     int has_shadow, has_blobs, without_transfer;
-    double degrees; /* how far it is turned */
+    double degrees;  /* how far it is turned */
+    float sphere[4]; /* what casts its shadow: of lighting_shadow_view */
     lighting_background background;
 } lighting;
 

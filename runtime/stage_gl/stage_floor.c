@@ -1,0 +1,115 @@
+#include "stage_gl/stage_floor.h"
+
+#include <string.h>
+
+#include "gl/gl_lost.h"
+#include "gl/gl_program.h"
+#include "gl/gl_shader_text.h"
+#include "shaders.gen.h"
+
+#define PIECES_MAX 8u
+
+static noh_result create_objects(noh_stage_floor *f, char *log, size_t log_bytes, noh_error *error)
+{
+    static const char *const samplers[] = { "noh_environment", "noh_shadow_map" };
+    const char *pieces[PIECES_MAX] = { "precision highp float;\n#define NOH_LIT\n",
+                                       noh_gl_shader_text("common_fade.glsl"),
+                                       noh_gl_shader_text("common_fragment.glsl"),
+                                       noh_gl_shader_text("common_environment.glsl") };
+    noh_gl_source fragment = noh_shader_floor_frag;
+    noh_gl_program_desc desc;
+    noh_result result;
+    NOH_ASSERT(4u + fragment.piece_count <= PIECES_MAX);
+    for (uint32_t i = 0; i < fragment.piece_count; i++) pieces[4u + i] = fragment.pieces[i];
+    fragment.piece_count += 4u;
+    fragment.pieces = pieces;
+    memset(&desc, 0, sizeof desc);
+    desc.name = "floor";
+    desc.defines = f->encode_srgb ? "#define NOH_ENCODE_SRGB\n" : NULL;
+    desc.vertex = &noh_shader_floor_vert;
+    desc.fragment = &fragment;
+    desc.samplers = samplers;
+    desc.sampler_count = 2;
+    desc.ledger = f->ledger;
+    result = noh_gl_program_create(f->gl, &desc, &f->program, log, log_bytes, error);
+    if (result == NOH_OK) f->gl->GenVertexArrays(1, &f->vertex_array);
+    return result;
+}
+
+noh_result noh_stage_floor_create(const noh_gl_device *device, int encode_srgb, noh_stage_floor *out, noh_error *error)
+{
+    NOH_ASSERT(device && device->api && device->ledger && out);
+    memset(out, 0, sizeof *out);
+    out->gl = device->api;
+    out->ledger = device->ledger;
+    out->encode_srgb = encode_srgb;
+    return create_objects(out, device->log, device->log_bytes, error);
+}
+
+void noh_stage_floor_delete(noh_stage_floor *level)
+{
+    NOH_ASSERT(level && level->gl);
+    if (level->vertex_array) level->gl->DeleteVertexArrays(1, &level->vertex_array);
+    level->vertex_array = 0;
+    noh_gl_program_delete(level->gl, level->ledger, &level->program);
+}
+
+noh_result noh_stage_floor_restore(noh_stage_floor *level, char *log, size_t log_bytes, noh_error *error)
+{
+    const noh_gl_api *gl;
+    NOH_ASSERT(level && level->gl);
+    gl = level->gl;
+    level->gl = noh_gl_lost_api();
+    noh_stage_floor_delete(level);
+    level->gl = gl;
+    return create_objects(level, log, log_bytes, error);
+}
+
+static void begin(const noh_stage_floor *f, const noh_gl_light *light)
+{
+    const noh_gl_api *gl = f->gl;
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D, light->shadow.name);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_CUBE_MAP, light->cube.name);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LEQUAL);
+    gl->DepthMask(GL_FALSE);
+    gl->Disable(GL_CULL_FACE);
+    gl->Enable(GL_BLEND);
+    gl->BlendEquation(GL_FUNC_ADD);
+    gl->BlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
+    gl->BindVertexArray(f->vertex_array);
+}
+
+static void end(const noh_gl_api *gl)
+{
+    gl->BindVertexArray(0);
+    gl->Disable(GL_BLEND);
+    gl->DepthMask(GL_TRUE);
+    gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->UseProgram(0);
+}
+
+void noh_stage_floor_draw(const noh_stage_floor *level, const noh_gl_light *light, const noh_lighting *lighting,
+                          const noh_stage_view *view, const float disc[4])
+{
+    const noh_gl_api *gl;
+    float rows[NOH_LIGHTING_ROWS][4];
+    NOH_ASSERT(level && level->gl && light && lighting && view && disc);
+    gl = level->gl;
+    if (!light->desc.shadow_px || view->eye[1] <= disc[1]) return;
+    noh_lighting_pack(lighting, light->desc.shadow_px, rows);
+    gl->UseProgram(level->program);
+    gl->UniformMatrix4fv(gl->GetUniformLocation(level->program, "u_camera"), 1, GL_FALSE, view->view_projection);
+    gl->Uniform4fv(gl->GetUniformLocation(level->program, "u_disc"), 1, disc);
+    gl->Uniform4fv(gl->GetUniformLocation(level->program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
+    gl->Uniform3f(gl->GetUniformLocation(level->program, "noh_key"), lighting->key_direction[0],
+                  lighting->key_direction[1], lighting->key_direction[2]);
+    begin(level, light);
+    gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, 1);
+    end(gl);
+}
