@@ -11,7 +11,8 @@ uniform vec3 noh_camera;                             /* world */
 uniform vec3 noh_key;                                /* unit, towards the light, world */
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
-uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit, -1: strands */
+uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit, -1: strands;
+                                                      * and 0.25 more where the texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
 /* Alpha of strands is painted to be blended in sRGB, as most programs do. Blended in linear light, dark strands on
@@ -27,7 +28,10 @@ float noh_strand_alpha(vec4 color)
 vec4 noh_base(vec2 uv, vec4 color)
 {
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    vec4 base = noh_base_color * color * texture(noh_base_color_texture, uv);
+    vec4 texel = texture(noh_base_color_texture, uv);
+    if (fract(noh_material.w) > 0.125) texel.rgb /= max(texel.a, 0.002); /* transparent texels are black: what is
+                                                                          * filtered is so much darker at an edge */
+    vec4 base = noh_base_color * color * texel;
 #ifndef NOH_ENCODE_SRGB
     if (noh_material.w < -0.5) base.a = noh_strand_alpha(base);
 #endif

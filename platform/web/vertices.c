@@ -316,7 +316,8 @@ EMSCRIPTEN_KEEPALIVE const noh_submesh *web_drawn_parts(uint32_t i, uint32_t lev
 }
 
 /* A material: its name; and base colour (4), roughness, metallic, emissive (3), alpha cutoff or -1, scale of the normal
- * map, 1 if it blends, 1 if double-sided, 1 if unlit. Valid until the next call. */
+ * map, 1 if it blends, 1 if double-sided, 1 if unlit, 1 if its texture's colours are premultiplied. Valid until the
+ * next call. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_material_count(void)
 {
     return web.pack.material_count;
@@ -327,8 +328,9 @@ EMSCRIPTEN_KEEPALIVE const char *web_material_name(uint32_t m)
 }
 EMSCRIPTEN_KEEPALIVE const float *web_material(uint32_t m)
 {
-    static float told[14];
+    static float told[15];
     const noh_material *of = &web.pack.materials[m];
+    noh_texture base;
     memcpy(told, of->base_color, sizeof of->base_color);
     told[4] = of->roughness;
     told[5] = of->metallic;
@@ -338,6 +340,10 @@ EMSCRIPTEN_KEEPALIVE const float *web_material(uint32_t m)
     told[11] = of->flags & NOH_MATERIAL_BLEND ? 1.0f : 0.0f;
     told[12] = of->flags & NOH_MATERIAL_DOUBLE_SIDED ? 1.0f : 0.0f;
     told[13] = of->flags & NOH_MATERIAL_UNLIT ? 1.0f : 0.0f;
+    told[14] = 0.0f;
+    if (noh_pack_texture_at(&web.pack, of->base_color_texture, &base, NULL) == NOH_OK) {
+        told[14] = base.header->format == NOH_TEXTURE_ETC2_RGBA1 ? 1.0f : 0.0f;
+    }
     return told;
 }
 /* The name of a texture of it, once a frame was written; 0: none. which: 0 base colour, 1 normals, 2 occlusion,

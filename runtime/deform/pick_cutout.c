@@ -38,8 +38,15 @@ static float alpha_of(const noh_texture *texture, const noh_texture_level *level
     if (texture->header->format == NOH_TEXTURE_RGBA8) {
         return (float)level->pixels[((size_t)y * level->width + x) * 4u + 3u] / 255.0f;
     }
-    if (texture->header->format != NOH_TEXTURE_ETC2_RGBA) return 1.0f;
-    noh_eac_decode(level->pixels + ((size_t)(y / 4u) * ((level->width + 3u) / 4u) + x / 4u) * 16u, 0, values);
+    if (texture->header->format == NOH_TEXTURE_ETC2_RGB || texture->header->format == NOH_TEXTURE_EAC_RG) return 1.0f;
+    const uint8_t *block = level->pixels + ((size_t)(y / 4u) * ((level->width + 3u) / 4u) + x / 4u) *
+                                               noh_texture_block_bytes(texture->header->format);
+    if (texture->header->format == NOH_TEXTURE_ETC2_RGBA1) {
+        uint8_t texels[16][4];
+        noh_etc2_decode(NOH_TEXTURE_ETC2_RGBA1, block, 1, texels[0]);
+        return texels[y % 4u * 4u + x % 4u][3] ? 1.0f : 0.0f;
+    }
+    noh_eac_decode(block, 0, values);
     return (float)values[y % 4u * 4u + x % 4u] / 255.0f;
 }
 

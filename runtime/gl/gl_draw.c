@@ -156,13 +156,17 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
     r->gl->BindTexture(GL_TEXTURE_2D, name);
 }
 
+/* Added to what kind of surface the shader is told of: base colours are over their alpha what is meant. */
+#define PREMULTIPLIED 0.25f
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)
 {
     const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core is cut by its own alpha */
+    const float kind = m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands;
+    const int premultiplied = m->base_color_texture != NOH_NONE && pictures[m->base_color_texture].premultiplied;
     bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
     r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
-    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands);
+    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, premultiplied ? kind + PREMULTIPLIED : kind);
 }
 
 /* What the variant's features read. */

@@ -34,7 +34,9 @@ static uint32_t block_bytes(GLenum format)
 {
     switch (format) {
     case GL_COMPRESSED_RGB8_ETC2:
-    case GL_COMPRESSED_SRGB8_ETC2: return 8;
+    case GL_COMPRESSED_SRGB8_ETC2:
+    case GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2:
+    case GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2: return 8;
     case GL_COMPRESSED_RGBA8_ETC2_EAC:
     case GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:
     case GL_COMPRESSED_RG11_EAC: return 16;
@@ -171,7 +173,8 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     ledger->textures++;
     ledger->texture_bytes += bytes;
     out->name = name;
-    out->target = target;
+    out->target = target & 0x7fffffffu;
+    out->premultiplied = 0;
     out->bytes = bytes;
     return NOH_OK;
 }

@@ -40,7 +40,8 @@ typedef struct noh_gl_buffer {
 /* A texture with immutable storage. */
 typedef struct noh_gl_texture {
     GLuint name; /* 0: none */
-    GLenum target;
+    GLenum target : 31;
+    GLenum premultiplied : 1; /* colours were multiplied by their alpha: of NOH_TEXTURE_ETC2_RGBA1 */
     uint64_t bytes;
 } noh_gl_texture;
 

@@ -15,6 +15,8 @@ static GLenum blocks_format(const noh_texture_header *h)
     switch (h->format) {
     case NOH_TEXTURE_ETC2_RGB: return is_data ? GL_COMPRESSED_RGB8_ETC2 : GL_COMPRESSED_SRGB8_ETC2;
     case NOH_TEXTURE_ETC2_RGBA: return is_data ? GL_COMPRESSED_RGBA8_ETC2_EAC : GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC;
+    case NOH_TEXTURE_ETC2_RGBA1:
+        return is_data ? GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2 : GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2;
     default: return GL_COMPRESSED_RG11_EAC;
     }
 }
@@ -56,7 +58,7 @@ static void send_strip(const noh_gl_api *api, uint32_t format, GLint index, cons
     const uint32_t columns = (level->width + 3u) / 4u, left = columns - x;
     const uint32_t count = left < STRIP_BLOCKS ? left : STRIP_BLOCKS;
     const uint32_t width = level->width - 4u * x, height = level->height - 4u * y;
-    const uint32_t block = format == NOH_TEXTURE_ETC2_RGB ? 8u : 16u;
+    const uint32_t block = noh_texture_block_bytes(format);
     const int halves = format == NOH_TEXTURE_EAC_RG;
     api->decode(format, level->pixels + ((size_t)y * columns + x) * block, count, (uint8_t *)texels);
     api->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)(4u * count));
@@ -115,6 +117,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
         noh_gl_texture_delete(api, ledger, &picture);
         return result;
     }
+    picture.premultiplied = (texture->header->format == NOH_TEXTURE_ETC2_RGBA1) & 1u;
     *out = picture;
     return NOH_OK;
 }

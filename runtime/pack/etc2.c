@@ -62,15 +62,15 @@ static void put(rgb from, int32_t add, uint8_t *to)
     for (int c = 0; c < 3; c++) to[c] = (uint8_t)clamp(from.c[c] + add, 255);
 }
 
-/* Two halves, each with a colour and a table of what is added to it. */
-static void decode_halves(words w, const rgb base[2], uint8_t *to, size_t stride)
+/* Two halves, each with a colour and a table of what is added to it; holes: the smaller of the two is 0. */
+static void decode_halves(words w, const rgb base[2], int holes, uint8_t *to, size_t stride)
 {
     static const uint8_t tables[8][2] = { { 2, 8 },   { 5, 17 },  { 9, 29 },   { 13, 42 },
                                           { 18, 60 }, { 24, 80 }, { 33, 106 }, { 47, 183 } };
     for (uint32_t x = 0; x < 4; x++) {
         for (uint32_t y = 0; y < 4; y++) {
             const uint32_t half = (w.high & 1u ? y : x) / 2u, which = selector(w, 4u * x + y);
-            const int32_t add = tables[bits(w.high, half ? 2u : 5u, 3)][which & 1u];
+            const int32_t add = holes && !(which & 1u) ? 0 : tables[bits(w.high, half ? 2u : 5u, 3)][which & 1u];
             put(base[half], which & 2u ? -add : add, to + y * stride + x * 4u);
         }
     }
@@ -142,28 +142,40 @@ static void decode_planar(words w, uint8_t *to, size_t stride)
 }
 
 /* Two colours of five bits, the second given by its difference; where a channel of it is out of range, the block is of
- * another mode. */
-static void decode_color(const uint8_t *block, uint8_t *to, size_t stride)
+ * another mode. Bit 1 of the first word says that it is so; else the two have four bits each. With holes it says so
+ * whatever the bit is. */
+static void decode_color(words w, int holes, uint8_t *to, size_t stride)
 {
-    const words w = { word_at(block), word_at(block + 4) };
+    const int differs = holes || w.high & 2u;
     rgb base[2];
     int wide[3];
     for (uint32_t c = 0; c < 3; c++) {
         const int32_t first = bits(w.high, 27u - 8u * c, 5), difference = bits(w.high, 24u - 8u * c, 3);
         const int32_t second = first + (difference < 4 ? difference : difference - 8);
         wide[c] = second < 0 || second > 31;
-        base[0].c[c] = w.high & 2u ? widen5(first) : widen4(bits(w.high, 28u - 8u * c, 4));
-        base[1].c[c] = w.high & 2u ? widen5(second & 31) : widen4(bits(w.high, 24u - 8u * c, 4));
+        base[0].c[c] = differs ? widen5(first) : widen4(bits(w.high, 28u - 8u * c, 4));
+        base[1].c[c] = differs ? widen5(second & 31) : widen4(bits(w.high, 24u - 8u * c, 4));
     }
-    if (w.high & 2u && wide[0]) {
+    if (differs && wide[0]) {
         decode_t(w, to, stride);
-    } else if (w.high & 2u && wide[1]) {
+    } else if (differs && wide[1]) {
         decode_h(w, to, stride);
-    } else if (w.high & 2u && wide[2]) {
+    } else if (differs && wide[2]) {
         decode_planar(w, to, stride);
     } else {
-        decode_halves(w, base, to, stride);
+        decode_halves(w, base, holes, to, stride);
     }
+}
+
+static int is_planar(words w)
+{
+    int wide[3];
+    for (uint32_t c = 0; c < 3; c++) {
+        const int32_t first = bits(w.high, 27u - 8u * c, 5), difference = bits(w.high, 24u - 8u * c, 3);
+        const int32_t second = first + (difference < 4 ? difference : difference - 8);
+        wide[c] = second < 0 || second > 31;
+    }
+    return !wide[0] && !wide[1] && wide[2];
 }
 
 void noh_eac_decode(const uint8_t block[8], int eleven, uint16_t values[16])
@@ -202,15 +214,32 @@ static void decode_pair(const uint8_t *block, uint8_t *to, size_t stride)
 
 static void decode_opaque(const uint8_t *block, uint8_t *to, size_t stride)
 {
-    decode_color(block, to, stride);
+    const words w = { word_at(block), word_at(block + 4) };
+    decode_color(w, 0, to, stride);
     for (uint32_t i = 0; i < 16; i++) to[i / 4u * stride + i % 4u * 4u + 3u] = 255;
+}
+
+/* Bit 1 of the first word: no texel is transparent. Else those are whose selector is 2, but in mode planar. */
+static void decode_cut(const uint8_t *block, uint8_t *to, size_t stride)
+{
+    const words w = { word_at(block), word_at(block + 4) };
+    const int holes = !(w.high & 2u);
+    decode_color(w, holes, to, stride);
+    for (uint32_t x = 0; x < 4; x++) {
+        for (uint32_t y = 0; y < 4; y++) {
+            uint8_t *texel = to + y * stride + x * 4u;
+            texel[3] = 255;
+            if (holes && selector(w, 4u * x + y) == 2u && !is_planar(w)) memset(texel, 0, 4);
+        }
+    }
 }
 
 static void decode_alpha(const uint8_t *block, uint8_t *to, size_t stride)
 {
+    const words w = { word_at(block + 8), word_at(block + 12) };
     uint16_t values[16];
     noh_eac_decode(block, 0, values);
-    decode_color(block + 8, to, stride);
+    decode_color(w, 0, to, stride);
     for (uint32_t i = 0; i < 16; i++) to[i / 4u * stride + i % 4u * 4u + 3u] = (uint8_t)values[i];
 }
 
@@ -223,6 +252,8 @@ void noh_etc2_decode(uint32_t format, const uint8_t *blocks, uint32_t count, uin
             decode_opaque(blocks + (size_t)i * 8u, to, stride);
         } else if (format == NOH_TEXTURE_ETC2_RGBA) {
             decode_alpha(blocks + (size_t)i * 16u, to, stride);
+        } else if (format == NOH_TEXTURE_ETC2_RGBA1) {
+            decode_cut(blocks + (size_t)i * 8u, to, stride);
         } else {
             decode_pair(blocks + (size_t)i * 16u, to, stride);
         }

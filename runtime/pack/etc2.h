@@ -20,7 +20,7 @@ extern "C" {
  * shapes  blocks[count], of 8 or 16 bytes by the format; texels[4][4 * count][4]: RGBA8, exactly what OpenGL ES 3.0
  *         demands. Of NOH_TEXTURE_EAC_RG a texel is two halves in place of four bytes: red and green within 2^-12 of
  *         their 11 bits
- * ranges  format is NOH_TEXTURE_ETC2_RGB, _ETC2_RGBA or _EAC_RG; any bytes are blocks
+ * ranges  format is NOH_TEXTURE_ETC2_RGB, _ETC2_RGBA, _ETC2_RGBA1 or _EAC_RG; any bytes are blocks
  * source  OpenGL ES 3.0.6, appendix C.1 */
 void noh_etc2_decode(uint32_t format, const uint8_t *blocks, uint32_t count, uint8_t *texels);
 

@@ -357,6 +357,9 @@ typedef struct noh_material {
 #define NOH_TEXTURE_EAC_RG \
     3u /* 16 bytes a block, 11 bits a channel: x and y of a normal map, z is what they leave \
         * of 1. LINEAR, without `nearest` */
+#define NOH_TEXTURE_ETC2_RGBA1 \
+    4u /* 8 bytes a block: alpha is 0 or 1, and colours are 0 where it is 0: those that are filtered are over their \
+        * alpha what they would be without such texels */
 
 typedef struct noh_texture_header {
     uint32_t width, height;

@@ -347,10 +347,16 @@ noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture
     return NOH_OK;
 }
 
+uint32_t noh_texture_block_bytes(uint32_t format)
+{
+    if (format == NOH_TEXTURE_RGBA8) return 0;
+    return format == NOH_TEXTURE_ETC2_RGB || format == NOH_TEXTURE_ETC2_RGBA1 ? 8u : 16u;
+}
+
 uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height)
 {
-    const uint32_t blocks = ((width + 3u) / 4u) * ((height + 3u) / 4u);
-    return format == NOH_TEXTURE_RGBA8 ? width * height * 4u : blocks * (format == NOH_TEXTURE_ETC2_RGB ? 8u : 16u);
+    const uint32_t block = noh_texture_block_bytes(format);
+    return block ? ((width + 3u) / 4u) * ((height + 3u) / 4u) * block : width * height * 4u;
 }
 
 noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level)

@@ -74,6 +74,9 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
  * errors  NOT_FOUND  past texture_count (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
+/* The bytes of a block of 4 x 4 texels; 0: the format has none. */
+uint32_t noh_texture_block_bytes(uint32_t format);
+
 /* The bytes of a mip level of a format, NOH_TEXTURE_RGBA8 and so on. */
 uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height);
 

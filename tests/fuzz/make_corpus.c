@@ -76,17 +76,21 @@ static void write_blocks(const char *in)
     model *m = test_model(&desc);
     char path[4096];
     size_t count;
-    m->textures = test_zeros(3 * sizeof *m->textures);
-    m->texture_count = 3;
-    for (uint32_t t = 0; t < 3; t++) {
+    m->textures = test_zeros(4 * sizeof *m->textures);
+    m->texture_count = 4;
+    for (uint32_t t = 0; t < 4; t++) {
         model_texture *to = &m->textures[t];
         to->name = model_string("blocks");
         to->width = 6;
         to->height = 5;
         to->rgba = test_zeros(6 * 5 * 4);
         for (uint32_t i = 0; i < 6 * 5 * 4; i++) to->rgba[i] = (uint8_t)(128u + (i * (t + 1u)) % 7u);
-        to->use = (model_texture_use)t;
+        to->use = t < 3 ? (model_texture_use)t : MODEL_TEXTURE_COLOR;
         to->etc2 = to->with_alpha = 1;
+        if (t < 3) continue;
+        to->cut_alone = 1;
+        to->alpha_cutoff = 0.5f;
+        for (uint32_t i = 0; i < 6 * 5; i++) to->rgba[4 * i + 3] = i % 6 < 3 ? 255 : 0;
     }
     uint8_t *bytes = test_pack_of(m, &count, NULL);
     snprintf(path, sizeof path, "%s/blocks.noh", in);

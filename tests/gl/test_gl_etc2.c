@@ -1,7 +1,9 @@
 /* Textures in blocks of ETC2 and EAC: what the driver reads in them against noh_etc2_decode, for random blocks of every
  * mode, sides that are no multiple of 4, and mip levels; decoded for a context without ETC2, and refused without a
- * decoder; bytes as planned both ways. */
+ * decoder; bytes as planned both ways; edges of what one bit of alpha cuts. */
 #include "support/gl_fixture.h"
+
+#include "support/lit_quad.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -132,8 +134,7 @@ static void decode_texel(const noh_texture *t, uint32_t level, uint32_t x, uint3
     const noh_texture_level at = noh_texture_level_at(t, level);
     const uint32_t block = (y / 4u) * ((at.width + 3u) / 4u) + x / 4u;
     uint8_t texels[16][4];
-    noh_etc2_decode(t->header->format, at.pixels + block * (t->header->format == NOH_TEXTURE_ETC2_RGB ? 8u : 16u), 1,
-                    texels[0]);
+    noh_etc2_decode(t->header->format, at.pixels + block * noh_texture_block_bytes(t->header->format), 1, texels[0]);
     const uint8_t *texel = texels[y % 4u * 4u + x % 4u];
     for (int c = 0; c < 4; c++) out[c] = (float)texel[c] / 255.0f;
     if (t->header->format == NOH_TEXTURE_EAC_RG) {
@@ -187,12 +188,13 @@ static void drop(reader *r, noh_gl_texture made[2])
 
 static void the_driver_reads_what_is_decoded(void **state)
 {
-    static const uint32_t formats[] = { NOH_TEXTURE_ETC2_RGB, NOH_TEXTURE_ETC2_RGBA, NOH_TEXTURE_EAC_RG };
+    static const uint32_t formats[] = { NOH_TEXTURE_ETC2_RGB, NOH_TEXTURE_ETC2_RGBA, NOH_TEXTURE_EAC_RG,
+                                        NOH_TEXTURE_ETC2_RGBA1 };
     (void)state;
-    for (uint64_t i = 0; i < 9; i++) {
+    for (uint64_t i = 0; i < 12; i++) {
         noh_gl_texture made[2];
         reader r;
-        with_and_without_etc2(formats[i % 3u], NOH_TEXTURE_LINEAR, 100u + i, made, &r);
+        with_and_without_etc2(formats[i % 4u], NOH_TEXTURE_LINEAR, 100u + i, made, &r);
         drop(&r, made);
     }
 }
@@ -202,7 +204,8 @@ static void colours_are_srgb_both_ways(void **state)
 {
     static float texels[2][WIDTH * HEIGHT * 4u];
     (void)state;
-    for (uint32_t format = NOH_TEXTURE_ETC2_RGB; format <= NOH_TEXTURE_ETC2_RGBA; format++) {
+    for (uint32_t format = NOH_TEXTURE_ETC2_RGB; format <= NOH_TEXTURE_ETC2_RGBA1; format++) {
+        if (format == NOH_TEXTURE_EAC_RG) continue; /* never of colours */
         noh_gl_texture made[2];
         reader r;
         float darker = 0.0f;
@@ -215,6 +218,53 @@ static void colours_are_srgb_both_ways(void **state)
         assert_true(darker / (WIDTH * HEIGHT * 4u) < (format == NOH_TEXTURE_ETC2_RGB ? 0.55f : 0.45f));
         drop(&r, made);
     }
+}
+
+/* A white disk on what is transparent, magnified: with alphas of one bit the texels round it are black, and yet no pixel
+ * of it is darker than white, with ETC2 or without. Its edge is where 8 bits of alpha have it. */
+static void edges_are_as_bright_as_what_they_are_of(void **state)
+{
+    static const float uv[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+    static uint8_t disk[32 * 32 * 4];
+    model_texture t = { .width = 32, .height = 32, .rgba = disk, .etc2 = 1, .with_alpha = 1, .alpha_cutoff = 0.5f };
+    gpu *g = fixture_gpu();
+    const int had = g->gl.etc2;
+    lit_quad q = lit_quad_of();
+    uint8_t *smooth, *rgba;
+    (void)state;
+    for (int i = 0; i < 32 * 32; i++) {
+        const int x = 2 * (i % 32) - 31, y = 2 * (i / 32) - 31, inside = x * x + y * y < 25 * 25;
+        memset(disk + 4 * i, inside ? 255 : 7, 3);
+        disk[4 * i + 3] = inside ? 255 : 0;
+    }
+    for (int i = 0; i < 4; i++) q.base[i] = 1.0f;
+    q.uv = uv;
+    q.unlit = q.double_sided = 1;
+    q.alpha = MODEL_ALPHA_MASK;
+    q.base_map = &t;
+    t.mag_filter = t.min_filter = 9729;
+    t.wrap_s = t.wrap_t = 33071;
+    smooth = lit_quad_draw(g, &q, NOH_DRAW_OPAQUE);
+    t.cut_alone = 1;
+    for (int without = 0; without < 2; without++) {
+        uint32_t white = 0, other = 0;
+        g->gl.etc2 = without ? 0 : had;
+        rgba = lit_quad_draw(g, &q, NOH_DRAW_OPAQUE);
+        for (uint32_t i = 0; i < LIT_QUAD_SIDE * LIT_QUAD_SIDE; i++) {
+            const uint8_t *pixel = rgba + 4u * i;
+            if (!lit_quad_is_background(pixel)) {
+                white++;
+                if (pixel[0] < 253 || pixel[1] < 253) fail_msg("pixel %u of the disk is dark: %u", i, pixel[0]);
+            }
+            other += lit_quad_is_background(pixel) != lit_quad_is_background(smooth + 4u * i);
+        }
+        assert_in_range(white, LIT_QUAD_SIDE * LIT_QUAD_SIDE / 3u, LIT_QUAD_SIDE * LIT_QUAD_SIDE / 2u);
+        assert_in_range(other, 0, 2);
+        free(rgba);
+    }
+    g->gl.etc2 = had;
+    free(smooth);
+    fixture_expect_no_errors();
 }
 
 static void blocks_without_etc2_and_decoder_are_refused(void **state)
@@ -243,6 +293,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(the_driver_reads_what_is_decoded),
                                         cmocka_unit_test(colours_are_srgb_both_ways),
+                                        cmocka_unit_test(edges_are_as_bright_as_what_they_are_of),
                                         cmocka_unit_test(blocks_without_etc2_and_decoder_are_refused) };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

@@ -52,7 +52,7 @@ static void fill_material(const lit_quad *q, model *m)
     *material = model_material_default();
     m->material_count = 1;
     material->name = model_string("quad");
-    material->base_color_texture = q->picture ? 1 : MODEL_NONE;
+    material->base_color_texture = q->picture || q->base_map ? 1 : MODEL_NONE;
     memcpy(material->base_color, q->base, sizeof q->base);
     material->metallic = q->metallic;
     material->roughness = q->roughness;
@@ -106,6 +106,22 @@ static void fill_textures(const lit_quad *q, model *m)
     }
 }
 
+/* The texture in the place of the second of two. */
+static void fill_base_map(const lit_quad *q, model *m)
+{
+    const lit_quad small = { .picture = (const uint8_t[8]){ 0 } };
+    const size_t bytes = 4u * (size_t)q->base_map->width * q->base_map->height;
+    model_texture *t;
+    fill_textures(&small, m);
+    t = &m->textures[1];
+    free(t->rgba);
+    free(t->name);
+    *t = *q->base_map;
+    t->name = model_string("base");
+    t->rgba = test_zeros(bytes);
+    memcpy(t->rgba, q->base_map->rgba, bytes);
+}
+
 static float *copied(const float *values, size_t count)
 {
     float *copy = test_zeros(count * sizeof *copy);
@@ -121,6 +137,7 @@ static uint8_t *quad_pack(const lit_quad *q, size_t *count)
     uint8_t *bytes;
     fill_material(q, m);
     if (q->picture) fill_textures(q, m);
+    if (q->base_map) fill_base_map(q, m);
     if (q->normal_map || q->surface_map) fill_maps(q, m);
     if (q->uv) mesh->uv = copied(q->uv, 8);
     if (q->color) mesh->color = copied(q->color, 16);

@@ -24,9 +24,10 @@ typedef struct lit_quad {
     const float *color; /* [4][4] or NULL */
     /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
     const uint8_t *picture;
-    const uint8_t *normal_map;  /* [4] one texel, or NULL */
-    const uint8_t *surface_map; /* [4] one texel, or NULL */
-    float tangent[4];           /* of all vertices, with a normal map */
+    const model_texture *base_map; /* in place of that picture, to be compressed as it says, or NULL */
+    const uint8_t *normal_map;     /* [4] one texel, or NULL */
+    const uint8_t *surface_map;    /* [4] one texel, or NULL */
+    float tangent[4];              /* of all vertices, with a normal map */
     float emissive[3], normal_scale, occlusion_strength;
     const noh_gl_shader_desc *shaders; /* in place of the library's; NULL: none */
 } lit_quad;

@@ -10,6 +10,7 @@
 #include "convert/model/recipe_make.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
+#include "convert/model/texture_cut.h"
 #include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
 #include "clip/pack_clip.h"
@@ -457,6 +458,7 @@ static int make_wrinkles(const source *s, const convert_options *options, model_
 
 static void set_textures(const source *s, const convert_options *options)
 {
+    texture_cut_mark(s->m);
     for (uint32_t i = 0; i < s->m->texture_count; i++) {
         s->m->textures[i].etc2 = options->etc2 != 0;
         s->m->textures[i].size_max = options->texture_max;

@@ -8,6 +8,13 @@ const attributes = [['position', 3], ['normal', 3], ['tangent', 4], ['uv', 2], [
 const maps = ['map', 'normalMap', 'surface', 'emissiveMap'];
 const FAR = 1e6;
 
+// Of textures with one bit of alpha, transparent texels are black, and what is filtered is as much darker as it is
+// transparent.
+function divided(shader) {
+    shader.fragmentShader = shader.fragmentShader.replace('#include <map_fragment>',
+        '#include <map_fragment>\n#ifdef USE_MAP\n\tdiffuseColor.rgb /= max(sampledDiffuseColor.a, 0.002);\n#endif');
+}
+
 // A character without frames of its own: three's renderer asks for them.
 class Guest extends Character {
     constructor(object, options) {
@@ -80,13 +87,14 @@ export class NohObject3D extends Group {
     }
 
     materialOf(i) {
-        const p = this.program, v = Array.from(p.floats(p._web_material(i), 14));
+        const p = this.program, v = Array.from(p.floats(p._web_material(i), 15));
         const unlit = v[13] === 1, Kind = unlit ? MeshBasicMaterial : MeshStandardMaterial, material = new Kind({
             name: p.text(p._web_material_name(i)), color: new Color(v[0], v[1], v[2]), opacity: v[3], transparent: v[11] === 1, alphaTest: Math.max(0, v[9]),
             side: v[12] === 1 ? DoubleSide : FrontSide,
         });
         if (!unlit) Object.assign(material, { roughness: v[4], metalness: v[5], emissive: new Color(v[6], v[7], v[8]) });
         if (!unlit) material.normalScale.setScalar(v[10]);
+        if (v[14] === 1) material.onBeforeCompile = divided;
         return material;
     }
 

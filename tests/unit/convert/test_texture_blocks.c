@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/texture_cut.h"
 #include "convert/pack/texture_levels.h"
 #include "convert/texture/etc2_block.h"
 #include "convert/texture/texture_blocks.h"
@@ -21,6 +22,8 @@ static etc2_texels texels_of(int kind)
 {
     etc2_texels t;
     int32_t colors[2][3], slopes[2][3];
+    t.cut = 0;
+    t.holes = 0;
     for (int k = 0; k < 6; k++) {
         colors[k / 3][k % 3] = (int32_t)test_random_below(&numbers, 256);
         slopes[k / 3][k % 3] = (int32_t)test_random_below(&numbers, 21) - 10;
@@ -43,8 +46,9 @@ static uint32_t error_of(const etc2_texels *t, const uint8_t block[8])
 {
     uint8_t texels[16][4];
     uint32_t error = 0;
-    noh_etc2_decode(NOH_TEXTURE_ETC2_RGB, block, 1, texels[0]);
+    noh_etc2_decode(t->cut ? NOH_TEXTURE_ETC2_RGBA1 : NOH_TEXTURE_ETC2_RGB, block, 1, texels[0]);
     for (int i = 0; i < 16; i++) {
+        assert_int_equal(texels[i % 4 * 4 + i / 4][3], t->holes >> i & 1u ? 0 : 255);
         for (int c = 0; c < 3 && t->counts[i]; c++) {
             const int32_t off = texels[i % 4 * 4 + i / 4][c] - t->rgb[i][c];
             error += (uint32_t)(off * off);
@@ -58,6 +62,12 @@ static void bytes_of(uint64_t block, uint8_t bytes[8])
     for (int i = 0; i < 8; i++) bytes[i] = (uint8_t)(block >> (56 - 8 * i));
 }
 
+static void punch(etc2_texels *t, uint32_t holes)
+{
+    t->holes = holes;
+    for (int i = 0; i < 16; i++) t->counts[i] = t->counts[i] && !(holes >> i & 1u);
+}
+
 /* Each mode alone: the error that it claims is that of its block decoded. */
 static void every_mode_says_what_its_block_decodes_to(void **state)
 {
@@ -68,7 +78,9 @@ static void every_mode_says_what_its_block_decodes_to(void **state)
     for (int i = 0; i < 2000; i++) {
         etc2_texels t = texels_of(i % 5);
         if (i % 7 == 0) t.counts[i % 16] = 0;
-        for (size_t m = 0; m < TEST_COUNT(modes); m++) {
+        t.cut = i / 5 % 2;
+        if (t.cut && i % 3) punch(&t, test_random_below(&numbers, 0xffffu));
+        for (size_t m = 0; m < (t.holes ? 2u : TEST_COUNT(modes)); m++) { /* planar has no holes */
             etc2_best best = { 0, UINT_MAX };
             uint8_t bytes[8];
             modes[m](&t, &best);
@@ -114,6 +126,27 @@ static void modes_are_good_at_what_they_are_for(void **state)
         assert_true(mean_error(kind, 100, NULL) <= mean_error(kind, 100, etc2_try_halves) + 1e-9);
         assert_true(mean_error(kind, 100, NULL) <= mean_error(kind, 100, etc2_try_planar) + 1e-9);
     }
+}
+
+/* With holes a block still has three shades, and one of holes alone is the same whatever is in them. */
+static void holes_cost_little(void **state)
+{
+    static const uint8_t none[8] = { 0, 0, 0, 0, 255, 255, 0, 0 };
+    uint8_t block[8];
+    double shades = 0.0;
+    (void)state;
+    numbers = test_random_from(8);
+    for (int i = 0; i < 200; i++) {
+        etc2_texels t = texels_of(3);
+        t.cut = 1;
+        punch(&t, test_random_below(&numbers, 0x10000u));
+        etc2_encode_rgb(&t, block);
+        shades += error_of(&t, block) / (48.0 * 200.0);
+        punch(&t, 0xffffu);
+        etc2_encode_rgb(&t, block);
+        assert_memory_equal(block, none, 8);
+    }
+    assert_true(shades < 40.0);
 }
 
 static double channel_error(const int32_t values[16], int eleven)
@@ -227,6 +260,71 @@ static void each_use_has_its_format(void **state)
     assert_true(texture_quality_db(&h) >= 99.0);
 }
 
+/* Where every reader cuts, one bit of alpha is taken if it is near enough; what is not seen does not count. */
+static void what_is_only_cut_has_one_bit_of_alpha(void **state)
+{
+    model_texture t = texture_of(MODEL_TEXTURE_COLOR, 0);
+    (void)state;
+    t.with_alpha = t.cut_alone = 1;
+    t.alpha_cutoff = 0.5f;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) picture[4 * i + 3] = i / SIDE < 40u + i % 3u ? 255 : 0;
+    noh_texture_header h = header_of(&t);
+    assert_int_equal(h.format, NOH_TEXTURE_ETC2_RGBA1);
+    assert_true(texture_quality_db(&h) > 40.0);
+    for (uint32_t i = 0; i < SIDE * SIDE / 3u; i++) memset(picture + 4 * (SIDE * SIDE - 1u - i), i % 251 ? 9 : 200, 3);
+    const noh_texture_header other = header_of(&t);
+    assert_memory_equal(&other, &h, sizeof h);
+    t.cut_alone = 0;
+    assert_int_equal(header_of(&t).format, NOH_TEXTURE_ETC2_RGBA);
+    t.cut_alone = 1;
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) picture[4 * i + 3] = (uint8_t)(i % 256u);
+    assert_int_equal(header_of(&t).format, NOH_TEXTURE_ETC2_RGBA);
+}
+
+/* A texture is only cut where all that reads it says so, alike. */
+static void everything_that_reads_a_texture_has_to_cut(void **state)
+{
+    const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
+    model *m = test_model(&desc);
+    float colors[16] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    model_texture *t = m->textures = test_zeros(sizeof *m->textures);
+    (void)state;
+    m->texture_count = 1;
+    t->with_alpha = 1;
+    t->alpha_cutoff = 0.5f;
+    m->materials = test_zeros(2 * sizeof *m->materials);
+    m->material_count = 2;
+    for (int i = 0; i < 2; i++) {
+        m->materials[i] = model_material_default();
+        m->materials[i].alpha = MODEL_ALPHA_MASK;
+        m->materials[i].base_color_texture = 0;
+    }
+    m->meshes[0].submeshes[0].material = 1;
+    texture_cut_mark(m);
+    assert_int_equal(t->cut_alone, 1);
+#define REFUSED(change, back)              \
+    do {                                   \
+        change;                            \
+        texture_cut_mark(m);               \
+        assert_int_equal(t->cut_alone, 0); \
+        back;                              \
+        texture_cut_mark(m);               \
+        assert_int_equal(t->cut_alone, 1); \
+    } while (0)
+    REFUSED(m->materials[1].alpha = MODEL_ALPHA_BLEND, m->materials[1].alpha = MODEL_ALPHA_MASK);
+    REFUSED(m->materials[0].alpha = MODEL_ALPHA_OPAQUE, m->materials[0].alpha = MODEL_ALPHA_MASK);
+    REFUSED(m->materials[0].alpha_cutoff = 0.4f, m->materials[0].alpha_cutoff = 0.5f);
+    REFUSED(m->materials[0].emissive_texture = 0, m->materials[0].emissive_texture = MODEL_NONE);
+    REFUSED(m->materials[0].base_color[3] = 0.9f, m->materials[0].base_color[3] = 1.0f);
+    m->meshes[0].color = colors;
+    REFUSED(colors[7] = 0.5f, colors[7] = 1.0f);
+    m->meshes[0].color = NULL;
+    t->alpha_cutoff = m->materials[0].alpha_cutoff = m->materials[1].alpha_cutoff = 0.2f;
+    texture_cut_mark(m);
+    assert_int_equal(t->cut_alone, 0);
+    model_free(m);
+}
+
 /* Noise of 96 texels a side is compressed, and said to be bad; of 64 it stays as it is. */
 static void small_textures_stay_where_blocks_lose_much(void **state)
 {
@@ -282,8 +380,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(every_mode_says_what_its_block_decodes_to),
                                         cmocka_unit_test(modes_are_good_at_what_they_are_for),
+                                        cmocka_unit_test(holes_cost_little),
                                         cmocka_unit_test(one_channel_comes_near),
                                         cmocka_unit_test(each_use_has_its_format),
+                                        cmocka_unit_test(what_is_only_cut_has_one_bit_of_alpha),
+                                        cmocka_unit_test(everything_that_reads_a_texture_has_to_cut),
                                         cmocka_unit_test(small_textures_stay_where_blocks_lose_much),
                                         cmocka_unit_test(normal_maps_keep_their_directions),
                                         cmocka_unit_test(textures_are_halved_on_request) };

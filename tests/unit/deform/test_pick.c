@@ -310,7 +310,7 @@ static void what_a_far_joint_pulls_is_hit(void **state)
 typedef struct cut {
     model_alpha alpha;
     uint32_t wrap;           /* a glTF enum value */
-    int nearest, blocks;     /* unfiltered; compressed */
+    int nearest, blocks;     /* unfiltered; compressed, 2: with alphas of one bit */
     float uv_scale, uv_from; /* over the sheet */
     float base_alpha, cutoff;
 } cut;
@@ -334,12 +334,15 @@ static void cut_sheet_open(sheet *s, const cut *c, int folded)
     t->width = t->height = PICTURE_SIDE;
     t->rgba = test_zeros(4u * PICTURE_SIDE * PICTURE_SIDE);
     for (uint32_t i = 0; i < PICTURE_SIDE * PICTURE_SIDE; i++) {
-        t->rgba[4u * i + 3u] = (uint8_t)(i % 4u || i / PICTURE_SIDE % 4u ? test_random_below(&r, 256) : 0);
+        const uint32_t alpha = i % 4u || i / PICTURE_SIDE % 4u ? test_random_below(&r, 256) : 0;
+        t->rgba[4u * i + 3u] = (uint8_t)(c->blocks < 2 ? alpha : alpha < 128u ? 0u : 255u);
     }
     t->wrap_s = t->wrap_t = c->wrap;
     t->mag_filter = t->min_filter = c->nearest ? 9728 : 9729;
     t->with_alpha = 1;
-    t->etc2 = (uint8_t)c->blocks;
+    t->etc2 = c->blocks != 0;
+    t->cut_alone = c->blocks == 2;
+    t->alpha_cutoff = c->cutoff;
     m->materials[0].alpha = c->alpha;
     m->materials[0].alpha_cutoff = c->cutoff;
     m->materials[0].base_color[3] = c->base_alpha;
@@ -352,7 +355,7 @@ static void cut_sheet_open(sheet *s, const cut *c, int folded)
 }
 
 /* The first level's alpha, decoded: 0..255. */
-static void alphas_of(const sheet *s, uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE])
+static void alphas_of(const sheet *s, const cut *c, uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE])
 {
     uint8_t rows[4 * PICTURE_SIDE * 4];
     noh_texture t;
@@ -362,8 +365,9 @@ static void alphas_of(const sheet *s, uint8_t alphas[PICTURE_SIDE * PICTURE_SIDE
         if (t.header->format == NOH_TEXTURE_RGBA8) {
             memcpy(rows, level.pixels + 4u * PICTURE_SIDE * y, sizeof rows);
         } else {
-            assert_int_equal(t.header->format, NOH_TEXTURE_ETC2_RGBA);
-            noh_etc2_decode(t.header->format, level.pixels + 4u * PICTURE_SIDE * y, PICTURE_SIDE / 4u, rows);
+            const uint32_t row = noh_texture_bytes(t.header->format, PICTURE_SIDE, y);
+            assert_int_equal(t.header->format, c->blocks == 2 ? NOH_TEXTURE_ETC2_RGBA1 : NOH_TEXTURE_ETC2_RGBA);
+            noh_etc2_decode(t.header->format, level.pixels + row, PICTURE_SIDE / 4u, rows);
         }
         for (uint32_t i = 0; i < 4 * PICTURE_SIDE; i++) alphas[PICTURE_SIDE * y + i] = rows[4u * i + 3u];
     }
@@ -400,6 +404,7 @@ static void rays_go_through_what_is_cut_away(void **state)
         { MODEL_ALPHA_MASK, 10497, 0, 0, 2.5f, -0.7f, 0.8f, 0.4f },
         { MODEL_ALPHA_MASK, 33071, 0, 1, 1.5f, -0.2f, 1.0f, 0.5f },
         { MODEL_ALPHA_MASK, 33648, 0, 1, 3.5f, -1.2f, 0.9f, 0.3f },
+        { MODEL_ALPHA_MASK, 10497, 0, 2, 2.5f, -0.7f, 1.0f, 0.5f },
         { MODEL_ALPHA_BLEND, 10497, 1, 0, 2.5f, -0.7f, 0.9f, 0.5f },
         { MODEL_ALPHA_OPAQUE, 10497, 1, 0, 2.5f, -0.7f, 0.9f, 0.5f },
     };
@@ -411,7 +416,7 @@ static void rays_go_through_what_is_cut_away(void **state)
         uint32_t hits = 0, sure = 0;
         sheet s;
         cut_sheet_open(&s, c, 0);
-        alphas_of(&s, alphas);
+        alphas_of(&s, c, alphas);
         for (int k = 0; k < 4000; k++) {
             const float x = test_random_float(&r, 0.01f, 3.99f), y = test_random_float(&r, 0.01f, 3.99f);
             const double alpha = alpha_of(c, alphas, x, y);
@@ -447,7 +452,7 @@ static void what_lies_behind_a_hole_is_hit(void **state)
     noh_pick_hit hit;
     (void)state;
     cut_sheet_open(&s, &hole, 1);
-    alphas_of(&s, alphas);
+    alphas_of(&s, &hole, alphas);
     for (uint32_t y = 0; y < PICTURE_SIDE; y++) {
         for (uint32_t x = 0; x < PICTURE_SIDE / 2u; x++) {
             const float at[2] = { 0.25f * ((float)x + 0.4f), 0.25f * ((float)y + 0.4f) };

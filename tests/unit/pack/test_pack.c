@@ -399,7 +399,7 @@ static float nan_value(void)
     X(texture_levels_of_nearest, DATA, "mip levels", f->texture->nearest = 1)                                        \
     X(texture_flags, DATA, "sampling", f->texture->flags = 2)                                                        \
     X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[1] = 1)                            \
-    X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_EAC_RG + 1)                   \
+    X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_ETC2_RGBA1 + 1)               \
     X(texture_format_colors, DATA, "not one for such a texture", f->texture->format = NOH_TEXTURE_EAC_RG)            \
     X(texture_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ETC2_RGBA)                                  \
     X(texture_error, DATA, "texture's error", f->texture->error = -1.0f)                                             \

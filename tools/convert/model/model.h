@@ -28,6 +28,7 @@ typedef struct model_texture {
     model_texture_use use;
     uint8_t with_alpha; /* a material cuts or blends by its alpha: where that is 0, colours do not count */
     float alpha_cutoff; /* of a material that cuts by it: mip levels cover as much; else 0 */
+    uint8_t cut_alone;  /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
     uint8_t etc2;       /* 1: to be compressed */
     uint32_t size_max;  /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
 } model_texture;

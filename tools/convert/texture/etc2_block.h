@@ -1,6 +1,7 @@
 /* etc2_block.h: the block of ETC2 or EAC that is the nearest to 4 x 4 texels.
  *
- *   etc2_encode_rgb    colours: individual, differential, T, H and planar, whichever is off by the least
+ *   etc2_encode_rgb    colours: individual, differential, T, H and planar, whichever is off by the least; with an alpha
+ *                      of one bit without individual, and where texels are transparent differential and T alone
  *   eac_encode         one channel, of 8 or 11 bits
  *
  * All sums are of integers: every machine makes the same bytes. Errors are squares of differences of bytes, summed over
@@ -18,6 +19,8 @@
 typedef struct etc2_texels {
     int32_t rgb[16][3];
     int32_t counts[16]; /* 1, or 0: nobody sees this colour */
+    int cut;            /* 1: a block of NOH_TEXTURE_ETC2_RGBA1 */
+    uint32_t holes;     /* of such a block, bit i: texel i is transparent; its count is 0 */
 } etc2_texels;
 
 /* The best of a mode so far. */

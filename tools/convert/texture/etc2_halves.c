@@ -13,9 +13,12 @@ static const int32_t tables[8][2] = { { 2, 8 },   { 5, 17 },  { 9, 29 },   { 13,
 typedef struct half {
     int32_t rgb[HALF][3], counts[HALF], texels[HALF];
     int32_t sums[3], count;
+    int with_holes;
+    uint8_t hole[HALF];
 } half;
 
-/* A colour in 4 or 5 bits, a table, and what each texel takes from it: 0 and 1 are added, 2 and 3 subtracted. */
+/* A colour in 4 or 5 bits, a table, and what each texel takes from it: 0 and 1 are added, 2 and 3 subtracted. In a
+ * block with holes 2 is a hole, and 0 adds nothing. */
 typedef struct fit {
     int32_t color[3], table;
     uint8_t selectors[HALF];
@@ -38,10 +41,12 @@ static void take_half(const etc2_texels *t, int flip, int second, half *h)
 {
     int n = 0;
     h->sums[0] = h->sums[1] = h->sums[2] = h->count = 0;
+    h->with_holes = t->holes != 0;
     for (int i = 0; i < 16; i++) {
         if ((flip ? i % 4 / 2 : i / 8) != second) continue;
         h->texels[n] = i;
         h->counts[n] = t->counts[i];
+        h->hole[n] = (uint8_t)(t->holes >> i & 1u);
         h->count += t->counts[i];
         for (int c = 0; c < 3; c++) {
             h->rgb[n][c] = t->rgb[i][c];
@@ -51,18 +56,27 @@ static void take_half(const etc2_texels *t, int flip, int second, half *h)
     }
 }
 
+static int32_t added_by(const half *h, int32_t table, int selector)
+{
+    const int32_t add = tables[table][selector & 1];
+    if (h->with_holes && !(selector & 1)) return 0;
+    return selector & 2 ? -add : add;
+}
+
 /* Choose the selectors of a colour and table. */
 static void select_all(const half *h, int five, fit *f)
 {
     int32_t paints[4][3];
     for (int s = 0; s < 4; s++) {
-        const int32_t add = s & 2 ? -tables[f->table][s & 1] : tables[f->table][s & 1];
+        const int32_t add = added_by(h, f->table, s);
         for (int c = 0; c < 3; c++) paints[s][c] = etc2_clamp(widened(f->color[c], five) + add, 255);
     }
     f->error = 0;
     for (int i = 0; i < HALF; i++) {
         uint32_t nearest = UINT_MAX;
-        for (int s = 0; s < 4; s++) {
+        f->selectors[i] = 2;
+        for (int s = 0; s < 4 && !h->hole[i]; s++) {
+            if (h->with_holes && s == 2) continue;
             const int32_t r = h->rgb[i][0] - paints[s][0], g = h->rgb[i][1] - paints[s][1],
                           b = h->rgb[i][2] - paints[s][2];
             const uint32_t off = (uint32_t)(r * r + g * g + b * b);
@@ -71,7 +85,7 @@ static void select_all(const half *h, int five, fit *f)
                 f->selectors[i] = (uint8_t)s;
             }
         }
-        f->error += nearest * (uint32_t)h->counts[i];
+        f->error += h->counts[i] ? nearest : 0;
     }
 }
 
@@ -80,10 +94,7 @@ static int refit(const half *h, int five, const int32_t low[3], const int32_t hi
 {
     int32_t added = 0;
     int moved = 0;
-    for (int i = 0; i < HALF; i++) {
-        const int32_t add = tables[f->table][f->selectors[i] & 1];
-        added += h->counts[i] * (f->selectors[i] & 2 ? -add : add);
-    }
+    for (int i = 0; i < HALF; i++) added += h->counts[i] * added_by(h, f->table, f->selectors[i]);
     for (int c = 0; c < 3 && h->count; c++) {
         int32_t color = narrowed(h->sums[c] - added, h->count, five);
         color = color < low[c] ? low[c] : color > high[c] ? high[c] : color;
@@ -125,8 +136,8 @@ static void fit_half(const half *h, int five, const int32_t low[3], const int32_
 
 static uint64_t block_of(const half halves[2], const fit fits[2], int five, int flip)
 {
-    uint64_t block = (uint64_t)fits[0].table << 37 | (uint64_t)fits[1].table << 34 | (uint64_t)five << 33 |
-                     (uint64_t)flip << 32;
+    uint64_t block = (uint64_t)fits[0].table << 37 | (uint64_t)fits[1].table << 34 | (uint64_t)flip << 32;
+    block |= (uint64_t)(five && !halves[0].with_holes) << 33;
     for (int c = 0; c < 3; c++) {
         const int at = 56 - 8 * c;
         const int32_t difference = fits[1].color[c] - fits[0].color[c];
@@ -195,6 +206,7 @@ void etc2_try_halves(const etc2_texels *t, etc2_best *best)
             bring_near(halves, fits, moved, near);
             keep(halves, near, 1, flip, best);
         }
+        if (t->cut) continue; /* has no such mode */
         for (int k = 0; k < 2; k++) fit_half(&halves[k], 0, low, high4, &fits[k]);
         keep(halves, fits, 0, flip, best);
     }

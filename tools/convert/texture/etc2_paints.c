@@ -34,7 +34,9 @@ static void select_all(const etc2_texels *t, int is_h, fit *f)
     f->error = 0;
     for (int i = 0; i < 16; i++) {
         uint32_t nearest = UINT_MAX;
-        for (int p = 0; p < 4; p++) {
+        f->selectors[i] = 2;
+        for (int p = 0; p < 4 && !(t->holes >> i & 1u); p++) {
+            if (t->holes && p == 2) continue;
             const int32_t r = t->rgb[i][0] - paints[p][0], g = t->rgb[i][1] - paints[p][1],
                           b = t->rgb[i][2] - paints[p][2];
             const uint32_t off = (uint32_t)(r * r + g * g + b * b);
@@ -43,7 +45,7 @@ static void select_all(const etc2_texels *t, int is_h, fit *f)
                 f->selectors[i] = (uint8_t)p;
             }
         }
-        f->error += nearest * (uint32_t)t->counts[i];
+        f->error += t->counts[i] ? nearest : 0;
     }
 }
 
@@ -158,13 +160,13 @@ static uint64_t fill(uint64_t block, int at, uint64_t mask, int outside)
     return block;
 }
 
-static uint64_t t_block(const fit *f)
+static uint64_t t_block(const fit *f, int with_holes)
 {
     const int32_t *a = f->colors[0], *b = f->colors[1];
     const uint64_t block = (uint64_t)(a[0] >> 2) << 59 | (uint64_t)(a[0] & 3) << 56 | (uint64_t)a[1] << 52 |
                            (uint64_t)a[2] << 48 | (uint64_t)b[0] << 44 | (uint64_t)b[1] << 40 | (uint64_t)b[2] << 36 |
-                           (uint64_t)(f->distance >> 1) << 34 | (uint64_t)1 << 33 | (uint64_t)(f->distance & 1) << 32 |
-                           selectors_of(f);
+                           (uint64_t)(f->distance >> 1) << 34 | (uint64_t)!with_holes << 33 |
+                           (uint64_t)(f->distance & 1) << 32 | selectors_of(f);
     return fill(block, 56, 0xe4, 1);
 }
 
@@ -198,6 +200,7 @@ void etc2_try_paints(const etc2_texels *t, etc2_best *best)
     two_means(t, means);
     for (int mode = 0; mode < 3 && best->error; mode++) {
         const int is_h = mode == 2;
+        if (is_h && t->holes) break; /* its colours could not change places */
         fit_mode(t, is_h, mode == 1, (const int32_t(*)[3])means, &f);
         if (is_h) order_colors(&f);
         if (is_h && f.colors[0][0] == f.colors[1][0] && f.colors[0][1] == f.colors[1][1] &&
@@ -206,7 +209,7 @@ void etc2_try_paints(const etc2_texels *t, etc2_best *best)
         }
         if (f.error < best->error) {
             best->error = f.error;
-            best->block = is_h ? h_block(&f) : t_block(&f);
+            best->block = is_h ? h_block(&f) : t_block(&f, t->holes != 0);
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include "etc2_block.h"
 #include "pack/etc2.h"
+#include "pack/pack.h"
 
 static const uint8_t *texel_at(const texture_image *level, uint32_t x, uint32_t y)
 {
@@ -43,15 +44,24 @@ static void encode_pair(const texture_image *level, uint32_t x, uint32_t y, uint
     eac_encode(values[1], 1, block + 8);
 }
 
+/* Whether a colour is seen. */
+static int color_counts(const texture_image *level, uint32_t format, const uint8_t *texel)
+{
+    return format == NOH_TEXTURE_ETC2_RGBA1 ? texel[3] >= level->cutoff : !level->with_alpha || texel[3] != 0;
+}
+
 static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format, uint8_t *block)
 {
     int32_t alphas[16];
     etc2_texels t;
+    t.cut = format == NOH_TEXTURE_ETC2_RGBA1;
+    t.holes = 0;
     for (uint32_t i = 0; i < 16; i++) {
         const uint8_t *texel = texel_at(level, x + i / 4u, y + i % 4u);
         for (int c = 0; c < 3; c++) t.rgb[i][c] = texel[c];
         alphas[i] = texel[3];
-        t.counts[i] = !level->with_alpha || texel[3] != 0;
+        t.counts[i] = color_counts(level, format, texel);
+        t.holes |= t.cut && !t.counts[i] ? 1u << i : 0u;
     }
     if (format == NOH_TEXTURE_ETC2_RGBA) {
         eac_encode(alphas, 0, block);
@@ -73,7 +83,7 @@ static int is_repeated(const texture_image *level, uint32_t x, uint32_t y)
 
 int texture_blocks_append(const texture_image *level, uint32_t format, byte_buffer *out)
 {
-    const size_t bytes = format == NOH_TEXTURE_ETC2_RGB ? 8 : 16;
+    const size_t bytes = noh_texture_block_bytes(format);
     uint8_t block[16];
     for (uint32_t y = 0; y < level->height; y += 4u) {
         for (uint32_t x = 0; x < level->width; x += 4u) {
@@ -134,10 +144,10 @@ static void add_color(const texture_image *level, uint32_t x, uint32_t y, uint32
         const uint32_t at_x = x + i % 4u, at_y = y + i / 4u;
         if (at_x >= level->width || at_y >= level->height) continue;
         const uint8_t *texel = texel_at(level, at_x, at_y);
-        const int counts = !level->with_alpha || texel[3] != 0;
+        const int counts = color_counts(level, format, texel);
         for (int c = 0; c < 3 && counts; c++) sum->squares += square((double)texels[i][c] - texel[c]);
         sum->count += counts ? 3u : 0u;
-        if (format != NOH_TEXTURE_ETC2_RGBA) continue;
+        if (format == NOH_TEXTURE_ETC2_RGB) continue;
         sum->squares += square((double)texels[i][3] - texel[3]);
         sum->count++;
     }
@@ -145,7 +155,7 @@ static void add_color(const texture_image *level, uint32_t x, uint32_t y, uint32
 
 float texture_blocks_error(const texture_image *level, uint32_t format, const uint8_t *blocks)
 {
-    const size_t bytes = format == NOH_TEXTURE_ETC2_RGB ? 8 : 16;
+    const size_t bytes = noh_texture_block_bytes(format);
     error_sum sum = { 0.0, 0 };
     for (uint32_t y = 0; y < level->height; y += 4u) {
         for (uint32_t x = 0; x < level->width; x += 4u, blocks += bytes) {
@@ -167,6 +177,6 @@ double texture_quality_db(const noh_texture_header *header)
 
 const char *texture_format_name(uint32_t format)
 {
-    static const char *const names[] = { "RGBA8", "ETC2 RGB", "ETC2 RGBA", "EAC RG" };
+    static const char *const names[] = { "RGBA8", "ETC2 RGB", "ETC2 RGBA", "EAC RG", "ETC2 RGBA1" };
     return names[format];
 }

@@ -16,15 +16,16 @@
 typedef struct texture_image {
     const uint8_t *rgba;
     uint32_t width, height;
-    int with_alpha; /* colours do not count where alpha is 0 */
+    int with_alpha;  /* colours do not count where alpha is 0 */
+    uint32_t cutoff; /* with ETC2_RGBA1: texels whose alpha is below are transparent, and their colours do not count */
 } texture_image;
 
-/* format: NOH_TEXTURE_ETC2_RGB, _ETC2_RGBA or _EAC_RG. Texels beyond an edge are those at the edge. Returns 0, or 1:
- * out of memory. */
+/* format: NOH_TEXTURE_ETC2_RGB, _ETC2_RGBA, _ETC2_RGBA1 or _EAC_RG. Texels beyond an edge are those at the edge.
+ * Returns 0, or 1: out of memory. */
 int texture_blocks_append(const texture_image *level, uint32_t format, byte_buffer *out);
 
-/* Decoded blocks against the level, in bytes: over red, green, blue where they count, with ETC2_RGBA alpha too; of
- * normal maps over x, y and z. 0: nothing was lost. */
+/* Decoded blocks against the level, in bytes: over red, green, blue where they count, with ETC2_RGBA and _RGBA1 alpha
+ * too; of normal maps over x, y and z. 0: nothing was lost. */
 float texture_blocks_error(const texture_image *level, uint32_t format, const uint8_t *blocks);
 
 /* Below this a texture is worth a word: errors of three of 255 steps. */
