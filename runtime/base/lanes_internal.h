@@ -104,6 +104,17 @@ static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
     }
     lanes_turn(pairs, out);
 }
+/* rows[NOH_LANES] of 3 floats, one behind another, as three columns */
+static inline void lanes_triples(const float *rows, lanes out[3])
+{
+    const lanes a = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows)), _mm_loadu_ps(rows + 12), 1);
+    const lanes b = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + 4)), _mm_loadu_ps(rows + 16), 1);
+    const lanes c = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + 8)), _mm_loadu_ps(rows + 20), 1);
+    const lanes xy = _mm256_shuffle_ps(b, c, 0x9e), yz = _mm256_shuffle_ps(a, b, 0x49);
+    out[0] = _mm256_shuffle_ps(a, xy, 0x8c);
+    out[1] = _mm256_shuffle_ps(yz, xy, 0xd8);
+    out[2] = _mm256_shuffle_ps(yz, c, 0xcd);
+}
 /* the inverse; rows are stored in order, so that where two overlap by one float, the later one's stays */
 static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
 {
@@ -222,6 +233,14 @@ static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
     }
     _MM_TRANSPOSE4_PS(out[0], out[1], out[2], out[3]);
 }
+static inline void lanes_triples(const float *rows, lanes out[3])
+{
+    const lanes a = _mm_loadu_ps(rows), b = _mm_loadu_ps(rows + 4), c = _mm_loadu_ps(rows + 8);
+    const lanes xy = _mm_shuffle_ps(b, c, 0x9e), yz = _mm_shuffle_ps(a, b, 0x49);
+    out[0] = _mm_shuffle_ps(a, xy, 0x8c);
+    out[1] = _mm_shuffle_ps(yz, xy, 0xd8);
+    out[2] = _mm_shuffle_ps(yz, c, 0xcd);
+}
 static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
 {
     lanes r[4] = { columns[0], columns[1], columns[2], columns[3] };
@@ -339,6 +358,12 @@ static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
         in[i] = vld1q_f32(rows + i * stride);
     }
     lanes_turn(in, out);
+}
+static inline void lanes_triples(const float *rows, lanes out[3])
+{
+    const float32x4x3_t columns = vld3q_f32(rows);
+    NOH_UNROLL
+    for (int i = 0; i < 3; i++) out[i] = columns.val[i];
 }
 static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
 {

@@ -118,6 +118,17 @@ NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void wide_columns(const float *rows, size_t st
     wide_turn(pairs, out);
 }
 
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void wide_triples(const float *rows, __m256 out[3])
+{
+    const __m256 a = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows)), _mm_loadu_ps(rows + 12), 1);
+    const __m256 b = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + 4)), _mm_loadu_ps(rows + 16), 1);
+    const __m256 c = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows + 8)), _mm_loadu_ps(rows + 20), 1);
+    const __m256 xy = _mm256_shuffle_ps(b, c, 0x9e), yz = _mm256_shuffle_ps(a, b, 0x49);
+    out[0] = _mm256_shuffle_ps(a, xy, 0x8c);
+    out[1] = _mm256_shuffle_ps(yz, xy, 0xd8);
+    out[2] = _mm256_shuffle_ps(yz, c, 0xcd);
+}
+
 NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void wide_rows(const __m256 columns[4], float *rows, size_t stride)
 {
     __m256 pairs[4];

@@ -8,25 +8,24 @@
 #include "deform/morph_accumulate_internal.h"
 #include "deform/morph_finish_internal.h"
 
-NOH_ALWAYS_INLINE void run_simd(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                                float *const layers[3])
+NOH_ALWAYS_INLINE void add_rows(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
 {
     if (layers[2]) {
-        noh_add_run(words, count, lead, f, layers, 3);
+        noh_add_rows(rows, f, layers, 3);
     } else {
-        noh_add_run(words, count, lead, f, layers, 2);
+        noh_add_rows(rows, f, layers, 2);
     }
 }
 
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, run_simd);
+    noh_accumulate_targets(mesh, weights, layers, NULL, add_rows);
 }
 
 static void accumulate_some(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                             const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, run_simd);
+    noh_accumulate_targets(mesh, weights, layers, groups, add_rows);
 }
 
 static size_t layer_texels(const noh_mesh *mesh)
@@ -64,23 +63,20 @@ const char *noh_morph_simd(void)
     return NOH_MORPH_SIMD;
 }
 
-static void run_scalar(const uint32_t *words, size_t count, size_t lead, const morph_field f[3], float *const layers[3])
+static void add_scalar(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
 {
-    (void)lead;
-    for (int l = 0; l < 3 && layers[l]; l++) {
-        noh_add_run_scalar(words, count, f[l], layers[l]);
-    }
+    noh_each_row(rows, f, layers, noh_add_row_scalar);
 }
 
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, run_scalar);
+    noh_accumulate_targets(mesh, weights, layers, NULL, add_scalar);
 }
 
 static void accumulate_some_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                                    const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, run_scalar);
+    noh_accumulate_targets(mesh, weights, layers, groups, add_scalar);
 }
 
 /* ---- kernels by name ---- */
@@ -148,10 +144,8 @@ static float round_half(float value, noh_half_mode mode)
     return noh_half_to_float(noh_half_from_float(value, mode));
 }
 
-static void run_f16_rne(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                        float *const layers[3])
+static void row_f16_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
-    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
@@ -159,10 +153,8 @@ static void run_f16_rne(const uint32_t *words, size_t count, size_t lead, const 
     }
 }
 
-static void run_f16_rtz(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                        float *const layers[3])
+static void row_f16_rtz(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
-    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
@@ -170,10 +162,8 @@ static void run_f16_rtz(const uint32_t *words, size_t count, size_t lead, const 
     }
 }
 
-static void run_f16_rtz_rne(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                            float *const layers[3])
+static void row_f16_rtz_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
-    (void)lead;
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
             const float added = round_half(noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
@@ -182,13 +172,28 @@ static void run_f16_rtz_rne(const uint32_t *words, size_t count, size_t lead, co
     }
 }
 
+static void add_f16_rne(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
+{
+    noh_each_row(rows, f, layers, row_f16_rne);
+}
+
+static void add_f16_rtz(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
+{
+    noh_each_row(rows, f, layers, row_f16_rtz);
+}
+
+static void add_f16_rtz_rne(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
+{
+    noh_each_row(rows, f, layers, row_f16_rtz_rne);
+}
+
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
                               const noh_morph_layers *layers)
 {
     noh_accumulate_targets(mesh, weights, layers, NULL,
-                           mode == NOH_HALF_RTZ       ? run_f16_rtz
-                           : mode == NOH_HALF_RTZ_RNE ? run_f16_rtz_rne
-                                                      : run_f16_rne);
+                           mode == NOH_HALF_RTZ       ? add_f16_rtz
+                           : mode == NOH_HALF_RTZ_RNE ? add_f16_rtz_rne
+                                                      : add_f16_rne);
 }
 
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)

@@ -24,9 +24,7 @@ static inline void noh_target_fields(const noh_target *t, float weight, morph_fi
     f[2] = noh_make_field((unsigned)t->position_bits + t->normal_bits, t->tangent_bits, t->tangent_scale * weight);
 }
 
-/* lead: morph_run_template.h */
-typedef void (*noh_run_function)(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                                 float *const layers[3]);
+typedef void (*noh_rows_function)(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3]);
 
 /* Whether any of the groups of NOH_MORPH_GROUP texels that a run lies in is wanted. groups NULL: all are */
 static inline int noh_is_wanted(const uint8_t *groups, size_t texel, size_t count)
@@ -38,34 +36,75 @@ static inline int noh_is_wanted(const uint8_t *groups, size_t texel, size_t coun
     return wanted;
 }
 
-/* Every row of every rectangle of one target. The delta texels of a target lie in the order of its rectangles, row by
- * row, so that a row is one run of words in the pack and one run of floats in each layer: the inner loop only streams.
- */
-NOH_ALWAYS_INLINE void noh_accumulate_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
-                                             const noh_morph_layers *layers, const uint8_t *groups,
-                                             noh_run_function run)
+/* What is accumulated, and into what. */
+typedef struct noh_morph_job {
+    const noh_mesh *mesh;
+    const noh_morph_layers *layers;
+    const uint8_t *groups; /* NULL: all */
+    size_t stride, floats; /* of a row, of a layer */
+    size_t words;          /* from mesh->texels on there are at least so many */
+} noh_morph_job;
+
+static inline noh_morph_job noh_morph_job_of(const noh_mesh *mesh, const noh_morph_layers *layers,
+                                             const uint8_t *groups)
 {
     const noh_mesh_header *h = mesh->header;
-    const noh_rect *rect = mesh->rects + t->first_rect;
-    const size_t stride = (size_t)3u << h->morph_width_log2, floats = h->morph_height * stride;
     const noh_target *last = mesh->targets + h->target_count - 1u;
-    const size_t end = 3u * ((size_t)last->first_texel + last->texel_count);
+    noh_morph_job j = { mesh, layers, groups, (size_t)3u << h->morph_width_log2, 0, 0 };
+    j.floats = h->morph_height * j.stride;
+    j.words = 3u * ((size_t)last->first_texel + last->texel_count);
+    return j;
+}
+
+/* How many rows of `count` it takes to make up for what `have` lacks. */
+static inline size_t noh_rows_short(size_t have, size_t need, size_t count)
+{
+    return have < need ? (need - have + count - 1u) / count : 0;
+}
+
+/* `rows` rows of a rectangle, the first of which has its texels from float `at` of each layer and `word` on. Rows are
+ * alone where what a vector has before or behind them is not of the layers or not of the words. */
+NOH_ALWAYS_INLINE void noh_accumulate_rows(const noh_morph_job *j, const noh_rect *rect, size_t at, size_t word,
+                                           size_t rows, const morph_field f[3], noh_rows_function add)
+{
+    const size_t count = 3u * (size_t)rect->w, words_end = word + rows * count;
+    const size_t lead = (size_t)(uintptr_t)(j->layers->position + at) / sizeof(float) % NOH_MORPH_LANES;
+    const size_t behind = (NOH_MORPH_LANES - (lead + count) % NOH_MORPH_LANES) % NOH_MORPH_LANES;
+    size_t first = noh_rows_short(word, lead, count), y = 0;
+    size_t last = noh_rows_short(j->words > words_end ? j->words - words_end : 0, behind, count);
+    if (!first && at < lead) first = 1;
+    if (!last && at + (rows - 1u) * j->stride + count + behind > j->floats) last = 1;
+    while (y < rows) {
+        const size_t row = at + y * j->stride;
+        float *const to[3] = { j->layers->position + row, j->layers->normal + row,
+                               j->layers->tangent ? j->layers->tangent + row : NULL };
+        noh_morph_rows r = { j->mesh->texels + word + y * count, count, 1, j->stride, NOH_MORPH_ALONE };
+        if (y >= first && y + last < rows) {
+            r.rows = rows - last - y;
+            r.lead = lead;
+        }
+        add(&r, f, to);
+        y += r.rows;
+    }
+}
+
+/* Every rectangle of one target. Its delta texels lie in the order of its rectangles, row by row, so that a row is one
+ * run of words in the pack and one run of floats in each layer: the inner loop only streams. */
+NOH_ALWAYS_INLINE void noh_accumulate_target(const noh_morph_job *j, const noh_target *t, const morph_field f[3],
+                                             noh_rows_function add)
+{
+    const noh_rect *rect = j->mesh->rects + t->first_rect;
     size_t word = 3u * (size_t)t->first_texel;
     for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
-        size_t row = rect->y * stride + 3u * (size_t)rect->x;
-        const size_t count = 3u * (size_t)rect->w;
-        for (unsigned y = 0; y < rect->h; y++) {
-            float *at[3] = { layers->position + row, layers->normal + row,
-                             layers->tangent ? layers->tangent + row : NULL };
-            size_t lead = (size_t)(uintptr_t)at[0] / sizeof(float) % NOH_MORPH_LANES;
-            if (lead > row || lead > word || row + count + NOH_MORPH_LANES > floats ||
-                word + count + NOH_MORPH_LANES > end) {
-                lead = NOH_MORPH_ALONE;
+        const size_t at = rect->y * j->stride + 3u * (size_t)rect->x, count = 3u * (size_t)rect->w;
+        if (!j->groups) noh_accumulate_rows(j, rect, at, word, rect->h, f, add);
+        for (size_t y = 0; j->groups && y < rect->h; y++) {
+            const size_t row = at + y * j->stride;
+            if (noh_is_wanted(j->groups, row / 3u, rect->w)) {
+                noh_accumulate_rows(j, rect, row, word + y * count, 1, f, add);
             }
-            if (noh_is_wanted(groups, row / 3u, rect->w)) run(mesh->texels + word, count, lead, f, at);
-            word += count;
-            row += stride;
         }
+        word += count * rect->h;
     }
 }
 
@@ -82,16 +121,18 @@ static inline int noh_all_finite(const float *values, uint32_t count)
 
 NOH_ALWAYS_INLINE void noh_accumulate_targets(const noh_mesh *mesh, const float *weights,
                                               const noh_morph_layers *layers, const uint8_t *groups,
-                                              noh_run_function run)
+                                              noh_rows_function add)
 {
+    const uint32_t count = mesh->header->target_count;
     NOH_ASSERT(mesh && weights && layers);
     NOH_ASSERT(layers->position || !mesh->header->touched_count);
-    NOH_VALIDATE(noh_all_finite(weights, mesh->header->target_count));
-    for (uint32_t i = 0; i < mesh->header->target_count; i++) {
+    NOH_VALIDATE(noh_all_finite(weights, count));
+    for (uint32_t i = 0; i < count; i++) {
+        const noh_morph_job j = noh_morph_job_of(mesh, layers, groups);
         morph_field f[3];
         if (weights[i] != 0.0f) {
             noh_target_fields(&mesh->targets[i], weights[i], f);
-            noh_accumulate_target(mesh, &mesh->targets[i], f, layers, groups, run);
+            noh_accumulate_target(&j, &mesh->targets[i], f, add);
         }
     }
 }

@@ -4,26 +4,26 @@
 
 #ifdef NOH_AVX2_AT_RUN_TIME
 
-NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void run_wide(const uint32_t *words, size_t count, size_t lead,
-                                                const morph_field f[3], float *const layers[3])
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void add_wide(const noh_morph_rows *rows, const morph_field f[3],
+                                                float *const layers[3])
 {
     if (layers[2]) {
-        noh_run8(words, count, lead, f, layers, 3);
+        noh_add_rows8(rows, f, layers, 3);
     } else {
-        noh_run8(words, count, lead, f, layers, 2);
+        noh_add_rows8(rows, f, layers, 2);
     }
 }
 
 NOH_TARGET_AVX2 void noh_morph_accumulate_wide(const noh_mesh *mesh, const float *weights,
                                                const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, run_wide);
+    noh_accumulate_targets(mesh, weights, layers, NULL, add_wide);
 }
 
 NOH_TARGET_AVX2 void noh_morph_accumulate_some_wide(const noh_mesh *mesh, const float *weights,
                                                     const noh_morph_layers *layers, const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, run_wide);
+    noh_accumulate_targets(mesh, weights, layers, groups, add_wide);
 }
 
 #endif

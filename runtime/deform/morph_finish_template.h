@@ -2,9 +2,8 @@
  * for each. Names and types are those of base/lanes_internal.h behind LANES(); LANES_COUNT of them are side by side, in
  * functions marked by LANES_INLINE.
  *
- * One vertex is in each lane. Rows of three floats are loaded four at a time, so that a lane reads a float of the next
- * row, too, and records may be shorter than what is loaded: the last vertices of a mesh are left to plain C, and so are
- * blocks in which a direction vanishes or overflows. */
+ * One vertex is in each lane. Of a record four words are loaded, which may be more than it has: the last vertices of a
+ * mesh are left to plain C, and so are blocks in which a direction vanishes or overflows. */
 #include <string.h>
 
 #include "deform/morph_finish_internal.h"
@@ -65,12 +64,12 @@ LANES_INLINE LANES_TYPE LANES(tangent_words)(const LANES_TYPE v[3], LANES_TYPE w
 LANES_INLINE void LANES(move)(LANES_TYPE out[3], const float *deltas)
 {
     const LANES_TYPE length = LANES(sqrt)(LANES(dot3)(out, out));
-    LANES_TYPE delta[4];
+    LANES_TYPE delta[3];
     if (!deltas) {
         NOH_UNROLL
         for (int i = 0; i < 3; i++) delta[i] = LANES(set)(0.0f);
     } else {
-        LANES(columns)(deltas, 3, delta);
+        LANES(triples)(deltas, delta);
     }
     NOH_UNROLL
     for (int i = 0; i < 3; i++) out[i] = LANES(add)(out[i], LANES(mul)(delta[i], length));
@@ -87,6 +86,7 @@ LANES_INLINE int LANES(are_directions)(LANES_TYPE square)
 /* One block, between its two halves. */
 typedef struct LANES(moved) {
     LANES_TYPE n[3], t[3]; /* with their deltas */
+    LANES_TYPE tangent;    /* of the pack */
     uint32_t v, texel;     /* of the first lane */
 } LANES(moved);
 
@@ -100,6 +100,7 @@ LANES_INLINE void LANES(move_block)(const noh_mesh *mesh, const noh_morph_layers
     LANES(unfold)(words[0], 0, b->n);
     LANES(move)(b->n, layers->normal + at);
     if (!has_tangents) return;
+    b->tangent = words[1];
     LANES(unfold)(words[1], 1, b->t);
     LANES(move)(b->t, layers->tangent ? layers->tangent + at : NULL);
 }
@@ -109,9 +110,9 @@ LANES_INLINE void LANES(move_block)(const noh_mesh *mesh, const noh_morph_layers
 LANES_INLINE int LANES(write_block)(const noh_mesh *mesh, const noh_morph_layers *layers, int has_tangents,
                                     const LANES(moved) * b, float *out)
 {
-    const size_t stride = mesh->header->attribute_stride / 4u, at = 3u * (size_t)b->texel;
+    const size_t at = 3u * (size_t)b->texel;
     const LANES_TYPE square = LANES(dot3)(b->n, b->n);
-    LANES_TYPE p[4], d[4], words[4];
+    LANES_TYPE p[4], d[3];
     float tangents[LANES_COUNT];
     if (!LANES(are_directions)(square)) return 0;
     if (has_tangents) {
@@ -119,11 +120,10 @@ LANES_INLINE int LANES(write_block)(const noh_mesh *mesh, const noh_morph_layers
         NOH_UNROLL
         for (int i = 0; i < 3; i++) t[i] = LANES(sub)(b->t[i], LANES(mul)(b->n[i], along));
         if (!LANES(are_directions)(LANES(dot3)(t, t))) return 0;
-        LANES(columns)((const float *)(const void *)mesh->attributes + (size_t)b->v * stride, stride, words);
-        LANES(store)(tangents, LANES(tangent_words)(t, words[1]));
+        LANES(store)(tangents, LANES(tangent_words)(t, b->tangent));
     }
-    LANES(columns)(mesh->positions + 3u * (size_t)b->v, 3, p);
-    LANES(columns)(layers->position + at, 3, d);
+    LANES(triples)(mesh->positions + 3u * (size_t)b->v, p);
+    LANES(triples)(layers->position + at, d);
     NOH_UNROLL
     for (int i = 0; i < 3; i++) p[i] = LANES(add)(p[i], d[i]);
     p[3] = LANES(normal_words)(b->n);

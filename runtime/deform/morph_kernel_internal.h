@@ -53,18 +53,45 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, morph
     }
 }
 
-static inline void noh_run_scalar(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3],
-                                  int layer_count)
+/* Rows of a rectangle: one behind another in the words, `stride` floats apart in the layers. */
+typedef struct noh_morph_rows {
+    const uint32_t *words;
+    size_t count; /* words of a row, and floats in each layer */
+    size_t rows, stride;
+    size_t lead; /* below NOH_MORPH_LANES: vectors may begin so many words and floats before a row, and end at the next
+                  * multiple of NOH_MORPH_LANES behind it; or NOH_MORPH_ALONE */
+} noh_morph_rows;
+
+typedef void (*noh_row_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
+
+/* For kernels that take a row at a time. */
+NOH_ALWAYS_INLINE void noh_each_row(const noh_morph_rows *r, const morph_field f[3], float *const layers[3],
+                                    noh_row_function row)
 {
-    for (int l = 0; l < layer_count; l++) noh_add_run_scalar(words, count, f[l], layers[l]);
+    for (size_t y = 0; y < r->rows; y++) {
+        const size_t at = y * r->stride;
+        float *const to[3] = { layers[0] + at, layers[1] + at, layers[2] ? layers[2] + at : NULL };
+        row(r->words + y * r->count, r->count, f, to);
+    }
+}
+
+static inline void noh_add_row_scalar(const uint32_t *words, size_t count, const morph_field f[3],
+                                      float *const layers[3])
+{
+    for (int l = 0; l < 3 && layers[l]; l++) noh_add_run_scalar(words, count, f[l], layers[l]);
 }
 
 /* For each width of vectors: load, store, the sum of a layer and of what words add to it, the lanes first to end - 1 as
- * a mask, and what a mask chooses of two. The runs themselves are morph_run_template.h. */
+ * a mask, and what a mask chooses of two. The rows themselves are morph_rows_template.h. */
 #if defined(NOH_SSE2) /* AVX2 has it too */
 NOH_ALWAYS_INLINE __m128 noh_load4(const float *from)
 {
     return _mm_loadu_ps(from);
+}
+
+NOH_ALWAYS_INLINE __m128i noh_words4(const uint32_t *from)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)from);
 }
 
 NOH_ALWAYS_INLINE void noh_store4(float *to, __m128 v)
@@ -72,9 +99,8 @@ NOH_ALWAYS_INLINE void noh_store4(float *to, __m128 v)
     _mm_storeu_ps(to, v);
 }
 
-NOH_ALWAYS_INLINE __m128 noh_sum4(const uint32_t *words, morph_field f, __m128 layer)
+NOH_ALWAYS_INLINE __m128 noh_sum4(__m128i q, morph_field f, __m128 layer)
 {
-    __m128i q = _mm_loadu_si128((const __m128i *)(const void *)words);
     q = _mm_sra_epi32(_mm_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     return _mm_add_ps(layer, _mm_mul_ps(_mm_cvtepi32_ps(q), _mm_set1_ps(f.weight)));
 }
@@ -90,16 +116,22 @@ NOH_ALWAYS_INLINE __m128 noh_choose4(__m128 mask, __m128 yes, __m128 no)
     return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
 
-#define RUN(name) noh_##name##4
-#define RUN_LANES 4u
-#define RUN_TYPE __m128
-#define RUN_MASK __m128
-#define RUN_INLINE NOH_ALWAYS_INLINE
-#include "deform/morph_run_template.h"
+#define ROWS(name) noh_##name##4
+#define ROWS_LANES 4u
+#define ROWS_TYPE __m128
+#define ROWS_WORDS __m128i
+#define ROWS_MASK __m128
+#define ROWS_INLINE NOH_ALWAYS_INLINE
+#include "deform/morph_rows_template.h"
 #elif defined(NOH_NEON)
 NOH_ALWAYS_INLINE float32x4_t noh_load4(const float *from)
 {
     return vld1q_f32(from);
+}
+
+NOH_ALWAYS_INLINE int32x4_t noh_words4(const uint32_t *from)
+{
+    return vreinterpretq_s32_u32(vld1q_u32(from));
 }
 
 NOH_ALWAYS_INLINE void noh_store4(float *to, float32x4_t v)
@@ -107,9 +139,8 @@ NOH_ALWAYS_INLINE void noh_store4(float *to, float32x4_t v)
     vst1q_f32(to, v);
 }
 
-NOH_ALWAYS_INLINE float32x4_t noh_sum4(const uint32_t *words, morph_field f, float32x4_t layer)
+NOH_ALWAYS_INLINE float32x4_t noh_sum4(int32x4_t q, morph_field f, float32x4_t layer)
 {
-    int32x4_t q = vreinterpretq_s32_u32(vld1q_u32(words));
     q = vshlq_s32(vshlq_s32(q, vdupq_n_s32((int32_t)f.left)), vdupq_n_s32(-(int32_t)f.right));
     return vaddq_f32(layer, vmulq_f32(vcvtq_f32_s32(q), vdupq_n_f32(f.weight)));
 }
@@ -126,12 +157,13 @@ NOH_ALWAYS_INLINE float32x4_t noh_choose4(uint32x4_t mask, float32x4_t yes, floa
     return vbslq_f32(mask, yes, no);
 }
 
-#define RUN(name) noh_##name##4
-#define RUN_LANES 4u
-#define RUN_TYPE float32x4_t
-#define RUN_MASK uint32x4_t
-#define RUN_INLINE NOH_ALWAYS_INLINE
-#include "deform/morph_run_template.h"
+#define ROWS(name) noh_##name##4
+#define ROWS_LANES 4u
+#define ROWS_TYPE float32x4_t
+#define ROWS_WORDS int32x4_t
+#define ROWS_MASK uint32x4_t
+#define ROWS_INLINE NOH_ALWAYS_INLINE
+#include "deform/morph_rows_template.h"
 #endif
 
 #if defined(NOH_AVX2) || defined(NOH_AVX2_AT_RUN_TIME)
@@ -140,14 +172,18 @@ NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_load8(const float *from)
     return _mm256_loadu_ps(from);
 }
 
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256i noh_words8(const uint32_t *from)
+{
+    return _mm256_loadu_si256((const __m256i *)(const void *)from);
+}
+
 NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void noh_store8(float *to, __m256 v)
 {
     _mm256_storeu_ps(to, v);
 }
 
-NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_sum8(const uint32_t *words, morph_field f, __m256 layer)
+NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_sum8(__m256i q, morph_field f, __m256 layer)
 {
-    __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)words);
     q = _mm256_sra_epi32(_mm256_sll_epi32(q, _mm_cvtsi32_si128((int)f.left)), _mm_cvtsi32_si128((int)f.right));
     return _mm256_add_ps(layer, _mm256_mul_ps(_mm256_cvtepi32_ps(q), _mm256_set1_ps(f.weight)));
 }
@@ -164,25 +200,26 @@ NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_choose8(__m256 mask, __m256 yes, __
     return _mm256_blendv_ps(no, yes, mask);
 }
 
-#define RUN(name) noh_##name##8
-#define RUN_LANES 8u
-#define RUN_TYPE __m256
-#define RUN_MASK __m256
-#define RUN_INLINE NOH_TARGET_AVX2 NOH_ALWAYS_INLINE
-#include "deform/morph_run_template.h"
+#define ROWS(name) noh_##name##8
+#define ROWS_LANES 8u
+#define ROWS_TYPE __m256
+#define ROWS_WORDS __m256i
+#define ROWS_MASK __m256
+#define ROWS_INLINE NOH_TARGET_AVX2 NOH_ALWAYS_INLINE
+#include "deform/morph_rows_template.h"
 #endif
 
-/* The run of the widest vectors that the whole library is compiled for. */
-NOH_ALWAYS_INLINE void noh_add_run(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                                   float *const layers[3], int layer_count)
+/* By the widest vectors that the whole library is compiled for. */
+NOH_ALWAYS_INLINE void noh_add_rows(const noh_morph_rows *r, const morph_field f[3], float *const layers[3],
+                                    int layer_count)
 {
 #if defined(NOH_AVX2)
-    noh_run8(words, count, lead, f, layers, layer_count);
+    noh_add_rows8(r, f, layers, layer_count);
 #elif defined(NOH_SSE2) || defined(NOH_NEON)
-    noh_run4(words, count, lead, f, layers, layer_count);
+    noh_add_rows4(r, f, layers, layer_count);
 #else
-    (void)lead;
-    noh_run_scalar(words, count, f, layers, layer_count);
+    (void)layer_count;
+    noh_each_row(r, f, layers, noh_add_row_scalar);
 #endif
 }
 

@@ -32,10 +32,7 @@ static __m128i load_tail(const void *from, size_t count)
 
 static void add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
 {
-    uint32_t four[4];
-    __m128 sum;
-    _mm_storeu_si128((__m128i *)(void *)four, load_tail(words, count));
-    sum = noh_sum4(four, f, _mm_castsi128_ps(load_tail(layer, count)));
+    const __m128 sum = noh_sum4(load_tail(words, count), f, _mm_castsi128_ps(load_tail(layer, count)));
     if (count == 1) {
         _mm_store_ss(layer, sum);
     } else {
@@ -45,16 +42,15 @@ static void add_tail(const uint32_t *words, size_t count, morph_field f, float *
 }
 #endif
 
-NOH_NEVER_INLINE static void run(const uint32_t *words, size_t count, size_t lead, const morph_field f[3],
-                                 float *const layers[3])
+NOH_NEVER_INLINE static void add_row(const uint32_t *words, size_t count, const morph_field f[3],
+                                     float *const layers[3])
 {
     size_t i = 0;
-    (void)lead;
 #if defined(NOH_SSE2) || defined(NOH_NEON)
     for (; i + 4u <= count; i += 4u) {
-        noh_add4(words + i, f[0], layers[0] + i);
-        noh_add4(words + i, f[1], layers[1] + i);
-        noh_add4(words + i, f[2], layers[2] + i);
+        noh_add4(noh_words4(words + i), f[0], layers[0] + i);
+        noh_add4(noh_words4(words + i), f[1], layers[1] + i);
+        noh_add4(noh_words4(words + i), f[2], layers[2] + i);
     }
 #endif
     for (int l = 0; l < 3 && i < count; l++) {
@@ -66,10 +62,15 @@ NOH_NEVER_INLINE static void run(const uint32_t *words, size_t count, size_t lea
     }
 }
 
-NOH_NEVER_INLINE static void add_target(const noh_mesh *mesh, const noh_target *t, const morph_field f[3],
-                                        const noh_morph_layers *layers, noh_run_function function)
+static void add_each_row(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
 {
-    noh_accumulate_target(mesh, t, f, layers, NULL, function);
+    noh_each_row(rows, f, layers, add_row);
+}
+
+NOH_NEVER_INLINE static void add_target(const noh_morph_job *j, const noh_target *t, const morph_field f[3],
+                                        noh_rows_function function)
+{
+    noh_accumulate_target(j, t, f, function);
 }
 
 static void prepare(void *self, const float *weights)
@@ -82,10 +83,11 @@ static void prepare(void *self, const float *weights)
     const noh_morph_layers layers = { b->memory, b->memory + floats, b->memory + 2u * floats };
     memset(b->memory, 0, b->bytes);
     for (uint32_t t = 0; t < h->target_count; t++) {
+        const noh_morph_job job = noh_morph_job_of(mesh, &layers, NULL);
         morph_field f[3];
         if (weights[t] == 0.0f) continue;
         noh_target_fields(&mesh->targets[t], weights[t], f);
-        add_target(mesh, &mesh->targets[t], f, &layers, run);
+        add_target(&job, &mesh->targets[t], f, add_each_row);
     }
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->layers.name);
