@@ -47,9 +47,9 @@ static noh_result check_head(const noh_wire_head *h, noh_error *error)
     if (h->magic != NOH_WIRE_MAGIC) {
         return noh_fail(error, NOH_ERR_DATA, "not the wire form of a pack: it does not begin with NOHZ", 0, 0);
     }
-    if (h->version != NOH_WIRE_VERSION) {
-        return noh_fail(error, NOH_ERR_VERSION, "the wire form is of another version: pack it again", 4,
-                        NOH_WIRE_VERSION);
+    if (!h->version || h->version > NOH_WIRE_VERSION) {
+        return noh_fail(error, NOH_ERR_VERSION, "the wire form is of a version that is not known here: pack it again",
+                        4, NOH_WIRE_VERSION);
     }
     if (noh_crc32c(0, h, offsetof(noh_wire_head, crc)) != h->crc) {
         return noh_fail(error, NOH_ERR_DATA, "checksum of the wire form's header is wrong: the file is damaged",

@@ -22,7 +22,7 @@
 extern "C" {
 #endif
 
-#define NOH_WIRE_VERSION 1u
+#define NOH_WIRE_VERSION 2u /* that is written; those from 1 on are read */
 #define NOH_WIRE_HEAD_BYTES 64u     /* of a file: enough for noh_wire_info_read */
 #define NOH_WIRE_STATE_BYTES 49152u /* no noh_wire is larger */
 

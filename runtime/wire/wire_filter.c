@@ -216,7 +216,9 @@ int noh_wire_begin(noh_wire_filter *f, const noh_wire_section *section)
     noh_wire_model_reset(f->models, NOH_WIRE_MODELS);
     if (section->kind == NOH_WIRE_MESH) return begin_mesh(f);
     if (section->kind == NOH_WIRE_COPY) return run_copy(f);
-    if (section->kind == NOH_WIRE_BYTES || section->kind == NOH_WIRE_TEXTURE) return 0;
+    if (section->kind == NOH_WIRE_BYTES || section->kind == NOH_WIRE_TEXTURE || section->kind == NOH_WIRE_BLOCKS) {
+        return 0;
+    }
     if (section->kind > NOH_WIRE_TEXTURE) return noh_wire_wrong(f, "a section of an unknown kind");
     if (!f->mesh.chunk) return noh_wire_wrong(f, "a section of a mesh, and no mesh before it");
     memset(f->edges, 0xff, sizeof f->edges);
@@ -231,6 +233,7 @@ int noh_wire_run(noh_wire_filter *f)
     switch (f->section.kind) {
     case NOH_WIRE_BYTES: done = noh_wire_run_bytes(f); break;
     case NOH_WIRE_TEXTURE: done = noh_wire_run_texture(f); break;
+    case NOH_WIRE_BLOCKS: done = noh_wire_run_blocks(f); break;
     case NOH_WIRE_INDICES: done = noh_wire_run_indices(f); break;
     case NOH_WIRE_POSITIONS:
         done = noh_wire_run_positions(f);

@@ -73,7 +73,8 @@ int32_t noh_wire_value(noh_wire_coder *coder, noh_wire_model *model, noh_wire_mo
 #define NOH_WIRE_TEXEL_REFS 8u /* a word of each vertex */
 #define NOH_WIRE_INFLUENCES 9u
 #define NOH_WIRE_DELTAS 10u
-#define NOH_WIRE_TEXTURE 11u
+#define NOH_WIRE_TEXTURE 11u /* in RGBA8 */
+#define NOH_WIRE_BLOCKS 13u  /* a texture in blocks */
 
 /* What a section is of; each filter says what its parameters are. */
 typedef struct noh_wire_section {
@@ -184,6 +185,7 @@ uint64_t noh_wire_scratch(const noh_mesh_header *header);
 /* The filters by kind. */
 int noh_wire_run_bytes(noh_wire_filter *filter);
 int noh_wire_run_texture(noh_wire_filter *filter);
+int noh_wire_run_blocks(noh_wire_filter *filter);
 int noh_wire_run_indices(noh_wire_filter *filter);
 int noh_wire_run_positions(noh_wire_filter *filter);
 int noh_wire_run_normals(noh_wire_filter *filter);

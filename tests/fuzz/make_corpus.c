@@ -285,6 +285,7 @@ static void wires(void **state)
     write_wire("scene");
     write_wire("skin_split");
     write_wire("levels");
+    write_wire("blocks");
 }
 
 static void corpus(void **state)

@@ -135,21 +135,27 @@ static double write_section(writer *w, const noh_wire_section *s, uint64_t *sum)
     return bits;
 }
 
-/* The mode with the fewest bits. */
-static void write_best(writer *w, noh_wire_section s, uint32_t modes, uint64_t *sum)
+/* The mode with the fewest bits, and how many. */
+static double find_best(writer *w, noh_wire_section *s, uint32_t modes)
 {
     double best = 1e31;
     uint32_t mode = 0;
-    for (uint32_t i = 0; modes > 1u && i < modes; i++) {
+    for (uint32_t i = 0; i < modes; i++) {
         double bits;
-        s.mode = (uint8_t)i;
-        bits = run(w, &s, 0);
+        s->mode = (uint8_t)i;
+        bits = run(w, s, 0);
         if (bits < best) {
             best = bits;
             mode = i;
         }
     }
-    s.mode = (uint8_t)mode;
+    s->mode = (uint8_t)mode;
+    return best;
+}
+
+static void write_best(writer *w, noh_wire_section s, uint32_t modes, uint64_t *sum)
+{
+    (void)find_best(w, &s, modes);
     write_section(w, &s, sum);
 }
 
@@ -306,7 +312,13 @@ static void write_texture(writer *w, const noh_pack *pack, uint32_t index)
     s.params[2] = texture.header->level_count;
     write_bytes(w, c->offset, head, &w->report->textures);
     if (texture.header->format != NOH_TEXTURE_RGBA8) { /* blocks */
-        write_bytes(w, s.at, c->bytes - head, &w->report->textures);
+        s.kind = NOH_WIRE_BLOCKS;
+        s.params[3] = texture.header->format;
+        if (find_best(w, &s, 2u) < 8.0 * (c->bytes - head)) {
+            write_section(w, &s, &w->report->textures);
+        } else { /* noise */
+            write_bytes(w, s.at, c->bytes - head, &w->report->textures);
+        }
         return;
     }
     write_section(w, &s, &w->report->textures);
