@@ -221,9 +221,12 @@ int noh_wire_begin(noh_wire_filter *f, const noh_wire_section *section)
     }
     if (section->kind > NOH_WIRE_TEXTURE) return noh_wire_wrong(f, "a section of an unknown kind");
     if (!f->mesh.chunk) return noh_wire_wrong(f, "a section of a mesh, and no mesh before it");
+    if (section->kind == NOH_WIRE_INDICES && f->mesh.begun) {
+        return noh_wire_wrong(f, "a mesh's triangles come twice, or after its other arrays");
+    }
+    f->mesh.begun = 1;
     memset(f->edges, 0xff, sizeof f->edges);
     memset(f->recent, 0, sizeof f->recent);
-    if (section->kind == NOH_WIRE_INDICES) f->mesh.order_count = 0;
     return 0;
 }
 

@@ -90,6 +90,7 @@ typedef struct noh_wire_section {
 typedef struct noh_wire_mesh {
     noh_mesh_header header; /* the finest level's */
     uint32_t chunk;         /* where it lies in the image; 0: there is none */
+    uint32_t begun;         /* 1: a section of it came: triangles need the scratch as it was before */
     uint32_t level_count;
     uint32_t order_count;
     uint32_t *order;     /* [vertex_count] vertices as triangles come to them */

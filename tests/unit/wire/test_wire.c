@@ -12,6 +12,7 @@
 #include "convert/pack/pack_wire.h"
 #include "noh.h"
 #include "support/pack_walk.h"
+#include "wire/wire_internal.h"
 
 #define LEVELS 3u
 
@@ -247,6 +248,34 @@ static void every_flipped_bit_is_refused(void **state)
     buffer_free(&out);
 }
 
+/* Their scratch is others' later: a second section of triangles, or one behind the positions, would read it. */
+static void triangles_come_once_and_first(void **state)
+{
+    static const uint8_t others[] = { NOH_WIRE_INDICES, NOH_WIRE_POSITIONS, NOH_WIRE_NORMALS };
+    const noh_mesh mesh = test_mesh(&face.pack, 0);
+    const uint32_t bytes = (uint32_t)noh_wire_scratch(mesh.header);
+    noh_wire_filter *f = test_zeros(sizeof *f);
+    (void)state;
+    f->scratch = test_zeros(bytes);
+    f->scratch_bytes = bytes;
+    f->image = face.bytes;
+    f->image_bytes = face.pack.byte_count;
+    for (size_t i = 0; i < TEST_COUNT(others); i++) {
+        noh_wire_section s;
+        memset(&s, 0, sizeof s);
+        s.kind = NOH_WIRE_MESH;
+        s.at = face.pack.chunks[face.pack.first_mesh].offset;
+        assert_int_equal(noh_wire_begin(f, &s), 1);
+        s.kind = others[i];
+        assert_int_equal(noh_wire_begin(f, &s), 0);
+        s.kind = NOH_WIRE_INDICES;
+        assert_int_equal(noh_wire_begin(f, &s), -1);
+        assert_non_null(strstr(f->wrong, "twice"));
+    }
+    free(f->scratch);
+    free(f);
+}
+
 /* ---- rounding ---- */
 
 /* What a target adds to a vertex. */
@@ -467,6 +496,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_short_block_is_refused_untouched),
     cmocka_unit_test(no_part_is_the_whole),
     cmocka_unit_test(every_flipped_bit_is_refused),
+    cmocka_unit_test(triangles_come_once_and_first),
     cmocka_unit_test(nothing_changes_without_a_bound),
     cmocka_unit_test(tangents_go_where_no_map_wants_them),
     cmocka_unit_test(values_stay_within_what_is_stated),
