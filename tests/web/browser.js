@@ -26,9 +26,11 @@ function send(request, answer, name, bytes) {
     answer.end(packed || bytes);
 }
 
-// Serve the files of { '/prefix/': folder, file or function (request, answer) }; resolves to the server and its address.
-function serve(folders) {
+// Serve the files of { '/prefix/': folder, file or function (request, answer) }, with more headers; resolves to the
+// server and its address.
+function serve(folders, headers = {}) {
     const server = http.createServer((request, answer) => {
+        for (const [name, value] of Object.entries(headers)) answer.setHeader(name, value);
         const name = new URL(request.url, 'http://localhost').pathname;
         const prefix = Object.keys(folders).find((p) => name.startsWith(p) && !name.includes('..'));
         if (typeof folders[prefix] === 'function') return folders[prefix](request, answer);

@@ -1,45 +1,40 @@
 // compare.js NOH_FOLDER ASSET CHROMIUM OUT: what a frame costs with noh, three.js and Babylon.js in one browser, in one
 // run, with 2, 6 and all of the asset's targets active and with none, by each of noh's paths; what each takes of the GPU,
-// weighs, and needs until its first frame. Rounds fall into six batches; of each the least counts, since whatever else runs
-// only adds. Rounds are drawn until the quartiles of the batches are within 10 % of their median, or it says that they are
-// not. Saves pictures in OUT.
+// weighs, and needs until its first frame. Saves pictures in OUT.
+//
+// Frames are measured in fours (compare_fours.js), of each side until its quartiles are within 10 % of its median, for
+// NOH_SECONDS at most (90) in a row; the widest are printed, and how many fours were left out.
 'use strict';
 const fs = require('fs');
 const path = require('path');
 const zlib = require('zlib');
 const { serve, launch, newPage, save } = require('./browser.js');
+const { restOf, morphedOf, addedOf, at, median, spread, quiet, inBatches, isSettled, enough } = require('./compare_fours.js');
 
 const [nohFolder, asset, executablePath, out] = process.argv.slice(2);
 const sides = ['noh', 'three', 'babylon'], small = 64, large = 512, pictureFrame = 7;
-const batches = 6, roundsMin = 12, roundsMax = Number(process.env.NOH_ROUNDS || 60), sampleMs = 40, loads = 5;
+const turnMs = 1000, secondsMax = Number(process.env.NOH_SECONDS || 90), loads = 5;
 
-const at = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
-const median = (values) => at(values, 0.5);
-const spread = (values) => (at(values, 0.75) - at(values, 0.25)) / 2 / Math.abs(median(values));
 const ms = (values) => `${median(values).toFixed(3)} (${at(values, 0.25).toFixed(3)}-${at(values, 0.75).toFixed(3)})`;
-const column = (rounds, side, what) => rounds.map((round) => round[`${side} ${what}`]);
-const least = (rounds, side, what) => Array.from({ length: batches }, (_, b) => Math.min(...column(rounds.filter((_, i) => i % batches === b), side, what)));
-function above(rounds, side) {
-    const rest = least(rounds, side, 'rest');
-    return least(rounds, side, 'morphed').map((morphed, b) => morphed - rest[b]);
-}
 
-// Rounds, each sample of so many frames that it takes as long for every side.
-async function measure(page, active, pixels) {
+// Fours of each side, by turns, until what is asked of them is settled; a side that is settled is left alone.
+async function measure(page, active, pixels, ...kinds) {
     await page.evaluate((p) => window.compare.resize(p), pixels);
-    const rounds = [], times = Object.fromEntries(sides.map((side) => [side, 8]));
-    const round = (n) => page.evaluate(([i, a, t]) => window.compare.round(i, a, t), [n, active, times]);
-    const trial = [await round(0), await round(1)];
-    for (const side of sides) times[side] = Math.max(4, Math.min(200, Math.round(sampleMs / Math.min(...column(trial, side, 'rest')))));
-    while (rounds.length < roundsMin || (rounds.length < roundsMax && sides.some((side) => spread(above(rounds, side)) > 0.1))) rounds.push(await round(rounds.length));
-    return rounds;
+    const all = Object.fromEntries(sides.map((side) => [side, []])), turn = (asked) => page.evaluate((given) => window.compare.measure(...given), [asked, active, turnMs]);
+    await turn(sides); // warms up: not counted
+    const end = Date.now() + 1000 * secondsMax;
+    for (let asked = sides; asked.length && Date.now() < end; asked = sides.filter((side) => !isSettled(all[side], kinds))) {
+        for (const [side, fours] of Object.entries(await turn(asked))) all[side].push(...fours);
+    }
+    return all;
 }
 
-function row(name, rounds, values) {
-    const all = sides.map((side) => values(rounds, side)), wide = Math.max(...all.map(spread));
-    const ratio = (k) => (median(all[k]) / median(all[0])).toFixed(2);
-    const doubt = wide > 0.1 ? `  quartiles within ${Math.round(100 * wide)} %` : '';
-    console.log(`  ${name.padEnd(30)} ${all.map((v) => ms(v).padEnd(24)).join('')} ${ratio(1).padStart(6)} ${ratio(2).padStart(6)}${doubt}`);
+function row(name, all, kind) {
+    const values = sides.map((side) => inBatches(all[side], kind)), wide = Math.max(...values.map(spread));
+    const ratio = (k) => (median(values[k]) / median(values[0])).toFixed(2);
+    const left = sides.reduce((sum, side) => sum + quiet(all[side]).length, 0), whole = sides.reduce((sum, side) => sum + all[side].length, 0);
+    const doubt = `  quartiles within ${Math.ceil(100 * wide)} %, ${Math.round(100 * (1 - left / whole))} % left out${left < enough * sides.length ? ', few are left' : ''}`;
+    console.log(`  ${name.padEnd(30)} ${values.map((v) => ms(v).padEnd(24)).join('')} ${ratio(1).padStart(6)} ${ratio(2).padStart(6)}${doubt}`);
 }
 
 async function compare(browser, address, forced) {
@@ -53,10 +48,10 @@ async function compare(browser, address, forced) {
     const all = about.names.length, counts = [2, 6].filter((n) => n < all).concat(all);
     console.log(`${about.versions.join(', ')}; ${about.renderer}`);
     console.log(`  ms, median (quartiles)         ${sides.map((side) => side.padEnd(24)).join('')}  three Babylon, over noh`);
-    for (const active of counts) row(`${active} targets, what they add`, await measure(page, active, small), above);
-    const rounds = await measure(page, all, large);
-    row('frame, unmorphed', rounds, (r, side) => least(r, side, 'rest'));
-    row(`frame, ${all} targets`, rounds, (r, side) => least(r, side, 'morphed'));
+    for (const active of counts) row(`${active} targets, what they add`, await measure(page, active, small, addedOf), addedOf);
+    const frames = await measure(page, all, large, restOf, morphedOf);
+    row('frame, unmorphed', frames, restOf);
+    row(`frame, ${all} targets`, frames, morphedOf);
     const bytes = await page.evaluate(() => window.compare.bytes());
     console.log(`  ${'bytes of the GPU'.padEnd(30)} ${sides.map((side) => bytes[side].toLocaleString('en').padEnd(24)).join('')}`);
     await page.evaluate(([a, f]) => window.compare.draw(a, f), [all, pictureFrame]);
@@ -92,9 +87,12 @@ async function firstFrames(browser, address) {
     console.log(`  ${'first frame after, ms'.padEnd(30)} ${sides.map((side) => `${Math.round(median(times[side]))} (${Math.round(at(times[side], 0.25))}-${Math.round(at(times[side], 0.75))})`.padEnd(24)).join('')}`);
 }
 
+// Pages that are isolated have a clock of 5 us; others of 100.
+const isolated = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+
 (async () => {
     fs.copyFileSync(asset, path.join(out, 'asset.glb'));
-    const { server, address } = await serve({ '/noh/': nohFolder, '/web/': __dirname, '/shaders/': path.join(__dirname, '../../shaders_es'), '/': out });
+    const { server, address } = await serve({ '/noh/': nohFolder, '/web/': __dirname, '/shaders/': path.join(__dirname, '../../shaders_es'), '/': out }, isolated);
     const browser = await launch(executablePath);
     try {
         for (const forced of (process.env.NOH_PATHS || 'mrt,gather,cpu').split(',')) await compare(browser, address, forced);

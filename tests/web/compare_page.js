@@ -22,17 +22,18 @@ function weightsOf(count, active, frame) {
 }
 
 let frame = 0;
-function draw(side, count, active, times) {
-    for (let i = 0; i < times; i++) side.draw(weightsOf(count, active, frame++));
+function draw(side, count, active) {
+    side.draw(weightsOf(count, active, frame++));
     wait(side.gl);
 }
 
-// Milliseconds a frame, of so many drawn without waiting in between.
-function sample(side, count, active, times) {
-    draw(side, count, active, 2); // warms up: not counted
+// Milliseconds of a frame that is waited for. The one before it, which is like it, is not counted: it pays for the
+// change from what was drawn before.
+function sample(side, count, active) {
+    draw(side, count, active);
     const start = performance.now();
-    draw(side, count, active, times);
-    return (performance.now() - start) / times;
+    draw(side, count, active);
+    return performance.now() - start;
 }
 
 async function openSide(name, known) {
@@ -49,7 +50,7 @@ async function openSide(name, known) {
 // One side, as a visitor would wait for it: until the first frame is drawn.
 async function first() {
     const known = await (await fetch('/known.json')).json(), side = await openSide(alone, known);
-    draw(side, known.names.length, 0, 1);
+    draw(side, known.names.length, 0);
     window.compare = { first: performance.now() };
 }
 
@@ -61,15 +62,14 @@ async function start() {
         about: { versions: names.map((name) => sides[name].version), renderer: noh.renderer, names: noh.names, bounds: noh.bounds },
         resize: (pixels) => names.forEach((name) => sides[name].resize(pixels)),
         bytes: () => Object.fromEntries(names.map((name) => [name, sides[name].bytes()])),
-        draw(active, fixed) { for (const name of names) { frame = fixed; draw(sides[name], count, active, 1); } },
-        // One round: each side without targets and with so many, in an order that turns from round to round. A side's two
-        // are neighbours, so that what disturbs one disturbs the other.
-        round(number, active, times) {
-            const out = {};
-            for (let i = 0; i < names.length; i++) {
-                const name = names[(i + number) % names.length], counts = number & 1 ? [active, 0] : [0, active];
-                for (const c of counts) out[`${name} ${c ? 'morphed' : 'rest'}`] = sample(sides[name], count, c, times[name]);
-            }
+        draw(active, fixed) { for (const name of names) { frame = fixed; draw(sides[name], count, active); } },
+        // For so many ms, of each of these sides by turns: frames without targets, with so many, with so many, without.
+        // They are neighbours, so that what disturbs one disturbs the others, and what drifts meanwhile cancels out.
+        measure(asked, active, ms) {
+            const out = Object.fromEntries(asked.map((name) => [name, []])), end = performance.now() + ms;
+            do {
+                for (const name of asked) out[name].push([0, active, active, 0].map((c) => sample(sides[name], count, c)));
+            } while (performance.now() < end);
             return out;
         },
     };
