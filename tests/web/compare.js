@@ -3,7 +3,7 @@
 // weighs, and needs until its first frame. Saves pictures in OUT.
 //
 // Frames are measured in fours (compare_fours.js), of each side until its quartiles are within 10 % of its median, for
-// NOH_SECONDS at most (90) in a row; the widest are printed, and how many fours were left out.
+// NOH_SECONDS at most (240) in a row; the widest are printed, and how many fours were left out.
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -13,7 +13,7 @@ const { restOf, morphedOf, addedOf, at, median, spread, quiet, inBatches, isSett
 
 const [nohFolder, asset, executablePath, out] = process.argv.slice(2);
 const sides = ['noh', 'three', 'babylon'], small = 64, large = 512, pictureFrame = 7;
-const turnMs = 1000, secondsMax = Number(process.env.NOH_SECONDS || 90), loads = 5;
+const turnMs = 1000, secondsMax = Number(process.env.NOH_SECONDS || 240), loads = 5;
 
 const ms = (values) => `${median(values).toFixed(3)} (${at(values, 0.25).toFixed(3)}-${at(values, 0.75).toFixed(3)})`;
 
