@@ -1,5 +1,5 @@
 # find_browser.sh, to be sourced. find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH so that node finds the npm
-# packages; those that are missing are installed into FOLDER. find_packages does the latter alone. If something cannot be
+# packages; those that are missing are installed into FOLDER alone. find_packages does the latter alone. If something cannot be
 # had, leave_out is called with the reason.
 find_browser() {
     chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || leave_out 'no chromium here'
@@ -12,7 +12,7 @@ find_packages() {
     mkdir -p "$folder"
     export NODE_PATH="$folder/node_modules${NODE_PATH:+:$NODE_PATH}"
     for package in "$@"; do
-        is_there "$package" || (cd "$folder" && npm install --no-save --silent "$@" >/dev/null 2>&1)
+        is_there "$package" || (cd "$folder" && npm install --prefix . --no-save --silent "$@" >/dev/null 2>&1)
         is_there "$package" || leave_out "the npm package $package cannot be had here"
     done
 }

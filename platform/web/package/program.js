@@ -160,7 +160,7 @@ function joined(parts) {
 
 // The first bytes of a pack are asked for alone, so that while the program arrives beside them no others come: the coarsest
 // levels of most are among them.
-const FIRST = 196608;
+const FIRST = 131072;
 export const fetchFirst = (address) => fetch(address, { headers: { Range: `bytes=0-${FIRST - 1}` } });
 
 // What an answer holds of a file: { from, all }. A server that does not know ranges sends the whole.
