@@ -14,6 +14,7 @@
 #include "pack/etc2.h"
 
 static test_random numbers;
+static const uint8_t *const alone[2] = { NULL, NULL };
 
 /* ---- blocks ---- */
 
@@ -23,7 +24,7 @@ static etc2_texels texels_of(int kind)
     etc2_texels t;
     int32_t colors[2][3], slopes[2][3];
     t.cut = 0;
-    t.holes = 0;
+    t.holes = t.bit_worth = 0;
     for (int k = 0; k < 6; k++) {
         colors[k / 3][k % 3] = (int32_t)test_random_below(&numbers, 256);
         slopes[k / 3][k % 3] = (int32_t)test_random_below(&numbers, 21) - 10;
@@ -81,7 +82,7 @@ static void every_mode_says_what_its_block_decodes_to(void **state)
         t.cut = i / 5 % 2;
         if (t.cut && i % 3) punch(&t, test_random_below(&numbers, 0xffffu));
         for (size_t m = 0; m < (t.holes ? 2u : TEST_COUNT(modes)); m++) { /* planar has no holes */
-            etc2_best best = { 0, UINT_MAX };
+            etc2_best best = { 0, UINT_MAX, 0 };
             uint8_t bytes[8];
             modes[m](&t, &best);
             bytes_of(best.block, bytes);
@@ -99,13 +100,13 @@ static double mean_error(int kind, int count, void (*only)(const etc2_texels *, 
     numbers = test_random_from(5);
     for (int i = 0; i < count; i++) {
         const etc2_texels t = texels_of(kind);
-        etc2_best best = { 0, UINT_MAX };
+        etc2_best best = { 0, UINT_MAX, 0 };
         uint8_t bytes[8];
         if (only) {
             only(&t, &best);
             sum += best.error;
         } else {
-            etc2_encode_rgb(&t, bytes);
+            etc2_encode_rgb(&t, alone, bytes);
             sum += error_of(&t, bytes);
         }
     }
@@ -140,13 +141,37 @@ static void holes_cost_little(void **state)
         etc2_texels t = texels_of(3);
         t.cut = 1;
         punch(&t, test_random_below(&numbers, 0x10000u));
-        etc2_encode_rgb(&t, block);
+        etc2_encode_rgb(&t, alone, block);
         shades += error_of(&t, block) / (48.0 * 200.0);
         punch(&t, 0xffffu);
-        etc2_encode_rgb(&t, block);
+        etc2_encode_rgb(&t, alone, block);
         assert_memory_equal(block, none, 8);
     }
     assert_true(shades < 40.0);
+}
+
+/* What is like the block beside it becomes that, and loses no more than its bits are worth. */
+static void blocks_are_repeated_where_that_costs_little(void **state)
+{
+    uint32_t repeated[2] = { 0, 0 };
+    (void)state;
+    numbers = test_random_from(9);
+    for (int i = 0; i < 400; i++) {
+        etc2_texels t = texels_of(i % 2 ? 3 : 4);
+        uint8_t first[8], nearest[8], block[8];
+        const uint8_t *beside[2] = { NULL, NULL };
+        etc2_encode_rgb(&t, alone, first);
+        for (int k = 0; k < 48; k++) {
+            t.rgb[k / 3][k % 3] = etc2_clamp(t.rgb[k / 3][k % 3] + (int32_t)test_random_below(&numbers, 3) - 1, 255);
+        }
+        etc2_encode_rgb(&t, alone, nearest);
+        beside[i / 2 % 2] = first;
+        t.bit_worth = 4;
+        etc2_encode_rgb(&t, beside, block);
+        repeated[i % 2] += memcmp(block, first, 8) == 0;
+        assert_true(error_of(&t, block) <= error_of(&t, nearest) + 4u * 80u);
+    }
+    assert_true(repeated[0] > 150 && repeated[1] > 150);
 }
 
 static double channel_error(const int32_t values[16], int eleven)
@@ -154,7 +179,7 @@ static double channel_error(const int32_t values[16], int eleven)
     uint16_t got[16];
     uint8_t block[8];
     double sum = 0.0;
-    eac_encode(values, eleven, block);
+    eac_encode(values, eleven, 0, alone, block);
     noh_eac_decode(block, eleven, got);
     for (int i = 0; i < 16; i++) {
         const double off = got[i % 4 * 4 + i / 4] - values[i];
@@ -381,6 +406,7 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(every_mode_says_what_its_block_decodes_to),
                                         cmocka_unit_test(modes_are_good_at_what_they_are_for),
                                         cmocka_unit_test(holes_cost_little),
+                                        cmocka_unit_test(blocks_are_repeated_where_that_costs_little),
                                         cmocka_unit_test(one_channel_comes_near),
                                         cmocka_unit_test(each_use_has_its_format),
                                         cmocka_unit_test(what_is_only_cut_has_one_bit_of_alpha),

@@ -2,6 +2,9 @@
 #include "etc2_block.h"
 
 #include <limits.h>
+#include <string.h>
+
+#include "pack/etc2.h"
 
 /* clang-format off */
 static const int8_t tables[16][8] = {
@@ -67,7 +70,24 @@ static void try_table(const int32_t values[16], int eleven, int32_t table, int32
     }
 }
 
-void eac_encode(const int32_t values[16], int eleven, uint8_t block[8])
+/* What a block beside loses here. */
+static uint64_t error_of(const int32_t values[16], int eleven, const uint8_t block[8])
+{
+    uint16_t got[16];
+    uint64_t error = 0;
+    noh_eac_decode(block, eleven, got);
+    for (int i = 0; i < 16; i++) {
+        const int64_t off = got[i % 4 * 4 + i / 4] - values[i];
+        error += (uint64_t)(off * off);
+    }
+    return error;
+}
+
+/* Bits of a block that is none of those beside it, when it is sent. */
+#define BITS_OF_ITS_OWN 40u
+
+void eac_encode(const int32_t values[16], int eleven, uint32_t bit_worth, const uint8_t *const beside[2],
+                uint8_t block[8])
 {
     fit best = { 0, 1, 0, { 0 }, UINT_MAX };
     int32_t low = values[0], high = values[0];
@@ -87,4 +107,11 @@ void eac_encode(const int32_t values[16], int eleven, uint8_t block[8])
     bits = (uint64_t)best.base << 56 | (uint64_t)best.times << 52 | (uint64_t)best.table << 48;
     for (int i = 0; i < 16; i++) bits |= (uint64_t)best.indices[i] << (45 - 3 * i);
     for (int i = 0; i < 8; i++) block[i] = (uint8_t)(bits >> (56 - 8 * i));
+    uint64_t most = best.error + (uint64_t)BITS_OF_ITS_OWN * bit_worth * (eleven ? 64u : 1u);
+    for (int i = 0; i < 2; i++) {
+        const uint64_t error = beside[i] ? error_of(values, eleven, beside[i]) : UINT64_MAX;
+        if (error > most) continue;
+        most = error ? error - 1u : 0;
+        memcpy(block, beside[i], 8);
+    }
 }

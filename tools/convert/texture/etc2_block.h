@@ -21,13 +21,33 @@ typedef struct etc2_texels {
     int32_t counts[16]; /* 1, or 0: nobody sees this colour */
     int cut;            /* 1: a block of NOH_TEXTURE_ETC2_RGBA1 */
     uint32_t holes;     /* of such a block, bit i: texel i is transparent; its count is 0 */
+    uint32_t bit_worth; /* error that a bit less is worth, when the block is sent; 0: the nearest block */
 } etc2_texels;
 
-/* The best of a mode so far. */
+/* The best so far: that with the least error and what its bits are worth. */
 typedef struct etc2_best {
     uint64_t block;
     uint32_t error;
+    uint32_t bits; /* that it takes when it is sent (runtime/wire/wire_etc2.c), roughly */
 } etc2_best;
+
+/* A block of so many bits more has to be nearer by so much. */
+static inline int etc2_is_better(const etc2_texels *t, uint32_t error, uint32_t bits, const etc2_best *best)
+{
+    return (uint64_t)error + (uint64_t)t->bit_worth * bits <
+           (uint64_t)best->error + (uint64_t)t->bit_worth * best->bits;
+}
+
+/* Bits of a difference: few where it is small. */
+static inline uint32_t etc2_bits_of(int32_t difference)
+{
+    uint32_t n = (uint32_t)(difference < 0 ? -difference : difference), bits = 0;
+    for (; n; n >>= 1) bits += 2;
+    return bits;
+}
+
+/* Bits of a block's selectors: each that is not as the ones beside it costs one more. */
+uint32_t etc2_bits_of_selectors(uint64_t block);
 
 static inline int32_t etc2_clamp(int32_t value, int32_t most)
 {
@@ -40,9 +60,11 @@ void etc2_try_paints(const etc2_texels *t, etc2_best *best);
 void etc2_try_planar(const etc2_texels *t, etc2_best *best);
 
 /* Writes 8 bytes. */
-void etc2_encode_rgb(const etc2_texels *t, uint8_t block[8]);
+/* beside: blocks to the left and above, or NULL: the same again takes next to no bits. */
+void etc2_encode_rgb(const etc2_texels *t, const uint8_t *const beside[2], uint8_t block[8]);
 
-/* values[16]: 0..255, with eleven 0..2047. Writes 8 bytes. */
-void eac_encode(const int32_t values[16], int eleven, uint8_t block[8]);
+/* values[16]: 0..255, with eleven 0..2047. beside, bit_worth: as above. Writes 8 bytes. */
+void eac_encode(const int32_t values[16], int eleven, uint32_t bit_worth, const uint8_t *const beside[2],
+                uint8_t block[8]);
 
 #endif

@@ -180,12 +180,16 @@ static void bring_near(const half halves[2], const fit from[2], int moved, fit f
     fit_half(&halves[moved], 1, low, high, &fits[moved]);
 }
 
-static void keep(const half halves[2], const fit fits[2], int five, int flip, etc2_best *best)
+static void keep(const etc2_texels *t, const half halves[2], const fit fits[2], int five, int flip, etc2_best *best)
 {
     const uint32_t error = fits[0].error + fits[1].error;
-    if (error >= best->error) return;
+    const uint64_t block = block_of(halves, fits, five, flip);
+    uint32_t bits = 10u + etc2_bits_of_selectors(block);
+    for (int c = 0; c < 3; c++) bits += etc2_bits_of(fits[1].color[c] - fits[0].color[c]);
+    if (!etc2_is_better(t, error, bits, best)) return;
     best->error = error;
-    best->block = block_of(halves, fits, five, flip);
+    best->bits = bits;
+    best->block = block;
 }
 
 void etc2_try_halves(const etc2_texels *t, etc2_best *best)
@@ -199,15 +203,15 @@ void etc2_try_halves(const etc2_texels *t, etc2_best *best)
             fit_half(&halves[k], 1, low, high5, &fits[k]);
         }
         if (is_near(fits)) {
-            keep(halves, fits, 1, flip, best);
+            keep(t, halves, fits, 1, flip, best);
             continue; /* four bits are no better */
         }
         for (int moved = 0; moved < 2; moved++) {
             bring_near(halves, fits, moved, near);
-            keep(halves, near, 1, flip, best);
+            keep(t, halves, near, 1, flip, best);
         }
         if (t->cut) continue; /* has no such mode */
         for (int k = 0; k < 2; k++) fit_half(&halves[k], 0, low, high4, &fits[k]);
-        keep(halves, fits, 0, flip, best);
+        keep(t, halves, fits, 0, flip, best);
     }
 }

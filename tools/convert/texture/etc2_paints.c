@@ -207,9 +207,12 @@ void etc2_try_paints(const etc2_texels *t, etc2_best *best)
             f.colors[0][2] == f.colors[1][2] && !(f.distance & 1)) {
             continue; /* of equal colours the distance is odd */
         }
-        if (f.error < best->error) {
+        const uint64_t block = is_h ? h_block(&f) : t_block(&f, t->holes != 0);
+        const uint32_t bits = 24u + etc2_bits_of_selectors(block);
+        if (etc2_is_better(t, f.error, bits, best)) {
             best->error = f.error;
-            best->block = is_h ? h_block(&f) : t_block(&f, t->holes != 0);
+            best->bits = bits;
+            best->block = block;
         }
     }
 }

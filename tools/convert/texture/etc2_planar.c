@@ -6,7 +6,7 @@
 /* One channel: the three values, of 6 bits, green's of 7. */
 typedef struct plane {
     int32_t o, right, down;
-    uint32_t error;
+    uint32_t error, bits;
 } plane;
 
 static int32_t widened(int32_t v, int seven)
@@ -20,7 +20,7 @@ static int32_t narrowed(int32_t sum, int32_t count, int seven)
     return (2 * etc2_clamp(sum, 255 * count) * most + 255 * count) / (2 * 255 * count);
 }
 
-static uint32_t error_of(const etc2_texels *t, int c, const plane *p)
+static uint32_t error_of(const etc2_texels *t, int c, plane *p)
 {
     const int32_t o = widened(p->o, c == 1), right = widened(p->right, c == 1), down = widened(p->down, c == 1);
     uint32_t error = 0;
@@ -31,7 +31,13 @@ static uint32_t error_of(const etc2_texels *t, int c, const plane *p)
             error += (uint32_t)(off * off * t->counts[4 * x + y]);
         }
     }
+    p->bits = 2u + etc2_bits_of(p->right - p->o) + etc2_bits_of(p->down - p->o);
     return error;
+}
+
+static int is_better(const etc2_texels *t, const plane *p, const plane *than)
+{
+    return p->error + t->bit_worth * p->bits < than->error + t->bit_worth * than->bits;
 }
 
 /* The plane of least squares, clamping and counts left aside: its slopes are the values' products with x - 3/2 and
@@ -59,7 +65,12 @@ static plane fit_plane(const etc2_texels *t, int c)
         p.down += i / 9 - 1;
         if (p.o < 0 || p.right < 0 || p.down < 0 || p.o > most || p.right > most || p.down > most) continue;
         p.error = error_of(t, c, &p);
-        if (p.error < best.error) best = p;
+        if (is_better(t, &p, &best)) best = p;
+    }
+    for (int32_t i = -1; i < 2; i++) { /* the same all over */
+        p.o = p.right = p.down = etc2_clamp(narrowed(sum, 16, c == 1) + i, most);
+        p.error = error_of(t, c, &p);
+        if (is_better(t, &p, &best)) best = p;
     }
     return best;
 }
@@ -87,13 +98,15 @@ static uint64_t fill(uint64_t block)
 void etc2_try_planar(const etc2_texels *t, etc2_best *best)
 {
     plane p[3];
-    uint32_t error = 0;
+    uint32_t error = 0, bits = 0;
     for (int c = 0; c < 3; c++) {
         p[c] = fit_plane(t, c);
         error += p[c].error;
+        bits += p[c].bits;
     }
-    if (error >= best->error) return;
+    if (!etc2_is_better(t, error, bits, best)) return;
     best->error = error;
+    best->bits = bits;
     best->block = fill((uint64_t)p[0].o << 57 | (uint64_t)(p[1].o >> 6) << 56 | (uint64_t)(p[1].o & 63) << 49 |
                        (uint64_t)(p[2].o >> 5) << 48 | (uint64_t)(p[2].o >> 3 & 3) << 43 |
                        (uint64_t)(p[2].o & 7) << 39 | (uint64_t)(p[0].right >> 1) << 34 | (uint64_t)1 << 33 |

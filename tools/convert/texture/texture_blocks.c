@@ -32,16 +32,25 @@ static int32_t eleven_bits(double component)
     return value < 0.0 ? 0 : value > 2047.0 ? 2047 : (int32_t)value;
 }
 
-static void encode_pair(const texture_image *level, uint32_t x, uint32_t y, uint8_t *block)
+/* The second 8 bytes of the blocks beside. */
+static void second_of(const uint8_t *const near[2], const uint8_t *second[2])
 {
+    for (int i = 0; i < 2; i++) second[i] = near[i] ? near[i] + 8 : NULL;
+}
+
+static void encode_pair(const texture_image *level, uint32_t x, uint32_t y, const uint8_t *const near[2],
+                        uint8_t *block)
+{
+    const uint8_t *second[2];
     int32_t values[2][16];
     for (uint32_t i = 0; i < 16; i++) {
         double v[3];
         vector_of(texel_at(level, x + i / 4u, y + i % 4u), v);
         for (int c = 0; c < 2; c++) values[c][i] = eleven_bits(v[c]);
     }
-    eac_encode(values[0], 1, block);
-    eac_encode(values[1], 1, block + 8);
+    second_of(near, second);
+    eac_encode(values[0], 1, level->bit_worth, near, block);
+    eac_encode(values[1], 1, level->bit_worth, second, block + 8);
 }
 
 /* Whether a colour is seen. */
@@ -50,12 +59,15 @@ static int color_counts(const texture_image *level, uint32_t format, const uint8
     return format == NOH_TEXTURE_ETC2_RGBA1 ? texel[3] >= level->cutoff : !level->with_alpha || texel[3] != 0;
 }
 
-static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format, uint8_t *block)
+static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format,
+                         const uint8_t *const near[2], uint8_t *block)
 {
+    const uint8_t *beside[2] = { near[0], near[1] };
     int32_t alphas[16];
     etc2_texels t;
     t.cut = format == NOH_TEXTURE_ETC2_RGBA1;
     t.holes = 0;
+    t.bit_worth = level->bit_worth;
     for (uint32_t i = 0; i < 16; i++) {
         const uint8_t *texel = texel_at(level, x + i / 4u, y + i % 4u);
         for (int c = 0; c < 3; c++) t.rgb[i][c] = texel[c];
@@ -64,10 +76,11 @@ static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uin
         t.holes |= t.cut && !t.counts[i] ? 1u << i : 0u;
     }
     if (format == NOH_TEXTURE_ETC2_RGBA) {
-        eac_encode(alphas, 0, block);
+        eac_encode(alphas, 0, level->bit_worth, near, block);
         block += 8;
+        second_of(near, beside);
     }
-    etc2_encode_rgb(&t, block);
+    etc2_encode_rgb(&t, beside, block);
 }
 
 /* Whether the texels of the block are those of the block to the left of it. */
@@ -84,15 +97,20 @@ static int is_repeated(const texture_image *level, uint32_t x, uint32_t y)
 int texture_blocks_append(const texture_image *level, uint32_t format, byte_buffer *out)
 {
     const size_t bytes = noh_texture_block_bytes(format);
-    uint8_t block[16];
+    const size_t row = (level->width + 3u) / 4u * bytes;
+    uint8_t block[16], above[16];
     for (uint32_t y = 0; y < level->height; y += 4u) {
         for (uint32_t x = 0; x < level->width; x += 4u) {
+            uint8_t left[16];
+            const uint8_t *const near[2] = { x ? left : NULL, y ? above : NULL };
+            if (x) memcpy(left, block, sizeof left);
+            if (y && !out->failed) memcpy(above, out->bytes + out->count - row, bytes);
             if (is_repeated(level, x, y)) {
                 /* the same again */
             } else if (format == NOH_TEXTURE_EAC_RG) {
-                encode_pair(level, x, y, block);
+                encode_pair(level, x, y, near, block);
             } else {
-                encode_color(level, x, y, format, block);
+                encode_color(level, x, y, format, near, block);
             }
             buffer_append(out, block, bytes);
         }

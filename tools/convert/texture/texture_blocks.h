@@ -16,7 +16,8 @@
 typedef struct texture_image {
     const uint8_t *rgba;
     uint32_t width, height;
-    int with_alpha;  /* colours do not count where alpha is 0 */
+    int with_alpha;     /* colours do not count where alpha is 0 */
+    uint32_t bit_worth; /* squares of bytes, summed over a block, that are given up for a bit less when it is sent */
     uint32_t cutoff; /* with ETC2_RGBA1: texels whose alpha is below are transparent, and their colours do not count */
 } texture_image;
 
