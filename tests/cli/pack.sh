@@ -56,7 +56,7 @@ head -c 40 "$work/mask.nohz" >"$work/head.nohz"
 noh info "$work/head.nohz"
 expect 1 'half a header'
 says 'shorter than its header'
-{ head -c 30000 "$work/mask.nohz"; printf 'X'; tail -c +30002 "$work/mask.nohz"; } >"$work/damaged.nohz"
+{ head -c 30000 "$work/mask.nohz"; printf 'XXXX'; tail -c +30005 "$work/mask.nohz"; } >"$work/damaged.nohz"
 noh info "$work/damaged.nohz"
 expect 1 'a damaged file'
 says 'checksum of a block of the wire form is wrong'
