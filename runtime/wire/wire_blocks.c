@@ -174,15 +174,13 @@ static void code_unit(noh_wire_filter *f, noh_wire_unit *u)
 static void code_block(noh_wire_filter *f, const noh_wire_level *here, const noh_wire_level *other, uint32_t index)
 {
     const uint32_t format = f->section.params[3];
-    noh_wire_unit u;
-    u.here = here;
-    u.other = other;
-    u.finer = f->section.mode == 1;
-    u.x = index % here->columns;
-    u.y = index / here->columns;
-    u.bytes = noh_texture_block_bytes(format);
-    u.offset = 0;
-    u.format = format;
+    noh_wire_unit u = { .format = format,
+                        .bytes = noh_texture_block_bytes(format),
+                        .x = index % here->columns,
+                        .y = index / here->columns,
+                        .here = here,
+                        .other = other,
+                        .finer = f->section.mode == 1 };
     code_unit(f, &u);
     if (u.bytes == 8u) return;
     u.offset = 8;

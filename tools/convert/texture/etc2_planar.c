@@ -46,7 +46,7 @@ static plane fit_plane(const etc2_texels *t, int c)
 {
     const int32_t most = c == 1 ? 127 : 63;
     int32_t sum = 0, along_x = 0, along_y = 0;
-    plane best, p;
+    plane best = { 0, 0, 0, 0, 0 }, p = best;
     for (int i = 0; i < 16; i++) {
         sum += t->rgb[i][c];
         along_x += (2 * (i / 4) - 3) * t->rgb[i][c];
