@@ -25,6 +25,8 @@
 #define NOH_BLOCKS_EAC_SELECTOR (NOH_BLOCKS_EAC_TABLE + 16u) /* [2 kinds][8][8] */
 #define NOH_BLOCKS_END (NOH_BLOCKS_EAC_SELECTOR + 128u)
 
+NOH_STATIC_ASSERT(NOH_BLOCKS_END < NOH_WIRE_MODELS, models_of_blocks); /* the last is that of large values */
+
 /* A mip level. */
 typedef struct noh_wire_level {
     uint32_t columns, rows; /* of blocks */
