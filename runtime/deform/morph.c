@@ -10,11 +10,7 @@
 
 NOH_ALWAYS_INLINE void add_rows(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
 {
-    if (layers[2]) {
-        noh_add_rows(rows, f, layers, 3);
-    } else {
-        noh_add_rows(rows, f, layers, 2);
-    }
+    noh_add_rows(rows, f, layers, layers[2] ? 3 : 2);
 }
 
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
@@ -26,6 +22,13 @@ static void accumulate_some(const noh_mesh *mesh, const float *weights, const no
                             const uint8_t *groups)
 {
     noh_accumulate_targets(mesh, weights, layers, groups, add_rows);
+}
+
+/* The kernels that need not be fast are called. */
+NOH_NEVER_INLINE static void accumulate_by(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
+                                           const uint8_t *groups, noh_rows_function add)
+{
+    noh_accumulate_targets(mesh, weights, layers, groups, add);
 }
 
 static size_t layer_texels(const noh_mesh *mesh)
@@ -63,20 +66,15 @@ const char *noh_morph_simd(void)
     return NOH_MORPH_SIMD;
 }
 
-static void add_scalar(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
-{
-    noh_each_row(rows, f, layers, noh_add_row_scalar);
-}
-
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, add_scalar);
+    accumulate_by(mesh, weights, layers, NULL, noh_add_rows_scalar);
 }
 
 static void accumulate_some_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                                    const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, add_scalar);
+    accumulate_by(mesh, weights, layers, groups, noh_add_rows_scalar);
 }
 
 /* ---- kernels by name ---- */
@@ -190,10 +188,10 @@ static void add_f16_rtz_rne(const noh_morph_rows *rows, const morph_field f[3], 
 void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
                               const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL,
-                           mode == NOH_HALF_RTZ       ? add_f16_rtz
-                           : mode == NOH_HALF_RTZ_RNE ? add_f16_rtz_rne
-                                                      : add_f16_rne);
+    accumulate_by(mesh, weights, layers, NULL,
+                  mode == NOH_HALF_RTZ       ? add_f16_rtz
+                  : mode == NOH_HALF_RTZ_RNE ? add_f16_rtz_rne
+                                             : add_f16_rne);
 }
 
 void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_morph_layers *layers)

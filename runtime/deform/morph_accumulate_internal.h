@@ -56,10 +56,12 @@ static inline noh_morph_job noh_morph_job_of(const noh_mesh *mesh, const noh_mor
     return j;
 }
 
-/* How many rows of `count` it takes to make up for what `have` lacks. */
+/* How many rows of `count` it takes to make up for what `have` lacks: three at most. */
 static inline size_t noh_rows_short(size_t have, size_t need, size_t count)
 {
-    return have < need ? (need - have + count - 1u) / count : 0;
+    size_t rows = 0;
+    for (; have < need; have += count) rows++;
+    return rows;
 }
 
 /* `rows` rows of a rectangle, the first of which has its texels from float `at` of each layer and `word` on. Rows are
@@ -97,11 +99,11 @@ NOH_ALWAYS_INLINE void noh_accumulate_target(const noh_morph_job *j, const noh_t
     size_t word = 3u * (size_t)t->first_texel;
     for (uint32_t i = 0; i < t->rect_count; i++, rect++) {
         const size_t at = rect->y * j->stride + 3u * (size_t)rect->x, count = 3u * (size_t)rect->w;
-        if (!j->groups) noh_accumulate_rows(j, rect, at, word, rect->h, f, add);
-        for (size_t y = 0; j->groups && y < rect->h; y++) {
+        const size_t rows = j->groups ? 1 : rect->h;
+        for (size_t y = 0; y < rect->h; y += rows) {
             const size_t row = at + y * j->stride;
             if (noh_is_wanted(j->groups, row / 3u, rect->w)) {
-                noh_accumulate_rows(j, rect, row, word + y * count, 1, f, add);
+                noh_accumulate_rows(j, rect, row, word + y * count, rows, f, add);
             }
         }
         word += count * rect->h;

@@ -7,17 +7,13 @@
 NOH_TARGET_AVX2 NOH_ALWAYS_INLINE void add_wide(const noh_morph_rows *rows, const morph_field f[3],
                                                 float *const layers[3])
 {
-    if (layers[2]) {
-        noh_add_rows8(rows, f, layers, 3);
-    } else {
-        noh_add_rows8(rows, f, layers, 2);
-    }
+    noh_add_rows8(rows, f, layers, layers[2] ? 3 : 2);
 }
 
 NOH_TARGET_AVX2 void noh_morph_accumulate_wide(const noh_mesh *mesh, const float *weights,
                                                const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, add_wide);
+    noh_morph_accumulate_some_wide(mesh, weights, layers, NULL);
 }
 
 NOH_TARGET_AVX2 void noh_morph_accumulate_some_wide(const noh_mesh *mesh, const float *weights,

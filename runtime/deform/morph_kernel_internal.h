@@ -81,6 +81,13 @@ static inline void noh_add_row_scalar(const uint32_t *words, size_t count, const
     for (int l = 0; l < 3 && layers[l]; l++) noh_add_run_scalar(words, count, f[l], layers[l]);
 }
 
+/* Called, since it is rare: inlined into each kernel it would be a quarter of them. */
+NOH_NEVER_INLINE static void noh_add_rows_scalar(const noh_morph_rows *r, const morph_field f[3],
+                                                 float *const layers[3])
+{
+    noh_each_row(r, f, layers, noh_add_row_scalar);
+}
+
 /* For each width of vectors: load, store, the sum of a layer and of what words add to it, the lanes first to end - 1 as
  * a mask, and what a mask chooses of two. The rows themselves are morph_rows_template.h. */
 #if defined(NOH_SSE2) /* AVX2 has it too */
@@ -219,7 +226,7 @@ NOH_ALWAYS_INLINE void noh_add_rows(const noh_morph_rows *r, const morph_field f
     noh_add_rows4(r, f, layers, layer_count);
 #else
     (void)layer_count;
-    noh_each_row(r, f, layers, noh_add_row_scalar);
+    noh_add_rows_scalar(r, f, layers);
 #endif
 }
 

@@ -5,9 +5,9 @@
  * first one begins `lead` words before its row, and the last one ends behind it. Of these two only the row's lanes
  * change; the other floats are read, and written as they were.
  *
- * layer_count is two or three, a constant wherever this is inlined. In a loop over the layers, or called, gcc would look
- * shifts and weights up in every step, which takes up to twice as long; and it cannot know that no layer lies over the
- * words, so that these are loaded once by hand. */
+ * The layers are written out: in a loop over them gcc would look shifts and weights up in every step, which takes up to
+ * twice as long. Nor can it know that no layer lies over the words or the fields, so the words of a step are loaded once
+ * for all layers by hand, and the fields are copied. */
 
 ROWS_INLINE void ROWS(add)(ROWS_WORDS words, morph_field f, float *layer)
 {
@@ -41,22 +41,24 @@ ROWS_INLINE void ROWS(add_end)(const uint32_t *from, ROWS_MASK mask, const morph
 ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3], float *const layers[3],
                                 int layer_count)
 {
-    const size_t lead = r->lead % ROWS_LANES, end = lead + r->count, whole = end - end % ROWS_LANES;
+    const size_t count = r->count, rows = r->rows, stride = r->stride, lead = r->lead % ROWS_LANES, end = lead + count;
+    const size_t whole = end - end % ROWS_LANES;
     const ROWS_MASK head = ROWS(mask)(lead, end), tail = ROWS(mask)(0, end - whole);
+    const morph_field g[3] = { f[0], f[1], f[2] };
     const uint32_t *words = r->words - lead;
     float *to[3];
     if (r->lead == NOH_MORPH_ALONE) {
-        noh_each_row(r, f, layers, noh_add_row_scalar);
+        noh_add_rows_scalar(r, f, layers);
         return;
     }
     to[0] = layers[0] - lead;
     to[1] = layers[1] - lead;
     to[2] = layer_count == 3 ? layers[2] - lead : NULL;
-    for (size_t y = 0, at = 0; y < r->rows; y++, at += r->stride, words += r->count) {
+    for (size_t y = 0, at = 0; y < rows; y++, at += stride, words += count) {
         size_t i = ROWS_LANES;
-        ROWS(add_end)(words, head, f, to, at, layer_count);
-        for (; i < whole; i += ROWS_LANES) ROWS(add_step)(words + i, f, to, at + i, layer_count);
-        if (i < end) ROWS(add_end)(words + i, tail, f, to, at + i, layer_count);
+        ROWS(add_end)(words, head, g, to, at, layer_count);
+        for (; i < whole; i += ROWS_LANES) ROWS(add_step)(words + i, g, to, at + i, layer_count);
+        if (i < end) ROWS(add_end)(words + i, tail, g, to, at + i, layer_count);
     }
 }
 
