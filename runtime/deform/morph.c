@@ -8,20 +8,15 @@
 #include "deform/morph_accumulate_internal.h"
 #include "deform/morph_finish_internal.h"
 
-NOH_ALWAYS_INLINE void add_rows(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3])
-{
-    noh_add_rows(rows, f, layers, layers[2] ? 3 : 2);
-}
-
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {
-    noh_accumulate_targets(mesh, weights, layers, NULL, add_rows);
+    noh_accumulate_targets(mesh, weights, layers, NULL, noh_add_rows);
 }
 
 static void accumulate_some(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                             const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, add_rows);
+    noh_accumulate_targets(mesh, weights, layers, groups, noh_add_rows);
 }
 
 /* The kernels that need not be fast are called. */

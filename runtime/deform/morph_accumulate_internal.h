@@ -49,10 +49,12 @@ static inline noh_morph_job noh_morph_job_of(const noh_mesh *mesh, const noh_mor
                                              const uint8_t *groups)
 {
     const noh_mesh_header *h = mesh->header;
-    const noh_target *last = mesh->targets + h->target_count - 1u;
     noh_morph_job j = { mesh, layers, groups, (size_t)3u << h->morph_width_log2, 0, 0 };
     j.floats = h->morph_height * j.stride;
-    j.words = 3u * ((size_t)last->first_texel + last->texel_count);
+    if (h->target_count) {
+        const noh_target *last = mesh->targets + h->target_count - 1u;
+        j.words = 3u * ((size_t)last->first_texel + last->texel_count);
+    }
     return j;
 }
 
@@ -125,12 +127,12 @@ NOH_ALWAYS_INLINE void noh_accumulate_targets(const noh_mesh *mesh, const float 
                                               const noh_morph_layers *layers, const uint8_t *groups,
                                               noh_rows_function add)
 {
-    const uint32_t count = mesh->header->target_count;
+    noh_morph_job j;
     NOH_ASSERT(mesh && weights && layers);
     NOH_ASSERT(layers->position || !mesh->header->touched_count);
-    NOH_VALIDATE(noh_all_finite(weights, count));
-    for (uint32_t i = 0; i < count; i++) {
-        const noh_morph_job j = noh_morph_job_of(mesh, layers, groups);
+    NOH_VALIDATE(noh_all_finite(weights, mesh->header->target_count));
+    j = noh_morph_job_of(mesh, layers, groups);
+    for (uint32_t i = 0; i < mesh->header->target_count; i++) {
         morph_field f[3];
         if (weights[i] != 0.0f) {
             noh_target_fields(&mesh->targets[i], weights[i], f);

@@ -217,15 +217,13 @@ NOH_TARGET_AVX2 NOH_ALWAYS_INLINE __m256 noh_choose8(__m256 mask, __m256 yes, __
 #endif
 
 /* By the widest vectors that the whole library is compiled for. */
-NOH_ALWAYS_INLINE void noh_add_rows(const noh_morph_rows *r, const morph_field f[3], float *const layers[3],
-                                    int layer_count)
+NOH_ALWAYS_INLINE void noh_add_rows(const noh_morph_rows *r, const morph_field f[3], float *const layers[3])
 {
 #if defined(NOH_AVX2)
-    noh_add_rows8(r, f, layers, layer_count);
+    noh_add_rows8(r, f, layers);
 #elif defined(NOH_SSE2) || defined(NOH_NEON)
-    noh_add_rows4(r, f, layers, layer_count);
+    noh_add_rows4(r, f, layers);
 #else
-    (void)layer_count;
     noh_add_rows_scalar(r, f, layers);
 #endif
 }

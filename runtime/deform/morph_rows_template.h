@@ -1,5 +1,5 @@
-/* morph_rows_template.h (private to deform/): the kernel that adds rows of words to the layers, for vectors of any width;
- * included once for each, by morph_kernel_internal.h.
+/* morph_rows_template.h (private to deform/): the kernel that adds rows of words to the layers, for vectors of any
+ * width; included once for each, by morph_kernel_internal.h.
  *
  * Vectors are stored where a layer has their alignment, since one that crosses a cache line takes as long as two. So the
  * first one begins `lead` words before its row, and the last one ends behind it. Of these two only the row's lanes
@@ -20,26 +20,24 @@ ROWS_INLINE void ROWS(add_some)(ROWS_WORDS words, ROWS_MASK mask, morph_field f,
     ROWS(store)(layer, ROWS(choose)(mask, ROWS(sum)(words, f, before), before));
 }
 
-ROWS_INLINE void ROWS(add_step)(const uint32_t *from, const morph_field f[3], float *const layers[3], size_t at,
-                                int layer_count)
+ROWS_INLINE void ROWS(add_step)(const uint32_t *from, const morph_field f[3], float *const layers[3], size_t at)
 {
     const ROWS_WORDS words = ROWS(words)(from);
     ROWS(add)(words, f[0], layers[0] + at);
     ROWS(add)(words, f[1], layers[1] + at);
-    if (layer_count == 3) ROWS(add)(words, f[2], layers[2] + at);
+    if (layers[2]) ROWS(add)(words, f[2], layers[2] + at);
 }
 
 ROWS_INLINE void ROWS(add_end)(const uint32_t *from, ROWS_MASK mask, const morph_field f[3], float *const layers[3],
-                               size_t at, int layer_count)
+                               size_t at)
 {
     const ROWS_WORDS words = ROWS(words)(from);
     ROWS(add_some)(words, mask, f[0], layers[0] + at);
     ROWS(add_some)(words, mask, f[1], layers[1] + at);
-    if (layer_count == 3) ROWS(add_some)(words, mask, f[2], layers[2] + at);
+    if (layers[2]) ROWS(add_some)(words, mask, f[2], layers[2] + at);
 }
 
-ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3], float *const layers[3],
-                                int layer_count)
+ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3], float *const layers[3])
 {
     const size_t count = r->count, rows = r->rows, stride = r->stride, lead = r->lead % ROWS_LANES, end = lead + count;
     const size_t whole = end - end % ROWS_LANES;
@@ -53,12 +51,12 @@ ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3],
     }
     to[0] = layers[0] - lead;
     to[1] = layers[1] - lead;
-    to[2] = layer_count == 3 ? layers[2] - lead : NULL;
+    to[2] = layers[2] ? layers[2] - lead : NULL;
     for (size_t y = 0, at = 0; y < rows; y++, at += stride, words += count) {
         size_t i = ROWS_LANES;
-        ROWS(add_end)(words, head, g, to, at, layer_count);
-        for (; i < whole; i += ROWS_LANES) ROWS(add_step)(words + i, g, to, at + i, layer_count);
-        if (i < end) ROWS(add_end)(words + i, tail, g, to, at + i, layer_count);
+        ROWS(add_end)(words, head, g, to, at);
+        for (; i < whole; i += ROWS_LANES) ROWS(add_step)(words + i, g, to, at + i);
+        if (i < end) ROWS(add_end)(words + i, tail, g, to, at + i);
     }
 }
 

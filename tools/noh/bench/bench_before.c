@@ -81,9 +81,9 @@ static void prepare(void *self, const float *weights)
     const noh_mesh_header *h = mesh->header;
     const size_t floats = b->bytes / 12u;
     const noh_morph_layers layers = { b->memory, b->memory + floats, b->memory + 2u * floats };
+    const noh_morph_job job = noh_morph_job_of(mesh, &layers, NULL);
     memset(b->memory, 0, b->bytes);
     for (uint32_t t = 0; t < h->target_count; t++) {
-        const noh_morph_job job = noh_morph_job_of(mesh, &layers, NULL);
         morph_field f[3];
         if (weights[t] == 0.0f) continue;
         noh_target_fields(&mesh->targets[t], weights[t], f);
