@@ -4,30 +4,21 @@
 
 #include "gl/gl_lost.h"
 #include "gl/gl_program.h"
-#include "gl/gl_shader_text.h"
 #include "shaders.gen.h"
-
-#define PIECES_MAX 8u
+#include "stage_gl/lit_source_internal.h"
 
 static noh_result create_objects(noh_backdrop *b, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "noh_environment" };
-    const char *pieces[PIECES_MAX] = { "precision highp float;\n#define NOH_LIT\n",
-                                       noh_gl_shader_text("common_fade.glsl"),
-                                       noh_gl_shader_text("common_fragment.glsl"),
-                                       noh_gl_shader_text("common_environment.glsl") };
-    noh_gl_source fragment = noh_shader_backdrop_frag;
+    noh_lit_source fragment;
     noh_gl_program_desc desc;
     noh_result result;
-    NOH_ASSERT(4u + fragment.piece_count <= PIECES_MAX);
-    for (uint32_t i = 0; i < fragment.piece_count; i++) pieces[4u + i] = fragment.pieces[i];
-    fragment.piece_count += 4u;
-    fragment.pieces = pieces;
+    noh_lit_source_of(&noh_shader_backdrop_frag, &fragment);
     memset(&desc, 0, sizeof desc);
     desc.name = "backdrop";
     desc.defines = b->encode_srgb ? "#define NOH_ENCODE_SRGB\n" : NULL;
     desc.vertex = &noh_shader_backdrop_vert;
-    desc.fragment = &fragment;
+    desc.fragment = &fragment.source;
     desc.samplers = samplers;
     desc.sampler_count = 1;
     desc.ledger = b->ledger;
