@@ -31,11 +31,19 @@ static noh_result check_texture_format(const noh_check *check, const noh_texture
     const noh_check_field error = { offsetof(noh_texture_header, error), !(h->error >= 0.0f && h->error <= 65025.0f) };
     noh_result result = noh_check_fields(check, format, 2, "unknown texture format, or not one for such a texture", 0);
     if (!result) result = noh_check_fields(check, &error, 1, "texture's error is not from 0 to 65025", 0);
-    for (uint32_t i = 0; !result && i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
-        const noh_check_field reserved = { offsetof(noh_texture_header, reserved) + 4u * i, h->reserved[i] != 0 };
-        result = noh_check_fields(check, &reserved, 1, "reserved field of a texture is not zero", 0);
-    }
     return result;
+}
+
+/* What was taken out was there. */
+static noh_result check_texture_trim(const noh_check *check, const noh_texture_header *h)
+{
+    const noh_check_field whole[] = {
+        { offsetof(noh_texture_header, whole_width),
+          h->trim ? h->whole_width < h->width || h->whole_width > NOH_TEXTURE_SIZE_MAX : h->whole_width != 0 },
+        { offsetof(noh_texture_header, whole_height),
+          h->trim ? h->whole_height < h->height || h->whole_height > NOH_TEXTURE_SIZE_MAX : h->whole_height != 0 },
+    };
+    return noh_check_fields(check, whole, 2, "a texture's sides do not fit what was trimmed of it", 0);
 }
 
 static noh_result check_texture_fields(const noh_check *check, const noh_texture_header *h)
@@ -55,6 +63,7 @@ static noh_result check_texture_fields(const noh_check *check, const noh_texture
     noh_result result = noh_check_fields(check, size, 2, "texture size is zero or over the limit", 0);
     if (!result) result = noh_check_fields(check, sampling, 4, "unknown texture sampling", 0);
     if (!result) result = noh_check_fields(check, &levels, 1, "texture has another number of mip levels", 0);
+    if (!result) result = check_texture_trim(check, h);
     return result ? result : check_texture_format(check, h);
 }
 

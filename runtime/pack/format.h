@@ -371,7 +371,9 @@ typedef struct noh_texture_header {
     uint32_t format;      /* NOH_TEXTURE_RGBA8... */
     float error;          /* for reports: mean square of how far bytes of the first level are from those that the
                            * converter had, over the channels that count; 0: not at all */
-    uint32_t reserved[2];
+    uint32_t trim;        /* which columns and rows the converter took out since no triangle reads them, as a hash: only
+                            * textures of the same fit the same texture coordinates. 0: none */
+    uint16_t whole_width, whole_height; /* the sides before that; 0 where trim is 0 */
 } noh_texture_header;
 
 /* ---- CHUNK_SKELETON: header, then four arrays. Joints are in an order in which each LOD level is a prefix: those

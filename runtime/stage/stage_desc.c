@@ -141,6 +141,20 @@ static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
     return 1;
 }
 
+/* Texture coordinates are those of the kind's own textures. */
+static int is_laid_out_otherwise(const noh_kind_desc *kind, uint32_t set)
+{
+    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+        const noh_pack *pack;
+        noh_texture own, worn;
+        const uint32_t at = noh_stage_worn(kind, set, t, &pack);
+        if (noh_pack_texture_at(kind->mesh, t, &own, NULL) != NOH_OK) continue;
+        if (noh_pack_texture_at(pack, at, &worn, NULL) != NOH_OK) continue;
+        if (own.header->trim != worn.header->trim) return 1;
+    }
+    return 0;
+}
+
 /* ---- what is wrong ---- */
 
 static const char *bad_texture_sets(const noh_kind_desc *d)
@@ -150,6 +164,9 @@ static const char *bad_texture_sets(const noh_kind_desc *d)
         return "texture_sets of a kind is NULL, and texture_set_count is not 0";
     for (uint32_t i = 1; i <= d->texture_set_count; i++) {
         if (replaces_nothing(d, i)) return "a texture set of a kind replaces no texture of its mesh: see the names";
+        if (is_laid_out_otherwise(d, i))
+            return "a texture of a set has other parts trimmed than the one it stands in for: build their packs with "
+                   "--whole-textures";
     }
     return NULL;
 }

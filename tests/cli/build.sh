@@ -69,4 +69,35 @@ expect 0 'what is attached shares the joints'
 noh build "$mask" --seam mend --only mesh -o "$work/x.noh"
 expect 0 'nothing to mend'
 check 'is a warning' grep -q 'no seam was closed' "$work/out" "$work/err"
+
+# ---- textures without what no triangle reads ----
+
+# A triangle over a corner of a picture of 64 x 64 texels.
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0' >"$work/corner.bin"
+printf '\315\314\314\75\315\314\314\75\315\314\114\76\315\314\314\75\315\314\314\75\315\314\114\76' >>"$work/corner.bin"
+noh render "$build/mask.noh" -o "$work/corner.png" --size 64x64
+expect 0 'a picture to be a texture'
+cat >"$work/corner.gltf" <<'END'
+{"asset": {"version": "2.0"}, "buffers": [{"uri": "corner.bin", "byteLength": 60}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+ "images": [{"uri": "corner.png"}], "textures": [{"source": 0}],
+ "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+ "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}
+END
+noh build "$work/corner.gltf" -o "$work/corner.noh"
+expect 0 'build of a corner of a texture'
+check 'the report says what is left' grep -q '1 of 1 textures without what no triangle reads: 10%' "$work/out"
+noh info "$work/corner.noh"
+check 'and info what it was' grep -q ': 20 x 20, .*, of 64 x 64 what triangles read' "$work/out"
+noh info "$work/corner.noh" --json
+check 'in JSON, too' grep -q '"whole_width": 64' "$work/out"
+noh verify "$work/corner.noh"
+expect 0 'it verifies'
+noh build "$work/corner.gltf" -o "$work/corner.noh" --whole-textures
+expect 0 'build --whole-textures'
+noh info "$work/corner.noh"
+check 'keeps all of it' grep -q ': 64 x 64, ' "$work/out"
 finish

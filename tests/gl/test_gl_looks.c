@@ -431,6 +431,14 @@ static void a_set_is_one_draw(void **state)
     gpu_close(&g);
 }
 
+/* As if parts of a texture had been trimmed. */
+static void set_trim(const wardrobe *w, uint32_t pack, uint32_t texture, uint32_t trim)
+{
+    noh_texture t;
+    assert_int_equal(noh_pack_texture_at(&w->packs[pack], texture, &t, NULL), NOH_OK);
+    ((noh_texture_header *)(uintptr_t)t.header)->trim = trim;
+}
+
 static void sets_are_found_and_checked(void **state)
 {
     noh_look look = { .texture_set = 3 };
@@ -447,6 +455,11 @@ static void sets_are_found_and_checked(void **state)
     w.kind.texture_set_count = NOH_TEXTURE_SETS_MAX + 1u;
     assert_int_equal(noh_stage_plan_make(&w.desc, &g->caps, &w.plan, &said), NOH_ERR_ARG);
     w.kind.texture_set_count = 2;
+    for (uint32_t i = 0; i < 3; i++) { /* they fit again once all of them are trimmed alike */
+        set_trim(&w, i == 0, i / 2u, 7);
+        assert_int_equal(noh_stage_plan_make(&w.desc, &g->caps, &w.plan, &said), i < 2 ? NOH_ERR_ARG : NOH_OK);
+        if (i < 2) assert_non_null(strstr(said.what, "trimmed"));
+    }
     wardrobe_make(&w, g);
     assert_int_equal(noh_stage_find(w.stage, 0, NOH_NAME_TEXTURE_SET, "green"), 2);
     assert_int_equal(noh_stage_find(w.stage, 0, NOH_NAME_TEXTURE_SET, "blue"), NOH_NONE);

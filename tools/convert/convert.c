@@ -15,6 +15,7 @@
 #include "convert/pack/pack_graph.h"
 #include "clip/pack_clip.h"
 #include "convert/springs/springs_bind.h"
+#include "convert/texture/texture_trim.h"
 #include "pack/pack.h"
 #include "sim/ragdoll_rig.h"
 #include "sources.h"
@@ -465,6 +466,21 @@ static void set_textures(const source *s, const convert_options *options)
     }
 }
 
+/* Once the levels are known, since a level's triangles read the textures too. */
+static int trim_textures(model *m, const mesh_levels *levels, const convert_options *options, model_error *error)
+{
+    texture_trimmed done;
+    if (options->whole_textures || options->only == CONVERT_CLIPS) return 0;
+    if (texture_trim(m, levels, &done)) return out_of_memory(error);
+    if (options->report && done.count) {
+        fprintf(options->report,
+                "%u of %u textures without what no triangle reads: %.0f%% of their texels are left "
+                "(--whole-textures: all)\n",
+                done.count, m->texture_count, 100.0 * (double)done.texels / (double)done.whole);
+    }
+    return 0;
+}
+
 static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
                           const ragdoll_text *ragdoll, const set_springs *springs, const hair_text *hair,
                           const hair_grown *grown, const terrain *ground, const convert_options *options,
@@ -489,7 +505,8 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     if (options->report) {
         report_warnings(options->report, s);
     }
-    failed = failed || pack_check_model(m, error) || encode_meshes(m, options, &meshes, error);
+    failed = failed || pack_check_model(m, error) || encode_meshes(m, options, &meshes, error) ||
+             trim_textures(s->m, meshes.levels, options, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.graphs = graphs;

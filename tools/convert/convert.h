@@ -40,6 +40,7 @@ typedef struct convert_options {
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */
     uint32_t texture_max;       /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
+    int whole_textures;         /* 1: they keep what no triangle reads (texture/texture_trim.h) */
     int split_eyes;             /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;              /* a text file of callback keys; NULL: none */

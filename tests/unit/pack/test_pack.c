@@ -398,7 +398,13 @@ static float nan_value(void)
     X(texture_levels_overflow, DATA, "mip levels", f->texture->level_count = 0xffffffffu)                            \
     X(texture_levels_of_nearest, DATA, "mip levels", f->texture->nearest = 1)                                        \
     X(texture_flags, DATA, "sampling", f->texture->flags = 2)                                                        \
-    X(texture_reserved, DATA, "reserved field of a texture", f->texture->reserved[1] = 1)                            \
+    X(texture_trim_alone, DATA, "trimmed", f->texture->trim = 1)                                                     \
+    X(texture_whole_alone, DATA, "trimmed", f->texture->whole_height = 4)                                            \
+    X(texture_whole_smaller, DATA, "trimmed",                                                                        \
+      (f->texture->trim = 9, f->texture->whole_width = 2048,                                                         \
+       f->texture->whole_height = (uint16_t)(f->texture->height - 1u)))                                              \
+    X(texture_whole_too_large, DATA, "trimmed",                                                                      \
+      (f->texture->trim = 9, f->texture->whole_width = 2048, f->texture->whole_height = 2049))                       \
     X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_ETC2_RGBA1 + 1)               \
     X(texture_format_colors, DATA, "not one for such a texture", f->texture->format = NOH_TEXTURE_EAC_RG)            \
     X(texture_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ETC2_RGBA)                                  \
@@ -625,7 +631,7 @@ static void errors_say_where(void **state)
     X(texture->nearest, = 2)                            \
     X(texture->level_count, = 1)                        \
     X(texture->flags, = 8)                              \
-    X(texture->reserved[0], = 1)                        \
+    X(texture->whole_width, = 1)                        \
     X(texture->pixels_offset, += 16)                    \
     X(materials[1].base_color_texture, = 7)             \
     X(materials[0].flags, = 32)                         \

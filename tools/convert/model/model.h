@@ -31,6 +31,8 @@ typedef struct model_texture {
     uint8_t cut_alone;  /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
     uint8_t etc2;       /* 1: to be compressed */
     uint32_t size_max;  /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
+    uint32_t cells[2];  /* then divided into columns and rows, 2 to 64 of the same size; 0: not (texture_trim.h) */
+    uint64_t kept[2];   /* of which the i-th stays if bit i is 1; at least one does */
 } model_texture;
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/texture/texture_blocks.h"
+#include "convert/texture/texture_trim.h"
 
 #define ONE (1u << 20) /* linear light, data, alpha 1, length of a normal */
 
@@ -205,16 +206,10 @@ static uint32_t cutoff_of(const model_texture *t)
     return t->use == MODEL_TEXTURE_COLOR && cutoff > 0.0 && cutoff < 256.0 ? (uint32_t)cutoff : 0;
 }
 
-/* The bytes of a level; as_is: those of the source. */
-static void close_image(const model_texture *t, const image *level, const int32_t light[256], const uint8_t *as_is,
-                        uint8_t *bytes)
+static void close_image(const model_texture *t, const image *level, const int32_t light[256], uint8_t *bytes)
 {
     const size_t count = (size_t)level->width * level->height;
-    if (as_is) {
-        memcpy(bytes, as_is, count * 4);
-    } else {
-        for (size_t i = 0; i < count; i++) close_texel(level->texels + i * 4, t->use, light, bytes + i * 4);
-    }
+    for (size_t i = 0; i < count; i++) close_texel(level->texels + i * 4, t->use, light, bytes + i * 4);
 }
 
 /* Mean squares of errors, of bytes: 38 and 40 dB. */
@@ -284,6 +279,34 @@ static uint32_t size_max(const model_texture *t)
     return t->size_max && t->size_max < NOH_TEXTURE_SIZE_MAX ? t->size_max : NOH_TEXTURE_SIZE_MAX;
 }
 
+/* The first level: halved until it is small enough, without what is trimmed. `bytes` are the source's where it is not
+ * halved. */
+static int make_first(const model_texture *t, const int32_t light[256], image *level, noh_texture_header *h,
+                      uint8_t *bytes)
+{
+    const int is_source = level->width <= size_max(t) && level->height <= size_max(t);
+    uint32_t sides[2] = { t->width, t->height };
+    while (level->width > size_max(t) || level->height > size_max(t)) {
+        if (halve(level, t->with_alpha)) return 1;
+    }
+    h->trim = texture_trim_word(t);
+    if (h->trim) {
+        h->whole_width = (uint16_t)level->width;
+        h->whole_height = (uint16_t)level->height;
+        texture_trim_texels(t, level->texels, 4 * sizeof *level->texels, &level->width, &level->height);
+    }
+    if (is_source) {
+        memcpy(bytes, t->rgba, (size_t)t->width * t->height * 4);
+        if (h->trim) texture_trim_texels(t, bytes, 4, &sides[0], &sides[1]);
+    } else {
+        close_image(t, level, light, bytes);
+    }
+    h->width = level->width;
+    h->height = level->height;
+    h->level_count = 0;
+    return 0;
+}
+
 int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buffer *out)
 {
     int32_t light[256];
@@ -292,15 +315,10 @@ int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buf
     const uint32_t cutoff = cutoff_of(t);
     uint8_t *bytes = malloc((size_t)t->width * t->height * 4);
     int failed = open_image(t, (linear_light(light), light), &level) || !bytes;
-    while (!failed && (level.width > size_max(t) || level.height > size_max(t))) {
-        failed = halve(&level, t->with_alpha);
-    }
-    h->width = level.width;
-    h->height = level.height;
-    h->level_count = 0;
+    failed = failed || make_first(t, light, &level, h, bytes);
     for (int more = 1; !failed && more;) {
         const uint64_t count = (uint64_t)level.width * level.height;
-        close_image(t, &level, light, level.width == t->width && level.height == t->height ? t->rgba : NULL, bytes);
+        if (h->level_count) close_image(t, &level, light, bytes);
         if (!h->level_count) {
             share = covered(bytes, count, cutoff);
             whole = count;

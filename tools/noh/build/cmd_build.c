@@ -22,7 +22,7 @@ typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
         *terrain, *textures, *bound, *rename, *seam, *clean;
-    int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast;
+    int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
     double error_um, rate, error_cm, shell_cm, effort, influences, palette, bounce, lod_color, wrinkle_size,
         terrain_size, terrain_height, terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
@@ -201,6 +201,7 @@ static int set_wrinkles(const build_args *a, convert_options *o)
 
 static int set_textures(const build_args *a, convert_options *o)
 {
+    o->whole_textures = a->whole_textures;
     o->etc2 = strcmp(a->textures, "etc2") == 0;
     if (!o->etc2 && strcmp(a->textures, "raw") != 0) {
         return tool_usage("--textures wants etc2 or raw, not '%s'", a->textures);
@@ -447,6 +448,12 @@ static const option options[] = {
       .initial = "2048",
       .what = "halve textures until no side is longer than this, texels, 1 to 2048",
       .example = "1024",
+      .excludes = "--only=anim" },
+    { .name = "--whole-textures",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, whole_textures),
+      .what =
+          "keep columns and rows of textures that no triangle reads, and texture coordinates as the file has them: for textures that a game paints, or that actors wear from another pack",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,

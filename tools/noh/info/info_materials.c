@@ -120,6 +120,7 @@ void info_print_textures(const noh_pack *pack)
             const double db = texture_quality_db(h);
             printf(" %.1f dB%s", db, db < TEXTURE_QUALITY_DB ? " (below 38: --textures raw)" : "");
         }
+        if (h->trim) printf(", of %u x %u what triangles read", h->whole_width, h->whole_height);
         printf(", %llu bytes on the GPU", (unsigned long long)noh_gl_picture_bytes(&t, 1));
         if (h->format) printf(", %llu without ETC2", (unsigned long long)noh_gl_picture_bytes(&t, 0));
         printf("\n");
@@ -161,6 +162,8 @@ void info_json_textures(json *j, const noh_pack *pack)
         json_text(j, "name", t.name);
         json_integer(j, "width", t.header->width);
         json_integer(j, "height", t.header->height);
+        json_integer(j, "whole_width", t.header->trim ? t.header->whole_width : t.header->width);
+        json_integer(j, "whole_height", t.header->trim ? t.header->whole_height : t.header->height);
         json_integer(j, "levels", t.header->level_count);
         json_bool(j, "data", (t.header->flags & NOH_TEXTURE_LINEAR) != 0);
         json_text(j, "format", texture_format_name(t.header->format));
