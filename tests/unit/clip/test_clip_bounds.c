@@ -77,6 +77,47 @@ static void efforts(void **state)
     effort_is_never_larger(fixture_swing(12, 40, 1, 12.0f, 0.8, 0.3), "at 30 Hz");
 }
 
+/* Still, but for a strike of `length` frames in the middle. */
+static raw_set *strikes(uint32_t frames, uint32_t length)
+{
+    raw_set *set = fixture_swing(12, frames, 1, 40.0f, 3.0, 0.0);
+    const uint32_t first = (frames - length) / 2u, last = first + length;
+    for (uint32_t f = 0; f < frames; f++) {
+        const uint32_t from = f < first ? first : f > last ? last : f;
+        for (uint32_t j = 0; j < 12u; j++)
+            memcpy(fixture_rotation(&set->clips[0], f, j), fixture_rotation(&set->clips[0], from, j),
+                   4u * sizeof(float));
+    }
+    return set;
+}
+
+/* Effort 2 finds that what is still is cheap in a segment of its own; at high rates short segments are not tried. */
+static void short_segments_where_motion_is_sudden(void **state)
+{
+    raw_set *set = strikes(48, 5);
+    model_error error;
+    clip_report plain, usual;
+    clip_options o;
+    byte_buffer out;
+    (void)state;
+    test_skip_emulated("the encoder");
+    memset(&o, 0, sizeof o);
+    memset(&out, 0, sizeof out);
+    o.effort = 1;
+    assert_int_equal(clip_encode(&set->skeleton, &set->clips[0], &o, &out, &plain, &error), 0);
+    o.effort = 2;
+    assert_int_equal(clip_encode(&set->skeleton, &set->clips[0], &o, &out, &usual, &error), 0);
+    print_message("%u segments, %u bytes; %u segments, %u bytes\n", plain.segment_count, (unsigned)plain.bytes,
+                  usual.segment_count, (unsigned)usual.bytes);
+    assert_int_equal(plain.segment_count, 2);
+    assert_true(usual.segment_count > 2u && usual.bytes * 10u < plain.bytes * 9u);
+    set->clips[0].sample_rate_hz = 120.0;
+    assert_int_equal(clip_encode(&set->skeleton, &set->clips[0], &o, &out, &usual, &error), 0);
+    assert_int_equal(usual.segment_count, 2);
+    buffer_free(&out);
+    raw_set_free(set);
+}
+
 /* What comes into being: its root grows from (almost) nothing in some frames, or shrinks to it. */
 static raw_set *grows(float least, uint32_t branch, int at, int shrinks)
 {
@@ -141,6 +182,7 @@ int main(void)
         cmocka_unit_test(clips_that_grow_from_nothing),
         cmocka_unit_test(known_clips),
         cmocka_unit_test(efforts),
+        cmocka_unit_test(short_segments_where_motion_is_sudden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,7 +32,15 @@
 #define DEFAULT_FLOAT_ERROR 0.001
 #define SEGMENT_FRAMES_MIN 8u
 #define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
-#define LONG_SEGMENT 40u       /* frames: a few percent smaller where motion is smooth; a cache takes more for them */
+/* Frames of segments that are tried beside the usual ones: long ones are a few percent smaller where motion is smooth
+ * (a cache takes more for them), short ones up to a sixth where it starts, stops or strikes. Clips of one or two
+ * segments stay in a cache whole, those of more are decoded as they play: short ones have to pay for that. */
+#define LONG_SEGMENT 40u
+#define SHORT_SEGMENT 16u
+#define SHORTEST_SEGMENT 10u
+#define SHORT_PAYS 0.96 /* largest share of the bytes of longer ones */
+#define USUAL_LENGTH 0u
+#define LENGTH_OF_SMALLEST 0xffffffffu
 #define FAST_HZ 60.0
 #define EFFORT_USUAL 2u
 #define EFFORT_MAX 3u
@@ -52,15 +60,14 @@ typedef enum which_basis { BASIS_GUESSED, BASIS_OTHER, BASIS_OF_SMALLEST } which
 /* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
 typedef struct attempt {
     uint32_t effort;
-    uint32_t first, count;   /* tunings */
-    uint32_t segment_frames; /* 0: the usual ones */
+    uint32_t first, count; /* tunings */
+    uint32_t segment_frames;
     which_basis basis;
 } attempt;
 static const attempt attempts[] = {
-    { 1, 1, 1, 0, BASIS_GUESSED },
-    { 2, 1, 1, 0, BASIS_OTHER },
-    { 2, 0, 2, 0, BASIS_OF_SMALLEST },
-    { 3, 0, 5, 0, BASIS_OF_SMALLEST },
+    { 1, 1, 1, USUAL_LENGTH, BASIS_GUESSED },           { 2, 1, 1, USUAL_LENGTH, BASIS_OTHER },
+    { 2, 1, 1, SHORT_SEGMENT, BASIS_GUESSED },          { 2, 1, 1, SHORTEST_SEGMENT, BASIS_GUESSED },
+    { 2, 0, 2, LENGTH_OF_SMALLEST, BASIS_OF_SMALLEST }, { 3, 0, 5, LENGTH_OF_SMALLEST, BASIS_OF_SMALLEST },
     { 3, 0, 5, LONG_SEGMENT, BASIS_OF_SMALLEST },
 };
 #define ATTEMPTS (sizeof attempts / sizeof *attempts)
@@ -83,7 +90,7 @@ static int set_options(encoder *e, const clip_options *given)
     e->shell = o->shell_cm / e->unit_cm;
     if (o->effort > EFFORT_MAX) return enc_fail(e, "effort: 1 to 3");
     if (o->effort == 0u) o->effort = EFFORT_USUAL;
-    if (!o->segment_frames) o->segment_frames = e->attempt->segment_frames;
+    if (!o->segment_frames) o->segment_frames = e->attempt_frames;
     e->tunings = tunings + e->attempt->first;
     e->tuning_count = e->attempt->count;
     return 0;
@@ -248,14 +255,23 @@ static int encode_attempt(encoder *e, const encoder *from, byte_buffer *out, cli
     return failed;
 }
 
-/* Whether an attempt may give something else than those before it. Long segments have paid at high rates only. */
+/* Whether an attempt may give something else than those before it. Long segments have paid at high rates only, short
+ * ones at low rates. */
 static int is_tried(const encoder *from, const attempt *a)
 {
     const clip_options *o = &from->options;
     const raw_clip *c = from->clip;
     if (a->effort > (o->effort ? o->effort : EFFORT_USUAL)) return 0;
-    return !a->segment_frames ||
-           (!o->segment_frames && c->joint_count && c->sample_rate_hz > FAST_HZ && c->frame_count > LONG_SEGMENT);
+    if (a->segment_frames == USUAL_LENGTH || a->segment_frames == LENGTH_OF_SMALLEST) return 1;
+    return !o->segment_frames && c->joint_count && c->frame_count > a->segment_frames &&
+           (a->segment_frames == LONG_SEGMENT) == (c->sample_rate_hz > FAST_HZ);
+}
+
+/* least: bytes of the smallest attempt so far */
+static int is_smaller(const attempt *a, size_t bytes, size_t least)
+{
+    const int is_short = a->segment_frames == SHORT_SEGMENT || a->segment_frames == SHORTEST_SEGMENT;
+    return (double)bytes < (double)least * (is_short ? SHORT_PAYS : 1.0);
 }
 
 /* parabola: whether the smallest attempt so far has it */
@@ -272,7 +288,7 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
     encoder *e = calloc(2, sizeof *e); /* their bases are too large for some stacks */
     encoder *from;
     byte_buffer best;
-    uint32_t parabola = 0;
+    uint32_t parabola = 0, segment_frames = USUAL_LENGTH; /* of the smallest so far */
     int failed = 0, found = 0;
     if (!e) {
         if (error) snprintf(error->what, sizeof error->what, "out of memory");
@@ -290,14 +306,17 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
         if (!is_tried(from, &attempts[i])) continue;
         from->attempt = &attempts[i];
         from->basis = basis_of(&attempts[i], parabola);
+        from->attempt_frames = attempts[i].segment_frames == LENGTH_OF_SMALLEST ? segment_frames
+                                                                                : attempts[i].segment_frames;
         memset(&bytes, 0, sizeof bytes);
         failed = encode_attempt(e, from, &bytes, &r);
-        if (!failed && (!found || bytes.count < best.count)) {
+        if (!failed && (!found || is_smaller(&attempts[i], bytes.count, best.count))) {
             byte_buffer swap = best;
             best = bytes;
             bytes = swap;
             if (report) *report = r;
             parabola = r.parabola;
+            segment_frames = from->attempt_frames;
             found = 1;
         }
         buffer_free(&bytes);

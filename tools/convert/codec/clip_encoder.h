@@ -112,7 +112,8 @@ typedef struct encoder {
     clip_options options;
     enc_tuning tuning; /* of the current attempt */
     const struct attempt *attempt;
-    enc_basis basis; /* that is wanted */
+    uint32_t attempt_frames;   /* wanted length of its segments; 0: the usual ones */
+    enc_basis basis;           /* that is wanted */
     const enc_tuning *tunings; /* [tuning_count] every segment is encoded with each; the smallest result is kept */
     uint32_t tuning_count;
     model_error *error;
