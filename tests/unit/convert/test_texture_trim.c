@@ -124,9 +124,10 @@ static void expect_same_texels(const model *m, uint32_t texture, const float *wa
     memcpy(texels, t->rgba, bytes);
     texture_trim_texels(t, texels, 4, &side[0], &side[1]);
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
-        for (uint32_t k = 0; k < 36; k++) { /* eighths between the corners */
-            const float a = (float)(k % 6) / 5.0f, b = (1.0f - a) * (float)(k / 6) / 5.0f,
-                        share[3] = { a, b, 1.0f - a - b };
+        for (uint32_t k = 0; k < 36; k++) { /* fifths of the way between the corners */
+            const uint32_t row = k / 6;
+            const float a = (float)(k % 6) / 5.0f, b = (1.0f - a) * (float)row / 5.0f;
+            const float share[3] = { a, b, 1.0f - a - b };
             float old[2] = { 0 }, now[2] = { 0 };
             for (size_t c = 0; c < 6; c++) {
                 const size_t at = 2 * (size_t)mesh->indices[i + c / 2] + c % 2;

@@ -148,7 +148,7 @@ static uint32_t common_divisor(uint32_t a, uint32_t b)
     return a;
 }
 
-/* A group's maps are to be divided into whole blocks; `cells` first takes the blocks that all sides are multiples of. */
+/* A group's maps are to be divided into whole blocks: `cells` takes what their sides have in common, in blocks. */
 static void measure_map(trim *t, uint32_t texture)
 {
     const model_texture *map = &t->m->textures[texture];
@@ -278,7 +278,7 @@ static float moved(float at, uint32_t cells, uint64_t kept)
     return (float)(turn + (in - gone) / bits_of(kept));
 }
 
-static int move_mesh(const trim *t, uint32_t mesh, uint8_t *done)
+static void move_mesh(const trim *t, uint32_t mesh, uint8_t *done)
 {
     const model_mesh *of = &t->m->meshes[mesh];
     for (uint32_t s = 0; s < of->submesh_count; s++) {
@@ -294,7 +294,6 @@ static int move_mesh(const trim *t, uint32_t mesh, uint8_t *done)
             done[v] = 1;
         }
     }
-    return 0;
 }
 
 static void set_texture(const trim *t, uint32_t texture, texture_trimmed *done)
@@ -347,7 +346,7 @@ static int trim_groups(trim *t, uint8_t *moved_yet, texture_trimmed *done)
 int texture_trim(model *m, const mesh_levels *levels, texture_trimmed *done)
 {
     const size_t count = (size_t)m->material_count + m->texture_count + 1u;
-    trim t = { m, levels, malloc(count * sizeof *t.group_of), malloc(count * sizeof *t.groups) };
+    trim t = { m, levels, calloc(count, sizeof *t.group_of), calloc(count, sizeof *t.groups) };
     uint8_t *moved_yet = malloc((size_t)most_vertices(m) + 1u);
     int failed = !t.group_of || !t.groups || !moved_yet;
     *done = (texture_trimmed){ 0, 0, 0 };
@@ -381,7 +380,7 @@ void texture_trim_texels(const model_texture *t, void *texels, size_t texel_byte
 
 uint32_t texture_trim_word(const model_texture *t)
 {
-    uint64_t words[4] = { t->cells[0], t->kept[0], t->cells[1], t->kept[1] };
+    const uint64_t words[4] = { t->cells[0], t->kept[0], t->cells[1], t->kept[1] };
     uint8_t bytes[32];
     uint32_t word;
     if (!t->cells[0] && !t->cells[1]) return 0;
