@@ -30,7 +30,8 @@ typedef struct noh_clip_desc {
     uint32_t joint_count; /* of the skeleton; must be the clip's; 0 for a clip that animates floats only */
     /* frames per second that are enough; default (0) all of them. A clip of at least twice as many (less a hundredth)
      * is halved: about every second of its frames is decoded and kept in the cache, and what lies between is
-     * interpolated, so that its certificate no longer holds between those frames */
+     * interpolated. Its certificate does not hold then: of segments that are split (NOH_CLIP_FLAG_SPLIT) the higher
+     * half of the frequencies is left out, too */
     uint32_t sample_rate_enough;
 } noh_clip_desc;
 

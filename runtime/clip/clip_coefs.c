@@ -106,23 +106,30 @@ static void read_mean(noh_bits *b, uint32_t last, const history h[3], int32_t ou
     }
 }
 
-uint32_t noh_clip_read_coefs(noh_bits *bits, uint32_t frames, uint32_t last_before, int32_t out[][4])
+uint32_t noh_clip_read_coefs(noh_bits *bits, uint32_t first, uint32_t count, uint32_t context, int32_t out[][4])
 {
     noh_bits b = *bits; /* a copy that `out` cannot alias */
     history h[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
+    const uint32_t means = first == 0u;
     uint32_t last;
     noh_bits_refill(&b);
-    last = noh_clip_symbol(&b, noh_clip_last_table[noh_clip_last_context(last_before)], NOH_CLIP_LAST_BITS);
-    if (last > frames) {
-        last = frames;
+    last = noh_clip_symbol(&b, noh_clip_last_table[context], NOH_CLIP_LAST_BITS);
+    if (last > count) {
+        last = count;
     }
     if (last > 0u) {
         const uint16_t *table = noh_clip_triple_table[NOH_CLIP_TRIPLE_FIRST];
-        for (uint32_t k = last - 1u; k > 0u; k--) {
-            read_triple(&b, table, h, out[k]);
+        if (context == NOH_CLIP_LAST_LOW && last == count) {
+            h[0].near = h[1].near = h[2].near = NOH_CLIP_LOW_NEIGHBOUR;
             table = noh_clip_triple_table[busy_of(h)];
         }
-        read_mean(&b, last, h, out[0]);
+        for (uint32_t k = last; k > means; k--) {
+            read_triple(&b, table, h, out[k - 1u]);
+            table = noh_clip_triple_table[busy_of(h)];
+        }
+        if (means) {
+            read_mean(&b, last, h, out[0]);
+        }
     }
     *bits = b;
     return last;

@@ -3,7 +3,8 @@
  * Frequencies run from high to low. A triple (the same frequency of three components) is one symbol, made of its
  * components' quotients, 0..3 each, from the table of context
  *   bit c: e_c >= NOH_CLIP_BUSY, e_c = sum of component c's last three magnitudes;
- * the first triple has a table of its own. Then come, for each component: after a quotient of 3 an Exp-Golomb number,
+ * the first triple has a table of its own. But a low part (clip_format.h) that has all its frequencies most likely goes
+ * on above: its first triple is coded as if one of NOH_CLIP_LOW_NEIGHBOUR in each component stood before it. Then come, for each component: after a quotient of 3 an Exp-Golomb number,
  * which is added to it; s_c low bits of the magnitude, s_c = bit length of e_c / 2; and a sign where the magnitude is
  * not zero. Frequency 0 (the mean, which is large, and which its neighbours say little about) is coded for each
  * component as the bit length of its magnitude, the bits below the highest, and a sign. */
@@ -20,7 +21,10 @@
 #define NOH_CLIP_TRIPLE_BITS 9u
 #define NOH_CLIP_TRIPLE_SYMBOLS 64u
 #define NOH_CLIP_QUOTIENT_MAX 3u
-#define NOH_CLIP_LAST_CONTEXTS 7u
+#define NOH_CLIP_LAST_BEFORE 7u /* contexts that follow from the track before */
+#define NOH_CLIP_LAST_LOW 7u    /* the context of a low part */
+#define NOH_CLIP_LOW_NEIGHBOUR 2u
+#define NOH_CLIP_LAST_CONTEXTS 8u
 #define NOH_CLIP_LAST_BITS 8u
 #define NOH_CLIP_LAST_SYMBOLS (NOH_CLIP_SEGMENT_FRAMES_MAX + 1u)
 #define NOH_CLIP_DC_CONTEXTS 5u
@@ -53,7 +57,7 @@ static inline uint32_t noh_clip_shift(uint32_t e)
 static inline uint32_t noh_clip_last_context(uint32_t before)
 {
     const uint32_t length = before ? noh_clip_bit_length(before - 1u) + 1u : 0u; /* 0, 1, 2, 3-4, 5-8, 9-16, more */
-    return length < NOH_CLIP_LAST_CONTEXTS ? length : NOH_CLIP_LAST_CONTEXTS - 1u;
+    return length < NOH_CLIP_LAST_BEFORE ? length : NOH_CLIP_LAST_BEFORE - 1u;
 }
 
 /* The context of a mean: how busy its component is just above it. */
@@ -70,10 +74,11 @@ static inline uint32_t noh_clip_symbol(noh_bits *b, const uint16_t *table, uint3
     return (uint32_t)entry >> 4;
 }
 
-/* Read one track's coefficients.
- * shapes  out[frames][4]: component c of frequency k at out[k][c]; out[k][3] stays untouched
- * returns the number of frequencies, at most `frames`; those above it are not written
- * ranges  any bits: magnitudes stay below 2^NOH_CLIP_MAGNITUDE_BITS, loops within `frames` */
-uint32_t noh_clip_read_coefs(noh_bits *b, uint32_t frames, uint32_t last_before, int32_t out[][4]);
+/* Read one track's coefficients from frequency `first` on; where that is 0, its means too. `context`: of their number,
+ * by noh_clip_last_context or NOH_CLIP_LAST_LOW.
+ * shapes  out[count][4]: component c of frequency first + k at out[k][c]; out[k][3] stays untouched
+ * returns how many frequencies there are, at most `count`; those above are not written
+ * ranges  any bits: magnitudes stay below 2^NOH_CLIP_MAGNITUDE_BITS, loops within `count` */
+uint32_t noh_clip_read_coefs(noh_bits *b, uint32_t first, uint32_t count, uint32_t context, int32_t out[][4]);
 
 #endif

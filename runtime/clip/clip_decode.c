@@ -16,6 +16,10 @@ noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment)
     memset(&c, 0, sizeof c);
     c.segment = segment;
     c.raw_tracks = (uint8_t)noh_bits_get(&b, 1u);
+    if ((clip->info.flags & NOH_CLIP_FLAG_SPLIT) && noh_bits_get(&b, 1u)) {
+        const uint32_t low_bits = noh_bits_varint(&b);
+        c.high = noh_bits_position(&b) + low_bits;
+    }
     c.position = noh_bits_position(&b);
     for (uint32_t i = 0; i < NOH_CLIP_CLASSES; i++) {
         c.last_before[i] = LAST_AT_START;
@@ -82,11 +86,34 @@ static void read_wild(noh_bits *b, float reference[4])
     }
 }
 
+/* The coefficients of a track. Of a split segment the high ones come from its second part, and whoever wants half of the
+ * frames does without them. `high`: a reader of that part, NULL where it is not read. Returns how many there are. */
+static uint32_t read_frequencies(noh_bits *b, noh_bits *high, const noh_clip_basis *basis, uint32_t class,
+                                 noh_clip_cursor *cursor, int32_t coefs[][4])
+{
+    const uint32_t split = cursor->high != 0u, low = split ? basis->frames / 2u : basis->frames;
+    const uint32_t context = split ? NOH_CLIP_LAST_LOW : noh_clip_last_context(cursor->last_before[class]);
+    uint32_t last = noh_clip_read_coefs(b, 0, low, context, coefs);
+    if (!split) {
+        cursor->last_before[class] = (uint8_t)last;
+    }
+    if (high) {
+        const uint32_t more = noh_clip_read_coefs(high, low, basis->frames - low,
+                                                  noh_clip_last_context(cursor->last_before[class]), coefs + low);
+        cursor->last_before[class] = (uint8_t)more;
+        if (more) {
+            memset(coefs + last, 0, (low - last) * sizeof *coefs);
+            last = low + more;
+        }
+    }
+    return last;
+}
+
 /* One track of a segment: read its coefficients, multiply by the step, turn mixed axes back, and sum the cosines into
  * frames. A rotation is the reference times the rotation that the components stand for, a linear value the reference
  * plus the components. */
-static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
-                         noh_clip_cursor *cursor, uint8_t *out)
+static void decode_track(noh_bits *b, noh_bits *high, const noh_clip *clip, const noh_clip_track *track,
+                         const noh_clip_basis *basis, noh_clip_cursor *cursor, uint8_t *out)
 {
     int32_t coefs[NOH_CLIP_SEGMENT_FRAMES_MAX][4];
     float components[NOH_CLIP_SEGMENT_FRAMES_MAX][4], reference[4];
@@ -97,8 +124,7 @@ static void decode_track(noh_bits *b, const noh_clip *clip, const noh_clip_track
     if (track->flags & NOH_CLIP_TRACK_WILD) {
         read_wild(b, reference);
     }
-    last = noh_clip_read_coefs(b, basis->frames, cursor->last_before[class], coefs);
-    cursor->last_before[class] = (uint8_t)last;
+    last = read_frequencies(b, high, basis, class, cursor, coefs);
     cursor->step_before[class] = (int16_t)step;
     noh_clip_dequantise((const int32_t(*)[4])coefs, last, noh_clip_step(step),
                         track->flags & NOH_CLIP_TRACK_MIX ? track->mix : NULL, components);
@@ -114,10 +140,14 @@ void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip
                      uint8_t *frames)
 {
     const uint32_t rotation_bytes = clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW;
-    noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]);
+    const uint32_t reads_high = cursor->high && !basis->halved;
+    noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]), high = b;
     NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
     NOH_ASSERT(basis->frames == noh_clip_segment_frames(clip, cursor->segment));
     noh_bits_seek(&b, cursor->position);
+    if (reads_high) {
+        noh_bits_seek(&high, cursor->high);
+    }
     for (; cursor->track < track_end; cursor->track++) {
         const noh_clip_track *track = &clip->tracks[cursor->track];
         uint8_t *out = frames + (track->kind == NOH_CLIP_ROTATION ? track->entry * rotation_bytes
@@ -125,8 +155,11 @@ void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip
         if (cursor->raw_tracks && noh_bits_get(&b, 1u)) {
             decode_raw(&b, clip, track, basis, out);
         } else {
-            decode_track(&b, clip, track, basis, cursor, out);
+            decode_track(&b, reads_high ? &high : NULL, clip, track, basis, cursor, out);
         }
     }
     cursor->position = noh_bits_position(&b);
+    if (reads_high) {
+        cursor->high = noh_bits_position(&high);
+    }
 }

@@ -14,8 +14,9 @@
 typedef struct noh_clip_cursor {
     uint32_t segment, track;
     size_t position;    /* bits from the clip's first byte */
+    size_t high;        /* the same of the high part; 0: the segment is not split */
     uint8_t raw_tracks; /* 1: the segment has some */
-    uint8_t last_before[NOH_CLIP_CLASSES];
+    uint8_t last_before[NOH_CLIP_CLASSES]; /* of a split segment in its high part */
     int16_t step_before[NOH_CLIP_CLASSES];
 } noh_clip_cursor;
 

@@ -40,15 +40,18 @@
  *   1        joints only. 1: mixed axes: unit quaternion of width 8, whose matrix turns
  *            decoded triples into components
  *
- * A segment is a bit stream of its own: 1 bit "has raw tracks", then per track, in header order:
+ * A segment is a bit stream of its own: 1 bit "has raw tracks", with SPLIT 1 bit "is split", where that is 1 a varint,
+ * the bits that follow before the high part begins, then per track, in header order:
  *   1        only with raw tracks: this one is raw: frames x (4 or 3) x 32-bit floats, no more
  *   step     symbol of the step table: zigzag difference to the header's step (segments > 1)
  *            or to the step of the last track of its class (single); 31: 8 bits, absolute.
  *            step size = 2^(NOH_CLIP_STEP_TOP - id / 4)
  *   32 + 1   wild rotations: unit quaternion of width 10, then a sign bit
- *   last     symbol: number of frequencies, 0..frames of the segment
+ *   last     symbol: number of frequencies, 0..frames of the segment, or if it is split, 0..frames / 2
  *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs_internal.h
  *   dc       frequency 0: per component a category symbol, then bits and sign
+ * The high part of a split segment has, per track that is not raw, the frequencies from frames / 2 up: how many there
+ * are, by a symbol like `last`, then triples down to frames / 2. Whoever plays half of the frames leaves it out.
  * Values are the orthonormal DCT-II of each component, or with PARABOLA the transform whose rows are the constant, x
  * and x^2 and then the DCT-II's from its second on, made orthonormal in that order among those of the same symmetry; a
  * rotation's components are the modified Rodrigues vector
@@ -58,7 +61,7 @@
 #ifndef NOH_CLIP_CLIP_FORMAT_H
 #define NOH_CLIP_CLIP_FORMAT_H
 
-#define NOH_CLIP_VERSION 4u /* raised for new tables too: clip_tables.c is part of the format */
+#define NOH_CLIP_VERSION 5u /* raised for new tables too: clip_tables.c is part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: some joint's lever is too long for 16 bits */
 #define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale is not its bind pose's */
@@ -67,7 +70,8 @@
 /* the bound holds for all points at the shell's distance; without it, for the three on each joint's axes */
 #define NOH_CLIP_FLAG_SPHERE 16u
 #define NOH_CLIP_FLAG_PARABOLA 32u /* the transform begins with a parabola: see above */
-#define NOH_CLIP_FLAGS_ALL 63u
+#define NOH_CLIP_FLAG_SPLIT 64u    /* of some segments the high frequencies lie apart */
+#define NOH_CLIP_FLAGS_ALL 127u
 
 #define NOH_CLIP_JOINTS_MAX 4096u
 #define NOH_CLIP_FLOATS_MAX 4096u

@@ -222,6 +222,13 @@ static raw_set *spinning(void)
     return set;
 }
 
+static raw_set *shaking(void)
+{
+    raw_set *set = fixture_swing(4, 70, 2, 10.0f, 0.1, 0.0);
+    fixture_shake(&set->clips[0], 0.02);
+    return set;
+}
+
 static raw_set *with_weights(void)
 {
     raw_set *set = fixture_swing(2, 30, 1, 10.0f, 0.5, 0.5);
@@ -235,13 +242,16 @@ static raw_set *with_weights(void)
 
 static void clips(void **state)
 {
-    clip_options open;
+    clip_options open, split;
     (void)state;
     memset(&open, 0, sizeof open);
     open.open_loop = 1;
+    memset(&split, 0, sizeof split);
+    split.split_hz = 1.0;
     write_clip("still", fixture_still(3, 4, 1, 10.0f, 30.0), NULL);
     write_clip("short", fixture_swing(3, 12, 1, 10.0f, 0.6, 0.5), NULL);
     write_clip("segments", fixture_swing(6, 100, 2, 10.0f, 0.6, 0.5), NULL);
+    write_clip("split", shaking(), &split);
     write_clip("wide", fixture_swing(3, 20, 1, 3000.0f, 0.5, 10.0), NULL);
     write_clip("spinning", spinning(), NULL);
     write_clip("weights", with_weights(), NULL);

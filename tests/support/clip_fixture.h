@@ -104,6 +104,19 @@ static inline raw_set *fixture_swing(uint32_t joints, uint32_t frames, uint32_t 
     return set;
 }
 
+/* Every rotation of a clip jitters as captured motion does. */
+static inline void fixture_shake(raw_clip *c, double radians)
+{
+    fixture_rng r = { 11 };
+    for (uint32_t i = 0; i < c->frame_count * c->joint_count; i++) {
+        float *q = fixture_rotation(c, i / c->joint_count, i % c->joint_count);
+        double square = 0.0;
+        for (int k = 0; k < 3; k++) q[k] += (float)(radians * (fixture_random(&r) - 0.5));
+        for (int k = 0; k < 4; k++) square += (double)q[k] * (double)q[k];
+        for (int k = 0; k < 4; k++) q[k] = (float)((double)q[k] / sqrt(square));
+    }
+}
+
 /* Every n-th frame. */
 static inline void fixture_decimate(raw_clip *c, uint32_t n)
 {

@@ -30,6 +30,7 @@
 #define DEFAULT_ERROR_CM 0.01
 #define DEFAULT_SHELL_CM 3.0
 #define DEFAULT_FLOAT_ERROR 0.001
+#define DEFAULT_SPLIT_HZ 100.0 /* below it few play half of the frames; a split costs up to a hundredth of the bytes */
 #define SEGMENT_FRAMES_MIN 8u
 #define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
 /* Frames of segments that are tried beside the usual ones: long ones are a few percent smaller where motion is smooth
@@ -81,6 +82,8 @@ static int set_options(encoder *e, const clip_options *given)
     if (o->float_error == 0.0) o->float_error = DEFAULT_FLOAT_ERROR;
     if (!(o->error_cm >= 1e-6 && o->error_cm <= 400.0)) return enc_fail(e, "error_cm: 0.000001 to 400");
     if (!(o->shell_cm >= 1e-3 && o->shell_cm <= 1e5)) return enc_fail(e, "shell_cm: 0.001 to 100000");
+    if (o->split_hz == 0.0) o->split_hz = DEFAULT_SPLIT_HZ;
+    if (!(o->split_hz > 0.0)) return enc_fail(e, "split_hz: above 0");
     if (!(o->float_error > 0.0)) return enc_fail(e, "float_error: above 0");
     if (o->segment_frames && (o->segment_frames < SEGMENT_FRAMES_MIN || o->segment_frames > SEGMENT_FRAMES_MAX))
         return enc_fail(e, "segment_frames: 8 to 40");
@@ -174,7 +177,7 @@ static int write_certified(encoder *e, byte_buffer *out, double *worst_part)
     const size_t begin = out->count;
     uint32_t time_parts;
     e->options.histogram = NULL;
-    if (enc_write(e, 0.0, 0.0, 0, 0, out)) return 1;
+    if (enc_choose_splits(e) || enc_write(e, 0.0, 0.0, 0, 0, out)) return 1;
     if (enc_certify(e, out, begin, worst_part, &r->max_error_cm, &r->rms_error_cm, &r->max_error_joint, &time_parts))
         return 1;
     if (!(*worst_part <= 1.0)) return 0;

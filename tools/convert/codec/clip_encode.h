@@ -25,8 +25,11 @@ typedef struct clip_options {
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t effort;              /* 1 to 3: time for bytes, a higher one never larger; 0 = 2 */
     uint32_t segment_frames; /* wanted length of a segment, 8..40; 0: a third of a second, 24 to 32 (effort 3: or 40) */
-    int axes;                /* bound only the three points on each joint's axes, as other libraries measure */
-    int open_loop;           /* joints do not correct their parents' errors, so that single joints can be masked out */
+    /* segments of clips of at least so many frames a second are split, so that a halved clip decodes less; 0 = 100;
+     * INFINITY: none */
+    double split_hz;
+    int axes;      /* bound only the three points on each joint's axes, as other libraries measure */
+    int open_loop; /* joints do not correct their parents' errors, so that single joints can be masked out */
     void (*progress)(void *user, uint32_t done, uint32_t of); /* segments; NULL = none */
     void *user;
     struct clip_histogram *histogram; /* counts symbols, to train the tables; NULL = none */

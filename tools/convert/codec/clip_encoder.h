@@ -71,6 +71,7 @@ typedef struct enc_piece {
 
 typedef struct enc_segment {
     uint32_t first, count;
+    uint32_t split;    /* 1: its high frequencies lie apart (enc_choose_splits) */
     enc_piece *pieces; /* [track_count] */
 } enc_segment;
 
@@ -133,6 +134,7 @@ typedef struct encoder {
     enc_segment *segments;
     uint32_t segment_count;
     uint32_t parabola; /* which of the NOH_CLIP_BASES */
+    uint32_t splits;   /* 1: some segments are split */
     noh_clip_basis bases[ENC_FRAMES_MAX + 1];
     double *transforms[ENC_FRAMES_MAX + 1]; /* [frames][frames], from the bases */
     struct enc_loop *loop;                  /* clip_segment.c */
@@ -200,6 +202,7 @@ int enc_segment_fit(encoder *e, uint32_t index, double *worst);
 void enc_free_pieces(const encoder *e, enc_piece *pieces);
 int enc_segment_cost(encoder *e, const enc_segment *s, size_t *bytes);
 int enc_write(encoder *e, double max_error, double rms_error, uint32_t joint, uint32_t time_parts, byte_buffer *out);
+int enc_choose_splits(encoder *e); /* of a clip of a high rate: once all segments are fitted */
 int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error,
                 double *rms_error, uint32_t *joint, uint32_t *time_parts);
 

@@ -90,7 +90,7 @@ static uint32_t flags_of(const encoder *e)
 {
     uint32_t flags = (e->wide ? NOH_CLIP_FLAG_WIDE : 0u) | (e->clip->loop ? NOH_CLIP_FLAG_LOOP : 0u) |
                      (e->options.open_loop ? NOH_CLIP_FLAG_OPEN : 0u) | (e->options.axes ? 0u : NOH_CLIP_FLAG_SPHERE) |
-                     (e->parabola ? NOH_CLIP_FLAG_PARABOLA : 0u);
+                     (e->parabola ? NOH_CLIP_FLAG_PARABOLA : 0u) | (e->splits ? NOH_CLIP_FLAG_SPLIT : 0u);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         if (e->joints[j].modes[2] != NOH_CLIP_MODE_BIND) flags |= NOH_CLIP_FLAG_SCALE;
     }
@@ -216,22 +216,40 @@ static void put_mean(bit_writer *w, encoder *e, const int32_t c[3], const uint32
     }
 }
 
-static void put_coefs(bit_writer *w, encoder *e, const enc_piece *p, uint32_t last_before)
+static int is_zero(const int32_t c[3])
+{
+    return !c[0] && !c[1] && !c[2];
+}
+
+/* What the coefficients above frequency k, below `end`, say of it; `neighbour`: what stands at `end`. */
+static void sum_above(const enc_piece *p, uint32_t k, uint32_t end, uint32_t neighbour, uint32_t sums[3])
+{
+    for (int c = 0; c < 3; c++) {
+        sums[c] = end <= k + 3u ? neighbour : 0u;
+        for (uint32_t i = k + 1u; i < end && i <= k + 3u; i++) sums[c] += (uint32_t)abs(p->coefs[i][c]);
+    }
+}
+
+/* The frequencies from `first` up to `end`, without zeros at their upper end. Returns how many there are. */
+static uint32_t put_coefs(bit_writer *w, encoder *e, const enc_piece *p, uint32_t first, uint32_t end, uint32_t context)
 {
     clip_histogram *h = e->options.histogram;
-    const uint32_t context = noh_clip_last_context(last_before);
-    put_symbol(w, noh_clip_last_table[context], NOH_CLIP_LAST_BITS, p->last, h ? h->last[context] : NULL);
-    for (uint32_t k = p->last; k-- > 0u;) {
-        uint32_t sums[3] = { 0, 0, 0 };
-        for (uint32_t i = k + 1u; i < p->last && i <= k + 3u; i++) {
-            for (int c = 0; c < 3; c++) sums[c] += (uint32_t)abs(p->coefs[i][c]);
-        }
+    const uint32_t all = end;
+    uint32_t sums[3], neighbour;
+    if (end > p->last) end = p->last;
+    while (end > first && is_zero(p->coefs[end - 1u])) end--;
+    if (end < first) end = first;
+    put_symbol(w, noh_clip_last_table[context], NOH_CLIP_LAST_BITS, end - first, h ? h->last[context] : NULL);
+    neighbour = context == NOH_CLIP_LAST_LOW && end == all ? NOH_CLIP_LOW_NEIGHBOUR : 0u;
+    for (uint32_t k = end; k-- > first;) {
+        sum_above(p, k, end, neighbour, sums);
         if (k) {
-            put_triple(w, e, p->coefs[k], sums, k == p->last - 1u);
+            put_triple(w, e, p->coefs[k], sums, k == end - 1u && !neighbour);
         } else {
-            put_mean(w, e, p->coefs[0], sums, p->last);
+            put_mean(w, e, p->coefs[0], sums, end);
         }
     }
+    return end - first;
 }
 
 static void put_step(bit_writer *w, encoder *e, uint32_t step, int before)
@@ -245,12 +263,11 @@ static void put_step(bit_writer *w, encoder *e, uint32_t step, int before)
     if (symbol == NOH_CLIP_STEP_ESCAPE) put(w, step, 8);
 }
 
-static void put_segment(bit_writer *w, encoder *e, const enc_segment *s)
+/* The tracks of a segment; `low`: of how many frequencies. */
+static void put_tracks(bit_writer *w, encoder *e, const enc_segment *s, uint32_t any_raw, uint32_t low)
 {
-    uint32_t last[2] = { LAST_AT_START, LAST_AT_START }, any_raw = 0;
+    uint32_t last[2] = { LAST_AT_START, LAST_AT_START };
     int step[2] = { NOH_CLIP_STEP_FIRST, NOH_CLIP_STEP_FIRST };
-    for (uint32_t i = 0; i < e->track_count; i++) any_raw |= s->pieces[i].raw;
-    put(w, any_raw, 1);
     for (uint32_t i = 0; i < e->track_count; i++) {
         const enc_track *t = &e->tracks[i];
         const enc_piece *p = &s->pieces[i];
@@ -266,11 +283,50 @@ static void put_segment(bit_writer *w, encoder *e, const enc_segment *s)
             put_quat(w, p->wild_codes, NOH_CLIP_WILD_BITS);
             put(w, p->negative, 1);
         }
-        put_coefs(w, e, p, last[class]);
-        last[class] = p->last;
+        last[class] = put_coefs(w, e, p, 0, low, s->split ? NOH_CLIP_LAST_LOW : noh_clip_last_context(last[class]));
         step[class] = p->step;
     }
+}
+
+/* What put_tracks has left out. */
+static void put_high(bit_writer *w, encoder *e, const enc_segment *s, uint32_t low)
+{
+    uint32_t last[2] = { LAST_AT_START, LAST_AT_START };
+    for (uint32_t i = 0; i < e->track_count; i++) {
+        const uint32_t class = e->tracks[i].track.kind == NOH_CLIP_ROTATION;
+        if (!s->pieces[i].raw)
+            last[class] = put_coefs(w, e, &s->pieces[i], low, s->count, noh_clip_last_context(last[class]));
+    }
+}
+
+/* All that another writer has written. */
+static void put_bits_of(bit_writer *w, const bit_writer *from)
+{
+    for (size_t i = 0; i < from->out->count; i++) put(w, from->out->bytes[i], BYTE);
+    put(w, (uint32_t)from->word, from->count);
+    if (from->out->failed) w->out->failed = 1;
+}
+
+static void put_segment(bit_writer *w, encoder *e, const enc_segment *s)
+{
+    uint32_t any_raw = 0;
+    byte_buffer bytes;
+    bit_writer low = { &bytes, 0, 0 };
+    for (uint32_t i = 0; i < e->track_count; i++) any_raw |= s->pieces[i].raw;
+    put(w, any_raw, 1);
+    if (e->splits) put(w, s->split, 1);
+    if (!s->split) {
+        put_tracks(w, e, s, any_raw, s->count);
+        put_end(w);
+        return;
+    }
+    memset(&bytes, 0, sizeof bytes);
+    put_tracks(&low, e, s, any_raw, s->count / 2u);
+    put_varint(w, (uint32_t)bytes.count * BYTE + low.count);
+    put_bits_of(w, &low);
+    put_high(w, e, s, s->count / 2u);
     put_end(w);
+    buffer_free(&bytes);
 }
 
 /* The size of a segment, found by writing it. */

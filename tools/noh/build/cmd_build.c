@@ -23,7 +23,7 @@ typedef struct build_args {
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
         *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
-    double error_um, rate, error_cm, shell_cm, effort, influences, palette, bounce, lod_color, wrinkle_size,
+    double error_um, rate, error_cm, shell_cm, split_hz, effort, influences, palette, bounce, lod_color, wrinkle_size,
         terrain_size, terrain_height, terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
         attached;
@@ -72,11 +72,13 @@ static int set_clip(const build_args *a, convert_options *o)
     if (strcmp(a->bound, "sphere") != 0 && strcmp(a->bound, "axes") != 0) {
         return tool_usage("--bound wants sphere or axes, not '%s'", a->bound);
     }
+    if (!(a->split_hz >= 0.0)) return tool_usage("--split-hz wants 0 or more frames a second, not %g", a->split_hz);
     o->clip.sample_rate_hz = a->rate;
     o->clip.check_loops = a->loop;
     o->clip.clip.error_cm = a->error_cm;
     o->clip.clip.shell_cm = a->shell_cm;
     o->clip.clip.axes = a->bound[0] == 'a';
+    o->clip.clip.split_hz = a->split_hz == 0.0 ? INFINITY : a->split_hz;
     o->clip.clip.effort = (uint32_t)a->effort;
     o->clip.clip.open_loop = a->mask;
     o->clip.clip_errors = (named_errors){ a->clip_errors.items, (uint32_t)a->clip_errors.count };
@@ -564,6 +566,15 @@ static const option options[] = {
       .what =
           "which points at the shell are bounded: all of them, or the three on each joint's axes, as other libraries measure",
       .example = "axes",
+      .excludes = "--only=mesh" },
+    { .name = "--split-hz",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, split_hz),
+      .value = "HZ",
+      .initial = "100",
+      .what =
+          "clips of at least so many frames a second are stored so that playing half of them decodes half as much; 0: none",
+      .example = "60",
       .excludes = "--only=mesh" },
     { .name = "--effort",
       .kind = OPTION_NUMBER,
