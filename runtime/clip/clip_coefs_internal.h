@@ -4,10 +4,11 @@
  * components' quotients, 0..3 each, from the table of context
  *   bit c: e_c >= NOH_CLIP_BUSY, e_c = sum of component c's last three magnitudes;
  * the first triple has a table of its own. But a low part (clip_format.h) that has all its frequencies most likely goes
- * on above: its first triple is coded as if one of NOH_CLIP_LOW_NEIGHBOUR in each component stood before it. Then come, for each component: after a quotient of 3 an Exp-Golomb number,
- * which is added to it; s_c low bits of the magnitude, s_c = bit length of e_c / 2; and a sign where the magnitude is
- * not zero. Frequency 0 (the mean, which is large, and which its neighbours say little about) is coded for each
- * component as the bit length of its magnitude, the bits below the highest, and a sign. */
+ * on above: its first triple is coded as if one of NOH_CLIP_LOW_NEIGHBOUR in each component stood before it. Then come,
+ * in the order of the components: for each quotient of 3 an Exp-Golomb number, which is added to it; s_c low bits of each
+ * magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not zero. Frequency 0 (the mean, which is
+ * large, and which its neighbours say little about) is coded for each component as the bit length of its magnitude, the
+ * bits below the highest, and a sign. */
 #ifndef NOH_CLIP_CLIP_COEFS_INTERNAL_H
 #define NOH_CLIP_CLIP_COEFS_INTERNAL_H
 
@@ -15,7 +16,7 @@
 #include "clip/clip_format.h"
 #include "base/compiler.h"
 
-#define NOH_CLIP_BUSY 2u
+#define NOH_CLIP_BUSY 2u         /* where noh_clip_shift is not 0 */
 #define NOH_CLIP_TRIPLE_FIRST 8u /* context of the first triple */
 #define NOH_CLIP_TRIPLE_CONTEXTS 9u
 #define NOH_CLIP_TRIPLE_BITS 9u
@@ -47,10 +48,11 @@ static inline uint32_t noh_clip_bit_length(uint32_t v)
 }
 
 /* How many low bits of a magnitude stay out of the symbol; e is the sum of its neighbours. That is one more than would
- * cost the fewest bytes, so that hardly any quotient needs an escape. */
+ * cost the fewest bytes, so that few quotients need an escape. */
 static inline uint32_t noh_clip_shift(uint32_t e)
 {
-    return noh_clip_bit_length(e >> 1);
+    /* the bit length of e / 2, without the branch that 0 would take */
+    return 31u - noh_leading_zeros(e | 1u);
 }
 
 /* The context of `last`: how many frequencies the track before had. */

@@ -210,44 +210,87 @@ NOH_ALWAYS_INLINE noh_v4 load_slots(const float *row, int halved, uint32_t next)
     return halved ? noh_v4_even(noh_v4_load(row), noh_v4_load(row + next)) : noh_v4_load(row);
 }
 
-NOH_ALWAYS_INLINE void transform_slots(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
-                                       uint32_t first, int halved, quad *out)
+/* Sums of three components over rows of one symmetry, for four slots and for the four after them. */
+typedef struct sums {
+    noh_v4 near[3], far[3];
+} sums;
+
+NOH_ALWAYS_INLINE void add_row(sums *s, const float *row, const float coef[4], int halved, uint32_t next, int two)
 {
-    const float *row = basis->rows + first;
-    const uint32_t half = basis->half, next = first + 4u < half ? 4u : 0u; /* 0: past the middle, not used */
-    noh_v4 even[3], odd[3];
-    uint32_t k = 0;
-    for (int c = 0; c < 3; c++) {
-        even[c] = noh_v4_set(0.0f);
-        odd[c] = noh_v4_set(0.0f);
-    }
-    for (; k + 1u < last; k += 2u, row += 2u * half) {
-        const noh_v4 a = load_slots(row, halved, next), b = load_slots(row + half, halved, next);
-        for (int c = 0; c < 3; c++) {
-            even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
-            odd[c] = noh_v4_add(odd[c], noh_v4_mul(b, noh_v4_set(coefs[k + 1u][c])));
-        }
-    }
-    if (k < last) {
-        const noh_v4 a = load_slots(row, halved, next);
-        for (int c = 0; c < 3; c++) {
-            even[c] = noh_v4_add(even[c], noh_v4_mul(a, noh_v4_set(coefs[k][c])));
-        }
-    }
-    for (int c = 0; c < 3; c++) {
-        out->front[c] = noh_v4_add(even[c], odd[c]);
-        out->back[c] = noh_v4_sub(even[c], odd[c]);
+    const uint32_t far = halved ? 8u : 4u;
+    const noh_v4 x = noh_v4_set(coef[0]), y = noh_v4_set(coef[1]), z = noh_v4_set(coef[2]);
+    const noh_v4 a = load_slots(row, halved, two ? 4u : next);
+    s->near[0] = noh_v4_add(s->near[0], noh_v4_mul(a, x));
+    s->near[1] = noh_v4_add(s->near[1], noh_v4_mul(a, y));
+    s->near[2] = noh_v4_add(s->near[2], noh_v4_mul(a, z));
+    if (two) {
+        const noh_v4 b = load_slots(row + far, halved, next);
+        s->far[0] = noh_v4_add(s->far[0], noh_v4_mul(b, x));
+        s->far[1] = noh_v4_add(s->far[1], noh_v4_mul(b, y));
+        s->far[2] = noh_v4_add(s->far[2], noh_v4_mul(b, z));
     }
 }
 
-static void transform_quad(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last, uint32_t slot,
-                           quad *out)
+NOH_ALWAYS_INLINE void join(const noh_v4 even[3], const noh_v4 odd[3], quad *out)
 {
-    if (basis->halved) {
-        transform_slots(basis, coefs, last, 2u * slot, 1, out);
-    } else {
-        transform_slots(basis, coefs, last, slot, 0, out);
+    out->front[0] = noh_v4_add(even[0], odd[0]);
+    out->front[1] = noh_v4_add(even[1], odd[1]);
+    out->front[2] = noh_v4_add(even[2], odd[2]);
+    out->back[0] = noh_v4_sub(even[0], odd[0]);
+    out->back[1] = noh_v4_sub(even[1], odd[1]);
+    out->back[2] = noh_v4_sub(even[2], odd[2]);
+}
+
+/* `two`: of eight slots at once, which share what a coefficient takes to be spread over lanes. */
+NOH_ALWAYS_INLINE void transform_slots(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                                       uint32_t slot, int halved, int two, quad *out)
+{
+    const uint32_t half = basis->half, first = halved ? 2u * slot : slot, end = first + (two ? halved ? 12u : 8u : 4u);
+    const uint32_t next = end < half ? 4u : 0u; /* 0: past the middle, not used */
+    const float *row = basis->rows + first;
+    const noh_v4 zero = noh_v4_set(0.0f);
+    sums even = { { zero, zero, zero }, { zero, zero, zero } }, odd = even;
+    uint32_t k = 0;
+    for (; k + 1u < last; k += 2u, row += 2u * half) {
+        add_row(&even, row, coefs[k], halved, next, two);
+        add_row(&odd, row + half, coefs[k + 1u], halved, next, two);
     }
+    if (k < last) {
+        add_row(&even, row, coefs[k], halved, next, two);
+    }
+    join(even.near, odd.near, out);
+    if (two) {
+        join(even.far, odd.far, out + 1);
+    }
+}
+
+/* The quads of a segment in order, two at a time where both are wanted. */
+typedef struct quads {
+    quad of[2];
+    uint32_t ready; /* 1: of[1] is the next */
+} quads;
+
+static const quad *next_quad(quads *q, const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
+                             uint32_t slot, uint32_t slots)
+{
+    const int two = slot + 4u < slots && !(basis->skip >> (slot / 4u + 1u) & 1u);
+    if (q->ready) {
+        q->ready = 0;
+        return &q->of[1];
+    }
+    q->ready = (uint32_t)two;
+    if (basis->halved) {
+        if (two) {
+            transform_slots(basis, coefs, last, slot, 1, 1, q->of);
+        } else {
+            transform_slots(basis, coefs, last, slot, 1, 0, q->of);
+        }
+    } else if (two) {
+        transform_slots(basis, coefs, last, slot, 0, 1, q->of);
+    } else {
+        transform_slots(basis, coefs, last, slot, 0, 0, q->of);
+    }
+    return &q->of[0];
 }
 
 /* reference * rodrigues(u), times 32767; then transposed: q[i] is frame i. With v = u / 4 a modified Rodrigues vector
@@ -288,16 +331,18 @@ static inline void synth_rotation(const noh_clip_basis *basis, const float (*coe
     const uint32_t slots = noh_clip_slots(basis->frames, basis->halved);
     const uint32_t fronts = noh_clip_front_slots(basis->frames, basis->halved);
     noh_v4 r[4], front[4], back[4];
+    quads q;
+    q.ready = 0;
     for (int i = 0; i < 4; i++) {
         r[i] = noh_v4_set(reference[i]);
     }
     for (uint32_t s = 0; s < fronts; s += 4u) {
         const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
-        quad u;
+        const quad *u;
         if (basis->skip >> s / 4u & 1u) continue;
-        transform_quad(basis, coefs, last, s, &u);
-        rotate_quad(u.front, r, front);
-        rotate_quad(u.back, r, back);
+        u = next_quad(&q, basis, coefs, last, s, fronts);
+        rotate_quad(u->front, r, front);
+        rotate_quad(u->back, r, back);
         for (uint32_t i = 0; i < lanes; i++) {
             store_quat(out + (slots - 1u - s - i) * stride, back[i], wide);
             store_quat(out + (s + i) * stride, front[i], wide);
@@ -320,16 +365,18 @@ void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4],
 {
     const uint32_t slots = noh_clip_slots(basis->frames, basis->halved);
     const uint32_t fronts = noh_clip_front_slots(basis->frames, basis->halved);
+    quads q;
+    q.ready = 0;
     for (uint32_t s = 0; s < fronts; s += 4u) {
         const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
         float front[4][4], back[4][4];
         noh_v4 v[4];
-        quad u;
+        const quad *u;
         if (basis->skip >> s / 4u & 1u) continue;
-        transform_quad(basis, coefs, last, s, &u);
+        u = next_quad(&q, basis, coefs, last, s, fronts);
         for (int side = 0; side < 2; side++) {
             for (int c = 0; c < 3; c++) {
-                v[c] = noh_v4_add(noh_v4_set(reference[c]), side ? u.back[c] : u.front[c]);
+                v[c] = noh_v4_add(noh_v4_set(reference[c]), side ? u->back[c] : u->front[c]);
             }
             v[3] = noh_v4_set(0.0f);
             noh_v4_transpose(v);

@@ -197,7 +197,9 @@ static void put_triple(bit_writer *w, encoder *e, const int32_t c[3], const uint
             put(w, 1, 1);
             put(w, v & ((1u << zeros) - 1u), zeros);
         }
-        put(w, magnitudes[i] & ((1u << shifts[i]) - 1u), shifts[i]);
+    }
+    for (uint32_t i = 0; i < 3u; i++) put(w, magnitudes[i] & ((1u << shifts[i]) - 1u), shifts[i]);
+    for (uint32_t i = 0; i < 3u; i++) {
         if (magnitudes[i]) put(w, c[i] < 0, 1);
     }
 }
