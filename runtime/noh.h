@@ -45,15 +45,15 @@
 #include "stage/stage_face.h"       /* faces of its actors */
 #include "stage/stage_feet.h"       /* actors that stand on the ground */
 #include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
-#include "stage/walkers.h"          /* actors that go where agents of a crowd go */
+#include "actors/walkers.h"         /* actors that go where agents of a crowd go */
 #include "stage/stage_ragdoll.h"    /* actors that fall and get up */
 #include "stage/fall.h"             /* pushing them, and when they get up */
-#include "stage/blob.h"             /* where actors darken the ground */
-#include "stage/decal.h"            /* marks on actors */
-#include "stage/decal_grow.h"       /* their triangles */
+#include "actors/blob.h"            /* where actors darken the ground */
+#include "actors/decal.h"           /* marks on actors */
+#include "actors/decal_grow.h"      /* their triangles */
 #include "stage/springs.h"          /* chains of joints that swing */
-#include "stage/wig.h"              /* hair of actors */
-#include "stage/wigs.h"             /* hair of crowds */
+#include "actors/wig.h"             /* hair of actors */
+#include "actors/wigs.h"            /* hair of crowds */
 #include "stage/view.h"             /* cameras and lights for it */
 #include "base/version.h"           /* which noh this is */
 #include "base/result.h"            /* noh_result, noh_error */

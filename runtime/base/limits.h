@@ -91,7 +91,7 @@
 #define NOH_HAIR_PATCHES_MAX 256u    /* of four control hairs, of one haircut */
 #define NOH_HAIR_STRIPS_MAX 16384u   /* of one haircut */
 #define NOH_HAIR_SEGMENTS_MAX 64u    /* of a strip */
-#define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind whose hair moves at once (stage/wigs.h) */
+#define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind whose hair moves at once (actors/wigs.h) */
 #define NOH_HAIR_STEPS_MAX 15u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- crowds ---- */

@@ -1,4 +1,4 @@
-/* stage_blob.h: the spots of stage/blob.h drawn on the ground.
+/* stage_blob.h: the spots of actors/blob.h drawn on the ground.
  *
  *   noh_stage_blob_create   its program; noh_stage_blob_delete, noh_stage_blob_restore
  *   noh_stage_blob_draw     all spots of a view
@@ -10,7 +10,7 @@
 #ifndef NOH_STAGE_GL_STAGE_BLOB_H
 #define NOH_STAGE_GL_STAGE_BLOB_H
 
-#include "stage/blob.h"
+#include "actors/blob.h"
 #include "stage_gl/stage_gl.h"
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* stage_decal.h: the marks of stage/decal.h drawn on actors.
+/* stage_decal.h: the marks of actors/decal.h drawn on actors.
  *
  *   noh_stage_decals_size, noh_stage_decals_create   programs for the meshes of a stage, and room for one ring;
  *                                                    _delete, _restore
@@ -14,7 +14,7 @@
 #ifndef NOH_STAGE_GL_STAGE_DECAL_H
 #define NOH_STAGE_GL_STAGE_DECAL_H
 
-#include "stage/decal.h"
+#include "actors/decal.h"
 #include "stage_gl/stage_gl.h"
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* stage_hair.h: the hair of an actor (stage/wig.h) drawn: all strips in one call for each of its passes.
+/* stage_hair.h: the hair of an actor (actors/wig.h) drawn: all strips in one call for each of its passes.
  *
  *   noh_stage_hair_size, noh_stage_hair_bytes   exact bytes on the CPU and on the GPU
  *   noh_stage_hair_create                       shaders and the texture of control hairs; _delete, _restore
@@ -14,7 +14,7 @@
 #ifndef NOH_STAGE_GL_STAGE_HAIR_H
 #define NOH_STAGE_GL_STAGE_HAIR_H
 
-#include "stage/wig.h"
+#include "actors/wig.h"
 #include "stage_gl/stage_gl.h"
 
 #ifdef __cplusplus

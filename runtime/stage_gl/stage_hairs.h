@@ -1,4 +1,4 @@
-/* stage_hairs.h: hair of a whole kind (stage/wigs.h) drawn: at most NOH_HAIRS_GROUPS calls for each of its passes,
+/* stage_hairs.h: hair of a whole kind (actors/wigs.h) drawn: at most NOH_HAIRS_GROUPS calls for each of its passes,
  * however many heads there are.
  *
  *   noh_stage_hairs_size, noh_stage_hairs_bytes   exact bytes on the CPU and on the GPU
@@ -14,7 +14,7 @@
 #ifndef NOH_STAGE_GL_STAGE_HAIRS_H
 #define NOH_STAGE_GL_STAGE_HAIRS_H
 
-#include "stage/wigs.h"
+#include "actors/wigs.h"
 #include "stage_gl/stage_hair.h"
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* stage_patch.h: the marks of stage/decal.h drawn as triangles that were grown (stage/decal_grow.h).
+/* stage_patch.h: the marks of actors/decal.h drawn as triangles that were grown (actors/decal_grow.h).
  *
  *   noh_stage_patches_create   room for the triangles of one ring; _size, _delete, _restore, NOH_STAGE_PATCHES_BYTES
  *   noh_stage_patches_draw     in place of noh_stage_decals_draw
@@ -17,7 +17,7 @@
 #ifndef NOH_STAGE_GL_STAGE_PATCH_H
 #define NOH_STAGE_GL_STAGE_PATCH_H
 
-#include "stage/decal_grow.h"
+#include "actors/decal_grow.h"
 #include "stage_gl/stage_decal.h"
 
 #ifdef __cplusplus

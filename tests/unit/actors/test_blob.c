@@ -1,7 +1,7 @@
 /* Spots under actors: where they are, how dark, on floors and slopes. */
 #include "support/stage_fixture.h"
 
-#include "stage/blob.h"
+#include "actors/blob.h"
 
 #include <math.h>
 

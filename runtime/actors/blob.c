@@ -1,4 +1,4 @@
-#include "stage/blob.h"
+#include "actors/blob.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/quat.h"
-#include "stage/walkers_internal.h"
+#include "actors/walkers_internal.h"
 
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
 #define FADE_PER_S 4.0f

@@ -15,8 +15,8 @@
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 14, which copies the triangles around a hit and
  *          their weights, loses those that are larger than the mark, and scales its coordinates wrongly
  * Threads: no state but the ring. */
-#ifndef NOH_STAGE_DECAL_H
-#define NOH_STAGE_DECAL_H
+#ifndef NOH_ACTORS_DECAL_H
+#define NOH_ACTORS_DECAL_H
 
 #include "stage/stage.h"
 

@@ -1,7 +1,7 @@
 /* Marks as triangles: which ones, coordinates, folds, levels, room. */
 #include "support/stage_fixture.h"
 
-#include "stage/decal_grow.h"
+#include "actors/decal_grow.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* walkers.c: what walkers know of their clips, and who walks. */
-#include "stage/walkers.h"
+#include "actors/walkers.h"
 
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "anim/sync_internal.h"
 #include "base/hash.h"
 #include "base/math_internal.h"
-#include "stage/walkers_internal.h"
+#include "actors/walkers_internal.h"
 
 #define TURN_SPEED 4.0f
 

@@ -1,5 +1,5 @@
 /* wig.c: control hairs as a part of the stage. They move in metres and from the model's scale, as springs do. */
-#include "stage/wig.h"
+#include "actors/wig.h"
 
 #include "base/assert.h"
 #include "base/name_internal.h"

@@ -1,4 +1,4 @@
-#include "stage/decal_grow.h"
+#include "actors/decal_grow.h"
 
 #include <string.h>
 

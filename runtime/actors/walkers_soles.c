@@ -3,7 +3,7 @@
 
 #include "anim/controller_pose.h"
 #include "pose/local_to_model.h"
-#include "stage/walkers_internal.h"
+#include "actors/walkers_internal.h"
 
 #define LOWER 0.0004f   /* of a leg: lower by so much, and it stands on the other foot */
 #define AIR_FROM 0.002f /* of a leg, above the foot that it stands on: from here on a foot is in the air, */

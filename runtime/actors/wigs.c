@@ -1,5 +1,5 @@
 /* wigs.c: whose hair of a kind moves. */
-#include "stage/wigs.h"
+#include "actors/wigs.h"
 
 #include <string.h>
 

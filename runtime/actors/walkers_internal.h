@@ -1,10 +1,10 @@
 /* walkers_internal.h: the walkers' block. Threads: as walkers.h. */
-#ifndef NOH_STAGE_WALKERS_INTERNAL_H
-#define NOH_STAGE_WALKERS_INTERNAL_H
+#ifndef NOH_ACTORS_WALKERS_INTERNAL_H
+#define NOH_ACTORS_WALKERS_INTERNAL_H
 
 #include "stage/fall.h"
 #include "stage/stage_internal.h"
-#include "stage/walkers.h"
+#include "actors/walkers.h"
 
 enum { WALKER_WALK, WALKER_IDLE, WALKER_RUN, WALKER_CLIPS };
 #define WALKER_SWAY 32u /* equal parts of a pass */

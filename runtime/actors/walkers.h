@@ -38,8 +38,8 @@
  * source  Granberg, Character Animation with Direct3D, 2009, chapter 13, corrected: there, clips play at one speed
  *         however fast the agent walks
  * Threads: walkers belong to the stage's thread. */
-#ifndef NOH_STAGE_WALKERS_H
-#define NOH_STAGE_WALKERS_H
+#ifndef NOH_ACTORS_WALKERS_H
+#define NOH_ACTORS_WALKERS_H
 
 #include "crowd/crowd.h"
 #include "stage/stage_feet.h"

@@ -9,8 +9,8 @@
  * hashed, with the same bits for any number of jobs. stage_gl/stage_hair.h draws them.
  *
  * Threads: as part.h. `wind` may be changed between frames. */
-#ifndef NOH_STAGE_WIG_H
-#define NOH_STAGE_WIG_H
+#ifndef NOH_ACTORS_WIG_H
+#define NOH_ACTORS_WIG_H
 
 #include "sim/haircut.h"
 #include "stage/part.h"

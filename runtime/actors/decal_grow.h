@@ -15,11 +15,11 @@
  * mark within one large triangle has none. Triangles hang together by an edge whose ends are the same places.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 14
  * Threads: no state. Errors: none; a hostile mesh that a pack has opened is safe. */
-#ifndef NOH_STAGE_DECAL_GROW_H
-#define NOH_STAGE_DECAL_GROW_H
+#ifndef NOH_ACTORS_DECAL_GROW_H
+#define NOH_ACTORS_DECAL_GROW_H
 
 #include "mesh/mesh.h"
-#include "stage/decal.h"
+#include "actors/decal.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,7 +4,7 @@
 #include "base/math_internal.h"
 #include "base/quat.h"
 #include "base/trig.h"
-#include "stage/walkers_internal.h"
+#include "actors/walkers_internal.h"
 
 #define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */
 #define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */

@@ -8,8 +8,8 @@
  * frame to frame. Standing figures have a spot under each foot, those that lie under all of their bodies.
  *
  * Threads: the rig is read only; noh_actor_blobs as noh_actor_joint. */
-#ifndef NOH_STAGE_BLOB_H
-#define NOH_STAGE_BLOB_H
+#ifndef NOH_ACTORS_BLOB_H
+#define NOH_ACTORS_BLOB_H
 
 #include "sim/feet.h"
 #include "stage/stage.h"

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "stage/walkers.h"
+#include "actors/walkers.h"
 
 #define RADIUS 0.25f
 

@@ -4,7 +4,7 @@
 #include "base/math_internal.h"
 #include "base/quat.h"
 #include "stage/fall.h"
-#include "stage/walkers_internal.h"
+#include "actors/walkers_internal.h"
 
 #define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the clip that it got up by */
 

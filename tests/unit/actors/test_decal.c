@@ -1,7 +1,7 @@
 /* Marks on actors: the ring, where they lie, what fades, what is refused. */
 #include "support/stage_fixture.h"
 
-#include "stage/decal.h"
+#include "actors/decal.h"
 #include "mesh/mesh.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "stage/decal.h"
+#include "actors/decal.h"
 
 #include <string.h>
 

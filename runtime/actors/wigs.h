@@ -15,11 +15,11 @@
  * largest are chosen. A chosen actor is kept until another looks a quarter larger; its hair is then at rest at once.
  *
  * Threads: the stage's, outside of steps and frames; noh_wigs_size, any. */
-#ifndef NOH_STAGE_WIGS_H
-#define NOH_STAGE_WIGS_H
+#ifndef NOH_ACTORS_WIGS_H
+#define NOH_ACTORS_WIGS_H
 
 #include "stage/stage.h"
-#include "stage/wig.h"
+#include "actors/wig.h"
 
 #ifdef __cplusplus
 extern "C" {
