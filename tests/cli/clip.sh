@@ -63,6 +63,30 @@ for option in '--error-cm 0' '--shell-cm -1' '--rate -3' '--only legs' '--unit-c
     expect 2 "build $option is a usage error"
 done
 
+# Clips of 100 Hz or more are split, so that half of their frames take half of the time.
+awk 'BEGIN { print "HIERARCHY\nROOT hips\n{\n OFFSET 0 0 0\n CHANNELS 3 Zrotation Xrotation Yrotation\n End Site\n { OFFSET 0 10 0 }\n}"
+    print "MOTION\nFrames: 96\nFrame Time: 0.00833333"
+    for (i = 0; i < 96; i++) print 20 * sin(i / 15) + sin(37 * i * i), 10 * cos(i / 21) + sin(53 * i * i), sin(29 * i * i) }' >"$work/fast.bvh"
+noh build "$work/fast.bvh" -o "$work/fast.noh" --quiet
+noh clip "$work/fast.noh"
+check 'a fast clip is split' grep -q '3 segments, split,' "$work/out"
+noh clip "$work/fast.noh" --json
+check 'as JSON says' grep -q '"split": true' "$work/out"
+noh build "$work/fast.bvh" -o "$work/whole.noh" --split-hz 0 --quiet
+noh clip "$work/whole.noh" --json
+check '--split-hz 0: none is' grep -q '"split": false' "$work/out"
+noh build "$work/fast.bvh" -o "$work/slow.noh" --rate 60 --quiet
+noh clip "$work/slow.noh" --json
+check 'one of 60 Hz is not' grep -q '"split": false' "$work/out"
+noh build "$work/fast.bvh" -o "$work/slow.noh" --rate 60 --split-hz 60 --quiet
+noh clip "$work/slow.noh" --json
+check '--split-hz 60: it is' grep -q '"split": true' "$work/out"
+noh build "$work/fast.bvh" -o "$work/x.noh" --split-hz -1
+expect 2 'a rate below 0 is a usage error'
+noh clip "$work/fast.noh" --dump "$work/fast.rcl"
+noh clip "$work/whole.noh" --dump "$work/whole.rcl"
+check 'whole, both decode to the same' cmp "$work/fast.rcl" "$work/whole.rcl"
+
 # Bounds of single clips and joints: coarser is smaller, finer is certified.
 noh build "$work/walk.bvh" -o "$work/coarse.noh" --clip-error walk=1 --quiet
 expect 0 'a bound for one clip'

@@ -97,9 +97,9 @@ static void print_clip(const pack_file *file, const opened *o)
     if (o->info.float_count) {
         printf("  weights certified to %.4g cm of what they move\n", o->info.error_cm);
     }
-    printf("  %u segment%s, cache of %zu bytes; %u callback key%s, %u sync marker%s\n", o->info.segment_count,
-           plural(o->info.segment_count), o->cache_bytes, o->packed.header->event_count,
-           plural(o->packed.header->event_count), o->packed.header->marker_count,
+    printf("  %u segment%s%s, cache of %zu bytes; %u callback key%s, %u sync marker%s\n", o->info.segment_count,
+           plural(o->info.segment_count), o->info.flags & NOH_CLIP_FLAG_SPLIT ? ", split" : "", o->cache_bytes,
+           o->packed.header->event_count, plural(o->packed.header->event_count), o->packed.header->marker_count,
            plural(o->packed.header->marker_count));
     print_keys(file, &o->packed);
 }
@@ -118,6 +118,7 @@ static void json_one(json *j, const opened *o)
     json_number(j, "rms_error_cm", o->info.rms_error_cm);
     json_number(j, "shell_cm", o->info.shell_cm);
     json_text(j, "bound", o->info.flags & NOH_CLIP_FLAG_SPHERE ? "sphere" : "axes");
+    json_bool(j, "split", (o->info.flags & NOH_CLIP_FLAG_SPLIT) != 0);
     json_integer(j, "events", o->packed.header->event_count);
     json_integer(j, "markers", o->packed.header->marker_count);
     json_integer(j, "cache_bytes", o->cache_bytes);
