@@ -205,9 +205,6 @@ static void carve_head(measure *m)
     const size_t variants_bytes = variants_size(m);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
-    const size_t light_at = m->arena.used;
-    noh_gl_light *light = m->desc->light ? CARVE(m, 1, noh_gl_light) : NULL;
-    if (m->desc->light) add(m, "light", NOH_NONE, light_at, noh_gl_light_bytes(m->desc->light));
     if (m->gl) { /* carved for a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
@@ -219,12 +216,23 @@ static void carve_head(measure *m)
         gl->variants_bytes = variants_bytes;
         memset(of, 0, models * sizeof *of);
         memset(renderer, 0, sizeof *renderer);
-        gl->light = light;
+        gl->light = NULL;
         gl->lighting = NULL;
-        if (light) memset(light, 0, sizeof *light);
     }
     carve_kinds(m);
     add(m, "renderer", NOH_NONE, 0, m->desc->without_shader ? 0 : NOH_GL_RENDERER_BYTES);
+}
+
+static void carve_light(measure *m)
+{
+    const size_t from = m->arena.used;
+    noh_gl_light *light;
+    if (!m->desc->light) return;
+    light = CARVE(m, 1, noh_gl_light);
+    add(m, "light", NOH_NONE, from, noh_gl_light_bytes(m->desc->light));
+    if (!m->gl) return;
+    memset(light, 0, sizeof *light);
+    m->gl->light = light;
 }
 
 /* ---- all of it ---- */
@@ -258,6 +266,7 @@ static noh_result visit(measure *m, noh_error *error)
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     noh_result result = NOH_OK;
     carve_head(m);
+    carve_light(m);
     if (m->gl && m->desc->light) {
         result = noh_gl_light_create(&m->gl->device, m->desc->light, m->gl->light, error);
     }

@@ -59,10 +59,17 @@ static void the_plan_is_what_is_used(void **state)
 {
     gpu *g = fixture_gpu();
     const noh_gl_ledger before = g->ledger;
+    const noh_reflection_desc baked = { 32, noh_reflection_of_environment, noh_environment_at(0) };
+    void *texels = test_zeros(noh_reflection_size(32)), *scratch = test_zeros(noh_reflection_scratch_size(32));
+    noh_reflection reflection;
+    const noh_gl_light_desc light = { &reflection, 256 };
     uint32_t made = 0;
     (void)state;
+    assert_int_equal(noh_reflection_init(texels, noh_reflection_size(32), scratch, noh_reflection_scratch_size(32),
+                                         &baked, &reflection, NULL),
+                     NOH_OK);
     for (uint32_t way = 0; way < FIXTURE_WAYS; way++) {
-        for (uint32_t bound = 0; bound < 3; bound++) {
+        for (uint32_t bound = 0; bound < 4; bound++) {
             noh_stage_bytes parts[128];
             uint64_t cpu = 0, gpu_bytes = 0;
             noh_error error;
@@ -74,6 +81,7 @@ static void the_plan_is_what_is_used(void **state)
             c.desc.halves = fixture_ways[way].accumulate == NOH_ACCUMULATE_F16;
             if (bound == 1) c.desc.bytes_max = 5u << 20;
             c.desc.tangents = bound == 2;
+            c.desc.light = bound == 3 ? &light : NULL;
             if (noh_stage_plan_make(&c.desc, &g->caps, &c.plan, &error) != NOH_OK) {
                 assert_int_equal(error.result, NOH_ERR_UNSUPPORTED); /* of this driver */
                 cast_close(&c);
@@ -85,6 +93,8 @@ static void the_plan_is_what_is_used(void **state)
             count = noh_stage_plan_parts(&c.desc, &g->caps, &c.plan, parts, 128);
             for (uint32_t i = 0; i < count; i++) cpu += parts[i].cpu_bytes, gpu_bytes += parts[i].gpu_bytes;
             assert_true(count <= 128 && cpu == c.plan.cpu_bytes && gpu_bytes == c.plan.gpu_bytes);
+            assert_string_equal(parts[count - 1u].what, "alignment");
+            assert_true(parts[count - 1u].cpu_bytes < 16u * count); /* nothing is counted twice */
             play_frames(&c, 0, 3);
             assert_true(noh_gl_ledger_bytes(&g->ledger) - noh_gl_ledger_bytes(&before) == c.plan.gpu_bytes);
             cast_close(&c);
@@ -93,6 +103,8 @@ static void the_plan_is_what_is_used(void **state)
         }
     }
     assert_true(made >= 2);
+    free(texels);
+    free(scratch);
     fixture_expect_no_errors();
 }
 
