@@ -81,6 +81,14 @@ check 'one of 60 Hz is not' grep -q '"split": false' "$work/out"
 noh build "$work/fast.bvh" -o "$work/slow.noh" --rate 60 --split-hz 60 --quiet
 noh clip "$work/slow.noh" --json
 check '--split-hz 60: it is' grep -q '"split": true' "$work/out"
+noh build "$work/fast.bvh" -o "$work/short.noh" --segment-frames 16 --quiet
+noh clip "$work/short.noh"
+check '--segment-frames: 96 frames in 6 segments' grep -q '6 segments' "$work/out"
+for option in '--segment-frames 7' '--segment-frames 41' '--segment-frames 16.5'; do
+    # shellcheck disable=SC2086
+    noh build "$work/fast.bvh" -o "$work/x.noh" $option
+    expect 2 "build $option is a usage error"
+done
 noh build "$work/fast.bvh" -o "$work/x.noh" --split-hz -1
 expect 2 'a rate below 0 is a usage error'
 noh clip "$work/fast.noh" --dump "$work/fast.rcl"
