@@ -387,7 +387,7 @@ static void mip_levels_are_those_of_the_whole_texture(void **state)
         noh_texture_header whole, trimmed;
         byte_buffer a, b;
         size_t at[2] = { 0, 0 };
-        add_texture(m, "color", 512 << halvings, 512 << halvings);
+        add_texture(m, "color", 512u << halvings, 512u << halvings);
         m->materials[0].base_color_texture = 0;
         m->textures[0].size_max = 512;
         a = levels_of(&m->textures[0], &whole);
