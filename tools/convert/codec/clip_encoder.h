@@ -7,7 +7,7 @@
  * clip_fit.c      one track of one segment: the largest step that holds the bound
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
- * clip_certify.c  decodes what was written and measures it
+ * clip_certify.c  decodes what was written and measures it; which segments are split
  * clip_encode.c   the order of these, and what happens when the bound does not hold */
 #ifndef NOH_CONVERT_CODEC_CLIP_ENCODER_H
 #define NOH_CONVERT_CODEC_CLIP_ENCODER_H
