@@ -1,5 +1,5 @@
-/* clip_certify.c: decodes what was written, with the runtime's own code, and measures it against the raw clip; by the same
- * measure it is decided which segments are split. */
+/* clip_certify.c: decodes what was written, with the runtime's own code, and measures it against the raw clip. By the
+ * same measure it is decided which segments are split. */
 #include <stdlib.h>
 
 #include "clip/clip_decode_internal.h"
