@@ -5,10 +5,10 @@
  *   bit c: e_c >= NOH_CLIP_BUSY, e_c = sum of component c's last three magnitudes;
  * the first triple has a table of its own. But a low part (clip_format.h) that has all its frequencies most likely goes
  * on above: its first triple is coded as if one of NOH_CLIP_LOW_NEIGHBOUR in each component stood before it. Then come,
- * in the order of the components: for each quotient of 3 an Exp-Golomb number, which is added to it; s_c low bits of each
- * magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not zero. Frequency 0 (the mean, which is
- * large, and which its neighbours say little about) is coded for each component as the bit length of its magnitude, the
- * bits below the highest, and a sign. */
+ * in the order of the components: for each quotient of 3 an Exp-Golomb number, which is added to it; s_c low bits of
+ * each magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not zero. Frequency 0 (the mean,
+ * which is large, and which its neighbours say little about) is coded for each component as the bit length of its
+ * magnitude, the bits below the highest, and a sign. */
 #ifndef NOH_CLIP_CLIP_COEFS_INTERNAL_H
 #define NOH_CLIP_CLIP_COEFS_INTERNAL_H
 
