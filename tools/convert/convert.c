@@ -336,7 +336,7 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     return 0;
 }
 
-static int encode_meshes(const model *m, const convert_options *options, encoded *e, model_error *error)
+static int encode_meshes(model *m, const convert_options *options, encoded *e, model_error *error)
 {
     lod_settings levels = options->lod;
     int failed;
@@ -487,7 +487,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
                           byte_buffer *out, model_error *error)
 {
     model empty;
-    const model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
+    model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
     clips_settings settings = options->clip;
     encoded meshes;
     encoded_clips made;

@@ -2,7 +2,8 @@
  *
  *   lod_compare FILE.glb [--fast] [--picture OUT.png] [--npm SCRIPT FOLDER]
  *
- * The mesh with the most vertices and targets, at 50, 25 and 10 % of its triangles. The builder sees rest, targets, its
+ * The mesh with the most vertices and targets, at 50, 25 and 10 % of its triangles; the last level has vertices of its
+ * own where they are few, as in packs. The builder sees rest, targets, its
  * own random mixes and, of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each
  * submesh of meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches.
  *
@@ -17,6 +18,7 @@
 #include <time.h>
 
 #include "compare.h"
+#include "convert/lod/lod_fit.h"
 
 #define UNSEEN_MIXES 20u
 #define UNSEEN_FRAMES 28u
@@ -138,7 +140,24 @@ static int measure_npm(const model *m, const lod *ours, const settings *s, const
     return 1;
 }
 
-static int compare(const model *m, const lod *ours, const settings *s)
+/* Vertices of their own, as the coarsest levels in packs have them. The poses are made anew, since the mesh has more vertices then. */
+static void own_vertices(model *m, uint32_t index, lod *ours, shapes *unseen)
+{
+    model_mesh *mesh = &m->meshes[index];
+    const uint32_t before = mesh->vertex_count;
+    model_error error = { "", "" };
+    const uint32_t k = ours->level_count - 1u;
+    if ((float)ours->levels[k].vertex_count <= LOD_OWN_SHARE * (float)before) {
+        if (lod_fit(mesh, &ours->levels[k], &error)) {
+            exit(fail(error.what, error.where));
+        }
+        printf(" level %u has %u vertices of its own beside the mesh's %u\n", k, mesh->vertex_count - before, before);
+        shapes_free(unseen);
+        shapes_make(m, index, UNSEEN_MIXES, UNSEEN_FRAMES, unseen);
+    }
+}
+
+static int compare(model *m, lod *ours, const settings *s)
 {
     const model_mesh *mesh = &m->meshes[s->mesh];
     lod *peer = peer_levels(mesh, ours);
@@ -148,11 +167,14 @@ static int compare(const model *m, const lod *ours, const settings *s)
     int failed = 0, npm;
     shapes_make(m, s->mesh, UNSEEN_MIXES, UNSEEN_FRAMES, &unseen);
     for (uint32_t i = 0; i < ours->level_count; i++) {
-        figures_of(m, mesh, &ours->levels[i], &unseen, &a[i]);
         figures_of(m, mesh, &peer->levels[i], &unseen, &b[i]);
-        pixel_mm[i] = a[i].targets > a[i].mixes ? a[i].targets : a[i].mixes;
     }
     npm = measure_npm(m, ours, s, &unseen, c, weights);
+    own_vertices(m, s->mesh, ours, &unseen);
+    for (uint32_t i = 0; i < ours->level_count; i++) {
+        figures_of(m, mesh, &ours->levels[i], &unseen, &a[i]);
+        pixel_mm[i] = a[i].targets > a[i].mixes ? a[i].targets : a[i].mixes;
+    }
     figures_print(ours, a, b, npm ? c : NULL, npm ? weights : NULL);
     if (s->picture && !pictures_write(m, mesh, ours, peer, pixel_mm, s->picture)) {
         failed = fail("cannot write", s->picture);

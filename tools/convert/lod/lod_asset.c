@@ -94,7 +94,7 @@ static int cut(const model *m, part *parts, const lod_settings *settings, mesh_l
     return 0;
 }
 
-static int make_together(const model *m, const lod_settings *settings, uint32_t triangles, part *parts,
+static int make_together(model *m, const lod_settings *settings, uint32_t triangles, part *parts,
                          mesh_levels *out, model_error *error)
 {
     static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
@@ -111,14 +111,14 @@ static int make_together(const model *m, const lod_settings *settings, uint32_t 
         return 1;
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (mesh_levels_finish(m, i, &parts[i].frames, &out[i], error)) {
+        if (mesh_levels_finish(m, i, settings, &parts[i].frames, &out[i], error)) {
             return 1;
         }
     }
     return 0;
 }
 
-int model_levels_make(const model *m, const lod_settings *settings, mesh_levels *out, model_error *error)
+int model_levels_make(model *m, const lod_settings *settings, mesh_levels *out, model_error *error)
 {
     uint32_t drawn = 0, triangles = 0;
     part *parts;

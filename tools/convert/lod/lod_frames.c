@@ -297,6 +297,8 @@ static int choose(const model *m, uint32_t node, moment *list, uint32_t count, u
         if (failed || !(list[best].distance > 0.0)) {
             break;
         }
+        out->moments[out->count].clip = list[best].clip;
+        out->moments[out->count].time_s = list[best].time_s;
         out->poses[out->count] = model_zeros(floats, sizeof(float));
         failed = !out->poses[out->count] || sample_clip(m, list[best].clip, list[best].time_s, taken) ||
                  skin_frame(m, node, taken, out->poses[out->count], out->cap_error);
@@ -314,7 +316,8 @@ int lod_frames_choose(const model *m, uint32_t node, uint32_t count, lod_frames 
     int failed;
     memset(out, 0, sizeof *out);
     out->poses = model_zeros((size_t)count + 1u, sizeof *out->poses);
-    failed = !list || !out->poses;
+    out->moments = model_zeros((size_t)count + 1u, sizeof *out->moments);
+    failed = !list || !out->poses || !out->moments;
     if (!failed && moments) {
         list_moments(m, node, list);
         failed = choose(m, node, list, moments, count, out);
@@ -326,12 +329,29 @@ int lod_frames_choose(const model *m, uint32_t node, uint32_t count, lod_frames 
     return failed;
 }
 
+int lod_frames_again(const model *m, uint32_t node, lod_frames *f)
+{
+    for (uint32_t i = 0; i < f->count; i++) {
+        const size_t floats = 3u * (size_t)m->meshes[m->nodes[node].mesh].vertex_count;
+        float *pose = model_zeros(floats, sizeof *pose);
+        if (!pose || lod_frame_pose(m, node, f->moments[i].clip, f->moments[i].time_s, pose)) {
+            free(pose);
+            return 1;
+        }
+        free(f->poses[i]);
+        f->poses[i] = pose;
+    }
+    return 0;
+}
+
 void lod_frames_free(lod_frames *f)
 {
     for (uint32_t i = 0; f->poses && i < f->count; i++) {
         free(f->poses[i]);
     }
     free(f->poses);
+    free(f->moments);
     f->poses = NULL;
+    f->moments = NULL;
     f->count = 0;
 }

@@ -33,6 +33,10 @@ typedef struct lod_poses {
 int lod_poses_make(const model_mesh *mesh, const lod_options *o, lod_poses *out);
 void lod_poses_free(lod_poses *p);
 
+/* The weights of the default mixes, [LOD_MIXES][target_count]. */
+#define LOD_MIXES 24u
+void lod_poses_mixes(uint32_t target_count, float *out);
+
 static inline const float *lod_posed(const lod_poses *p, uint32_t vertex, uint32_t pose)
 {
     return p->position + ((size_t)vertex * p->count + pose) * 3u;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "lod_fit.h"
 
 #define FRAMES_BUILT 12u     /* frames that the builder sees */
 #define FRAMES_CERTIFIED 28u /* frames that the levels are measured in */
@@ -12,10 +13,11 @@
 #define ERROR_STEP 4.0f
 #define COARSEST_ERROR (1.0f / 16.0f) /* by shares too: what is off by more shows nothing of the shape */
 #define LEVELS_BY_ERROR 5u            /* the coarsest is off by 1/62 of the diagonal */
+#define CLIP_LOSS 1.05f                /* what a fit may cost in frames of clips */
 #define LEAST_SAVED 0.95f             /* of the finer level's triangles: a level with more is left out */
 
 typedef struct pose_list {
-    uint32_t count, pairs; /* the first `pairs` poses are pairs of targets */
+    uint32_t count, pairs; /* the first `pairs` poses are pairs of targets; the rest are not the list's */
     float **poses;         /* [count][vertex_count][3] */
 } pose_list;
 
@@ -75,14 +77,14 @@ static int add_pair(const model_mesh *mesh, uint32_t left, uint32_t right, pose_
 
 static void poses_free(pose_list *p)
 {
-    for (uint32_t i = 0; p->poses && i < p->count; i++) {
+    for (uint32_t i = 0; p->poses && i < p->pairs; i++) {
         free(p->poses[i]);
     }
     free(p->poses);
 }
 
-/* Pairs first, then the frames, whose ownership passes to the list. */
-static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out)
+/* Pairs first, then the frames. */
+static int poses_make(const model_mesh *mesh, const lod_frames *frames, pose_list *out)
 {
     int failed = 0;
     memset(out, 0, sizeof *out);
@@ -97,7 +99,6 @@ static int poses_make(const model_mesh *mesh, lod_frames *frames, pose_list *out
     out->pairs = out->count;
     for (uint32_t i = 0; i < frames->count; i++) {
         out->poses[out->count++] = frames->poses[i];
-        frames->poses[i] = NULL;
     }
     return failed;
 }
@@ -139,12 +140,14 @@ static lod_errors at_least(lod_errors e, const lod_errors *finer)
     return e;
 }
 
-static int certify(const model_mesh *mesh, const pose_list *poses, mesh_levels *out, model_error *error)
+/* Those from `first` to before `end`. */
+static int certify(const model_mesh *mesh, const pose_list *poses, uint32_t first, uint32_t end, mesh_levels *out,
+                   model_error *error)
 {
     lod_distance *distances = model_zeros((size_t)mesh->submesh_count * (1u + mesh->target_count + poses->count),
                                           sizeof *distances);
     int failed = !distances && model_fail(error, "", "out of memory");
-    for (uint32_t k = 1; k < out->count && !failed; k++) {
+    for (uint32_t k = first; k < end && !failed; k++) {
         failed = lod_certify(mesh, &out->built->levels[out->which[k]], (const float *const *)poses->poses, poses->count,
                              distances, error);
         if (!failed) {
@@ -240,6 +243,74 @@ static int rank_vertices(const model_mesh *mesh, mesh_levels *out, model_error *
     return out->rank ? 0 : model_fail(error, "", "out of memory");
 }
 
+/* ---- vertices of their own ---- */
+
+/* The finest level from which on all together may have them; levels->count: none. */
+static uint32_t first_own(const model_mesh *mesh, const lod_settings *settings, const mesh_levels *levels)
+{
+    const float share = settings->own_share != 0.0f ? settings->own_share : LOD_OWN_SHARE;
+    float left = settings->mode == LOD_FAST ? 0.0f : share * (float)mesh->vertex_count;
+    uint32_t k = levels->count;
+    while (k > 1u && left >= (float)levels->built->levels[levels->which[k - 1u]].vertex_count) {
+        left -= (float)levels->built->levels[levels->which[--k]].vertex_count;
+    }
+    return k;
+}
+
+/* Whether a fit is worth its vertices: nearer at rest and in expressions, and not much farther where joints bend. */
+static int is_nearer(const lod_errors *now, const lod_errors *before)
+{
+    return larger(larger(now->rest, now->targets), now->pairs) <
+               larger(larger(before->rest, before->targets), before->pairs) &&
+           now->clip <= CLIP_LOSS * before->clip;
+}
+
+/* Fit a level and measure it again. */
+static int fit_level(model *m, uint32_t index, uint32_t k, lod_frames *frames, mesh_levels *out, model_error *error)
+{
+    const uint32_t node = lod_skinned_node(m, index);
+    model_mesh *mesh = &m->meshes[index];
+    pose_list poses = { 0, 0, NULL };
+    int failed = lod_fit(mesh, &out->built->levels[out->which[k]], error) ||
+                 ((node != MODEL_NONE && lod_frames_again(m, node, frames)) || poses_make(mesh, frames, &poses)
+                      ? model_fail(error, mesh->name, "out of memory")
+                      : certify(mesh, &poses, k, k + 1u, out, error));
+    poses_free(&poses);
+    return failed;
+}
+
+/* Fit a level, or leave it as it is where that would not bring it nearer. */
+static int try_level(model *m, uint32_t index, uint32_t k, lod_frames *frames, mesh_levels *out, model_error *error)
+{
+    model_mesh *mesh = &m->meshes[index];
+    lod_level *level = &out->built->levels[out->which[k]];
+    const size_t bytes = level->index_count * sizeof *level->indices;
+    const uint32_t vertex_count = mesh->vertex_count;
+    const lod_errors before = out->errors[k];
+    uint32_t *indices = model_zeros(bytes, 1);
+    int failed;
+    if (!indices) return model_fail(error, mesh->name, "out of memory");
+    memcpy(indices, level->indices, bytes);
+    failed = fit_level(m, index, k, frames, out, error);
+    if (!failed && !is_nearer(&out->errors[k], &before)) {
+        mesh->vertex_count = vertex_count;
+        memcpy(level->indices, indices, bytes);
+        out->errors[k] = before;
+    }
+    free(indices);
+    return failed;
+}
+
+static int own_vertices(model *m, uint32_t index, const lod_settings *settings, lod_frames *frames, mesh_levels *out,
+                        model_error *error)
+{
+    int failed = 0;
+    for (uint32_t k = first_own(&m->meshes[index], settings, out); k < out->count && !failed; k++) {
+        failed = try_level(m, index, k, frames, out, error);
+    }
+    return failed;
+}
+
 int mesh_levels_build(const model *m, uint32_t index, const lod_settings *settings, lod_part part, lod_frames *frames,
                       mesh_levels *out, model_error *error)
 {
@@ -257,7 +328,8 @@ int mesh_levels_build(const model *m, uint32_t index, const lod_settings *settin
     return failed || build(m, index, settings, part, frames, out, error);
 }
 
-int mesh_levels_finish(const model *m, uint32_t index, lod_frames *frames, mesh_levels *out, model_error *error)
+int mesh_levels_finish(model *m, uint32_t index, const lod_settings *settings, lod_frames *frames, mesh_levels *out,
+                       model_error *error)
 {
     const model_mesh *mesh = &m->meshes[index];
     pose_list poses = { 0, 0, NULL };
@@ -265,14 +337,15 @@ int mesh_levels_finish(const model *m, uint32_t index, lod_frames *frames, mesh_
     if (out->built) {
         choose_levels(mesh, out);
         failed = (poses_make(mesh, frames, &poses) && model_fail(error, "", "out of memory")) ||
-                 certify(mesh, &poses, out, error) || rank_vertices(mesh, out, error);
+                 certify(mesh, &poses, 1, out->count, out, error) || own_vertices(m, index, settings, frames, out, error) ||
+                 rank_vertices(mesh, out, error);
     }
     poses_free(&poses);
     lod_frames_free(frames);
     return failed;
 }
 
-int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error)
+int mesh_levels_make(model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error)
 {
     const lod_part whole = { 0, 0.0f };
     lod_frames frames;
@@ -280,7 +353,7 @@ int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings
         lod_frames_free(&frames);
         return 1;
     }
-    return mesh_levels_finish(m, mesh, &frames, out, error);
+    return mesh_levels_finish(m, mesh, settings, &frames, out, error);
 }
 
 void mesh_levels_free(mesh_levels *levels)

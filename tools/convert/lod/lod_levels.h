@@ -20,6 +20,8 @@ typedef struct lod_settings {
                      much for each further one */
     lod_mode mode;
     float color_edges; /* of lod_options */
+    float own_share;   /* the coarsest levels that together use no more than this share of the mesh's vertices have
+                          vertices of their own (lod_fit.h); 0: LOD_OWN_SHARE; below 0, or with LOD_FAST: no level has */
     FILE *progress;    /* a terminal, for progress; NULL: none */
 } lod_settings;
 
@@ -54,13 +56,14 @@ typedef struct mesh_levels {
 /* Build and certify those of all meshes; out [mesh_count]. By shares, the meshes of an asset have levels of like error:
  * level k of all of them together has its share of all triangles, and each mesh is simplified as far as the others are
  * for one error in world units. So a fringe of hair does not vanish while a smooth body hardly changes.
+ * m  vertices that coarse levels have of their own are appended to its meshes, whose triangles stay as they are
  * Returns 1 and *error: out of memory, or as lod_build. Free each in both cases. */
-int model_levels_make(const model *m, const lod_settings *settings, mesh_levels *out, model_error *error);
+int model_levels_make(model *m, const lod_settings *settings, mesh_levels *out, model_error *error);
 
 /* Those of one mesh by itself. Levels that would have nearly as many triangles as the finer one are left out.
  * m, mesh  a model that is complete and bound to its skins: clips that move the mesh are sampled for poses
  * Returns 1 and *error: out of memory, or as lod_build. Free in both cases. */
-int mesh_levels_make(const model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error);
+int mesh_levels_make(model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error);
 void mesh_levels_free(mesh_levels *levels);
 
 /* The two halves of mesh_levels_make, for model_levels_make: the order of collapses, to a share of the mesh's triangles
@@ -72,7 +75,8 @@ typedef struct lod_part {
 
 int mesh_levels_build(const model *m, uint32_t mesh, const lod_settings *settings, lod_part part, lod_frames *frames,
                       mesh_levels *out, model_error *error);
-int mesh_levels_finish(const model *m, uint32_t mesh, lod_frames *frames, mesh_levels *out, model_error *error);
+int mesh_levels_finish(model *m, uint32_t mesh, const lod_settings *settings, lod_frames *frames, mesh_levels *out,
+                       model_error *error);
 
 /* A level that is not the full mesh. */
 lod_view mesh_levels_view(const mesh_levels *levels, uint32_t level);

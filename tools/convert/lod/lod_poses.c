@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_MIXES 24u
 #define SPARSE_SHARE 0.25 /* of the targets, in every other mix */
 #define DENSE_SHARE 0.5
 #define DEFAULT_SEED UINT64_C(0x6e6f68206d697865)
@@ -24,6 +23,14 @@ static void mix_weights(uint64_t *state, float *weights, uint32_t count, double 
     for (uint32_t t = 0; t < count; t++) {
         double chosen = random_unit(state), weight = random_unit(state);
         weights[t] = chosen < share ? (float)weight : 0.0f;
+    }
+}
+
+void lod_poses_mixes(uint32_t target_count, float *out)
+{
+    uint64_t state = DEFAULT_SEED;
+    for (uint32_t i = 0; i < LOD_MIXES; i++) {
+        mix_weights(&state, out + (size_t)i * target_count, target_count, SPARSE_SHARE);
     }
 }
 
@@ -67,7 +74,7 @@ static void put_rest_and_targets(const model_mesh *mesh, const lod_poses *p)
 
 int lod_poses_make(const model_mesh *mesh, const lod_options *o, lod_poses *out)
 {
-    uint32_t mixes = mesh->target_count > 1u ? (o->mix_count ? o->mix_count : DEFAULT_MIXES) : 0;
+    uint32_t mixes = mesh->target_count > 1u ? (o->mix_count ? o->mix_count : LOD_MIXES) : 0;
     uint64_t state = o->mix_seed ? o->mix_seed : DEFAULT_SEED;
     float *weights = calloc(mesh->target_count + 1u, sizeof *weights);
     uint32_t given = 1u + mesh->target_count + mixes;

@@ -23,7 +23,7 @@ typedef struct build_args {
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
         *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
-    double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
+    double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color, lod_own,
         wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
         attached;
@@ -137,6 +137,10 @@ static int set_lod(const build_args *a, convert_options *o)
         return tool_usage("--lod-color wants a number over 0, up to 100");
     }
     o->lod.color_edges = (float)a->lod_color;
+    if (!(a->lod_own >= 0.0 && a->lod_own <= 1.0)) {
+        return tool_usage("--lod-own wants a share from 0 to 1");
+    }
+    o->lod.own_share = a->lod_own > 0.0 ? (float)a->lod_own : -1.0f;
     o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
     return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
 }
@@ -381,6 +385,15 @@ static const option options[] = {
       .what =
           "what black in place of white costs a level, in edges of the mesh: more keeps what is painted with vertex colours, and shapes less",
       .example = "1.2",
+      .needs = "--lod" },
+    { .name = "--lod-own",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(build_args, lod_own),
+      .value = "SHARE",
+      .initial = "0.25",
+      .what =
+          "the coarsest levels that together use no more than this share of a mesh's vertices get vertices of their own, which may lie beside the surface: their errors fall by a third, and the mesh grows by what they use; 0: all levels use the mesh's",
+      .example = "0",
       .needs = "--lod" },
     { .name = "--transfer",
       .kind = OPTION_TEXT,

@@ -1,0 +1,311 @@
+/* lod_fit_pose.c: the rows of one pose, and the steps towards the least of their largest.
+ *
+ * In each round every sample finds the nearest place on the other surface, both ways, and the points take a step by
+ * least squares in which a row counts by the sixth power of its distance, which is the eighth power of the distances
+ * in all (Lawson's iteration). Few steps are straight, so they are short, and the round with the least largest distance
+ * is the one that stays. */
+#include <math.h>
+#include <string.h>
+
+#include "lod_fit_pose.h"
+
+#define SHORTENED 0.4
+#define STEP_MAX 0.1f      /* of the largest distance, along each axis */
+#define REACH 1.5f         /* of the largest distance at first */
+#define LEAST_RATIO 0.25f  /* of the largest distance: what is below counts by less than 1/4000 and is left out */
+#define SQRT_3 1.7320508f
+#define TURNED 0.5f        /* the cosine by which a triangle may turn */
+#define PATIENCE 10u       /* rounds without a better one */
+
+/* ---- rows ---- */
+
+static int corner_moves(const fitter *f, const uint32_t *corner)
+{
+    return f->moves[corner[0]] || f->moves[corner[1]] || f->moves[corner[2]];
+}
+
+static void corner_slots(const fitter *f, const uint32_t *corner, fit_row *out)
+{
+    for (uint32_t k = 0; k < 3u; k++) {
+        out->slot[k] = f->slot[f->point_of[corner[k]]];
+    }
+}
+
+static int has_slot(const fit_row *r)
+{
+    return r->slot[0] != LOD_NONE || r->slot[1] != LOD_NONE || r->slot[2] != LOD_NONE;
+}
+
+static void place_on(const float *triangle, const float *weight, float *out)
+{
+    for (uint32_t k = 0; k < 3u; k++) {
+        out[k] = weight[0] * triangle[k] + weight[1] * triangle[3u + k] + weight[2] * triangle[6u + k];
+    }
+}
+
+/* The row from the coarse surface's place to the full one's, whose distance is *bound; it counts only if it is not far
+ * below the largest, and a corner can move. */
+static void add_row(fitter *f, fit_row *r, const float *coarse, const float *full, float *bound)
+{
+    float squared = 0.0f;
+    for (uint32_t k = 0; k < 3u; k++) {
+        r->direction[k] = full[k] - coarse[k];
+        squared += r->direction[k] * r->direction[k];
+    }
+    *bound = r->distance = sqrtf(squared);
+    if (!(r->distance > f->least) || !has_slot(r)) {
+        return;
+    }
+    for (uint32_t k = 0; k < 3u; k++) {
+        r->direction[k] /= r->distance;
+    }
+    f->rows[f->row_count++] = *r;
+}
+
+static void sample_place(const fitter *f, const fit_part *p, uint32_t sample, float *out)
+{
+    const uint32_t *corner;
+    const float third[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };
+    float triangle[9];
+    if (sample < f->vertex_count) {
+        memcpy(out, f->full + 3u * (size_t)sample, 3u * sizeof *out);
+        return;
+    }
+    corner = p->full + 3u * (size_t)(sample - f->vertex_count);
+    for (uint32_t k = 0; k < 3u; k++) {
+        memcpy(triangle + 3u * k, f->full + 3u * (size_t)corner[k], 3u * sizeof *triangle);
+    }
+    place_on(triangle, third, out);
+}
+
+static int sample_moves(const fitter *f, const fit_part *p, uint32_t i)
+{
+    const uint32_t sample = p->sample[i];
+    return corner_moves(f, p->coarse + 3u * (size_t)p->nearest[i]) ||
+           (sample < f->vertex_count ? f->moves[sample]
+                                     : corner_moves(f, p->full + 3u * (size_t)(sample - f->vertex_count)));
+}
+
+static void add_samples(fitter *f, fit_part *p)
+{
+    for (uint32_t i = 0; i < p->sample_count; i++) {
+        const float *triangle;
+        float from[3], to[3];
+        fit_row r;
+        p->bound[i] += f->drift;
+        if (p->bound[i] < f->least || !sample_moves(f, p, i)) {
+            continue;
+        }
+        sample_place(f, p, p->sample[i], from);
+        (void)lod_tree_nearest(&p->coarse_tree, from, &p->nearest[i]);
+        triangle = p->coarse_tree.triangles + 9u * (size_t)p->nearest[i];
+        lod_distance_place(triangle, from, r.weight);
+        place_on(triangle, r.weight, to);
+        corner_slots(f, p->coarse + 3u * (size_t)p->nearest[i], &r);
+        add_row(f, &r, to, from, &p->bound[i]);
+    }
+}
+
+static void add_back(fitter *f, fit_part *p, uint32_t t)
+{
+    const float *triangle = p->coarse_tree.triangles + 9u * (size_t)t;
+    uint32_t *nearest = p->back + (size_t)FIT_BACK * t;
+    float *bound = p->back_bound + (size_t)FIT_BACK * t;
+    fit_row r;
+    corner_slots(f, p->coarse + 3u * (size_t)t, &r);
+    for (uint32_t i = 0; i <= FIT_GRID; i++) {
+        for (uint32_t j = 0; i + j <= FIT_GRID; j++, nearest++, bound++) {
+            const float a = (float)i / FIT_GRID, b = (float)j / FIT_GRID;
+            float from[3], to[3], weight[3];
+            *bound += f->drift;
+            if (*bound < f->least) {
+                continue;
+            }
+            r.weight[0] = a;
+            r.weight[1] = b;
+            r.weight[2] = 1.0f - a - b;
+            place_on(triangle, r.weight, from);
+            (void)lod_tree_nearest(&p->full_tree, from, nearest);
+            lod_distance_place(p->full_tree.triangles + 9u * (size_t)*nearest, from, weight);
+            place_on(p->full_tree.triangles + 9u * (size_t)*nearest, weight, to);
+            add_row(f, &r, from, to, bound);
+        }
+    }
+}
+
+static float list_rows(fitter *f)
+{
+    float largest = 0.0f;
+    f->row_count = 0;
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        fit_part *p = &f->parts[i];
+        lod_tree_pose(&p->coarse_tree, f->at);
+        add_samples(f, p);
+        for (uint32_t t = 0; t < p->coarse_count; t++) {
+            if (corner_moves(f, p->coarse + 3u * (size_t)t)) {
+                add_back(f, p, t);
+            }
+        }
+    }
+    for (uint32_t i = 0; i < f->row_count; i++) {
+        largest = f->rows[i].distance > largest ? f->rows[i].distance : largest;
+    }
+    f->reach = f->reach > 0.0f ? f->reach : REACH * largest;
+    largest = largest < f->reach ? largest : f->reach; /* farther ones are where mixes tear the surface: not to be led */
+    for (uint32_t i = 0; i < f->row_count; i++) {
+        const double ratio = f->rows[i].distance < largest ? f->rows[i].distance / largest : 1.0f,
+                     squared = ratio * ratio;
+        f->rows[i].stiffness = squared * squared * squared;
+    }
+    f->least = LEAST_RATIO * largest;
+    return largest;
+}
+
+/* ---- steps ---- */
+
+/* The vertices of each point go where it is. */
+static void spread(fitter *f)
+{
+    for (uint32_t i = 0; i < f->used_count; i++) {
+        const uint32_t v = f->used[i], p = f->point_of[v];
+        if (v != p) {
+            memcpy(f->at + 3u * (size_t)v, f->at + 3u * (size_t)p, 3u * sizeof *f->at);
+        }
+    }
+}
+
+static void step(fitter *f, float largest)
+{
+    const float reach = f->reach;
+    f->drift = 0.0f;
+    for (uint32_t s = 0; s < f->slot_count; s++) {
+        float *at = f->at + 3u * (size_t)f->slot_point[s];
+        const float *from = f->start + 3u * (size_t)f->slot_point[s];
+        for (uint32_t k = 0; k < 3u; k++) {
+            const float most = STEP_MAX * largest;
+            float by = (float)(SHORTENED * f->unknowns[3u * (size_t)s + k]), to;
+            by = by > most ? most : by < -most ? -most : by;
+            to = at[k] + by;
+            f->drift = fabsf(by) > f->drift ? fabsf(by) : f->drift;
+            at[k] = to > from[k] + reach ? from[k] + reach : to < from[k] - reach ? from[k] - reach : to;
+        }
+    }
+    f->drift *= SQRT_3;
+    spread(f);
+}
+
+static void normal_of(const float *position, const uint32_t *corner, float *out)
+{
+    const float *a = position + 3u * (size_t)corner[0], *b = position + 3u * (size_t)corner[1],
+                *c = position + 3u * (size_t)corner[2];
+    const float u[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, v[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
+    out[0] = u[1] * v[2] - u[2] * v[1];
+    out[1] = u[2] * v[0] - u[0] * v[2];
+    out[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+static float dot(const float *a, const float *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Points of triangles that would fold go back to where they started, and stay. */
+static void hold_folds(fitter *f)
+{
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        for (uint32_t t = 0; t < f->parts[i].coarse_count; t++) {
+            const uint32_t *corner = f->parts[i].coarse + 3u * (size_t)t;
+            float before[3], now[3];
+            normal_of(f->start, corner, before);
+            normal_of(f->at, corner, now);
+            if (dot(before, now) >= TURNED * sqrtf(dot(before, before) * dot(now, now))) {
+                continue;
+            }
+            for (uint32_t k = 0; k < 3u; k++) {
+                const uint32_t p = f->point_of[corner[k]];
+                if (f->slot[p] != LOD_NONE) {
+                    f->drift += SQRT_3 * f->reach; /* anything may be farther now */
+                    memcpy(f->at + 3u * (size_t)p, f->start + 3u * (size_t)p, 3u * sizeof *f->at);
+                    f->slot[p] = LOD_NONE;
+                }
+            }
+        }
+    }
+    spread(f);
+}
+
+/* Nothing is known of a new pose. */
+static void forget(fitter *f)
+{
+    f->least = f->drift = 0.0f;
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        fit_part *p = &f->parts[i];
+        for (uint32_t k = 0; k < p->sample_count; k++) {
+            p->bound[k] = INFINITY;
+        }
+        for (uint32_t k = 0; k < FIT_BACK * p->coarse_count; k++) {
+            p->back_bound[k] = INFINITY;
+        }
+    }
+}
+
+static void number_slots(fitter *f)
+{
+    f->slot_count = 0;
+    for (uint32_t i = 0; i < f->point_count; i++) {
+        const uint32_t p = f->point[i];
+        if (f->slot[p] != LOD_NONE) {
+            f->slot_point[f->slot_count] = p;
+            f->slot[p] = f->slot_count++;
+        }
+    }
+}
+
+static void keep(const fitter *f)
+{
+    for (uint32_t i = 0; i < f->point_count; i++) {
+        memcpy(f->best + 3u * (size_t)i, f->at + 3u * (size_t)f->point[i], 3u * sizeof *f->best);
+    }
+}
+
+static void take_kept(fitter *f)
+{
+    for (uint32_t i = 0; i < f->point_count; i++) {
+        memcpy(f->at + 3u * (size_t)f->point[i], f->best + 3u * (size_t)i, 3u * sizeof *f->best);
+    }
+    spread(f);
+}
+
+void fit_pose(fitter *f, uint32_t rounds)
+{
+    float least = INFINITY;
+    uint32_t since = 0;
+    for (uint32_t i = 0; i < f->point_count; i++) {
+        f->slot[f->point[i]] = f->moves[f->point[i]] ? 0u : LOD_NONE;
+    }
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        lod_tree_pose(&f->parts[i].full_tree, f->full);
+    }
+    forget(f);
+    keep(f);
+    for (uint32_t round = 0; round < rounds && since < PATIENCE; round++) {
+        float largest;
+        number_slots(f);
+        largest = f->slot_count ? list_rows(f) : 0.0f;
+        if (!(largest > 0.0f)) {
+            break;
+        }
+        since++;
+        if (largest < least) {
+            least = largest;
+            since = 0;
+            keep(f);
+        }
+        fit_solve(f);
+        step(f, largest);
+        hold_folds(f);
+    }
+    if (rounds > 1u) {
+        take_kept(f);
+    }
+}
