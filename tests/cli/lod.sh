@@ -41,6 +41,25 @@ check 'reports levels' test "$(levels)" -gt 0
 noh verify "$work/auto.noh"
 expect 0 'verify of levels by error'
 
+# ---- vertices of their own ----
+
+noh build "$arm" -o "$work/own.noh" --lod 4
+expect 0 'build --lod 4'
+noh build "$arm" -o "$work/shared.noh" --lod 4 --lod-own 0
+expect 0 'build --lod 4 --lod-own 0'
+check 'without vertices of their own the pack is smaller' test "$(wc -c <"$work/shared.noh")" -lt "$(wc -c <"$work/own.noh")"
+noh verify "$work/own.noh"
+expect 0 'verify of vertices of their own'
+noh pack "$work/own.noh" -o "$work/own.nohz"
+expect 0 'pack of them'
+noh strip "$work/own.nohz" -o "$work/back.noh" --from-level 0 --quiet
+expect 0 'unpack of them'
+check 'gives the same bytes' cmp "$work/own.noh" "$work/back.noh"
+noh strip "$work/own.noh" -o "$work/stripped.noh" --from-level 1
+expect 0 'strip of them'
+noh verify "$work/stripped.noh"
+expect 0 'verify of what is left'
+
 # ---- what is refused ----
 
 for value in 0 9 -1 2.5 x '' 4x; do
@@ -55,6 +74,12 @@ done
 says '--lod-color'
 noh build "$arm" -o "$work/refused.noh" --lod-color 1
 expect 2 'build --lod-color without levels'
+for value in -0.1 1.5 x; do
+    noh build "$arm" -o "$work/refused.noh" --lod 4 --lod-own "$value"
+    expect 2 "build --lod-own $value"
+done
+noh build "$arm" -o "$work/refused.noh" --lod-own 0.1
+expect 2 'build --lod-own without levels'
 noh build "$arm" -o "$work/refused.noh" --lod
 expect 2 'build --lod without a value'
 check 'no pack was written by any of these' test ! -e "$work/refused.noh"

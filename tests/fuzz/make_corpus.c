@@ -133,7 +133,7 @@ static void write_skin(const char *folder, const char *name, uint32_t palette)
 /* Three LOD levels; the model is freed. */
 static void write_levels(const char *folder, const char *name, model *m, uint32_t palette)
 {
-    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, NULL };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
     char path[4096];
     lod_pack p;
     lod_pack_make(m, &three, palette, &p);
@@ -158,7 +158,7 @@ static void write_graph(const char *folder)
 static void write_transfer(const char *folder)
 {
     const lod_face face = { 12, 10, 2, 0, 0 };
-    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, NULL };
+    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL };
     const transfer_settings settings = { 4, 0, NULL, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     model *m = lod_face_model(&face);

@@ -209,7 +209,7 @@ model *lod_tube_model(const skin_cylinder *tube)
 
 /* ---- packs ---- */
 
-static void encode(const model *m, const lod_settings *settings, mesh_levels *levels, morph_encoding **encodings)
+static void encode(model *m, const lod_settings *settings, mesh_levels *levels, morph_encoding **encodings)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         morph_options options = { 0 };

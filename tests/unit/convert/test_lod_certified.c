@@ -323,16 +323,14 @@ static double target_error(const noh_mesh *mesh)
     return worst;
 }
 
-static void a_face_is_as_near_as_certified(void **state)
+static void check_face(const lod_face shape, lod_mode mode)
 {
-    const lod_face shape = { 22, 16, LOD_FACE_TARGETS, 1, 0 };
-    const lod_settings settings = { 4, 0, LOD_FAST, 0.0f, NULL };
+    const lod_settings settings = { 4, 0, mode, 0.0f, 0.0f, NULL };
     model *m = lod_face_model(&shape);
     test_random r = test_random_from(31);
     kind kinds[KINDS];
     lod_pack p;
     point *pose;
-    (void)state;
     lod_pack_make(m, &settings, 0, &p);
     begin(kinds, &p.mesh);
     pose = test_zeros(sizeof *pose * p.mesh.header->vertex_count);
@@ -356,11 +354,24 @@ static void a_face_is_as_near_as_certified(void **state)
     model_free(m);
 }
 
+static void a_face_is_as_near_as_certified(void **state)
+{
+    (void)state;
+    check_face((lod_face){ 22, 16, LOD_FACE_TARGETS, 1, 0 }, LOD_FAST);
+}
+
+/* With vertices of its own in the coarsest level. */
+static void a_fitted_face_is_as_near_as_certified(void **state)
+{
+    (void)state;
+    check_face((lod_face){ 30, 22, LOD_FACE_TARGETS, 1, 0 }, LOD_QUALITY);
+}
+
 /* All frames of the clip that are looked at are different, and fewer than are certified: each one is. */
 static void a_tube_is_as_near_as_certified(void **state)
 {
     const skin_cylinder tube = { 14, 30, 6, 4, 2, 1, 2.0f, 0.5f };
-    const lod_settings settings = { 4, 0, LOD_FAST, 0.0f, NULL };
+    const lod_settings settings = { 4, 0, LOD_FAST, 0.0f, 0.0f, NULL };
     model *m = lod_tube_model(&tube);
     test_random r = test_random_from(32);
     kind kinds[KINDS];
@@ -393,7 +404,7 @@ static void a_tube_is_as_near_as_certified(void **state)
 static void check_names(const char *left, const char *right, int expected)
 {
     const lod_face shape = { 10, 8, 2, 0, 0 };
-    const lod_settings settings = { 2, 0, LOD_FAST, 0.0f, NULL };
+    const lod_settings settings = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL };
     model *m = lod_face_model(&shape);
     lod_pack p;
     for (int i = 0; i < 2; i++) {
@@ -438,6 +449,7 @@ static void pairs_are_told_by_name(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(pairs_are_told_by_name),
     cmocka_unit_test(a_face_is_as_near_as_certified),
+    cmocka_unit_test(a_fitted_face_is_as_near_as_certified),
     cmocka_unit_test(a_tube_is_as_near_as_certified),
 };
 

@@ -106,6 +106,59 @@ static float mean_edge(const light_surface *s)
     return s->own_count ? (float)(sum / (3.0 * s->own_count)) : 0.0f;
 }
 
+static float squared_between(const float *a, const float *b)
+{
+    const float d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+}
+
+static void use_vertices(const noh_mesh *mesh, uint8_t *used)
+{
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const noh_submesh *s = &mesh->submeshes[i];
+        for (uint32_t k = s->first_index; k < s->first_index + s->index_count; k++) {
+            used[noh_mesh_index(mesh, k)] = 1;
+        }
+    }
+}
+
+/* The nearest vertex in use that faces the same way. */
+static uint32_t find_stand_in(const noh_mesh *mesh, const uint8_t *used, uint32_t vertex)
+{
+    noh_vertex loose, other;
+    uint32_t best = vertex;
+    float least = INFINITY;
+    noh_mesh_vertex(mesh, vertex, &loose);
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
+        const float squared = used[v] ? squared_between(loose.position, mesh->positions + 3u * (size_t)v) : INFINITY;
+        if (squared >= least) continue;
+        noh_mesh_vertex(mesh, v, &other);
+        if (loose.normal[0] * other.normal[0] + loose.normal[1] * other.normal[1] +
+                loose.normal[2] * other.normal[2] > 0.0f) {
+            best = v;
+            least = squared;
+        }
+    }
+    return best;
+}
+
+static int find_stand_ins(light_surface *s)
+{
+    const uint32_t count = s->mesh.header->vertex_count;
+    uint8_t *used = calloc((size_t)count + 1u, 1);
+    s->stand_in = malloc(((size_t)count + 1u) * sizeof *s->stand_in);
+    if (!used || !s->stand_in) {
+        free(used);
+        return 1;
+    }
+    use_vertices(&s->mesh, used);
+    for (uint32_t v = 0; v < count; v++) {
+        s->stand_in[v] = used[v] ? v : find_stand_in(&s->mesh, used, v);
+    }
+    free(used);
+    return 0;
+}
+
 int light_surface_open(const noh_pack *pack, uint32_t mesh, light_surface *out, model_error *error)
 {
     const noh_node *self = first_node_of(pack, mesh);
@@ -123,7 +176,8 @@ int light_surface_open(const noh_pack *pack, uint32_t mesh, light_surface *out, 
     out->corners = malloc(12u * (size_t)(out->own_count + 1u));
     out->triangles = malloc(36u * ((size_t)out->own_count + out->other_count + 1u));
     out->layer_memory = malloc(noh_morph_layers_size(&out->mesh) + 16u);
-    if (!out->position || !out->normal || !out->corners || !out->triangles || !out->layer_memory) {
+    if (!out->position || !out->normal || !out->corners || !out->triangles || !out->layer_memory ||
+        find_stand_ins(out)) {
         return model_fail(error, out->mesh.name, "out of memory");
     }
     (void)shading_triangles(&out->mesh, out->corners);
@@ -144,7 +198,7 @@ int light_surface_pose(light_surface *s, const float *weights, model_error *erro
     }
     for (uint32_t v = 0; v < s->mesh.header->vertex_count; v++) {
         noh_vertex vertex;
-        noh_morph_vertex(&s->mesh, &layers, v, &vertex);
+        noh_morph_vertex(&s->mesh, &layers, s->stand_in[v], &vertex);
         memcpy(s->position + 3u * (size_t)v, vertex.position, sizeof vertex.position);
         memcpy(s->normal + 3u * (size_t)v, vertex.normal, sizeof vertex.normal);
     }
@@ -165,5 +219,6 @@ void light_surface_close(light_surface *s)
     free(s->corners);
     free(s->triangles);
     free(s->layer_memory);
+    free(s->stand_in);
     memset(s, 0, sizeof *s);
 }

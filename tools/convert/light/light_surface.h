@@ -14,6 +14,9 @@ typedef struct light_surface {
     float *triangles;         /* [own_count + other_count][9], the mesh's own first */
     uint32_t *corners;        /* [own_count][3] their vertices */
     uint32_t own_count, other_count;
+    /* [vertex_count] Coarse LOD levels may have vertices that no triangle of the full mesh uses and that lie beside its
+     * surface, inside it as well: light reaches the nearest one that it does use, which is itself for most. */
+    uint32_t *stand_in;
     /* A triangle that is nearer to a vertex than this shades nothing: a twelfth of the mean edge, half a millimetre on
      * a head of 5,000 vertices. Folds that lie on each other, or pass through each other by so little, are no shadow.
      */

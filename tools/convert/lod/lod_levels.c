@@ -257,11 +257,16 @@ static uint32_t first_own(const model_mesh *mesh, const lod_settings *settings, 
     return k;
 }
 
-/* Whether a fit is worth its vertices: nearer at rest and in expressions, and not much farther where joints bend. */
+static float largest_still(const lod_errors *e)
+{
+    return larger(larger(e->rest, e->targets), e->pairs);
+}
+
+/* Whether a fit may stay: no farther at rest and in expressions, and not much farther where joints bend. One part that
+ * is stuck may hold up the largest error while all others come nearer. */
 static int is_nearer(const lod_errors *now, const lod_errors *before)
 {
-    return larger(larger(now->rest, now->targets), now->pairs) <
-               larger(larger(before->rest, before->targets), before->pairs) &&
+    return largest_still(now) <= largest_still(before) && now->rest_p99 <= before->rest_p99 &&
            now->clip <= CLIP_LOSS * before->clip;
 }
 
@@ -279,7 +284,7 @@ static int fit_level(model *m, uint32_t index, uint32_t k, lod_frames *frames, m
     return failed;
 }
 
-/* Fit a level, or leave it as it is where that would not bring it nearer. */
+/* Fit a level, or leave it as it was where that takes it farther. */
 static int try_level(model *m, uint32_t index, uint32_t k, lod_frames *frames, mesh_levels *out, model_error *error)
 {
     model_mesh *mesh = &m->meshes[index];
