@@ -133,8 +133,8 @@ static uint32_t find_stand_in(const noh_mesh *mesh, const uint8_t *used, uint32_
         const float squared = used[v] ? squared_between(loose.position, mesh->positions + 3u * (size_t)v) : INFINITY;
         if (squared >= least) continue;
         noh_mesh_vertex(mesh, v, &other);
-        if (loose.normal[0] * other.normal[0] + loose.normal[1] * other.normal[1] +
-                loose.normal[2] * other.normal[2] > 0.0f) {
+        if (loose.normal[0] * other.normal[0] + loose.normal[1] * other.normal[1] + loose.normal[2] * other.normal[2] >
+            0.0f) {
             best = v;
             least = squared;
         }

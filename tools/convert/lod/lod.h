@@ -6,7 +6,7 @@
  *   lod_certify             the distance between a level and the full mesh, measured both ways
  *
  * A collapse moves one point of the surface onto a neighbour. No vertex is created or changed: the vertices of a level
- * are a subset of the finer level's.
+ * are a subset of the finer level's. lod_fit.h gives coarse levels vertices of their own afterwards.
  *
  * source  Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics" (1997);
  *         Mohr and Gleicher, "Deformation Sensitive Decimation" (2003) and DeCoro and

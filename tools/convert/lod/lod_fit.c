@@ -108,9 +108,12 @@ static int make_part(fit_job *j, uint32_t submesh, uint8_t *taken)
     p->back = model_zeros((size_t)FIT_BACK * p->coarse_count, sizeof *p->back);
     p->bound = model_zeros(4u * (size_t)p->full_count, sizeof *p->bound);
     p->back_bound = model_zeros((size_t)FIT_BACK * p->coarse_count, sizeof *p->back_bound);
-    if (!p->sample || !p->nearest || !p->back || !p->bound || !p->back_bound ||
+    p->place = model_zeros(4u * (size_t)p->full_count, 3u * sizeof *p->place);
+    p->back_place = model_zeros((size_t)FIT_BACK * p->coarse_count, 3u * sizeof *p->back_place);
+    if (!p->sample || !p->nearest || !p->back || !p->bound || !p->back_bound || !p->place || !p->back_place ||
         lod_tree_make(p->full, p->full_count, j->mesh->position, &p->full_tree) ||
-        lod_tree_make(p->coarse, p->coarse_count, j->mesh->position, &p->coarse_tree)) {
+        lod_tree_make(p->coarse, p->coarse_count, j->mesh->position, &p->coarse_tree) ||
+        lod_tree_prepare(&p->coarse_tree)) {
         return 1;
     }
     list_samples(j, p, taken);
@@ -153,9 +156,10 @@ static int make(fit_job *j)
     f->at = model_zeros(vertices, 12u);
     f->moves = model_zeros(vertices, 1);
     f->slot = model_zeros(vertices, sizeof *f->slot);
+    f->seen = model_zeros(vertices, sizeof *f->seen);
     f->slot_point = model_zeros(vertices, sizeof *f->slot_point);
     if (!j->point_of || !j->used || !j->held || !j->posed || !j->rest || !f->parts || !f->used || !f->point ||
-        !f->start || !f->at || !f->moves || !f->slot || !f->slot_point || choose_points(j)) {
+        !f->start || !f->at || !f->moves || !f->slot || !f->seen || !f->slot_point || choose_points(j)) {
         return 1;
     }
     j->deltas = model_zeros((size_t)j->mesh->target_count * f->used_count, 12u);
@@ -165,7 +169,8 @@ static int make(fit_job *j)
     j->moved = model_zeros(f->used_count, sizeof *j->moved);
     f->unknowns = model_zeros(f->point_count, 12u * sizeof *f->unknowns);
     f->best = model_zeros(f->point_count, 12u);
-    return !j->deltas || !j->before || !j->weights || !j->mixes || !j->moved || !f->unknowns || !f->best || make_parts(j);
+    return !j->deltas || !j->before || !j->weights || !j->mixes || !j->moved || !f->unknowns || !f->best ||
+           make_parts(j);
 }
 
 static void job_free(fit_job *j)
@@ -179,6 +184,8 @@ static void job_free(fit_job *j)
         free(p->back);
         free(p->bound);
         free(p->back_bound);
+        free(p->place);
+        free(p->back_place);
     }
     free(j->f.parts);
     free(j->f.used);
@@ -187,6 +194,7 @@ static void job_free(fit_job *j)
     free(j->f.at);
     free(j->f.moves);
     free(j->f.slot);
+    free(j->f.seen);
     free(j->f.slot_point);
     free(j->f.rows);
     free(j->f.unknowns);
@@ -338,7 +346,8 @@ static void write_copy(const fit_job *j, uint32_t i, size_t copy)
 static int copy_moved(fit_job *j, lod_level *level)
 {
     const uint32_t before = j->mesh->vertex_count;
-    uint32_t *sources = model_zeros(j->f.used_count, 2u * sizeof *sources), *of = sources + j->f.used_count, count = 0;
+    uint32_t *sources = model_zeros(j->f.used_count, 2u * sizeof *sources),
+             *of = sources ? sources + j->f.used_count : NULL, count = 0;
     uint32_t *copy_of = model_zeros(before, sizeof *copy_of);
     float farthest = 0.0f;
     int failed = !sources || !copy_of;

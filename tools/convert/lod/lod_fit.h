@@ -2,8 +2,8 @@
  *
  * A level whose vertices are a subset of the full mesh's lies inside of whatever is round: corners touch the surface,
  * and everything between them is below it. Vertices that may lie beside the surface halve that distance. They cost
- * memory, since no finer level uses them, so only coarse levels have them: a tenth of the triangles costs a tenth of
- * the mesh's vertices and deltas.
+ * memory, since no finer level uses them, so only coarse levels have them: a level with a tenth of the triangles adds
+ * about a tenth to the mesh's vertices and deltas.
  *
  * source  Hoppe, DeRose, Duchamp, McDonald and Stuetzle, "Mesh Optimization" (1993), which moves vertices by least
  * squares between collapses; here once, after them, in every pose, and by a high power of the distances, because a
@@ -23,7 +23,7 @@ extern "C" {
  * distances to the full mesh get smaller, at rest, with each target at full weight and in mixes. Points that targets
  * take apart keep their place, and what hardly moves is not copied.
  * mesh    owns its arrays; its triangles stay as they are
- * memory  about 90 bytes for each vertex and triangle of the mesh, for as long as it takes
+ * memory  about 300 bytes for each vertex and each triangle of the mesh, for as long as it takes
  * errors  1 and *error: out of memory; mesh and level are as they were */
 int lod_fit(model_mesh *mesh, lod_level *level, model_error *error);
 

@@ -10,12 +10,13 @@
 #include "lod_fit_pose.h"
 
 #define SHORTENED 0.4
-#define STEP_MAX 0.1f      /* of the largest distance, along each axis */
-#define REACH 1.5f         /* of the largest distance at first */
-#define LEAST_RATIO 0.25f  /* of the largest distance: what is below counts by less than 1/4000 and is left out */
+#define STEP_MAX 0.1f     /* of the largest distance, along each axis */
+#define REACH 1.5f        /* of the largest distance at first */
+#define LEAST_RATIO 0.25f /* of the largest distance: what is below counts by less than 1/4000 and is left out */
+#define FIRST_RATIO 0.2f  /* the same in a pose's first round, of the largest at rest */
 #define SQRT_3 1.7320508f
-#define TURNED 0.5f        /* the cosine by which a triangle may turn */
-#define PATIENCE 10u       /* rounds without a better one */
+#define TURNED 0.5f  /* the cosine by which a triangle may turn */
+#define PATIENCE 10u /* rounds without a better one */
 
 /* ---- rows ---- */
 
@@ -86,10 +87,23 @@ static int sample_moves(const fitter *f, const fit_part *p, uint32_t i)
                                      : corner_moves(f, p->full + 3u * (size_t)(sample - f->vertex_count)));
 }
 
+/* Whether a sample is nearer than what is listed, by the place that was nearest to it before; else that place anew. */
+static int is_near(const fitter *f, const lod_tree *to, const float *from, uint32_t *nearest, float *place,
+                   float *bound)
+{
+    const float *triangle = to->triangles + 9u * (size_t)*nearest;
+    *bound = sqrtf(lod_distance_from(triangle, place, from[0], from[1], from[2]));
+    if (*bound < f->least) {
+        return 1;
+    }
+    (void)lod_tree_nearest(to, from, nearest);
+    lod_distance_place(to->triangles + 9u * (size_t)*nearest, from, place);
+    return 0;
+}
+
 static void add_samples(fitter *f, fit_part *p)
 {
     for (uint32_t i = 0; i < p->sample_count; i++) {
-        const float *triangle;
         float from[3], to[3];
         fit_row r;
         p->bound[i] += f->drift;
@@ -97,37 +111,54 @@ static void add_samples(fitter *f, fit_part *p)
             continue;
         }
         sample_place(f, p, p->sample[i], from);
-        (void)lod_tree_nearest(&p->coarse_tree, from, &p->nearest[i]);
-        triangle = p->coarse_tree.triangles + 9u * (size_t)p->nearest[i];
-        lod_distance_place(triangle, from, r.weight);
-        place_on(triangle, r.weight, to);
+        if (is_near(f, &p->coarse_tree, from, &p->nearest[i], p->place + 3u * (size_t)i, &p->bound[i])) {
+            continue;
+        }
+        memcpy(r.weight, p->place + 3u * (size_t)i, sizeof r.weight);
+        place_on(p->coarse_tree.triangles + 9u * (size_t)p->nearest[i], r.weight, to);
         corner_slots(f, p->coarse + 3u * (size_t)p->nearest[i], &r);
         add_row(f, &r, to, from, &p->bound[i]);
     }
 }
 
+/* Whether a sample is to be measured, i, j and k steps from the opposite edges: a corner in one of its triangles only. */
+static int is_own_sample(fitter *f, const uint32_t *corner, uint32_t i, uint32_t j, uint32_t k)
+{
+    const uint32_t steps[3] = { i, j, k };
+    for (uint32_t c = 0; c < 3u; c++) {
+        const uint32_t p = f->point_of[corner[c]];
+        if (steps[c] == FIT_GRID) {
+            const int first = f->seen[p] != f->list;
+            f->seen[p] = f->list;
+            return first;
+        }
+    }
+    return 1;
+}
+
 static void add_back(fitter *f, fit_part *p, uint32_t t)
 {
-    const float *triangle = p->coarse_tree.triangles + 9u * (size_t)t;
+    const uint32_t *corner = p->coarse + 3u * (size_t)t;
     uint32_t *nearest = p->back + (size_t)FIT_BACK * t;
-    float *bound = p->back_bound + (size_t)FIT_BACK * t;
+    float *bound = p->back_bound + (size_t)FIT_BACK * t, *place = p->back_place + (size_t)FIT_BACK * 3u * t;
     fit_row r;
-    corner_slots(f, p->coarse + 3u * (size_t)t, &r);
+    corner_slots(f, corner, &r);
     for (uint32_t i = 0; i <= FIT_GRID; i++) {
-        for (uint32_t j = 0; i + j <= FIT_GRID; j++, nearest++, bound++) {
+        for (uint32_t j = 0; i + j <= FIT_GRID; j++, nearest++, bound++, place += 3) {
             const float a = (float)i / FIT_GRID, b = (float)j / FIT_GRID;
-            float from[3], to[3], weight[3];
+            float from[3], to[3];
             *bound += f->drift;
-            if (*bound < f->least) {
+            if (*bound < f->least || !is_own_sample(f, corner, i, j, FIT_GRID - i - j)) {
                 continue;
             }
             r.weight[0] = a;
             r.weight[1] = b;
             r.weight[2] = 1.0f - a - b;
-            place_on(triangle, r.weight, from);
-            (void)lod_tree_nearest(&p->full_tree, from, nearest);
-            lod_distance_place(p->full_tree.triangles + 9u * (size_t)*nearest, from, weight);
-            place_on(p->full_tree.triangles + 9u * (size_t)*nearest, weight, to);
+            place_on(p->coarse_tree.triangles + 9u * (size_t)t, r.weight, from);
+            if (is_near(f, &p->full_tree, from, nearest, place, bound)) {
+                continue;
+            }
+            place_on(p->full_tree.triangles + 9u * (size_t)*nearest, place, to);
             add_row(f, &r, from, to, bound);
         }
     }
@@ -137,6 +168,7 @@ static float list_rows(fitter *f)
 {
     float largest = 0.0f;
     f->row_count = 0;
+    f->list++;
     for (uint32_t i = 0; i < f->part_count; i++) {
         fit_part *p = &f->parts[i];
         lod_tree_pose(&p->coarse_tree, f->at);
@@ -151,7 +183,8 @@ static float list_rows(fitter *f)
         largest = f->rows[i].distance > largest ? f->rows[i].distance : largest;
     }
     f->reach = f->reach > 0.0f ? f->reach : REACH * largest;
-    largest = largest < f->reach ? largest : f->reach; /* farther ones are where mixes tear the surface: not to be led */
+    largest = largest < f->reach ? largest
+                                 : f->reach; /* farther ones are where mixes tear the surface: not to be led */
     for (uint32_t i = 0; i < f->row_count; i++) {
         const double ratio = f->rows[i].distance < largest ? f->rows[i].distance / largest : 1.0f,
                      squared = ratio * ratio;
@@ -234,10 +267,11 @@ static void hold_folds(fitter *f)
     spread(f);
 }
 
-/* Nothing is known of a new pose. */
+/* Nothing is known of a new pose, but that its largest distance is like that at rest. */
 static void forget(fitter *f)
 {
-    f->least = f->drift = 0.0f;
+    f->least = FIRST_RATIO / REACH * f->reach;
+    f->drift = 0.0f;
     for (uint32_t i = 0; i < f->part_count; i++) {
         fit_part *p = &f->parts[i];
         for (uint32_t k = 0; k < p->sample_count; k++) {

@@ -15,8 +15,9 @@ typedef struct fit_part {
     lod_tree full_tree, coarse_tree;
     uint32_t sample_count;
     uint32_t *sample, *nearest; /* [sample_count]; nearest: the coarse triangle in the pose before */
-    uint32_t *back; /* [coarse_count][FIT_BACK] the full triangle nearest to each sample of a coarse one */
-    float *bound, *back_bound; /* of both kinds of samples: in this pose, its distance is no more */
+    uint32_t *back;             /* [coarse_count][FIT_BACK] the full triangle nearest to each sample of a coarse one */
+    float *place, *back_place;  /* [][3] of both kinds of samples: its weights there */
+    float *bound, *back_bound;  /* of both: in this pose, its distance is no more */
 } fit_part;
 
 /* The distance between a sample and the place of the other surface that is nearest to it, along a unit vector, as the
@@ -29,7 +30,7 @@ typedef struct fit_row {
 
 typedef struct fitter {
     const model_mesh *mesh;
-    uint32_t vertex_count;   /* the full mesh's */
+    uint32_t vertex_count;    /* the full mesh's */
     const uint32_t *point_of; /* [vertex_count] */
     uint32_t part_count;
     fit_part *parts;
@@ -41,6 +42,8 @@ typedef struct fitter {
     float *start;      /* [vertex_count][3] the level with the full mesh's vertices; those of others are not read */
     float *at;         /* [vertex_count][3] the level; likewise */
     uint8_t *moves;    /* [vertex_count] whether the pose moves a vertex of the full mesh; rest: all */
+    uint32_t *seen;    /* [vertex_count] by point: the list in which its place was compared with the full mesh */
+    uint32_t list;     /* counts them */
     uint32_t *slot;    /* [vertex_count] by point: its place among the unknowns, or LOD_NONE */
     uint32_t slot_count, *slot_point;
     fit_row *rows;

@@ -6,8 +6,8 @@
 
 #include "lod_fit_pose.h"
 
-#define DAMPING 0.05   /* of the mean stiffness of a slot */
-#define SLIDING 0.25   /* the same for the part of all steps so far that is not along the normal */
+#define DAMPING 0.05 /* of the mean stiffness of a slot */
+#define SLIDING 0.25 /* the same for the part of all steps so far that is not along the normal */
 #define ROUNDS_MAX 40u
 #define ENOUGH 1e-8 /* of the first residual, squared */
 

@@ -13,7 +13,7 @@
 #define ERROR_STEP 4.0f
 #define COARSEST_ERROR (1.0f / 16.0f) /* by shares too: what is off by more shows nothing of the shape */
 #define LEVELS_BY_ERROR 5u            /* the coarsest is off by 1/62 of the diagonal */
-#define CLIP_LOSS 1.05f                /* what a fit may cost in frames of clips */
+#define CLIP_LOSS 1.05f               /* what a fit may cost in frames of clips */
 #define LEAST_SAVED 0.95f             /* of the finer level's triangles: a level with more is left out */
 
 typedef struct pose_list {
@@ -342,8 +342,8 @@ int mesh_levels_finish(model *m, uint32_t index, const lod_settings *settings, l
     if (out->built) {
         choose_levels(mesh, out);
         failed = (poses_make(mesh, frames, &poses) && model_fail(error, "", "out of memory")) ||
-                 certify(mesh, &poses, 1, out->count, out, error) || own_vertices(m, index, settings, frames, out, error) ||
-                 rank_vertices(mesh, out, error);
+                 certify(mesh, &poses, 1, out->count, out, error) ||
+                 own_vertices(m, index, settings, frames, out, error) || rank_vertices(mesh, out, error);
     }
     poses_free(&poses);
     lod_frames_free(frames);

@@ -29,12 +29,22 @@ void lod_tree_free(lod_tree *t)
 {
     triangle_tree_free(&t->boxes);
     free(t->triangles);
+    free(t->prepared);
+}
+
+int lod_tree_prepare(lod_tree *t)
+{
+    t->prepared = calloc((size_t)t->boxes.triangle_count + 1u, sizeof *t->prepared);
+    return !t->prepared;
 }
 
 void lod_tree_pose(lod_tree *t, const float *position)
 {
     pose_triangles(t, position);
     triangle_tree_fit(&t->boxes, t->triangles);
+    for (uint32_t i = 0; t->prepared && i < t->boxes.triangle_count; i++) {
+        lod_prepare(t->triangles + (size_t)i * 9u, &t->prepared[i]);
+    }
 }
 
 static float box_squared(const triangle_node *n, const float *p)
@@ -76,9 +86,15 @@ float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle
     return lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
 }
 
+static float squared_to(const lod_tree *t, const float *point, uint32_t triangle)
+{
+    return t->prepared ? lod_distance_prepared(&t->prepared[triangle], point)
+                       : lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
+}
+
 float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
 {
-    float best = lod_distance_point(t->triangles + (size_t)*nearest * 9u, point);
+    float best = squared_to(t, point, *nearest);
     box_stack s;
     s.count = 0;
     push(&s, t, 0, point);
@@ -89,7 +105,7 @@ float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
         }
         for (uint32_t i = 0; i < n->count; i++) {
             uint32_t triangle = t->boxes.order[n->first + i];
-            float squared = lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
+            float squared = squared_to(t, point, triangle);
             if (squared < best) {
                 best = squared;
                 *nearest = triangle;

@@ -5,14 +5,19 @@
 #include "convert/base/triangle_tree.h"
 
 typedef struct lod_tree {
-    triangle_tree boxes;     /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
-    const uint32_t *indices; /* the caller's, [triangle_count][3] */
-    float *triangles;        /* [triangle_count][9] in the pose of the last lod_tree_pose */
+    triangle_tree boxes;           /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
+    const uint32_t *indices;       /* the caller's, [triangle_count][3] */
+    float *triangles;              /* [triangle_count][9] in the pose of the last lod_tree_pose */
+    struct lod_prepared *prepared; /* [triangle_count], likewise; NULL: prepared when they are measured */
 } lod_tree;
 
 /* Build the tree over triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
 int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float *position, lod_tree *out);
 void lod_tree_free(lod_tree *t);
+
+/* Prepare all triangles in every pose from now on, for a tree of few triangles and many points. Returns 1 when out of
+ * memory. */
+int lod_tree_prepare(lod_tree *t);
 
 /* Refit the tree to another pose. */
 void lod_tree_pose(lod_tree *t, const float *position);
