@@ -3,7 +3,7 @@
  *   lod_compare FILE.glb [--fast] [--picture OUT.png] [--npm SCRIPT FOLDER]
  *
  * The mesh with the most vertices and targets, at 50, 25 and 10 % of its triangles; the last level has vertices of its
- * own where they are few, as in packs. The builder sees rest, targets, its
+ * own where they are few, as in packs (not with --fast). The builder sees rest, targets, its
  * own random mixes and, of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each
  * submesh of meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches.
  *
@@ -151,7 +151,7 @@ static void own_vertices(model *m, uint32_t index, lod *ours, shapes *unseen)
         if (lod_fit(mesh, &ours->levels[k], &error)) {
             exit(fail(error.what, error.where));
         }
-        printf(" level %u has %u vertices of its own beside the mesh's %u\n", k, mesh->vertex_count - before, before);
+        printf(" vertices of its own: %u in level %u, beside the mesh's %u\n", mesh->vertex_count - before, k, before);
         shapes_free(unseen);
         shapes_make(m, index, UNSEEN_MIXES, UNSEEN_FRAMES, unseen);
     }
@@ -170,7 +170,9 @@ static int compare(model *m, lod *ours, const settings *s)
         figures_of(m, mesh, &peer->levels[i], &unseen, &b[i]);
     }
     npm = measure_npm(m, ours, s, &unseen, c, weights);
-    own_vertices(m, s->mesh, ours, &unseen);
+    if (s->mode == LOD_QUALITY) {
+        own_vertices(m, s->mesh, ours, &unseen);
+    }
     for (uint32_t i = 0; i < ours->level_count; i++) {
         figures_of(m, mesh, &ours->levels[i], &unseen, &a[i]);
         pixel_mm[i] = a[i].targets > a[i].mixes ? a[i].targets : a[i].mixes;
