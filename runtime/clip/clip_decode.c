@@ -87,7 +87,8 @@ static void read_wild(noh_bits *b, float reference[4])
 }
 
 /* The coefficients of a track. Of a split segment the high ones come from its second part, and whoever wants half of
- * the frames does without them. `high`: a reader of that part, NULL where it is not read. Returns how many there are. */
+ * the frames does without them. `high`: a reader of that part, NULL where it is not read. Returns how many there are.
+ */
 static uint32_t read_frequencies(noh_bits *b, noh_bits *high, const noh_clip_basis *basis, uint32_t class,
                                  noh_clip_cursor *cursor, int32_t coefs[][4])
 {

@@ -204,7 +204,8 @@ typedef struct quad {
     noh_v4 front[3], back[3];
 } quad;
 
-/* The numbers of four slots in a row: neighbours, or every second of eight; `next`: where the last four of these lie. */
+/* The numbers of four slots in a row: neighbours, or every second of eight; `next`: where the last four of these lie.
+ */
 NOH_ALWAYS_INLINE noh_v4 load_slots(const float *row, int halved, uint32_t next)
 {
     return halved ? noh_v4_even(noh_v4_load(row), noh_v4_load(row + next)) : noh_v4_load(row);

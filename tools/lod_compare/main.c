@@ -3,9 +3,9 @@
  *   lod_compare FILE.glb [--fast] [--picture OUT.png] [--npm SCRIPT FOLDER]
  *
  * The mesh with the most vertices and targets, at 50, 25 and 10 % of its triangles; the last level has vertices of its
- * own where they are few, as in packs (not with --fast). The builder sees rest, targets, its
- * own random mixes and, of a skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each
- * submesh of meshoptimizer's level has as many triangles as ours, or as few as meshoptimizer reaches.
+ * own where they are few, as in packs (not with --fast). The builder sees rest, targets, its own random mixes and, of a
+ * skinned mesh, 12 frames; compared are all targets, 20 other mixes and 28 other frames. Each submesh of meshoptimizer's
+ * level has as many triangles as ours, or as few as meshoptimizer reaches.
  *
  * There are two peers. Debian's meshoptimizer sees positions alone. The npm package's, with --npm, sees the targets as
  * attributes, too: at most 32 numbers for each vertex, so the directions in which the targets vary most. Of several
@@ -140,7 +140,8 @@ static int measure_npm(const model *m, const lod *ours, const settings *s, const
     return 1;
 }
 
-/* Vertices of their own, as the coarsest levels in packs have them. The poses are made anew, since the mesh has more vertices then. */
+/* Vertices of its own for the coarsest level, as in packs. The poses are made anew, since the mesh has more vertices
+ * then. */
 static void own_vertices(model *m, uint32_t index, lod *ours, shapes *unseen)
 {
     model_mesh *mesh = &m->meshes[index];

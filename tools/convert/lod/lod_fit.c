@@ -95,6 +95,16 @@ static void list_samples(const fit_job *j, fit_part *p, uint8_t *taken)
     }
 }
 
+/* At the first corner of the first triangle. */
+static fit_match *new_matches(size_t count)
+{
+    fit_match *matches = model_zeros(count, sizeof *matches);
+    for (size_t i = 0; matches && i < count; i++) {
+        matches[i].place[0] = 1.0f;
+    }
+    return matches;
+}
+
 static int make_part(fit_job *j, uint32_t submesh, uint8_t *taken)
 {
     const model_submesh *sub = &j->mesh->submeshes[submesh];
@@ -104,13 +114,9 @@ static int make_part(fit_job *j, uint32_t submesh, uint8_t *taken)
     p->coarse = j->level->indices + j->level->submesh_first[submesh];
     p->coarse_count = j->level->submesh_count[submesh] / 3u;
     p->sample = model_zeros(4u * (size_t)p->full_count, sizeof *p->sample);
-    p->nearest = model_zeros(4u * (size_t)p->full_count, sizeof *p->nearest);
-    p->back = model_zeros((size_t)FIT_BACK * p->coarse_count, sizeof *p->back);
-    p->bound = model_zeros(4u * (size_t)p->full_count, sizeof *p->bound);
-    p->back_bound = model_zeros((size_t)FIT_BACK * p->coarse_count, sizeof *p->back_bound);
-    p->place = model_zeros(4u * (size_t)p->full_count, 3u * sizeof *p->place);
-    p->back_place = model_zeros((size_t)FIT_BACK * p->coarse_count, 3u * sizeof *p->back_place);
-    if (!p->sample || !p->nearest || !p->back || !p->bound || !p->back_bound || !p->place || !p->back_place ||
+    p->match = new_matches(4u * (size_t)p->full_count);
+    p->back = new_matches((size_t)FIT_BACK * p->coarse_count);
+    if (!p->sample || !p->match || !p->back ||
         lod_tree_make(p->full, p->full_count, j->mesh->position, &p->full_tree) ||
         lod_tree_make(p->coarse, p->coarse_count, j->mesh->position, &p->coarse_tree) ||
         lod_tree_prepare(&p->coarse_tree)) {
@@ -180,12 +186,8 @@ static void job_free(fit_job *j)
         lod_tree_free(&p->full_tree);
         lod_tree_free(&p->coarse_tree);
         free(p->sample);
-        free(p->nearest);
+        free(p->match);
         free(p->back);
-        free(p->bound);
-        free(p->back_bound);
-        free(p->place);
-        free(p->back_place);
     }
     free(j->f.parts);
     free(j->f.used);

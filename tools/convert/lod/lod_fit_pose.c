@@ -63,65 +63,69 @@ static void add_row(fitter *f, fit_row *r, const float *coarse, const float *ful
     f->rows[f->row_count++] = *r;
 }
 
+static void corners_of(const float *position, const uint32_t *corner, float *triangle)
+{
+    for (uint32_t k = 0; k < 3u; k++) {
+        memcpy(triangle + 3u * k, position + 3u * (size_t)corner[k], 3u * sizeof *triangle);
+    }
+}
+
 static void sample_place(const fitter *f, const fit_part *p, uint32_t sample, float *out)
 {
-    const uint32_t *corner;
     const float third[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };
     float triangle[9];
     if (sample < f->vertex_count) {
         memcpy(out, f->full + 3u * (size_t)sample, 3u * sizeof *out);
         return;
     }
-    corner = p->full + 3u * (size_t)(sample - f->vertex_count);
-    for (uint32_t k = 0; k < 3u; k++) {
-        memcpy(triangle + 3u * k, f->full + 3u * (size_t)corner[k], 3u * sizeof *triangle);
-    }
+    corners_of(f->full, p->full + 3u * (size_t)(sample - f->vertex_count), triangle);
     place_on(triangle, third, out);
 }
 
 static int sample_moves(const fitter *f, const fit_part *p, uint32_t i)
 {
     const uint32_t sample = p->sample[i];
-    return corner_moves(f, p->coarse + 3u * (size_t)p->nearest[i]) ||
+    return corner_moves(f, p->coarse + 3u * (size_t)p->match[i].triangle) ||
            (sample < f->vertex_count ? f->moves[sample]
                                      : corner_moves(f, p->full + 3u * (size_t)(sample - f->vertex_count)));
 }
 
-/* Whether a sample is nearer than what is listed, by the place that was nearest to it before; else that place anew. */
-static int is_near(const fitter *f, const lod_tree *to, const float *from, uint32_t *nearest, float *place,
-                   float *bound)
+/* Whether a sample is nearer than what is listed, by the place that was nearest to it before; else *place is the nearest
+ * one. */
+static int is_near(const fitter *f, const lod_tree *to, const float *from, fit_match *m, float *place)
 {
-    const float *triangle = to->triangles + 9u * (size_t)*nearest;
-    *bound = sqrtf(lod_distance_from(triangle, place, from[0], from[1], from[2]));
-    if (*bound < f->least) {
+    m->bound = sqrtf(lod_distance_from(to->triangles + 9u * (size_t)m->triangle, m->place, from[0], from[1], from[2]));
+    if (m->bound < f->least) {
         return 1;
     }
-    (void)lod_tree_nearest(to, from, nearest);
-    lod_distance_place(to->triangles + 9u * (size_t)*nearest, from, place);
+    (void)lod_tree_nearest(to, from, &m->triangle);
+    lod_distance_place(to->triangles + 9u * (size_t)m->triangle, from, m->place);
+    place_on(to->triangles + 9u * (size_t)m->triangle, m->place, place);
     return 0;
 }
 
 static void add_samples(fitter *f, fit_part *p)
 {
     for (uint32_t i = 0; i < p->sample_count; i++) {
+        fit_match *m = &p->match[i];
         float from[3], to[3];
         fit_row r;
-        p->bound[i] += f->drift;
-        if (p->bound[i] < f->least || !sample_moves(f, p, i)) {
+        m->bound += f->drift;
+        if (m->bound < f->least || !sample_moves(f, p, i)) {
             continue;
         }
         sample_place(f, p, p->sample[i], from);
-        if (is_near(f, &p->coarse_tree, from, &p->nearest[i], p->place + 3u * (size_t)i, &p->bound[i])) {
+        if (is_near(f, &p->coarse_tree, from, m, to)) {
             continue;
         }
-        memcpy(r.weight, p->place + 3u * (size_t)i, sizeof r.weight);
-        place_on(p->coarse_tree.triangles + 9u * (size_t)p->nearest[i], r.weight, to);
-        corner_slots(f, p->coarse + 3u * (size_t)p->nearest[i], &r);
-        add_row(f, &r, to, from, &p->bound[i]);
+        memcpy(r.weight, m->place, sizeof r.weight);
+        corner_slots(f, p->coarse + 3u * (size_t)m->triangle, &r);
+        add_row(f, &r, to, from, &m->bound);
     }
 }
 
-/* Whether a sample is to be measured, i, j and k steps from the opposite edges: a corner in one of its triangles only. */
+/* Whether a sample is to be measured, i, j and k steps from the opposite edges: a corner in one of its triangles alone.
+ */
 static int is_own_sample(fitter *f, const uint32_t *corner, uint32_t i, uint32_t j, uint32_t k)
 {
     const uint32_t steps[3] = { i, j, k };
@@ -139,27 +143,24 @@ static int is_own_sample(fitter *f, const uint32_t *corner, uint32_t i, uint32_t
 static void add_back(fitter *f, fit_part *p, uint32_t t)
 {
     const uint32_t *corner = p->coarse + 3u * (size_t)t;
-    uint32_t *nearest = p->back + (size_t)FIT_BACK * t;
-    float *bound = p->back_bound + (size_t)FIT_BACK * t, *place = p->back_place + (size_t)FIT_BACK * 3u * t;
+    fit_match *m = p->back + (size_t)FIT_BACK * t;
     fit_row r;
     corner_slots(f, corner, &r);
     for (uint32_t i = 0; i <= FIT_GRID; i++) {
-        for (uint32_t j = 0; i + j <= FIT_GRID; j++, nearest++, bound++, place += 3) {
+        for (uint32_t j = 0; i + j <= FIT_GRID; j++, m++) {
             const float a = (float)i / FIT_GRID, b = (float)j / FIT_GRID;
             float from[3], to[3];
-            *bound += f->drift;
-            if (*bound < f->least || !is_own_sample(f, corner, i, j, FIT_GRID - i - j)) {
+            m->bound += f->drift;
+            if (m->bound < f->least || !is_own_sample(f, corner, i, j, FIT_GRID - i - j)) {
                 continue;
             }
             r.weight[0] = a;
             r.weight[1] = b;
             r.weight[2] = 1.0f - a - b;
             place_on(p->coarse_tree.triangles + 9u * (size_t)t, r.weight, from);
-            if (is_near(f, &p->full_tree, from, nearest, place, bound)) {
-                continue;
+            if (!is_near(f, &p->full_tree, from, m, to)) {
+                add_row(f, &r, from, to, &m->bound);
             }
-            place_on(p->full_tree.triangles + 9u * (size_t)*nearest, place, to);
-            add_row(f, &r, from, to, bound);
         }
     }
 }
@@ -183,8 +184,8 @@ static float list_rows(fitter *f)
         largest = f->rows[i].distance > largest ? f->rows[i].distance : largest;
     }
     f->reach = f->reach > 0.0f ? f->reach : REACH * largest;
-    largest = largest < f->reach ? largest
-                                 : f->reach; /* farther ones are where mixes tear the surface: not to be led */
+    /* what is farther is where mixes tear the surface: it does not lead */
+    largest = largest < f->reach ? largest : f->reach;
     for (uint32_t i = 0; i < f->row_count; i++) {
         const double ratio = f->rows[i].distance < largest ? f->rows[i].distance / largest : 1.0f,
                      squared = ratio * ratio;
@@ -227,16 +228,6 @@ static void step(fitter *f, float largest)
     spread(f);
 }
 
-static void normal_of(const float *position, const uint32_t *corner, float *out)
-{
-    const float *a = position + 3u * (size_t)corner[0], *b = position + 3u * (size_t)corner[1],
-                *c = position + 3u * (size_t)corner[2];
-    const float u[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, v[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
-    out[0] = u[1] * v[2] - u[2] * v[1];
-    out[1] = u[2] * v[0] - u[0] * v[2];
-    out[2] = u[0] * v[1] - u[1] * v[0];
-}
-
 static float dot(const float *a, const float *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -248,9 +239,11 @@ static void hold_folds(fitter *f)
     for (uint32_t i = 0; i < f->part_count; i++) {
         for (uint32_t t = 0; t < f->parts[i].coarse_count; t++) {
             const uint32_t *corner = f->parts[i].coarse + 3u * (size_t)t;
-            float before[3], now[3];
-            normal_of(f->start, corner, before);
-            normal_of(f->at, corner, now);
+            float triangle[9], before[3], now[3];
+            corners_of(f->start, corner, triangle);
+            lod_normal(triangle, before);
+            corners_of(f->at, corner, triangle);
+            lod_normal(triangle, now);
             if (dot(before, now) >= TURNED * sqrtf(dot(before, before) * dot(now, now))) {
                 continue;
             }
@@ -275,10 +268,10 @@ static void forget(fitter *f)
     for (uint32_t i = 0; i < f->part_count; i++) {
         fit_part *p = &f->parts[i];
         for (uint32_t k = 0; k < p->sample_count; k++) {
-            p->bound[k] = INFINITY;
+            p->match[k].bound = INFINITY;
         }
         for (uint32_t k = 0; k < FIT_BACK * p->coarse_count; k++) {
-            p->back_bound[k] = INFINITY;
+            p->back[k].bound = INFINITY;
         }
     }
 }

@@ -8,16 +8,22 @@
 #define FIT_GRID 4u /* steps along the edge of a coarse triangle */
 #define FIT_BACK ((FIT_GRID + 1u) * (FIT_GRID + 2u) / 2u)
 
+/* Where a sample of one surface was nearest on the other when it was last measured. */
+typedef struct fit_match {
+    uint32_t triangle;
+    float place[3]; /* weights of its corners */
+    float bound;    /* in this pose, the sample is no farther from the surface */
+} fit_match;
+
 /* One submesh. A sample is a vertex, or (vertex_count + t) the centroid of the submesh's triangle t. */
 typedef struct fit_part {
     const uint32_t *full, *coarse; /* corners */
     uint32_t full_count, coarse_count;
     lod_tree full_tree, coarse_tree;
     uint32_t sample_count;
-    uint32_t *sample, *nearest; /* [sample_count]; nearest: the coarse triangle in the pose before */
-    uint32_t *back;             /* [coarse_count][FIT_BACK] the full triangle nearest to each sample of a coarse one */
-    float *place, *back_place;  /* [][3] of both kinds of samples: its weights there */
-    float *bound, *back_bound;  /* of both: in this pose, its distance is no more */
+    uint32_t *sample; /* [sample_count] */
+    fit_match *match; /* [sample_count] on the coarse surface */
+    fit_match *back;  /* [coarse_count][FIT_BACK] of each sample of a coarse triangle, on the full one */
 } fit_part;
 
 /* The distance between a sample and the place of the other surface that is nearest to it, along a unit vector, as the
@@ -50,7 +56,7 @@ typedef struct fitter {
     uint32_t row_count;
     float least;      /* distances below it are not listed */
     float drift;      /* how far the last step moved any point */
-    double *unknowns; /* [6][3 point_count] scratch of the solver */
+    double *unknowns; /* [4][3 point_count] scratch of the solver */
     float *best;      /* [3 point_count] */
 } fitter;
 

@@ -33,8 +33,8 @@ typedef struct lod_poses {
 int lod_poses_make(const model_mesh *mesh, const lod_options *o, lod_poses *out);
 void lod_poses_free(lod_poses *p);
 
-/* The weights of the default mixes, [LOD_MIXES][target_count]. */
-#define LOD_MIXES 24u
+#define LOD_MIXES 24u /* by default */
+/* The weights of mixes of a quarter of the targets each, [LOD_MIXES][target_count]. */
 void lod_poses_mixes(uint32_t target_count, float *out);
 
 static inline const float *lod_posed(const lod_poses *p, uint32_t vertex, uint32_t pose)
@@ -194,6 +194,15 @@ float lod_distance_point(const float *triangle, const float *point);
 
 /* The weights of the nearest place alone, [3]. */
 void lod_distance_place(const float *triangle, const float *point, float *out);
+
+/* The normal of a triangle [3][3], as long as twice its area. */
+static inline void lod_normal(const float *t, float *out)
+{
+    const float a[3] = { t[3] - t[0], t[4] - t[1], t[5] - t[2] }, b[3] = { t[6] - t[0], t[7] - t[1], t[8] - t[2] };
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
 
 /* The squared distance of a point to the place of given weights on a triangle [3][3]. */
 static inline float lod_distance_from(const float *c, const float *w, float x, float y, float z)

@@ -270,16 +270,20 @@ static int is_nearer(const lod_errors *now, const lod_errors *before)
            now->clip <= CLIP_LOSS * before->clip;
 }
 
-/* Fit a level and measure it again. */
+/* Fit a level and, if that moved any vertex, measure it again. */
 static int fit_level(model *m, uint32_t index, uint32_t k, lod_frames *frames, mesh_levels *out, model_error *error)
 {
     const uint32_t node = lod_skinned_node(m, index);
     model_mesh *mesh = &m->meshes[index];
+    const uint32_t vertex_count = mesh->vertex_count;
     pose_list poses = { 0, 0, NULL };
-    int failed = lod_fit(mesh, &out->built->levels[out->which[k]], error) ||
-                 ((node != MODEL_NONE && lod_frames_again(m, node, frames)) || poses_make(mesh, frames, &poses)
-                      ? model_fail(error, mesh->name, "out of memory")
-                      : certify(mesh, &poses, k, k + 1u, out, error));
+    int failed = lod_fit(mesh, &out->built->levels[out->which[k]], error);
+    if (failed || mesh->vertex_count == vertex_count) {
+        return failed;
+    }
+    failed = (node != MODEL_NONE && lod_frames_again(m, node, frames)) || poses_make(mesh, frames, &poses)
+                 ? model_fail(error, mesh->name, "out of memory")
+                 : certify(mesh, &poses, k, k + 1u, out, error);
     poses_free(&poses);
     return failed;
 }

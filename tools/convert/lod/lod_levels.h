@@ -21,7 +21,7 @@ typedef struct lod_settings {
     lod_mode mode;
     float color_edges; /* of lod_options */
     float own_share;   /* the coarsest levels that together use no more than this share of the mesh's vertices have
-                          vertices of their own (lod_fit.h); 0: LOD_OWN_SHARE; below 0, or with LOD_FAST: no level has */
+                          vertices of their own (lod_fit.h); 0: LOD_OWN_SHARE; below 0, or with LOD_FAST: none has */
     FILE *progress;    /* a terminal, for progress; NULL: none */
 } lod_settings;
 

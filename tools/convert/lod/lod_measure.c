@@ -63,14 +63,6 @@ static const float reverse_weights[LOD_REVERSE_SAMPLES][3] = {
     { 0.6f, 0.2f, 0.2f },   { 0.2f, 0.6f, 0.2f }, { 0.2f, 0.2f, 0.6f },
 };
 
-static void normal_of(const float *t, float *out)
-{
-    float a[3] = { t[3] - t[0], t[4] - t[1], t[5] - t[2] }, b[3] = { t[6] - t[0], t[7] - t[1], t[8] - t[2] };
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* A triangle that flips in a pose costs its area, which is what shows wrongly. */
 static float turned_area(const lod_surface *s, const lod_move *m, uint32_t pose, const float *triangles)
 {
@@ -78,8 +70,8 @@ static float turned_area(const lod_surface *s, const lod_move *m, uint32_t pose,
     for (uint32_t i = 0; i < m->kept_count; i++) {
         float before[9], n0[3], n1[3];
         lod_move_triangle(s, m->kept[i], m->from, pose, before);
-        normal_of(before, n0);
-        normal_of(triangles + i * 9u, n1);
+        lod_normal(before, n0);
+        lod_normal(triangles + i * 9u, n1);
         if (n0[0] * n1[0] + n0[1] * n1[1] + n0[2] * n1[2] < 0.0f) {
             float squared = n1[0] * n1[0] + n1[1] * n1[1] + n1[2] * n1[2];
             area = squared > area ? squared : area;

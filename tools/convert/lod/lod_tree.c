@@ -83,18 +83,13 @@ static void swap_last(box_stack *s)
 
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle)
 {
-    return lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
-}
-
-static float squared_to(const lod_tree *t, const float *point, uint32_t triangle)
-{
     return t->prepared ? lod_distance_prepared(&t->prepared[triangle], point)
                        : lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
 }
 
 float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
 {
-    float best = squared_to(t, point, *nearest);
+    float best = lod_tree_distance(t, point, *nearest);
     box_stack s;
     s.count = 0;
     push(&s, t, 0, point);
@@ -105,7 +100,7 @@ float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
         }
         for (uint32_t i = 0; i < n->count; i++) {
             uint32_t triangle = t->boxes.order[n->first + i];
-            float squared = squared_to(t, point, triangle);
+            float squared = lod_tree_distance(t, point, triangle);
             if (squared < best) {
                 best = squared;
                 *nearest = triangle;

@@ -23,8 +23,8 @@ typedef struct build_args {
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
         *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
-    double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color, lod_own,
-        wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
+    double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
+        lod_own, wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
     option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
         attached;
 } build_args;
