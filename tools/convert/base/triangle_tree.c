@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAF_TRIANGLES 4u
-
 typedef struct order_key {
     float at;
     uint32_t triangle;
@@ -67,7 +65,7 @@ static void split(triangle_tree *t, const float *triangles, triangle_node *n, or
     t->node_count += 2u;
 }
 
-static void build(triangle_tree *t, const float *triangles, order_key *keys)
+static void build(triangle_tree *t, const float *triangles, uint32_t leaf_most, order_key *keys)
 {
     t->node_count = 1;
     t->nodes[0].first = 0;
@@ -76,11 +74,11 @@ static void build(triangle_tree *t, const float *triangles, order_key *keys)
         t->order[i] = i;
     }
     for (uint32_t i = 0; i < t->node_count; i++) {
-        if (t->nodes[i].count > LEAF_TRIANGLES) split(t, triangles, &t->nodes[i], keys);
+        if (t->nodes[i].count > leaf_most) split(t, triangles, &t->nodes[i], keys);
     }
 }
 
-int triangle_tree_make(const float *triangles, uint32_t count, triangle_tree *out)
+int triangle_tree_make(const float *triangles, uint32_t count, uint32_t leaf_most, triangle_tree *out)
 {
     order_key *keys = calloc((size_t)count + 1u, sizeof *keys);
     int failed;
@@ -90,7 +88,7 @@ int triangle_tree_make(const float *triangles, uint32_t count, triangle_tree *ou
     out->order = calloc((size_t)count + 1u, sizeof *out->order);
     failed = !keys || !out->nodes || !out->order;
     if (!failed && count) {
-        build(out, triangles, keys);
+        build(out, triangles, leaf_most, keys);
         triangle_tree_fit(out, triangles);
     }
     free(keys);

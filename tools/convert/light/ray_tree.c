@@ -3,10 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LEAF_TRIANGLES 4u
+
 int ray_tree_make(const float *triangles, uint32_t count, ray_tree *out)
 {
     out->triangles = malloc((count + 1u) * 9u * sizeof *out->triangles);
-    if (triangle_tree_make(triangles, count, &out->boxes) || !out->triangles) {
+    if (triangle_tree_make(triangles, count, LEAF_TRIANGLES, &out->boxes) || !out->triangles) {
         return 1;
     }
     for (uint32_t i = 0; i < count; i++) {

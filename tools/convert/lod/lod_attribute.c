@@ -17,6 +17,7 @@
 #define SKIN_EDGES 1.0f
 #define FIRST_COLOR 2u
 #define COLORS (LOD_ATTRIBUTES - FIRST_COLOR)
+#define FAN_BLOCKS (LOD_FAN_MAX / LOD_LANES)
 #define BOUND_ROUNDING 1.0001f /* of sums over three weights that may not add up to 1 in the last bits */
 
 static double area_of(const float *a, const float *b, const float *c, uint32_t axes)
@@ -92,16 +93,27 @@ static uint32_t moved(const lod_move *m, uint32_t vertex)
 /* The triangles that a move leaves, at rest. */
 typedef struct rest_move {
     const lod_move *move;
-    lod_prepared triangles[LOD_FAN_MAX]; /* [kept_count] */
+    float triangles[LOD_FAN_MAX][9]; /* [kept_count] */
+    lod_block blocks[FAN_BLOCKS];
 } rest_move;
 
 static void rest_move_make(const lod_surface *s, const lod_move *m, rest_move *out)
 {
     out->move = m;
     for (uint32_t i = 0; i < m->kept_count; i++) {
-        float triangle[9];
-        lod_move_triangle(s, m->kept[i], m->to, 0, triangle);
-        lod_prepare(triangle, &out->triangles[i]);
+        lod_move_triangle(s, m->kept[i], m->to, 0, out->triangles[i]);
+    }
+    for (uint32_t i = 0; i < m->kept_count; i += LOD_LANES) {
+        const uint32_t left = m->kept_count - i;
+        lod_block_prepare(out->triangles[i], left < LOD_LANES ? left : LOD_LANES, &out->blocks[i / LOD_LANES]);
+    }
+}
+
+/* The squared distances of a point to them, [LOD_FAN_MAX]. */
+static void rest_move_distances(const rest_move *r, const float *at, float *squared)
+{
+    for (uint32_t i = 0; i < r->move->kept_count; i += LOD_LANES) {
+        lod_block_distances(&r->blocks[i / LOD_LANES], at, squared + i);
     }
 }
 
@@ -109,16 +121,14 @@ static void rest_move_make(const lod_surface *s, const lod_move *m, rest_move *o
 static int nearest_place(const lod_surface *s, const rest_move *r, const float *at, uint32_t island, place *out)
 {
     const lod_move *m = r->move;
+    float squared[LOD_FAN_MAX];
+    lod_prepared nearest;
     uint32_t best = LOD_NONE, corner;
+    rest_move_distances(r, at, squared);
     out->squared = FLT_MAX;
     for (uint32_t i = 0; i < m->kept_count; i++) {
-        float squared;
-        if (island != LOD_NONE && s->island[m->kept[i] / 3u] != island) {
-            continue;
-        }
-        squared = lod_distance_prepared(&r->triangles[i], at);
-        if (squared < out->squared) {
-            out->squared = squared;
+        if (squared[i] < out->squared && (island == LOD_NONE || s->island[m->kept[i] / 3u] == island)) {
+            out->squared = squared[i];
             best = i;
         }
     }
@@ -126,7 +136,8 @@ static int nearest_place(const lod_surface *s, const rest_move *r, const float *
         return 0;
     }
     corner = m->kept[best];
-    (void)lod_distance_weights(&r->triangles[best], at, out->weight);
+    lod_prepare(r->triangles[best], &nearest);
+    (void)lod_distance_weights(&nearest, at, out->weight);
     out->vertex[0] = moved(m, s->corner[corner]);
     out->vertex[1] = s->corner[lod_next(corner)];
     out->vertex[2] = s->corner[lod_previous(corner)];
@@ -251,11 +262,11 @@ static float color_bound(const lod_surface *s, const lod_move *m, const uint32_t
 static float part_squared(const lod_surface *s, const rest_move *r, const float *at, uint32_t submesh)
 {
     const float *stays = lod_posed(&s->poses, r->move->to, 0);
-    float best = FLT_MAX, squared;
+    float squareds[LOD_FAN_MAX], best = FLT_MAX, squared;
+    rest_move_distances(r, at, squareds);
     for (uint32_t i = 0; i < r->move->kept_count; i++) {
         if (s->submesh[r->move->kept[i] / 3u] == submesh) {
-            squared = lod_distance_prepared(&r->triangles[i], at);
-            best = squared < best ? squared : best;
+            best = squareds[i] < best ? squareds[i] : best;
         }
     }
     squared = (at[0] - stays[0]) * (at[0] - stays[0]) + (at[1] - stays[1]) * (at[1] - stays[1]) +

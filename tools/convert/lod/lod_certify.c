@@ -177,7 +177,7 @@ static void way_measure_rest(way *w, const float *position)
         float at[3];
         sample_point(w, &w->samples[i], position, at);
         w->nearest[i] = guess;
-        w->rest[i] = sqrtf(lod_tree_nearest(&w->to, at, &w->nearest[i]));
+        w->rest[i] = sqrtf(lod_tree_nearest(&w->to, at, 0.0f, &w->nearest[i]));
         guess = w->nearest[i];
         lod_distance_place(w->to.triangles + (size_t)guess * 9u, at, w->rest_weight + (size_t)i * 3u);
         w->worst = w->rest[i] > w->rest[w->worst] ? i : w->worst;
@@ -197,7 +197,7 @@ static void way_raise(way *w, uint32_t i, const float *position, float *most)
     }
     squared = lod_tree_distance(&w->to, at, w->nearest[i]);
     if (squared > *most * *most) {
-        squared = lod_tree_nearest(&w->to, at, &w->nearest[i]);
+        squared = lod_tree_nearest(&w->to, at, *most * *most, &w->nearest[i]);
         *most = squared > *most * *most ? sqrtf(squared) : *most;
     }
 }

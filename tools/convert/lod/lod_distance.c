@@ -3,7 +3,7 @@
 
 /* Comparisons may be evaluated for all lanes: floating-point exception flags are not read. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-trapping-math")
+#pragma GCC optimize("O3", "no-trapping-math")
 #endif
 
 /* A second version with AVX2 where the processor has it; without fused multiply-adds, so with the same bits. Sanitizers
@@ -14,20 +14,26 @@
 #else
 #define LOD_WIDE
 #endif
+/* Inlined into loops over lanes, or these are not vectorised. */
+#if defined(__GNUC__)
+#define LOD_INLINE static inline __attribute__((always_inline))
+#else
+#define LOD_INLINE static inline
+#endif
 
-static float dot(const float *a, const float *b)
+LOD_INLINE float dot(const float *a, const float *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void cross(const float *a, const float *b, float *out)
+LOD_INLINE void cross(const float *a, const float *b, float *out)
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-void lod_prepare(const float *triangle, lod_prepared *out)
+LOD_INLINE void prepare(const float *triangle, lod_prepared *out)
 {
     float squared;
     for (uint32_t e = 0; e < 3u; e++) {
@@ -48,8 +54,13 @@ void lod_prepare(const float *triangle, lod_prepared *out)
     }
 }
 
+void lod_prepare(const float *triangle, lod_prepared *out)
+{
+    prepare(triangle, out);
+}
+
 /* The squared distance to an edge; *inside falls to the least of the sides' signs. */
-static inline float edge_squared(const lod_edge *e, float x, float y, float z, float *inside)
+LOD_INLINE float edge_squared(const lod_edge *e, float x, float y, float z, float *inside)
 {
     float dx = x - e->at[0], dy = y - e->at[1], dz = z - e->at[2];
     float side = dx * e->side[0] + dy * e->side[1] + dz * e->side[2];
@@ -63,7 +74,7 @@ static inline float edge_squared(const lod_edge *e, float x, float y, float z, f
     return dx * dx + dy * dy + dz * dz;
 }
 
-static inline float triangle_squared(const lod_prepared *p, float x, float y, float z)
+LOD_INLINE float triangle_squared(const lod_prepared *p, float x, float y, float z)
 {
     float inside = 1.0f;
     float d0 = edge_squared(&p->edges[0], x, y, z, &inside);
@@ -109,6 +120,69 @@ LOD_WIDE void lod_distance_nearest(const float *triangle, uint32_t which, const 
         }
     }
 }
+
+/* ---- blocks ---- */
+
+LOD_INLINE lod_edge lane_edge(const float edge[10][LOD_LANES], uint32_t k)
+{
+    const lod_edge e = { { edge[0][k], edge[1][k], edge[2][k] },
+                         { edge[3][k], edge[4][k], edge[5][k] },
+                         { edge[6][k], edge[7][k], edge[8][k] },
+                         edge[9][k] };
+    return e;
+}
+
+LOD_INLINE void put_lane_edge(const lod_edge *e, uint32_t k, float out[10][LOD_LANES])
+{
+    for (uint32_t c = 0; c < 3u; c++) {
+        out[c][k] = e->at[c];
+        out[3u + c][k] = e->along[c];
+        out[6u + c][k] = e->side[c];
+    }
+    out[9][k] = e->inverse;
+}
+
+LOD_WIDE static void prepare_lanes(const float *restrict corners, lod_block *restrict out)
+{
+    for (uint32_t k = 0; k < LOD_LANES; k++) {
+        float triangle[9];
+        lod_prepared p;
+        for (uint32_t i = 0; i < 9u; i++) {
+            triangle[i] = corners[i * LOD_LANES + k];
+        }
+        prepare(triangle, &p);
+        for (uint32_t c = 0; c < 3u; c++) {
+            put_lane_edge(&p.edges[c], k, out->edges[c]);
+            out->normal[c][k] = p.normal[c];
+        }
+        out->inverse[k] = p.inverse;
+    }
+}
+
+void lod_block_prepare(const float *triangles, uint32_t count, lod_block *out)
+{
+    float corners[9u * LOD_LANES];
+    for (uint32_t k = 0; k < LOD_LANES; k++) {
+        const float *from = triangles + 9u * (size_t)(k < count ? k : count - 1u);
+        for (uint32_t i = 0; i < 9u; i++) {
+            corners[i * LOD_LANES + k] = from[i];
+        }
+    }
+    prepare_lanes(corners, out);
+}
+
+LOD_WIDE void lod_block_distances(const lod_block *restrict b, const float *point, float *restrict squared)
+{
+    const float x = point[0], y = point[1], z = point[2];
+    for (uint32_t k = 0; k < LOD_LANES; k++) {
+        const lod_prepared p = { { lane_edge(b->edges[0], k), lane_edge(b->edges[1], k), lane_edge(b->edges[2], k) },
+                                 { b->normal[0][k], b->normal[1][k], b->normal[2][k] },
+                                 b->inverse[k] };
+        squared[k] = triangle_squared(&p, x, y, z);
+    }
+}
+
+/* ---- places ---- */
 
 /* Barycentric weights of the nearest point on the edge from corner e. */
 static float edge_barycentric(const lod_prepared *p, uint32_t e, const float *point, float *out)

@@ -118,8 +118,7 @@ static int make_part(fit_job *j, uint32_t submesh, uint8_t *taken)
     p->back = new_matches((size_t)FIT_BACK * p->coarse_count);
     if (!p->sample || !p->match || !p->back ||
         lod_tree_make(p->full, p->full_count, j->mesh->position, &p->full_tree) ||
-        lod_tree_make(p->coarse, p->coarse_count, j->mesh->position, &p->coarse_tree) ||
-        lod_tree_prepare(&p->coarse_tree)) {
+        lod_tree_make(p->coarse, p->coarse_count, j->mesh->position, &p->coarse_tree)) {
         return 1;
     }
     list_samples(j, p, taken);

@@ -98,7 +98,7 @@ static int is_near(const fitter *f, const lod_tree *to, const float *from, fit_m
     if (m->bound < f->least) {
         return 1;
     }
-    (void)lod_tree_nearest(to, from, &m->triangle);
+    (void)lod_tree_nearest(to, from, f->least * f->least, &m->triangle);
     lod_distance_place(to->triangles + 9u * (size_t)m->triangle, from, m->place);
     place_on(to->triangles + 9u * (size_t)m->triangle, m->place, place);
     return 0;

@@ -189,6 +189,16 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
 /* The same, and nearest[i] = which where it fell. */
 void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y, const float *z,
                           uint32_t count, float *squared, uint32_t *nearest);
+/* LOD_LANES triangles beside each other, for one point at a time. */
+typedef struct lod_block {
+    float edges[3][10][LOD_LANES]; /* lod_edge, number by number */
+    float normal[3][LOD_LANES], inverse[LOD_LANES];
+} lod_block;
+
+/* 1 to LOD_LANES triangles, [count][9]; the lanes behind them have the last one. */
+void lod_block_prepare(const float *triangles, uint32_t count, lod_block *out);
+/* The squared distances of a point to all of them, [LOD_LANES]. */
+void lod_block_distances(const lod_block *restrict b, const float *point, float *restrict squared);
 /* One point. */
 float lod_distance_point(const float *triangle, const float *point);
 

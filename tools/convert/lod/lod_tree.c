@@ -1,4 +1,5 @@
-/* lod_tree.c: distances by a tree of boxes that is split once, at rest; for each pose only the boxes are fitted. */
+/* lod_tree.c: distances by a tree of boxes that is split once, at rest; for each pose only the boxes are fitted. The
+ * triangles of a leaf are measured at once. */
 #include "lod_tree.h"
 
 #include <stdlib.h>
@@ -13,6 +14,36 @@ static void pose_triangles(lod_tree *t, const float *position)
     }
 }
 
+static int number_leaves(lod_tree *t)
+{
+    t->block_of = calloc((size_t)t->boxes.node_count + 1u, sizeof *t->block_of);
+    for (uint32_t i = 0; t->block_of && i < t->boxes.node_count; i++) {
+        t->block_of[i] = t->block_count;
+        t->block_count += t->boxes.nodes[i].count > 0;
+    }
+    t->blocks = calloc((size_t)t->block_count + 1u, sizeof *t->blocks);
+    return !t->block_of || !t->blocks;
+}
+
+static void prepare_leaf(lod_tree *t, uint32_t node)
+{
+    const triangle_node *n = &t->boxes.nodes[node];
+    float triangles[9u * LOD_LANES];
+    for (uint32_t k = 0; k < n->count; k++) {
+        memcpy(triangles + 9u * k, t->triangles + 9u * (size_t)t->boxes.order[n->first + k], 9u * sizeof *triangles);
+    }
+    lod_block_prepare(triangles, n->count, &t->blocks[t->block_of[node]]);
+}
+
+static void prepare_leaves(lod_tree *t)
+{
+    for (uint32_t i = 0; i < t->boxes.node_count; i++) {
+        if (t->boxes.nodes[i].count) {
+            prepare_leaf(t, i);
+        }
+    }
+}
+
 int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float *position, lod_tree *t)
 {
     t->indices = indices;
@@ -22,29 +53,26 @@ int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float 
     }
     t->boxes.triangle_count = triangle_count;
     pose_triangles(t, position);
-    return triangle_tree_make(t->triangles, triangle_count, &t->boxes);
+    if (triangle_tree_make(t->triangles, triangle_count, LOD_LANES, &t->boxes) || number_leaves(t)) {
+        return 1;
+    }
+    prepare_leaves(t);
+    return 0;
 }
 
 void lod_tree_free(lod_tree *t)
 {
     triangle_tree_free(&t->boxes);
     free(t->triangles);
-    free(t->prepared);
-}
-
-int lod_tree_prepare(lod_tree *t)
-{
-    t->prepared = calloc((size_t)t->boxes.triangle_count + 1u, sizeof *t->prepared);
-    return !t->prepared;
+    free(t->block_of);
+    free(t->blocks);
 }
 
 void lod_tree_pose(lod_tree *t, const float *position)
 {
     pose_triangles(t, position);
     triangle_tree_fit(&t->boxes, t->triangles);
-    for (uint32_t i = 0; t->prepared && i < t->boxes.triangle_count; i++) {
-        lod_prepare(t->triangles + (size_t)i * 9u, &t->prepared[i]);
-    }
+    prepare_leaves(t);
 }
 
 static float box_squared(const triangle_node *n, const float *p)
@@ -52,7 +80,8 @@ static float box_squared(const triangle_node *n, const float *p)
     float sum = 0.0f;
     for (uint32_t k = 0; k < 3u; k++) {
         float below = n->low[k] - p[k], above = p[k] - n->high[k], d = below > above ? below : above;
-        sum += d > 0.0f ? d * d : 0.0f;
+        d = d > 0.0f ? d : 0.0f; /* no branch: which side it is on is hard to foresee */
+        sum += d * d;
     }
     return sum;
 }
@@ -83,30 +112,31 @@ static void swap_last(box_stack *s)
 
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle)
 {
-    return t->prepared ? lod_distance_prepared(&t->prepared[triangle], point)
-                       : lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
+    return lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
 }
 
-float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest)
+float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint32_t *nearest)
 {
     float best = lod_tree_distance(t, point, *nearest);
     box_stack s;
     s.count = 0;
     push(&s, t, 0, point);
-    while (s.count) {
-        const triangle_node *n = &t->boxes.nodes[s.node[--s.count]];
+    while (s.count && best > enough) {
+        const uint32_t node = s.node[--s.count];
+        const triangle_node *n = &t->boxes.nodes[node];
         if (s.squared[s.count] >= best) {
             continue;
         }
-        for (uint32_t i = 0; i < n->count; i++) {
-            uint32_t triangle = t->boxes.order[n->first + i];
-            float squared = lod_tree_distance(t, point, triangle);
-            if (squared < best) {
-                best = squared;
-                *nearest = triangle;
+        if (n->count) {
+            float squared[LOD_LANES];
+            lod_block_distances(&t->blocks[t->block_of[node]], point, squared);
+            for (uint32_t k = 0; k < n->count; k++) {
+                if (squared[k] < best) {
+                    best = squared[k];
+                    *nearest = t->boxes.order[n->first + k];
+                }
             }
-        }
-        if (n->count == 0) {
+        } else {
             push(&s, t, n->first, point);
             push(&s, t, n->first + 1u, point);
             swap_last(&s); /* the nearer one is visited first */

@@ -5,19 +5,17 @@
 #include "convert/base/triangle_tree.h"
 
 typedef struct lod_tree {
-    triangle_tree boxes;           /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
-    const uint32_t *indices;       /* the caller's, [triangle_count][3] */
-    float *triangles;              /* [triangle_count][9] in the pose of the last lod_tree_pose */
-    struct lod_prepared *prepared; /* [triangle_count], likewise; NULL: prepared when they are measured */
+    triangle_tree boxes;      /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
+    const uint32_t *indices;  /* the caller's, [triangle_count][3] */
+    float *triangles;         /* [triangle_count][9] in the pose of the last lod_tree_pose */
+    uint32_t *block_of;       /* [nodes] of each leaf */
+    struct lod_block *blocks; /* one a leaf, likewise */
+    uint32_t block_count;
 } lod_tree;
 
 /* Build the tree over triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
 int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float *position, lod_tree *out);
 void lod_tree_free(lod_tree *t);
-
-/* Prepare all triangles in every pose from now on, for a tree of few triangles and many points. Returns 1 when out of
- * memory. */
-int lod_tree_prepare(lod_tree *t);
 
 /* Refit the tree to another pose. */
 void lod_tree_pose(lod_tree *t, const float *position);
@@ -25,7 +23,8 @@ void lod_tree_pose(lod_tree *t, const float *position);
 /* The squared distance to one of the triangles. */
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle);
 
-/* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. */
-float lod_tree_nearest(const lod_tree *t, const float *point, uint32_t *nearest);
+/* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. Once a triangle
+ * is no farther than `enough` (squared), that one is as good as the nearest. */
+float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint32_t *nearest);
 
 #endif
