@@ -113,8 +113,9 @@ static void expect_same_about(const model_texture *t, const uint8_t *trimmed, co
     }
 }
 
-/* All over the triangles of a model whose texture coordinates were `was`. */
-static void expect_same_texels(const model *m, uint32_t texture, const float *was)
+/* All over triangles, of vertices whose texture coordinates were `was`. */
+static void expect_same_over(const model *m, uint32_t texture, const float *was, const uint32_t *indices,
+                             uint32_t count)
 {
     const model_texture *t = &m->textures[texture];
     const model_mesh *mesh = &m->meshes[0];
@@ -123,14 +124,14 @@ static void expect_same_texels(const model *m, uint32_t texture, const float *wa
     uint32_t side[2] = { t->width, t->height };
     memcpy(texels, t->rgba, bytes);
     texture_trim_texels(t, texels, 4, &side[0], &side[1]);
-    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+    for (uint32_t i = 0; i < count; i += 3) {
         for (uint32_t k = 0; k < 36; k++) { /* fifths of the way between the corners */
             const uint32_t row = k / 6;
             const float a = (float)(k % 6) / 5.0f, b = (1.0f - a) * (float)row / 5.0f;
             const float share[3] = { a, b, 1.0f - a - b };
             float old[2] = { 0 }, now[2] = { 0 };
             for (size_t c = 0; c < 6; c++) {
-                const size_t at = 2 * (size_t)mesh->indices[i + c / 2] + c % 2;
+                const size_t at = 2 * (size_t)indices[i + c / 2] + c % 2;
                 old[c % 2] += share[c / 2] * was[at];
                 now[c % 2] += share[c / 2] * mesh->uv[at];
             }
@@ -138,6 +139,11 @@ static void expect_same_texels(const model *m, uint32_t texture, const float *wa
         }
     }
     free(texels);
+}
+
+static void expect_same_texels(const model *m, uint32_t texture, const float *was)
+{
+    expect_same_over(m, texture, was, m->meshes[0].indices, m->meshes[0].index_count);
 }
 
 static quad random_quad(test_random *r)
@@ -368,6 +374,33 @@ static void levels_count(void **state)
     assert_true(done[1].texels > 4 * done[0].texels);
 }
 
+/* A level whose vertices are its own: no triangle of the full mesh has them. */
+static void vertices_of_levels_move_too(void **state)
+{
+    static const quad quads[2] = { { { 0.30f, 0.40f }, { 0.35f, 0.45f }, 0 },
+                                   { { 0.60f, 0.70f }, { 0.64f, 0.75f }, 0 } };
+    static uint32_t indices[3] = { 4, 5, 6 }, first[1] = { 0 }, count[1] = { 3 };
+    static lod built;
+    mesh_levels levels = { .count = 2, .built = &built, .which = { 0, 0 } };
+    model *m = model_of(quads, 2, 1);
+    texture_trimmed done;
+    float *was = copy_of_uv(m);
+    (void)state;
+    m->meshes[0].index_count = 6;
+    m->meshes[0].submesh_count = 1;
+    built.levels[0] = (lod_level){
+        .indices = indices, .index_count = 3, .submesh_first = first, .submesh_count = count
+    };
+    add_texture(m, "color", 256, 256);
+    m->materials[0].base_color_texture = 0;
+    assert_int_equal(texture_trim(m, &levels, &done), 0);
+    assert_int_equal(done.count, 1);
+    expect_same_texels(m, 0, was);
+    expect_same_over(m, 0, was, indices, 3);
+    free(was);
+    model_free(m);
+}
+
 static byte_buffer levels_of(const model_texture *t, noh_texture_header *h)
 {
     byte_buffer out = { NULL, 0, 0, 0 };
@@ -422,6 +455,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sets_go_with_their_namesakes),
     cmocka_unit_test(what_must_stay_whole),
     cmocka_unit_test(levels_count),
+    cmocka_unit_test(vertices_of_levels_move_too),
     cmocka_unit_test(mip_levels_are_those_of_the_whole_texture),
 };
 

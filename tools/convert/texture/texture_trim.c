@@ -278,20 +278,26 @@ static float moved(float at, uint32_t cells, uint64_t kept)
     return (float)(turn + (in - gone) / bits_of(kept));
 }
 
+static void move_corners(const trim_group *g, corners c, float *uv, uint8_t *done)
+{
+    for (uint32_t i = 0; i < c.count; i++) {
+        const uint32_t v = c.vertices[i];
+        for (size_t axis = 0; axis < 2 && !done[v]; axis++) {
+            float *at = uv + 2 * (size_t)v + axis;
+            if (g->cells[axis] > 1u) *at = moved(*at, g->cells[axis], g->used[axis]);
+        }
+        done[v] = 1;
+    }
+}
+
 static void move_mesh(const trim *t, uint32_t mesh, uint8_t *done)
 {
     const model_mesh *of = &t->m->meshes[mesh];
     for (uint32_t s = 0; s < of->submesh_count; s++) {
-        const model_submesh *part = &of->submeshes[s];
-        if (part->material == MODEL_NONE || !of->uv) continue;
-        const trim_group *g = &t->groups[find(t, part->material)];
-        for (uint32_t i = 0; i < part->index_count; i++) {
-            const uint32_t v = of->indices[part->first_index + i];
-            for (size_t axis = 0; axis < 2 && !done[v]; axis++) {
-                float *at = of->uv + 2 * (size_t)v + axis;
-                if (g->cells[axis] > 1u) *at = moved(*at, g->cells[axis], g->used[axis]);
-            }
-            done[v] = 1;
+        const uint32_t material = of->submeshes[s].material;
+        if (material == MODEL_NONE || !of->uv) continue;
+        for (uint32_t level = 0; level < level_count(t, mesh); level++) { /* some have vertices of their own */
+            move_corners(&t->groups[find(t, material)], corners_of(t, mesh, level, s), of->uv, done);
         }
     }
 }
