@@ -14,7 +14,7 @@
 #else
 #define LOD_WIDE
 #endif
-/* Inlined into loops over lanes, or these are not vectorised. */
+/* What is not inlined into a loop over lanes keeps it from being vectorised. */
 #if defined(__GNUC__)
 #define LOD_INLINE static inline __attribute__((always_inline))
 #else
@@ -200,11 +200,6 @@ static float edge_barycentric(const lod_prepared *p, uint32_t e, const float *po
     return dot(d, d);
 }
 
-float lod_distance_prepared(const lod_prepared *p, const float *point)
-{
-    return triangle_squared(p, point[0], point[1], point[2]);
-}
-
 float lod_distance_weights(const lod_prepared *p, const float *point, float *barycentric)
 {
     const float squared = triangle_squared(p, point[0], point[1], point[2]);
@@ -232,7 +227,7 @@ float lod_distance_point(const float *triangle, const float *point)
 {
     lod_prepared p;
     lod_prepare(triangle, &p);
-    return lod_distance_prepared(&p, point);
+    return triangle_squared(&p, point[0], point[1], point[2]);
 }
 
 static void minus(const float *a, const float *b, float *out)

@@ -178,8 +178,7 @@ typedef struct lod_prepared {
 } lod_prepared;
 
 void lod_prepare(const float *triangle, lod_prepared *out);
-float lod_distance_prepared(const lod_prepared *p, const float *point);
-/* The same, and the weights of the nearest place, [3]. */
+/* The squared distance to one, and the weights of the nearest place on it, [3]. */
 float lod_distance_weights(const lod_prepared *p, const float *point, float *barycentric);
 
 /* squared[i] = min(squared[i], squared distance of sample i to the triangle [3][3]); count is a multiple of LOD_LANES.
