@@ -19,8 +19,8 @@ typedef struct triangle_tree {
 
 #define TRIANGLE_TREE_STACK 64u /* nodes that a walk has still to visit: halving, 2^32 triangles need 33 */
 
-/* Build over triangles [count][9], at most leaf_most of them (1 or more) in a leaf, and fit the boxes. The same triangles
- * give the same tree everywhere. Returns 1 when out of memory; triangle_tree_free either way. */
+/* Build over triangles [count][9], at most leaf_most of them (1 or more) in a leaf, and fit the boxes. The same
+ * triangles give the same tree everywhere. Returns 1 when out of memory; triangle_tree_free either way. */
 int triangle_tree_make(const float *triangles, uint32_t count, uint32_t leaf_most, triangle_tree *out);
 void triangle_tree_free(triangle_tree *t);
 

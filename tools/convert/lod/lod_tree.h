@@ -23,8 +23,8 @@ void lod_tree_pose(lod_tree *t, const float *position);
 /* The squared distance to one of the triangles. */
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle);
 
-/* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. Once a triangle
- * is no farther than `enough` (squared), that one is as good as the nearest. */
+/* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. Once a
+ * triangle is no farther than `enough` (squared), that one is as good as the nearest. */
 float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint32_t *nearest);
 
 #endif
