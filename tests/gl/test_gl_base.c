@@ -736,7 +736,7 @@ static void program_says_what_is_wrong(void **state)
 }
 
 /* A vertex shader that reads what a vertex array does not have links, draws, and shows what nobody wrote. */
-static void errata_C8_4_a_program_reads_what_is_there(void **state)
+static void a_program_reads_what_is_there(void **state)
 {
     static const struct {
         const char *declares;
@@ -1145,7 +1145,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(on_angle),
         cmocka_unit_test(program_counts_and_dies),
         cmocka_unit_test(program_says_what_is_wrong),
-        cmocka_unit_test(errata_C8_4_a_program_reads_what_is_there),
+        cmocka_unit_test(a_program_reads_what_is_there),
         cmocka_unit_test(program_takes_defines_and_binds_blocks),
         cmocka_unit_test(program_feeds_back),
         cmocka_unit_test(sizes_are_exact),

@@ -143,7 +143,7 @@ static double green(const uint8_t *rgba, double middle[2])
  * its edge it is 0.5 + 8 s, where ours is 1 for any size, so that areas go by the square of sizes. Nor is a mark on a
  * triangle larger than itself lost, as where vertices alone are asked: those of the forehead are farther apart than the
  * smallest spot here. */
-static void errata_C14_5_a_mark_is_as_large_as_it_should_be(void **state)
+static void a_mark_is_as_large_as_asked(void **state)
 {
     static const float shares[3] = { 0.02f, 0.04f, 0.08f };
     double area[3], middle[3][2];
@@ -236,7 +236,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(marks_stay_through_a_smile_and_levels),
         cmocka_unit_test(marks_stay_through_a_walk),
-        cmocka_unit_test(errata_C14_5_a_mark_is_as_large_as_it_should_be),
+        cmocka_unit_test(a_mark_is_as_large_as_asked),
         cmocka_unit_test(a_mark_stays_where_it_is_when_the_level_changes),
         cmocka_unit_test(sixty_four_are_one_draw_and_come_back),
     };

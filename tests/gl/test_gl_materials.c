@@ -52,7 +52,7 @@ static void normal_maps_turn_the_normal(void **state)
 
 /* C12.4: normals morph and tangents stay, and nothing makes them orthogonal again. Here the quad's normals differ from
  * corner to corner and its tangents do not. */
-static void errata_C12_4_a_skewed_frame_leans_the_normal(void **state)
+static void a_skewed_frame_is_made_orthogonal(void **state)
 {
     static const uint8_t texel[4] = { 230, 150, 200, 255 };
     const lit_quad q = mapped(texel, 1.0f);
@@ -65,7 +65,7 @@ static void errata_C12_4_a_skewed_frame_leans_the_normal(void **state)
 
 /* C12.2: the frame in the object and the light in the world. A mirrored node tells them apart: it turns the frame
  * inside out, so the cross product of two world vectors points the wrong way. */
-static void errata_C12_2_a_mirror_turns_the_frame_inside_out(void **state)
+static void a_mirror_turns_the_frame_along(void **state)
 {
     static const uint8_t texel[4] = { 128, 220, 210, 255 };
     lit_quad q = mapped(texel, 1.0f);
@@ -78,7 +78,7 @@ static void errata_C12_2_a_mirror_turns_the_frame_inside_out(void **state)
 }
 
 /* C12.2: the first listing has the light in the world, and normal and tangent in the object. */
-static void errata_C12_2_light_and_frame_are_in_one_space(void **state)
+static void light_and_frame_are_in_one_space(void **state)
 {
     static const uint8_t texel[4] = { 200, 160, 220, 255 };
     const lit_quad q = mapped(texel, 1.0f);
@@ -114,7 +114,7 @@ static uint32_t largest_difference(const uint8_t *a, const uint8_t *b)
 static const float far_away[3] = { 0.4f, -0.7f, 0.5f };
 
 /* C12.2: "a point in world space" is a vector: turned as a point, the light takes the world's shift along. */
-static void errata_C12_2_a_light_is_no_point(void **state)
+static void a_light_is_a_direction(void **state)
 {
     static const uint8_t texel[4] = { 200, 160, 220, 255 };
     const lit_quad here = mapped(texel, 1.0f), there = shifted(&here, far_away);
@@ -137,7 +137,7 @@ static void errata_C12_2_a_light_is_no_point(void **state)
 }
 
 /* C12.4: float3 times float4x4 takes the world's shift into normal and tangent. */
-static void errata_C12_4_a_shift_turns_no_frame(void **state)
+static void a_shift_turns_no_frame(void **state)
 {
     static const uint8_t texel[4] = { 230, 150, 200, 255 };
     const lit_quad here = mapped(texel, 1.0f), there = shifted(&here, far_away);
@@ -161,7 +161,7 @@ static void errata_C12_4_a_shift_turns_no_frame(void **state)
 
 /* C12.5: a normal that is filtered between vertices is shorter than one, and the exponent of a highlight makes much of
  * it. */
-static void errata_C12_5_filtered_normals_are_unit(void **state)
+static void filtered_normals_are_unit(void **state)
 {
     lit_quad q = lit_quad_of();
     double off, other;
@@ -175,7 +175,7 @@ static void errata_C12_5_filtered_normals_are_unit(void **state)
 /* C12.5: pow(sat(n h), 85) * 0.4 also shines where the light is behind the surface. The quad is metal, so that nothing
  * but highlights shows the light; in the middle column it lies 3 degrees behind the surface and the eye 12 in front of
  * it, on the other side. Then it is far behind, which must look the same. */
-static void errata_C12_5_nothing_shines_from_behind(void **state)
+static void nothing_shines_from_behind(void **state)
 {
     const uint32_t middle = LIT_QUAD_SIDE / 2u;
     lit_quad near = lit_quad_of(), far;
@@ -207,7 +207,7 @@ static void errata_C12_5_nothing_shines_from_behind(void **state)
 }
 
 /* C12.1: bytes as 2 t - 1 have no zero, so a flat map leans. The byte 128 stands for it. */
-static void errata_C12_1_a_flat_map_changes_nothing(void **state)
+static void a_flat_map_changes_nothing(void **state)
 {
     static const uint8_t flat[4] = { 128, 128, 255, 255 };
     const lit_quad q = mapped(flat, 1.0f), plain = lit_quad_of();
@@ -333,14 +333,14 @@ static void features_follow_material_and_mesh(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normal_maps_turn_the_normal),
-    cmocka_unit_test(errata_C12_4_a_skewed_frame_leans_the_normal),
-    cmocka_unit_test(errata_C12_2_a_mirror_turns_the_frame_inside_out),
-    cmocka_unit_test(errata_C12_2_light_and_frame_are_in_one_space),
-    cmocka_unit_test(errata_C12_2_a_light_is_no_point),
-    cmocka_unit_test(errata_C12_4_a_shift_turns_no_frame),
-    cmocka_unit_test(errata_C12_5_filtered_normals_are_unit),
-    cmocka_unit_test(errata_C12_5_nothing_shines_from_behind),
-    cmocka_unit_test(errata_C12_1_a_flat_map_changes_nothing),
+    cmocka_unit_test(a_skewed_frame_is_made_orthogonal),
+    cmocka_unit_test(a_mirror_turns_the_frame_along),
+    cmocka_unit_test(light_and_frame_are_in_one_space),
+    cmocka_unit_test(a_light_is_a_direction),
+    cmocka_unit_test(a_shift_turns_no_frame),
+    cmocka_unit_test(filtered_normals_are_unit),
+    cmocka_unit_test(nothing_shines_from_behind),
+    cmocka_unit_test(a_flat_map_changes_nothing),
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
     cmocka_unit_test(dark_strands_are_as_they_were_painted),
     cmocka_unit_test(programs_have_what_materials_have),

@@ -304,7 +304,7 @@ static double part_of_mark(const uint8_t *without, const uint8_t *with, size_t p
 
 /* Drawn once for each attribute group of the mesh below it, as the source draws its decals, a mark that is half
  * transparent covers nearly all. */
-static void errata_C14_7_a_mark_is_drawn_once_for_all_groups(void **state)
+static void a_mark_is_drawn_once_for_all_groups(void **state)
 {
     const double half = 128.0 / 255.0;
     noh_stage_hit hit;
@@ -386,7 +386,7 @@ int main(void)
         cmocka_unit_test(what_touches_at_rest_does_not_share_a_mark),
         cmocka_unit_test(on_one_surface_both_ways_are_the_same_picture),
         cmocka_unit_test(sixty_four_are_one_draw_and_come_back),
-        cmocka_unit_test(errata_C14_7_a_mark_is_drawn_once_for_all_groups),
+        cmocka_unit_test(a_mark_is_drawn_once_for_all_groups),
         cmocka_unit_test(ten_thousand_hits_take_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -128,7 +128,7 @@ static void the_four_that_move_most_are_drawn(void **state)
 
 /* Five streams of 32 bytes, of which streams 1 to 4 bring texture coordinates that nothing reads: 8 bytes a vertex and
  * target. Here a vertex of a target takes 12 bytes, normal and tangent included. */
-static void errata_C8_5_streams_hold_no_texture_coordinates(void **state)
+static void streams_hold_no_texture_coordinates(void **state)
 {
     scene s;
     uint64_t vertices = 0;
@@ -145,7 +145,7 @@ static void errata_C8_5_streams_hold_no_texture_coordinates(void **state)
 
 /* SetStreamSource with the stride of the target for the source, and a second bind that hides it: each stream has the
  * stride and the offset of its own. With the mesh's stride the second target would be read askew. */
-static void errata_D7_each_stream_has_its_own_stride(void **state)
+static void each_stream_has_its_own_stride(void **state)
 {
     static const float weights[9] = { 0, 0, 1, 0, 0, 0, 0, 0, 0 };
     scene s;
@@ -226,12 +226,11 @@ static void what_streams_cannot_do_is_refused(void **state)
 
 int main(int argument_count, char **arguments)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(four_targets_are_added_by_the_draw),
-                                        cmocka_unit_test(the_four_that_move_most_are_drawn),
-                                        cmocka_unit_test(errata_C8_5_streams_hold_no_texture_coordinates),
-                                        cmocka_unit_test(errata_D7_each_stream_has_its_own_stride),
-                                        cmocka_unit_test(rectangles_of_a_target_may_overlap),
-                                        cmocka_unit_test(what_streams_cannot_do_is_refused) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(four_targets_are_added_by_the_draw),  cmocka_unit_test(the_four_that_move_most_are_drawn),
+        cmocka_unit_test(streams_hold_no_texture_coordinates), cmocka_unit_test(each_stream_has_its_own_stride),
+        cmocka_unit_test(rectangles_of_a_target_may_overlap),  cmocka_unit_test(what_streams_cannot_do_is_refused)
+    };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

@@ -312,7 +312,7 @@ static double half_cosine(double x)
 
 /* A15: the literal half vector takes the eye's place for its direction, as if every point lay at the origin, so that a
  * flat square glosses alike at each. The eye is close to it: the highlight lies where eye, point and light say. */
-static void errata_A15_a_highlight_is_seen_from_its_point(void **state)
+static void a_highlight_is_seen_from_its_point(void **state)
 {
     static const float values[4] = { 0.0f, 0.4f, 0.0f, 0.04f };
     const model_material gloss = scene_material(values);
@@ -383,7 +383,7 @@ int main(void)
         cmocka_unit_test(lids_darken_the_ball),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
         cmocka_unit_test(a_toon_has_two_tones),
-        cmocka_unit_test(errata_A15_a_highlight_is_seen_from_its_point),
+        cmocka_unit_test(a_highlight_is_seen_from_its_point),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

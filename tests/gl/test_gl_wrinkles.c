@@ -214,7 +214,7 @@ static const char region_fragment[] = "void main() {\n    show(noh_wrinkle_by_mo
 
 /* float3 takes four floats in a constant buffer, so twelve weights in a row shift: red's third is green's first. Here
  * they are three vectors of four, one for each map, and each region finds its own. */
-static void errata_B2_each_region_has_its_own_weight(void **state)
+static void each_region_has_its_own_weight(void **state)
 {
     program p;
     fixture_frame frame;
@@ -283,7 +283,7 @@ static uint32_t covered_by(const char *fragment)
 
 /* clip(r + g + b + a - 0.01), clip(weight - 0.001): in a pass that also draws the base, holes where nothing wrinkles.
  */
-static void errata_B6_what_has_no_wrinkles_is_drawn(void **state)
+static void what_has_no_wrinkles_is_drawn(void **state)
 {
     static const char ours[] = "void main() {\n"
                                "    vec3 by = max(noh_wrinkle_by_model(), vec3(0.0));\n"
@@ -299,7 +299,7 @@ static void errata_B6_what_has_no_wrinkles_is_drawn(void **state)
 }
 
 /* lerp(base, wrinkle, weight) of texels as they are read: a flat map leans by 35 degrees. */
-static void errata_B7_texels_are_no_normals(void **state)
+static void texels_become_normals_before_they_mix(void **state)
 {
     static const char fragment[] =
         "void main() {\n"
@@ -653,9 +653,9 @@ static void looks_smooth_wrinkles_out(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normals_are_those_of_the_cpu),
     cmocka_unit_test(channels_add_up_to_one),
-    cmocka_unit_test(errata_B2_each_region_has_its_own_weight),
-    cmocka_unit_test(errata_B6_what_has_no_wrinkles_is_drawn),
-    cmocka_unit_test(errata_B7_texels_are_no_normals),
+    cmocka_unit_test(each_region_has_its_own_weight),
+    cmocka_unit_test(what_has_no_wrinkles_is_drawn),
+    cmocka_unit_test(texels_become_normals_before_they_mix),
     cmocka_unit_test(areas_by_derivatives_are_exact),
     cmocka_unit_test(areas_of_a_human_head),
     cmocka_unit_test(each_actor_of_a_crowd_has_its_own_wrinkles),

@@ -88,7 +88,7 @@ static void a_mark_lies_where_the_ray_hit(void **state)
 
 /* The book's p = A + u (B A) + v (C A) has lost its minus: read as a sum it leaves the triangle. Ours is the point that
  * the corners' weights give. */
-static void errata_C14_3_the_point_lies_in_its_triangle(void **state)
+static void the_point_lies_in_its_triangle(void **state)
 {
     noh_stage_hit hit;
     noh_mesh mesh;
@@ -113,7 +113,7 @@ static void errata_C14_3_the_point_lies_in_its_triangle(void **state)
 }
 
 /* The source crosses up with the normal: on what lies flat there is nothing to divide by. Ours has up to -Z there. */
-static void errata_C14_5_up_along_the_normal(void **state)
+static void up_along_the_normal_stays_finite(void **state)
 {
     const noh_decal_desc look = { .size = 0.02f };
     noh_decals ring;
@@ -161,7 +161,7 @@ static double off_triangle(const noh_mesh *mesh, const float *weights, const noh
 
 /* The book's clone of a mesh has its bones, but not its face: where a mouth is open, a ray would strike lips that are
  * shut. */
-static void errata_C14_2_a_face_is_hit_as_it_smiles(void **state)
+static void a_face_is_hit_as_it_smiles(void **state)
 {
     static const char *const names[] = { "jawOpen", "mouthSmileLeft", "mouthSmileRight" };
     double worst = 0.0, literal = 0.0;
@@ -316,9 +316,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mark_lies_where_the_ray_hit),
-        cmocka_unit_test(errata_C14_3_the_point_lies_in_its_triangle),
-        cmocka_unit_test(errata_C14_5_up_along_the_normal),
-        cmocka_unit_test(errata_C14_2_a_face_is_hit_as_it_smiles),
+        cmocka_unit_test(the_point_lies_in_its_triangle),
+        cmocka_unit_test(up_along_the_normal_stays_finite),
+        cmocka_unit_test(a_face_is_hit_as_it_smiles),
         cmocka_unit_test(a_ring_is_never_full),
         cmocka_unit_test(marks_fade),
         cmocka_unit_test(what_is_wrong_is_refused),

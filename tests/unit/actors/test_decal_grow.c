@@ -58,7 +58,7 @@ static const noh_decal at_front = {
 
 /* The source takes a triangle if one of its corners is within reach of the hit: of a mark within one large triangle
  * there is nothing. */
-static void errata_C14_4_a_mark_within_a_large_triangle_is_there(void **state)
+static void a_mark_within_a_large_triangle_is_there(void **state)
 {
     static sheet s;
     noh_decal_patch patch = with_room(ROOM);
@@ -87,7 +87,7 @@ static void errata_C14_4_a_mark_within_a_large_triangle_is_there(void **state)
 }
 
 /* The source's u = dot (2 s) / (s / 4) is right for one size alone. */
-static void errata_C14_5_coordinates_for_any_size(void **state)
+static void coordinates_for_any_size(void **state)
 {
     static const float sizes[3] = { 0.01f, 0.0625f, 0.1f };
     (void)state;
@@ -107,7 +107,7 @@ static void errata_C14_5_coordinates_for_any_size(void **state)
 
 /* The source takes the first triangle of the patch for the one that was hit, and sorts triangles by number: its mark is
  * about another place. Ours begins with the hit one, and its coordinates ask the hit alone. */
-static void errata_C14_5_the_first_triangle_is_not_the_hit_one(void **state)
+static void the_mark_grows_from_the_triangle_that_was_hit(void **state)
 {
     static sheet s;
     static const uint32_t hit = 300;
@@ -299,9 +299,9 @@ static void levels_carry_the_mark(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errata_C14_4_a_mark_within_a_large_triangle_is_there),
-        cmocka_unit_test(errata_C14_5_coordinates_for_any_size),
-        cmocka_unit_test(errata_C14_5_the_first_triangle_is_not_the_hit_one),
+        cmocka_unit_test(a_mark_within_a_large_triangle_is_there),
+        cmocka_unit_test(coordinates_for_any_size),
+        cmocka_unit_test(the_mark_grows_from_the_triangle_that_was_hit),
         cmocka_unit_test(the_square_is_covered_once),
         cmocka_unit_test(a_fold_that_touches_stays_clean),
         cmocka_unit_test(a_mark_keeps_its_fold_when_levels_change),

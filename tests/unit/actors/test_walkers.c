@@ -351,7 +351,7 @@ static slides walk_straight(float speed, uint32_t rate, float from, float to, ui
 }
 
 /* An agent at nine tenths of a metre a second, its walk as fast as it was made, at half a metre. */
-static void errata_C13_2_clips_play_at_their_own_speed(void **state)
+static void clips_play_by_the_way_walked(void **state)
 {
     static const float start[2] = { 0.0f, -5.0f }, goal[2] = { 0.0f, 5.0f };
     float share[2];
@@ -835,7 +835,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(feet_that_stand_do_not_slide),
-        cmocka_unit_test(errata_C13_2_clips_play_at_their_own_speed),
+        cmocka_unit_test(clips_play_by_the_way_walked),
         cmocka_unit_test(feet_do_not_slide_in_a_crowd),
         cmocka_unit_test(walkers_are_the_same_for_any_number_of_jobs),
         cmocka_unit_test(the_nearest_have_their_feet_on_the_ground),

@@ -114,7 +114,7 @@ static void nlerp_is_unit(void **state)
 
 /* The source's example: an axis of (0.2, 0.6, -0.3) and an angle of 0.342. Its text writes w first, its code's numbers
  * lie in memory as x, y, z, w: by the text's order the rotation is another one. */
-static void errata_C6_3_w_is_last(void **state)
+static void w_is_last(void **state)
 {
     const double length = sqrt(0.2 * 0.2 + 0.6 * 0.6 + 0.3 * 0.3), angle = 0.342;
     const double axis[3] = { 0.2 / length, 0.6 / length, -0.3 / length };
@@ -146,7 +146,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(roots_of_squares_are_exact),
     cmocka_unit_test(plain_counts_of_zeros_equal_those_of_the_processor),
     cmocka_unit_test(nlerp_is_unit),
-    cmocka_unit_test(errata_C6_3_w_is_last),
+    cmocka_unit_test(w_is_last),
 };
 
 TEST_MAIN(tests, NULL, NULL)

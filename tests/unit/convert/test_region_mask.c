@@ -32,7 +32,7 @@ static void all_codes_decode_exactly(void **state)
 
 /* "offset = value % 90" reads a name that is not there. Taken from another channel, or as the code itself, the weight
  * is another one. */
-static void errata_B3_the_remainder_is_of_the_same_channel(void **state)
+static void the_remainder_is_of_the_same_channel(void **state)
 {
     (void)state;
     float weights[REGION_COUNT];
@@ -51,7 +51,7 @@ static void errata_B3_the_remainder_is_of_the_same_channel(void **state)
 
 /* Rounded, a code survives a sampler that is off by less than half a step either way; cut, it loses one as soon as the
  * sampler is below it. */
-static void errata_B8_codes_are_rounded_not_cut(void **state)
+static void codes_are_rounded_not_cut(void **state)
 {
     (void)state;
     int cut_wrong = 0;
@@ -316,7 +316,7 @@ static void block_compression_is_found(void **state)
 }
 
 /* The codes that 6 bits of green take out of their segments, and what a block mixes out of 0 and 165. */
-static void errata_B9_block_compression_conflicts_with_codes(void **state)
+static void codes_damaged_by_blocks_are_found(void **state)
 {
     (void)state;
     static const int codes[6][2] = { { 75, 77 }, { 90, 89 }, { 91, 89 }, { 164, 166 }, { 165, 166 }, { 180, 178 } };
@@ -340,7 +340,7 @@ static void errata_B9_block_compression_conflicts_with_codes(void **state)
 
 /* Half-way between full weights of region 0 and region 2, a filter gives a code of region 1. Decoded first, weights are
  * mixed, and no region comes up that was not there. */
-static void errata_B10_codes_cannot_be_filtered(void **state)
+static void weights_are_filtered_not_codes(void **state)
 {
     (void)state;
     const uint8_t filtered = (75 + 180) / 2;
@@ -370,18 +370,12 @@ static void small_masks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_codes_decode_exactly),
-        cmocka_unit_test(errata_B3_the_remainder_is_of_the_same_channel),
-        cmocka_unit_test(errata_B8_codes_are_rounded_not_cut),
-        cmocka_unit_test(maps_equal_codes_on_every_texel),
-        cmocka_unit_test(the_largest_channel_counts),
-        cmocka_unit_test(clean_masks_are_clean),
-        cmocka_unit_test(anti_aliasing_is_found),
-        cmocka_unit_test(gamma_is_found),
-        cmocka_unit_test(block_compression_is_found),
-        cmocka_unit_test(errata_B9_block_compression_conflicts_with_codes),
-        cmocka_unit_test(errata_B10_codes_cannot_be_filtered),
-        cmocka_unit_test(small_masks),
+        cmocka_unit_test(all_codes_decode_exactly),       cmocka_unit_test(the_remainder_is_of_the_same_channel),
+        cmocka_unit_test(codes_are_rounded_not_cut),      cmocka_unit_test(maps_equal_codes_on_every_texel),
+        cmocka_unit_test(the_largest_channel_counts),     cmocka_unit_test(clean_masks_are_clean),
+        cmocka_unit_test(anti_aliasing_is_found),         cmocka_unit_test(gamma_is_found),
+        cmocka_unit_test(block_compression_is_found),     cmocka_unit_test(codes_damaged_by_blocks_are_found),
+        cmocka_unit_test(weights_are_filtered_not_codes), cmocka_unit_test(small_masks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

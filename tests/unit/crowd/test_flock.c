@@ -46,7 +46,7 @@ static void literal_turn(float velocity[2], const float sum[2], float seconds)
 
 /* ---- each error, and what is right ---- */
 
-static void errata_C13_3_repulsion_vanishes_at_contact(void **state)
+static void repulsion_is_strongest_at_contact(void **state)
 {
     float before = INFINITY, literal_near = 0.0f, literal_far = 0.0f;
     (void)state;
@@ -68,7 +68,7 @@ static void errata_C13_3_repulsion_vanishes_at_contact(void **state)
 }
 
 /* One who stands 2.9 m higher on stairs is as near on the ground. */
-static void errata_C13_3_heights_count_as_distance(void **state)
+static void heights_are_no_distance(void **state)
 {
     const float level[3] = { 0.6f, 0.0f, 0.0f }, above[3] = { 0.6f, 2.9f, 0.0f }, to[2] = { 0.6f, 0.0f };
     float a[2] = { 0.0f, 0.0f }, b[2] = { 0.0f, 0.0f }, ours[2] = { 0.0f, 0.0f };
@@ -80,7 +80,7 @@ static void errata_C13_3_heights_count_as_distance(void **state)
     assert_float_equal(ours[0], -4.0f, 1e-5f);
 }
 
-static void errata_C13_4_coincident_agents_have_no_direction(void **state)
+static void coincident_agents_part(void **state)
 {
     const float none[2] = { 0.0f, 0.0f };
     (void)state;
@@ -96,7 +96,7 @@ static void errata_C13_4_coincident_agents_have_no_direction(void **state)
 
 /* Three in a row, parted in place, one pair after the other: where they end depends on who is first. Read and written
  * apart they end alike. */
-static void errata_C13_4_in_place_depends_on_order(void **state)
+static void the_order_of_agents_changes_nothing(void **state)
 {
     static const int orders[2][3] = { { 0, 1, 2 }, { 2, 1, 0 } };
     float literal[2][3], ours[2][3];
@@ -125,7 +125,7 @@ static void errata_C13_4_in_place_depends_on_order(void **state)
     assert_memory_equal(ours[0], ours[1], sizeof ours[0]);
 }
 
-static void errata_C13_5_sums_lose_their_size(void **state)
+static void sums_of_pushes_keep_their_size(void **state)
 {
     const float weak[2] = { 0.1f, 0.0f }, strong[2] = { 9.0f, 0.0f };
     float a[2] = { 0.0f, 2.0f }, b[2] = { 0.0f, 2.0f };
@@ -141,7 +141,7 @@ static void errata_C13_5_sums_lose_their_size(void **state)
 }
 
 /* Pushes that cancel, or none at all: the source divides by the length of nothing, and its agent is lost for ever. */
-static void errata_C13_5_no_acceleration_is_no_number(void **state)
+static void no_push_stays_finite(void **state)
 {
     const float none[2] = { 0.0f, 0.0f };
     float literal[2] = { 0.0f, 2.0f }, ours[2] = { 0.0f, 2.0f };
@@ -162,7 +162,7 @@ static void errata_C13_5_no_acceleration_is_no_number(void **state)
     assert_true(still[0] == 0.0f && still[1] == 0.0f);
 }
 
-static void errata_C13_5_agents_never_stop(void **state)
+static void agents_stop_at_their_goals(void **state)
 {
     const float none[2] = { 0.0f, 0.0f }, back[2] = { -0.001f, 0.0f };
     float literal[2] = { 2.0f, 0.0f }, ours[2] = { 2.0f, 0.0f };
@@ -174,7 +174,7 @@ static void errata_C13_5_agents_never_stop(void **state)
 }
 
 /* A turn to the side within a second, in four steps and in a hundred. */
-static void errata_C13_5_turns_depend_on_the_step(void **state)
+static void turns_do_not_depend_on_the_step(void **state)
 {
     const float side[2] = { 0.0f, 2.0f };
     float literal[2][2] = { { -2.0f, 0.1f }, { -2.0f, 0.1f } }, ours[2][2] = { { -2.0f, 0.1f }, { -2.0f, 0.1f } };
@@ -193,7 +193,7 @@ static void errata_C13_5_turns_depend_on_the_step(void **state)
 
 /* d / r * 3 is (d / r) * 3, where d / (3 r) is meant. With the direction put right, an obstacle would pull from a third
  * of its radius on, the more the further away, and let go at three radii. */
-static void errata_C13_7_precedence(void **state)
+static void obstacles_push_hardest_when_near(void **state)
 {
     (void)state;
     for (float radius = 0.5f; radius < 4.0f; radius *= 2.0f) {
@@ -213,7 +213,7 @@ static void errata_C13_7_precedence(void **state)
     }
 }
 
-static void errata_C13_7_obstacle_sign(void **state)
+static void obstacles_push_away(void **state)
 {
     float before = INFINITY;
     (void)state;
@@ -327,16 +327,16 @@ static void flocks_have_the_same_bits_in_any_order(void **state)
 int main(int argument_count, char **arguments)
 {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errata_C13_3_repulsion_vanishes_at_contact),
-        cmocka_unit_test(errata_C13_3_heights_count_as_distance),
-        cmocka_unit_test(errata_C13_4_coincident_agents_have_no_direction),
-        cmocka_unit_test(errata_C13_4_in_place_depends_on_order),
-        cmocka_unit_test(errata_C13_5_sums_lose_their_size),
-        cmocka_unit_test(errata_C13_5_no_acceleration_is_no_number),
-        cmocka_unit_test(errata_C13_5_agents_never_stop),
-        cmocka_unit_test(errata_C13_5_turns_depend_on_the_step),
-        cmocka_unit_test(errata_C13_7_precedence),
-        cmocka_unit_test(errata_C13_7_obstacle_sign),
+        cmocka_unit_test(repulsion_is_strongest_at_contact),
+        cmocka_unit_test(heights_are_no_distance),
+        cmocka_unit_test(coincident_agents_part),
+        cmocka_unit_test(the_order_of_agents_changes_nothing),
+        cmocka_unit_test(sums_of_pushes_keep_their_size),
+        cmocka_unit_test(no_push_stays_finite),
+        cmocka_unit_test(agents_stop_at_their_goals),
+        cmocka_unit_test(turns_do_not_depend_on_the_step),
+        cmocka_unit_test(obstacles_push_hardest_when_near),
+        cmocka_unit_test(obstacles_push_away),
         cmocka_unit_test(a_flock_turns_one_way),
         cmocka_unit_test(flocks_have_the_same_bits_in_any_order),
     };

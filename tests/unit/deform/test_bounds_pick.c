@@ -484,7 +484,7 @@ static void rays_at_a_rigid_mesh(void **state)
 }
 
 /* The source looks at meshes with skin alone: where there is none, it says that nothing is hit. */
-static void errata_C14_2_rigid_meshes_are_passed_over(void **state)
+static void rigid_meshes_are_hit_at_their_nodes(void **state)
 {
     const test_model_desc desc = { 1, 6, 2, 0, 3 };
     const float d[3] = { 0, 0, -1 };
@@ -571,7 +571,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rays_at_robot),
     cmocka_unit_test(rays_by_dual_quaternions),
     cmocka_unit_test(rays_at_a_rigid_mesh),
-    cmocka_unit_test(errata_C14_2_rigid_meshes_are_passed_over),
+    cmocka_unit_test(rigid_meshes_are_hit_at_their_nodes),
     cmocka_unit_test(bad_picks_say_why),
 };
 

@@ -210,7 +210,7 @@ static void normals_by_the_inverse_transpose(void **state)
 /* ---- morphing ---- */
 
 /* float3 times float4x4 with w = 1 carries the translation into the normal, and w into its length. */
-static void errata_C8_6_a_shift_turns_no_normal(void **state)
+static void a_shift_turns_no_normal(void **state)
 {
     const float matrix[12] = { 1, 0, 0, 30, 0, 1, 0, -4, 0, 0, 1, 9 }, n[3] = { 0, 0, 1 };
     const skin_cylinder c = { 8, 3, 1, 1, 0, 0, 1.0f, 0.5f };
@@ -309,7 +309,7 @@ static void picking_sees_the_morphed_and_posed_surface(void **state)
 }
 
 /* A clone of the mesh for each pick takes bytes by its vertices; ours takes two boxes a joint, of the caller's. */
-static void errata_C14_2_a_pick_copies_no_vertex(void **state)
+static void a_pick_copies_no_vertex(void **state)
 {
     const skin_cylinder few = { 8, 9, 3, 2, 0, 0, 2.0f, 0.5f }, many = { 64, 90, 3, 2, 0, 0, 2.0f, 0.5f };
     const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 };
@@ -339,7 +339,7 @@ static void errata_C14_2_a_pick_copies_no_vertex(void **state)
 
 /* A miss has the distance -1 in the source, and the texture coordinates that were there before: of several meshes, one
  * that is missed is the nearest, and is hit where another was. */
-static void errata_C14_2_a_miss_is_not_the_nearest(void **state)
+static void a_miss_is_not_the_nearest(void **state)
 {
     const skin_cylinder c = { 24, 17, 3, 2, 0, 0, 2.0f, 0.5f };
     const float o[3] = { 5, 1.03f, 0.01f }, d[3] = { -1, 0, 0 }, aside[3] = { 5, 40, 0 };
@@ -371,7 +371,7 @@ static void errata_C14_2_a_miss_is_not_the_nearest(void **state)
 
 /* Without an inverse transpose normals of the picked clone go by the bones' matrices: where these scale by axis, the
  * normal at the hit is not that of the triangle that was hit. */
-static void errata_C14_2_normals_of_the_picked_face(void **state)
+static void normals_of_the_picked_face(void **state)
 {
     const skin_cylinder c = { 64, 9, 2, 2, 0, 0, 2.0f, 0.5f };
     const float o[3] = { 5, 1.03f, 0.4f }, d[3] = { -1, 0, 0 };
@@ -711,12 +711,12 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_palette_fits_a_uniform_block),
     cmocka_unit_test(quantised_weights_are_those_of_the_source),
     cmocka_unit_test(normals_by_the_inverse_transpose),
-    cmocka_unit_test(errata_C8_6_a_shift_turns_no_normal),
+    cmocka_unit_test(a_shift_turns_no_normal),
     cmocka_unit_test(morph_then_skin),
     cmocka_unit_test(picking_sees_the_morphed_and_posed_surface),
-    cmocka_unit_test(errata_C14_2_a_pick_copies_no_vertex),
-    cmocka_unit_test(errata_C14_2_a_miss_is_not_the_nearest),
-    cmocka_unit_test(errata_C14_2_normals_of_the_picked_face),
+    cmocka_unit_test(a_pick_copies_no_vertex),
+    cmocka_unit_test(a_miss_is_not_the_nearest),
+    cmocka_unit_test(normals_of_the_picked_face),
     cmocka_unit_test(the_mix_begins_with_the_source),
     cmocka_unit_test(a_ramp_without_a_duration_is_over),
     cmocka_unit_test(ping_pong_never_stalls),

@@ -80,7 +80,7 @@ static int literal_windows(float length, float *last)
 
 /* ---- the mean of a window ---- */
 
-static void errata_a_window_that_is_cut_short_seems_quiet(void **state)
+static void a_window_that_is_cut_short_is_as_loud(void **state)
 {
     const size_t count = RATE + WINDOW / 4; /* a quarter of a window at the end */
     const wave w = { sound, (int)count, RATE, 1 };
@@ -115,7 +115,7 @@ static void the_lowest_sample_is_as_loud_as_it_is(void **state)
 
 /* ---- the rule ---- */
 
-static void errata_silence_is_divided_by(void **state)
+static void silence_shuts_the_mouth(void **state)
 {
     const wave w = { sound, RATE, RATE, 1 };
     (void)state;
@@ -133,7 +133,7 @@ static void errata_silence_is_divided_by(void **state)
     }
 }
 
-static void errata_windows_drift(void **state)
+static void windows_do_not_drift(void **state)
 {
     float last = 0.0f;
     (void)state;
@@ -149,7 +149,7 @@ static void errata_windows_drift(void **state)
     assert_int_equal(frames[29].mean, 3000);
 }
 
-static void errata_one_click_mutes_what_is_said(void **state)
+static void one_click_mutes_nothing(void **state)
 {
     const wave w = { sound, RATE * 4, RATE, 1 };
     float before = 0.0f, after = 0.0f;
@@ -194,7 +194,7 @@ static void shapes_change_at_the_sources_thresholds(void **state)
 /* ---- played ---- */
 
 /* m_visemeIndex begins at 1, and moves by one a frame of the game. */
-static void errata_one_window_has_no_second_one(void **state)
+static void one_window_is_enough(void **state)
 {
     uint32_t have;
     (void)state;
@@ -206,7 +206,7 @@ static void errata_one_window_has_no_second_one(void **state)
 
 /* `if (time > next) index++` once a frame of the game: after one frame that lasts a second the source is still at its
  * second window, and takes nine frames more to be where the sound is. A position follows from the time alone. */
-static void errata_one_window_a_frame_falls_behind(void **state)
+static void a_long_frame_does_not_fall_behind(void **state)
 {
     float visemes[NOH_VISEME_COUNT];
     uint32_t have, index = 1;
@@ -272,15 +272,15 @@ static void wrong_rates_and_channels_are_refused(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errata_a_window_that_is_cut_short_seems_quiet),
+        cmocka_unit_test(a_window_that_is_cut_short_is_as_loud),
         cmocka_unit_test(channels_are_counted_together),
         cmocka_unit_test(the_lowest_sample_is_as_loud_as_it_is),
-        cmocka_unit_test(errata_silence_is_divided_by),
-        cmocka_unit_test(errata_windows_drift),
-        cmocka_unit_test(errata_one_click_mutes_what_is_said),
+        cmocka_unit_test(silence_shuts_the_mouth),
+        cmocka_unit_test(windows_do_not_drift),
+        cmocka_unit_test(one_click_mutes_nothing),
         cmocka_unit_test(shapes_change_at_the_sources_thresholds),
-        cmocka_unit_test(errata_one_window_has_no_second_one),
-        cmocka_unit_test(errata_one_window_a_frame_falls_behind),
+        cmocka_unit_test(one_window_is_enough),
+        cmocka_unit_test(a_long_frame_does_not_fall_behind),
         cmocka_unit_test(between_windows_weights_are_shared),
         cmocka_unit_test(chunks_of_any_size_give_the_same_windows),
         cmocka_unit_test(wrong_rates_and_channels_are_refused),

@@ -149,7 +149,7 @@ static void nothing_jumps(void **state)
 
 /* Targets that are added up as they come, as Granberg's four channels are (Character Animation with Direct3D, chapter
  * 9), miss what was modelled for both: a lip that a smile and an open jaw move 10 mm each, and both together 12. */
-static void errata_added_shapes_miss_what_is_modelled_for_both(void **state)
+static void shapes_modelled_for_both_are_shown(void **state)
 {
     face f;
     const uint32_t count = open_all(&f);
@@ -217,7 +217,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(corners_are_exact),
         cmocka_unit_test(in_betweens_are_exact_at_all_peaks),
         cmocka_unit_test(nothing_jumps),
-        cmocka_unit_test(errata_added_shapes_miss_what_is_modelled_for_both),
+        cmocka_unit_test(shapes_modelled_for_both_are_shown),
         cmocka_unit_test(what_lacks_a_target_is_left_out),
         cmocka_unit_test(any_rows_bind),
     };

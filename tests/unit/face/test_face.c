@@ -157,7 +157,7 @@ static void intervals_are_log_normal(void **state)
 }
 
 /* Granberg's timer (Character Animation with Direct3D, chapter 9): 1.5 to 5.5 s even, in time that runs at 0.8. */
-static void errata_an_even_timer_is_not_log_normal(void **state)
+static void intervals_of_blinks_are_log_normal(void **state)
 {
     static double x[1020];
     (void)state;
@@ -205,7 +205,7 @@ static void four_channels_keep_the_timers(void **state)
 
 /* The source's lid is a sine that is looked at once a frame, and its fades add the length of a frame: at 5 frames a
  * second half of the blinks are not seen shut, and weights pass 1 and 0. */
-static void errata_fades_by_frames_pass_their_goals(void **state)
+static void fades_end_at_their_goals(void **state)
 {
     double w = 0.0, worst = 0.0;
     noh_face coarse = face_of(6, NOH_FACE_FOUR), fine = coarse;
@@ -361,7 +361,7 @@ static void each_eye_aims_at_its_target(void **state)
 
 /* Granberg's eyes share one direction, 0.8 and 0.5 of the angles from one place: off by degrees where the target is
  * near. */
-static void errata_eyes_that_share_a_direction_miss(void **state)
+static void each_eye_aims_at_the_target(void **state)
 {
     const float point[3] = { 0.2f, 0.1f, 0.4f };
     noh_face_pose pose;
@@ -599,15 +599,15 @@ int main(int argc, char **argv)
         cmocka_unit_test(blinks_come_at_their_rates),
         cmocka_unit_test(each_person_blinks_at_the_rate),
         cmocka_unit_test(intervals_are_log_normal),
-        cmocka_unit_test(errata_an_even_timer_is_not_log_normal),
+        cmocka_unit_test(intervals_of_blinks_are_log_normal),
         cmocka_unit_test(four_channels_keep_the_timers),
-        cmocka_unit_test(errata_fades_by_frames_pass_their_goals),
+        cmocka_unit_test(fades_end_at_their_goals),
         cmocka_unit_test(four_channels_hold_the_two_strongest_shapes),
         cmocka_unit_test(emotions_of_four_channels_may_be_called),
         cmocka_unit_test(lids_shut_and_open_again),
         cmocka_unit_test(a_blink_with_a_look_takes_the_place_of_the_next),
         cmocka_unit_test(each_eye_aims_at_its_target),
-        cmocka_unit_test(errata_eyes_that_share_a_direction_miss),
+        cmocka_unit_test(each_eye_aims_at_the_target),
         cmocka_unit_test(saccades_follow_the_main_sequence),
         cmocka_unit_test(eyes_stay_within_their_limits_and_the_head_helps),
         cmocka_unit_test(lids_follow_the_eyes_at_once),

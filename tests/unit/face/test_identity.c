@@ -375,7 +375,7 @@ static double torn(const people *p, const float *weights)
 }
 
 /* Granberg's faces (chapter 9): each target at rand() % 1000 / 1000, whatever the others are. */
-static void errata_even_independent_weights_tear_a_face(void **state)
+static void weights_that_know_each_other_keep_a_face_whole(void **state)
 {
     double ours = 0.0, even = 0.0;
     people p;
@@ -398,7 +398,7 @@ static void errata_even_independent_weights_tear_a_face(void **state)
 
 /* dest = source + sum of (morph - base) w, for normals too: what comes out is no normal, where the vertex as drawn has
  * a unit one. */
-static void errata_blended_normals_are_not_unit(void **state)
+static void blended_normals_are_made_unit(void **state)
 {
     float weights[NOH_TARGETS_MAX] = { 0.0f };
     double worst = 0.0;
@@ -447,7 +447,7 @@ static void errata_blended_normals_are_not_unit(void **state)
 
 /* w = rand() % 1000 / 1000 is 0.999 at most, and never below 0: no target is ever shown whole, and none leaves the
  * range that the artist modelled, though people do. */
-static void errata_a_share_of_a_thousand_is_never_one(void **state)
+static void weights_reach_both_their_ends(void **state)
 {
     float source = 0.0f, most = 0.0f;
     people p;
@@ -489,9 +489,9 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(a_head_is_grouped),
         cmocka_unit_test(lids_shut_on_all_people),
         cmocka_unit_test(people_share_the_deltas_of_expressions),
-        cmocka_unit_test(errata_even_independent_weights_tear_a_face),
-        cmocka_unit_test(errata_blended_normals_are_not_unit),
-        cmocka_unit_test(errata_a_share_of_a_thousand_is_never_one),
+        cmocka_unit_test(weights_that_know_each_other_keep_a_face_whole),
+        cmocka_unit_test(blended_normals_are_made_unit),
+        cmocka_unit_test(weights_reach_both_their_ends),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, drop_head);

@@ -75,7 +75,7 @@ static void neighbours_each_have_their_time(void **state)
 }
 
 /* Without the rule that comes last, dominance alone leaves a short b between two open vowels half open. */
-static void errata_blending_alone_leaves_lips_open(void **state)
+static void lips_shut_where_they_have_to(void **state)
 {
     const noh_phone phones[] = { { 0, AA }, { 150 * MS, DD }, { 190 * MS, AA } };
     const noh_phone shut[] = { { 0, AA }, { 150 * MS, PP }, { 190 * MS, AA } };
@@ -267,7 +267,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lips_meet_at_every_phase_of_30_hz),
         cmocka_unit_test(neighbours_each_have_their_time),
-        cmocka_unit_test(errata_blending_alone_leaves_lips_open),
+        cmocka_unit_test(lips_shut_where_they_have_to),
         cmocka_unit_test(rounding_begins_before_its_sound),
         cmocka_unit_test(it_is_silent_before_and_after),
         cmocka_unit_test(nothing_leaps),

@@ -102,7 +102,7 @@ static void ranges_hold(void **state)
 
 /* Base plus sum of weighted deltas, as the book has it, shows the corners of a mouth pulled up and down at once: half
  * of both is a flat mouth that is stretched, which nobody modelled. */
-static void errata_A1_opposites_do_not_add_up(void **state)
+static void opposites_do_not_add_up(void **state)
 {
     float w[TARGETS] = { 0.8f, 0.6f, 0.0f, 0.0f, 0.0f, 0.0f }, stretch = w[SMILE] + w[FROWN];
     face f;
@@ -220,7 +220,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_hold),
-        cmocka_unit_test(errata_A1_opposites_do_not_add_up),
+        cmocka_unit_test(opposites_do_not_add_up),
         cmocka_unit_test(groups_sum_to_one),
         cmocka_unit_test(rules_hold_for_any_weights),
         cmocka_unit_test(what_makes_no_rule_is_left_out),

@@ -342,7 +342,7 @@ static void a_lobe_fits_itself(void **state)
 
 /* The source's shader adds the cube of blue light times the coefficients of green: a face lit by blue alone is black
  * where green light is none, and wrong by green's amount elsewhere. */
-static void errata_A13_blue_light_is_answered_by_blue(void **state)
+static void blue_light_is_answered_by_blue(void **state)
 {
     const noh_environment blue = { .name = "blue",
                                    .lamp_count = 1,
@@ -681,7 +681,7 @@ int main(void)
         cmocka_unit_test(occlusion_follows_the_targets),
         cmocka_unit_test(turned_surfaces_under_turned_light_look_alike),
         cmocka_unit_test(a_lobe_fits_itself),
-        cmocka_unit_test(errata_A13_blue_light_is_answered_by_blue),
+        cmocka_unit_test(blue_light_is_answered_by_blue),
         cmocka_unit_test(bent_axes_come_nearer),
         cmocka_unit_test(a_pack_without_transfer_says_so),
         cmocka_unit_test(transfers_are_made_alike),

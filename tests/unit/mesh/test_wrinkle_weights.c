@@ -37,7 +37,7 @@ static double area_of(double p[3][3])
 
 /* The source takes areas of clip-space positions, without the division by w and then as they are: they follow the
  * camera. In bind space they do not know it. */
-static void errata_A12_areas_do_not_follow_the_camera(void **state)
+static void areas_do_not_follow_the_camera(void **state)
 {
     (void)state;
     double rest[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } },
@@ -67,7 +67,7 @@ static void errata_A12_areas_do_not_follow_the_camera(void **state)
 }
 
 /* (A0 - A) / A0 of a triangle without area at rest is no number, and so is the normal that is mixed by it. */
-static void errata_A12_no_area_at_rest_is_no_number(void **state)
+static void no_area_at_rest_wrinkles_nothing(void **state)
 {
     const volatile float none = 0.0f; /* so that the division is not done by the compiler */
     const float literal = (none - none) / none;
@@ -84,7 +84,7 @@ static float length_of(const float v[3])
 
 /* N = lerp(N_geo, N_bump, wrinkle) is not made unit again: with the weight that a triangle has at rest, and that of one
  * that lost a third. */
-static void errata_A12_mixed_normals_are_unit(void **state)
+static void normals_of_areas_are_unit(void **state)
 {
     const float geometric[3] = { 0.0f, 0.0f, 1.0f }, bump[3] = { 0.8f, 0.0f, 0.6f };
     (void)state;
@@ -99,7 +99,7 @@ static void errata_A12_mixed_normals_are_unit(void **state)
 }
 
 /* N = lerp(base, wrinkle, weight) is shorter than one, and at weight 1 has nothing of the base's detail left. */
-static void errata_B7_wrinkled_normals_are_unit(void **state)
+static void wrinkled_normals_are_unit(void **state)
 {
     (void)state;
     const float base[3] = { 0.6f, 0.0f, 0.8f }, wrinkle[3] = { 0.0f, 0.6f, 0.8f }, flat[3] = { 0.0f, 0.0f, 1.0f };
@@ -121,11 +121,9 @@ static void errata_B7_wrinkled_normals_are_unit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regions_come_from_expressions),
-        cmocka_unit_test(errata_A12_areas_do_not_follow_the_camera),
-        cmocka_unit_test(errata_A12_no_area_at_rest_is_no_number),
-        cmocka_unit_test(errata_A12_mixed_normals_are_unit),
-        cmocka_unit_test(errata_B7_wrinkled_normals_are_unit),
+        cmocka_unit_test(regions_come_from_expressions),    cmocka_unit_test(areas_do_not_follow_the_camera),
+        cmocka_unit_test(no_area_at_rest_wrinkles_nothing), cmocka_unit_test(normals_of_areas_are_unit),
+        cmocka_unit_test(wrinkled_normals_are_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

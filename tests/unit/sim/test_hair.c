@@ -242,7 +242,7 @@ static void bad_descs_are_refused(void **state)
 
 /* At a corner of equal steps the curve goes beyond its points by an eighth of a step; with the source's tangents, which
  * are twice as long, by twice that. */
-static void errata_C15_2_tangents_are_halved(void **state)
+static void tangents_are_halved(void **state)
 {
     static const float corner[4][3] = {
         { 0.0f, 0.0f, 0.0f }, { 1.0f, 0.0f, 0.0f }, { 1.0f, 1.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }
@@ -265,7 +265,7 @@ static void errata_C15_2_tangents_are_halved(void **state)
 }
 
 /* Rest points in the world stay where the head was: turned by half, springs of the source pull hair off its head. */
-static void errata_C15_5_rest_turns_with_the_head(void **state)
+static void rest_turns_with_the_head(void **state)
 {
     const noh_hair_desc d = wig();
     noh_hair *hair = made(&d);
@@ -293,7 +293,7 @@ static void errata_C15_5_rest_turns_with_the_head(void **state)
 }
 
 /* Without damping the source swings for ever; ours is at rest in seconds. */
-static void errata_C15_5_hair_comes_to_rest(void **state)
+static void hair_comes_to_rest(void **state)
 {
     noh_hair_desc d = wig();
     double source_late = 0.0, x = 0.1, v = 0.0;
@@ -317,7 +317,7 @@ static void errata_C15_5_hair_comes_to_rest(void **state)
 }
 
 /* Wind blows in gusts that a seed and time give: the same again, others for another seed, and never still. */
-static void errata_C15_5_wind_is_noise_of_time(void **state)
+static void wind_is_noise_of_time(void **state)
 {
     float points[3][3u * ALL];
     worst w = { 0.0, 0.0, 0.0 };
@@ -347,7 +347,7 @@ static void errata_C15_5_wind_is_noise_of_time(void **state)
 
 /* A hair that points straight at a sphere's centre, and one whose root is that centre, have no way out to take; the
  * source divides by their length of 0. */
-static void errata_C15_6_a_hit_at_the_centre(void **state)
+static void a_hit_at_the_centre_is_pushed_out(void **state)
 {
     static const float straight[2][2][3] = { { { 0.0f, 0.2f, 0.0f }, { 0.0f, 0.0f, 0.0f } },
                                              { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.1f, 0.0f } } };
@@ -426,11 +426,11 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_copy_goes_on),
         cmocka_unit_test(every_width_gives_the_same_bits),
         cmocka_unit_test(bad_descs_are_refused),
-        cmocka_unit_test(errata_C15_2_tangents_are_halved),
-        cmocka_unit_test(errata_C15_5_rest_turns_with_the_head),
-        cmocka_unit_test(errata_C15_5_hair_comes_to_rest),
-        cmocka_unit_test(errata_C15_5_wind_is_noise_of_time),
-        cmocka_unit_test(errata_C15_6_a_hit_at_the_centre),
+        cmocka_unit_test(tangents_are_halved),
+        cmocka_unit_test(rest_turns_with_the_head),
+        cmocka_unit_test(hair_comes_to_rest),
+        cmocka_unit_test(wind_is_noise_of_time),
+        cmocka_unit_test(a_hit_at_the_centre_is_pushed_out),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

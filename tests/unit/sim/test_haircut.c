@@ -120,7 +120,7 @@ static void forged_haircuts_are_refused(void **state)
 
 /* Counts are words of four bytes, low byte first, on every processor. The source's `long` has eight where most programs
  * are built today, and takes the word behind the count into it. */
-static void errata_C15_4_counts_have_four_bytes(void **state)
+static void counts_have_four_bytes(void **state)
 {
     wig w;
     uint64_t as_long = 0;
@@ -266,7 +266,7 @@ static void a_wig_comes_along(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(errata_C15_4_counts_have_four_bytes),
+    cmocka_unit_test(counts_have_four_bytes),
     cmocka_unit_test(forged_haircuts_are_refused),
     cmocka_unit_test(hair_grows_on_the_skull),
     cmocka_unit_test(strips_lie_within_their_patch),

@@ -272,7 +272,7 @@ static void a_soft_limb_slows(void **state)
 
 /* The book takes an arc cosine of (a^2 + b^2 - d^2) / 2 a b as it is: a target nearer than the bones' difference has a
  * cosine above 1. */
-static void errata_C11_3_a_target_too_near_has_no_arc_cosine(void **state)
+static void a_target_too_near_stays_finite(void **state)
 {
     const float a = 0.5f, b = 0.3f, d = 0.1f;
     const noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { 0.5f, 0.0f, 0.0f }, { 0.5f, 0.3f, 0.0f }, 0.0f, 0.0f, 0.0f };
@@ -288,7 +288,7 @@ static void errata_C11_3_a_target_too_near_has_no_arc_cosine(void **state)
 
 /* The book turns about the hinge's axis by the difference of angles, whichever side the forearm lies on: from a bend of
  * the other side that widens what should narrow. */
-static void errata_C11_3_a_hinge_bends_by_its_own_side(void **state)
+static void a_hinge_bends_by_its_own_side(void **state)
 {
     const noh_ik_limb limb = { { 0.0f, 0.0f, 0.0f }, { 0.3f, 0.0f, 0.0f }, { 0.3f, -0.28f, 0.0f }, 0.0f, 0.0f, 0.0f };
     const float hinge[3] = { 0.0f, 0.0f, -1.0f }, target[3] = { 0.2f, 0.1f, 0.0f };
@@ -310,7 +310,7 @@ static void errata_C11_3_a_hinge_bends_by_its_own_side(void **state)
 }
 
 /* A bone of no length leaves nothing to divide by. */
-static void errata_C11_3_a_bone_of_no_length_has_no_arc_cosine(void **state)
+static void a_bone_of_no_length_stays_finite(void **state)
 {
     const float lengths[2][2] = { { 0.0f, 0.3f }, { 0.3f, 0.0f } }, target[3] = { 0.0f, 0.3f, 0.0f };
     (void)state;
@@ -329,7 +329,7 @@ static void errata_C11_3_a_bone_of_no_length_has_no_arc_cosine(void **state)
 
 /* The book returns where the shoulder has no axis to turn about, after it has turned the elbow: the hand's matrix is
  * still that of before. Here the elbow alone brings the hand onto the line to the target. */
-static void errata_C11_3_an_early_return_leaves_the_hand(void **state)
+static void the_hand_follows_whatever_the_elbow_does(void **state)
 {
     const double a = 0.3, b = 0.28, d = 0.4, inner = acos((a * a + d * d - b * b) / (2.0 * a * d));
     const float target[3] = { (float)d, 0.0f, 0.0f }, turn[3] = { 0.0f, 0.0f, 30.0f * (float)DEGREE };
@@ -352,7 +352,7 @@ static void errata_C11_3_an_early_return_leaves_the_hand(void **state)
 }
 
 /* The book takes its hinge through a matrix with scale and turns about what comes out, however long it is. */
-static void errata_C11_3_a_scaled_hinge_turns_too_far(void **state)
+static void a_scaled_hinge_turns_as_far_as_an_unscaled_one(void **state)
 {
     const float scale = 2.0f, by = 0.5f, target[3] = { 0.7f, 0.3f, 0.1f };
     const float hinge[3] = { 0.0f, 0.0f, -by * scale };
@@ -400,7 +400,7 @@ static void a_look_stays_in_its_cone(void **state)
 }
 
 /* A target that is behind and moves from side to side swings the book's head about, from one limit to the other. */
-static void errata_C11_2_a_target_behind_does_not_swing_the_head(void **state)
+static void a_target_behind_does_not_swing_the_head(void **state)
 {
     noh_ik_look look;
     double least = 360.0, most = -360.0;
@@ -461,7 +461,7 @@ static void a_look_does_not_depend_on_steps(void **state)
 }
 
 /* Vectors that are parallel have no product: the book makes its length 1. */
-static void errata_C11_2_parallel_vectors_have_no_axis(void **state)
+static void opposite_vectors_get_an_axis(void **state)
 {
     const float behind[3] = { 0.0f, 0.0f, -1.0f }, axis[3] = { 0.0f, 0.0f, 0.0f }; /* ahead x behind */
     noh_ik_look look;
@@ -480,7 +480,7 @@ static void errata_C11_2_parallel_vectors_have_no_axis(void **state)
 
 /* The book takes acos(f . t) of float vectors of length 1: where both are the same vector the dot product is often
  * above 1, and then there is no angle. */
-static void errata_C11_2_aligned_vectors_have_no_arc_cosine(void **state)
+static void aligned_vectors_turn_nothing(void **state)
 {
     test_random random = test_random_from(7);
     int bad = 0;
@@ -525,17 +525,17 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(nothing_makes_it_a_nan),
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(a_soft_limb_slows),
-        cmocka_unit_test(errata_C11_3_a_target_too_near_has_no_arc_cosine),
-        cmocka_unit_test(errata_C11_3_a_hinge_bends_by_its_own_side),
-        cmocka_unit_test(errata_C11_3_a_bone_of_no_length_has_no_arc_cosine),
-        cmocka_unit_test(errata_C11_3_an_early_return_leaves_the_hand),
-        cmocka_unit_test(errata_C11_3_a_scaled_hinge_turns_too_far),
-        cmocka_unit_test(errata_C11_2_parallel_vectors_have_no_axis),
+        cmocka_unit_test(a_target_too_near_stays_finite),
+        cmocka_unit_test(a_hinge_bends_by_its_own_side),
+        cmocka_unit_test(a_bone_of_no_length_stays_finite),
+        cmocka_unit_test(the_hand_follows_whatever_the_elbow_does),
+        cmocka_unit_test(a_scaled_hinge_turns_as_far_as_an_unscaled_one),
+        cmocka_unit_test(opposite_vectors_get_an_axis),
         cmocka_unit_test(a_look_stays_in_its_cone),
-        cmocka_unit_test(errata_C11_2_a_target_behind_does_not_swing_the_head),
+        cmocka_unit_test(a_target_behind_does_not_swing_the_head),
         cmocka_unit_test(a_look_turns_no_faster_than_it_can),
         cmocka_unit_test(a_look_does_not_depend_on_steps),
-        cmocka_unit_test(errata_C11_2_aligned_vectors_have_no_arc_cosine),
+        cmocka_unit_test(aligned_vectors_turn_nothing),
         cmocka_unit_test(shares_add_up),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);

@@ -52,7 +52,7 @@ static double oscillator(int explicit_euler)
     return most;
 }
 
-static void errata_C6_7_euler_gains(void **state)
+static void orbits_gain_no_energy(void **state)
 {
     (void)state;
     assert_true(oscillator(1) > 1000.0);
@@ -60,7 +60,7 @@ static void errata_C6_7_euler_gains(void **state)
 }
 
 /* The source's text, p = 2 p - o + a h, falls 60 times as far at 60 Hz; its code and ours as g t^2 / 2. */
-static void errata_C6_8_the_text_lacks_a_square(void **state)
+static void gravity_goes_by_the_square_of_the_step(void **state)
 {
     const float g[3] = { 0.0f, -NOH_GRAVITY, 0.0f }, h = 1.0f / 60.0f;
     float p[3] = { 0.0f, 0.0f, 0.0f }, before[3] = { 0.0f, 0.0f, 0.0f };
@@ -96,7 +96,7 @@ static void verlet_takes_steps_of_any_length(void **state)
 }
 
 /* Two points in one place: the source divides by their distance. */
-static void errata_C6_9_no_distance_has_no_direction(void **state)
+static void no_distance_stays_finite(void **state)
 {
     float a[3] = { 1.0f, 2.0f, 3.0f }, b[3] = { 1.0f, 2.0f, 3.0f };
     volatile float distance = 0.0f;
@@ -108,7 +108,7 @@ static void errata_C6_9_no_distance_has_no_direction(void **state)
 }
 
 /* A pinned point and a heavy one: the source moves both by half. */
-static void errata_C6_9_masses_share_a_correction(void **state)
+static void masses_share_a_correction(void **state)
 {
     float a[3] = { 0.0f, 0.0f, 0.0f }, b[3] = { 2.0f, 0.0f, 0.0f }, c[3] = { 5.0f, 0.0f, 0.0f };
     (void)state;
@@ -121,7 +121,7 @@ static void errata_C6_9_masses_share_a_correction(void **state)
 }
 
 /* A weight on a spring stretches it by m g / k, which a rod does not. */
-static void errata_C6_9_a_spring_has_a_stiffness(void **state)
+static void a_spring_has_a_stiffness(void **state)
 {
     const float g[3] = { 0.0f, -NOH_GRAVITY, 0.0f }, h = 1.0f / 600.0f, compliance = 1.0f / 100.0f;
     float pin[3] = { 0.0f, 0.0f, 0.0f }, p[3] = { 0.0f, -1.0f, 0.0f }, v[3] = { 0.0f, 0.0f, 0.0f };
@@ -209,7 +209,7 @@ static void boxes_meet_as_in_double(void **state)
 
 /* Boxes side by side, turned by nearly nothing: the products of their parallel edges are rounding errors, which without
  * the margin part boxes that meet. */
-static void errata_C6_5_parallel_edges_part_nothing(void **state)
+static void parallel_edges_part_nothing(void **state)
 {
     (void)state;
     for (int i = 0; i < 20000; i++) {
@@ -226,7 +226,7 @@ static void errata_C6_5_parallel_edges_part_nothing(void **state)
 }
 
 /* The source's size is half of a side, and its constructor takes the largest corner first. */
-static void errata_C6_4_corners_and_halves(void **state)
+static void corners_and_halves_are_told_apart(void **state)
 {
     const noh_aabb box = { { -1.0f, -2.0f, -3.0f }, { 1.0f, 2.0f, 3.0f } },
                    turned = { { 1.0f, 2.0f, 3.0f }, { -1.0f, -2.0f, -3.0f } };
@@ -357,16 +357,16 @@ static void segments_are_closest_where_it_says(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(errata_C6_7_euler_gains),
-    cmocka_unit_test(errata_C6_8_the_text_lacks_a_square),
+    cmocka_unit_test(orbits_gain_no_energy),
+    cmocka_unit_test(gravity_goes_by_the_square_of_the_step),
     cmocka_unit_test(verlet_takes_steps_of_any_length),
-    cmocka_unit_test(errata_C6_9_no_distance_has_no_direction),
-    cmocka_unit_test(errata_C6_9_masses_share_a_correction),
-    cmocka_unit_test(errata_C6_9_a_spring_has_a_stiffness),
+    cmocka_unit_test(no_distance_stays_finite),
+    cmocka_unit_test(masses_share_a_correction),
+    cmocka_unit_test(a_spring_has_a_stiffness),
     cmocka_unit_test(dropped_time_is_counted),
     cmocka_unit_test(boxes_meet_as_in_double),
-    cmocka_unit_test(errata_C6_5_parallel_edges_part_nothing),
-    cmocka_unit_test(errata_C6_4_corners_and_halves),
+    cmocka_unit_test(parallel_edges_part_nothing),
+    cmocka_unit_test(corners_and_halves_are_told_apart),
     cmocka_unit_test(the_closest_point_is_no_farther_than_others),
     cmocka_unit_test(rays_meet_surfaces),
     cmocka_unit_test(rays_meet_boxes),

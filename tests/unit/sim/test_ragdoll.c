@@ -170,7 +170,7 @@ static int all_finite(const noh_ragdolls *set, uint32_t doll, uint32_t count)
 
 /* At rest all angles are 0, whatever the bodies' own frames are, and without gravity to fall by nothing moves. The
  * source measures its limits from axes of the world: the same doll then starts beyond them and gains energy. */
-static void errata_C7_5_bind_zero(void **state)
+static void the_bind_pose_is_zero(void **state)
 {
     noh_ragdoll_rig rig = figure_rig();
     noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
@@ -628,7 +628,7 @@ static void bad_rigs_are_refused(void **state)
 
 /* The source's hinge takes the upper limit first, where its engine takes the lower: a knee that bends the other way.
  * Limits here have names, and those in the wrong order are refused. */
-static void errata_C7_4_limits_in_order(void **state)
+static void limits_are_in_order(void **state)
 {
     noh_ragdoll_rig rig = figure_rig();
     (void)state;
@@ -639,7 +639,7 @@ static void errata_C7_4_limits_in_order(void **state)
 }
 
 /* One record for four types: what each lets move, pulled at by gravity, moves; the rest does not. */
-static void errata_C7_2_four_types_in_one_record(void **state)
+static void four_types_in_one_record(void **state)
 {
     noh_ragdoll_rig rig = chain(2, NOH_RAGDOLL_SLIDES);
     noh_ragdoll_pose poses[2], now[2];
@@ -692,9 +692,9 @@ static void errata_C7_2_four_types_in_one_record(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(errata_C7_5_bind_zero),
-    cmocka_unit_test(errata_C7_4_limits_in_order),
-    cmocka_unit_test(errata_C7_2_four_types_in_one_record),
+    cmocka_unit_test(the_bind_pose_is_zero),
+    cmocka_unit_test(limits_are_in_order),
+    cmocka_unit_test(four_types_in_one_record),
     cmocka_unit_test(a_pendulum_keeps_its_period),
     cmocka_unit_test(a_body_slides_so_far),
     cmocka_unit_test(free_spin_keeps_its_momentum),

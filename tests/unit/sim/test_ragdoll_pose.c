@@ -95,7 +95,7 @@ static void the_bind_pose_is_the_rest_of_the_rig(void **state)
 
 /* The source sets a bone to where its body is: it is then as long as bodies are apart. Here a pose made bodies and made a
  * pose again is that of the bodies, in any place, and bones keep their lengths though a body is torn out. */
-static void errata_C7_6_bodies_and_pose_are_each_other(void **state)
+static void bodies_and_pose_are_each_other(void **state)
 {
     noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX], again[NOH_RAGDOLL_BODIES_MAX];
     hero h;
@@ -201,7 +201,7 @@ static void dolls_lie_alike_whichever_way_they_head(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_bind_pose_is_the_rest_of_the_rig),
-    cmocka_unit_test(errata_C7_6_bodies_and_pose_are_each_other),
+    cmocka_unit_test(bodies_and_pose_are_each_other),
     cmocka_unit_test(weights_leave_the_pose),
     cmocka_unit_test(velocities_come_from_two_poses),
     cmocka_unit_test(place_under_finds_place_and_heading),
