@@ -100,7 +100,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # Skinning kernels and lanes built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
+.PHONY: FORCE mutants check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -119,6 +119,7 @@ help:
 	@echo 'make bench-lod  of them only LOD levels against meshoptimizer'"'"'s'
 	@echo 'make fuzz       fuzz the readers of packs, clips and wire forms (FUZZ_SECONDS=60 each; NOH_LONG=1: of models, too), needs clang'
 	@echo 'make check-long  all that .ci/run does in its long form: hours; and memcheck, paths by gcc and clang, AFL++'
+	@echo 'make mutants    each technique of tests/README.md broken in turn: its test has to fail (NOH_TEST=NAME: some)'
 	@echo 'make threads    poses on four threads under ThreadSanitizer'
 	@echo 'make golden     the same bits of ten seconds by every compiler and processor here; golden-update: a new table'
 	@echo 'make budgets    what the demo characters take, to the byte, against a table; budgets-update: a new table'
@@ -394,10 +395,17 @@ view: deps-view
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(FILE)
 	@$(BUILD)/noh view $(FILE)
 
+# What tests read of the demo.
+TEST_PACKS := $(addprefix $(BUILD)/,mask.noh wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/arm.glb)
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
-	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(BUILD)/mask.noh $(BUILD)/wig.noh $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) all tests $(TEST_PACKS)
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
+
+# What the table in tests/README.md says of its tests.
+mutants: deps-check
+	@$(MAKE) --no-print-directory -j$(JOBS) $(TEST_PACKS)
+	@NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" JOBS="$(JOBS)" sh tests/mutants.sh
 
 # Under ThreadSanitizer.
 threads: deps-fuzz

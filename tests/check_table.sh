@@ -1,16 +1,17 @@
 #!/bin/sh
-# check_table.sh: the table of techniques in tests/README.md tells the truth: every file, test and verb in it exists.
-# A row is `| source | technique | code | test | command |`. Names in backquotes are looked up:
+# check_table.sh: the table of techniques in tests/README.md tells the truth: every file, test, mutant and verb in it
+# exists, and every mutant still applies. `make mutants` (tests/mutants.sh) shows that the tests fail on them.
+# A row is `| source | technique | code | test | mutant | command |`. Names in backquotes are looked up:
 #   code     a file
 #   test     `test_NAME` `function`: a program's source below tests/ that lists this function; or a script, `DIR/NAME.sh`
+#   mutant   `NAME`: tests/mutants/NAME.patch, which edits that code and no test; or none: why there is none
 #   command  `noh VERB [--OPTION [VALUE]]`: the verb has a help, and the option in it; or `make TARGET`
-# A row whose code is "not yet" names neither a test nor a command.
+# A row whose code is "not yet" names neither a test nor a mutant nor a command.
 set -u
 . tests/cli/lib.sh
 table=${1:-tests/README.md}
 
-# The rows of tables with five columns, without head and rule: code, test and command, one a line, by tabs.
-awk -F ' *[|] *' 'NF == 7 && $2 != "source" && $2 !~ /^-+$/ { print $4 "\t" $5 "\t" $6 "\t" $2 ": " $3 }' "$table" >"$work/rows"
+awk -f tests/support/techniques.awk "$table" >"$work/rows"
 
 missing() {
     echo "$1 (row: $row)" >>"$work/missing"
@@ -37,33 +38,48 @@ has_command() {
     esac
 }
 
+has_mutant() { # NAME CODE
+    patch=tests/mutants/$1.patch
+    [ -f "$patch" ] || { missing "no mutant $1"; return; }
+    echo "$patch" >>"$work/patches"
+    edited=$(sed -n 's|^+++ b/||p' "$patch")
+    # shellcheck disable=SC2086,SC2116 # lines become words
+    case " $(echo $edited) " in *" $2 "*) ;; *) missing "$patch does not edit $2" ;; esac
+    case " $edited" in *[!a-z/]tests/*) missing "$patch edits a test" ;; esac
+    patch -p1 -F0 -s -f --dry-run <"$patch" >/dev/null 2>&1 || missing "$patch does not apply any more"
+}
+
 tab=$(printf '\t')
-: >"$work/missing"
-built=0 unbuilt=0
-while IFS="$tab" read -r code test command row; do
+: >"$work/missing" >"$work/patches"
+built=0 unbuilt=0 unshown=0
+while IFS="$tab" read -r code test mutant command row; do
     if [ "$code" = 'not yet' ]; then
         unbuilt=$((unbuilt + 1))
-        [ "$test$command" = -- ] || missing 'not built, yet it has a test or a command'
+        [ "$test$mutant$command" = --- ] || missing 'not built, yet it has a test, a mutant or a command'
         continue
     fi
     built=$((built + 1))
-    for file in $(echo "$code" | tr -d '`'); do
-        [ -f "$file" ] || missing "no file $file"
-    done
-    # shellcheck disable=SC2046 # words
-    set -- $(echo "$test" | tr -d '`')
+    [ -f "$code" ] || missing "no file $code"
+    case $mutant in 'none: '?*) ;; '?') unshown=$((unshown + 1)) ;; *) has_mutant "$mutant" "$code" ;; esac
+    # shellcheck disable=SC2086 # words
+    set -- $test
     case $#:${1:-} in
     2:test_*) has_test "$1" "$2" ;;
     1:*.sh) [ -f "tests/$1" ] || missing "no script tests/$1" ;;
     *) missing "not a test: $test" ;;
     esac
-    [ "$command" = - ] || has_command "$(echo "$command" | tr -d '`')"
+    [ "$command" = - ] || has_command "$command"
 done <"$work/rows"
 
-echo "# $built techniques built, $unbuilt not yet"
+for patch in tests/mutants/*; do
+    row=$patch
+    case $(grep -cxF "$patch" "$work/patches") in 0) missing 'no row names it' ;; 1) ;; *) missing 'more than one row names it' ;; esac
+done
+
+echo "# $built techniques built, $unbuilt not yet, $unshown without a mutant"
 sed 's/^/# /' "$work/missing"
 check 'the table was read' test $((built + unbuilt)) -gt 100
-check 'every file, test and verb of the table exists' test ! -s "$work/missing"
+check 'every file, test, mutant and verb of the table exists' test ! -s "$work/missing"
 check 'no comment points at a row outside the repository' sh -c \
     '! grep -rnE "[Rr]ows? [A-E][0-9]" tests --include=*.c --include=*.h --include=*.sh --exclude=check_table.sh'
 finish

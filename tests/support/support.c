@@ -14,6 +14,13 @@
 #include "convert/model/model_build.h"
 #include "convert/pack/pack_clips.h"
 
+/* Before main: NOH_FUNCTION is the one test to run, of whichever program (tests/mutants.sh). */
+__attribute__((constructor)) static void filter_by_environment(void)
+{
+    const char *function = getenv("NOH_FUNCTION");
+    if (function && *function) cmocka_set_test_filter(function);
+}
+
 /* ---- memory, files ---- */
 
 void *test_zeros(size_t bytes)

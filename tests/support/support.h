@@ -1,6 +1,6 @@
 /* support.h: what the tests share; linked into every one of them.
  *
- *   test_main            run a table of tests; argument 1 is a filter
+ *   TEST_MAIN            run a table of tests; argument 1 is a filter, and so is NOH_FUNCTION in the environment
  *   test_skip            say why, then skip
  *   test_skip_emulated   skip on an emulated processor
  *   test_zeros, test_aligned, test_folder, test_asset

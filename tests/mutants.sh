@@ -1,0 +1,205 @@
+#!/bin/sh
+# mutants.sh: each test that tests/README.md names for a technique fails when the technique's error is in the code.
+#
+# A row of the tables there names a mutant: tests/mutants/NAME.patch, an edit that puts the source's error into the code
+# or, where the source has none, breaks the technique. This script applies each to a copy of the tree, builds the row's
+# test there and demands that it fails by one of its own assertions: a mutant that does not compile, crashes or takes
+# too long shows nothing. Before that, the same test has to pass on the tree itself. Ends with "N passed, N failed,
+# N skipped"; a test that is skipped here, for want of a model or a driver, skips its mutant.
+#
+#   NOH_BUILD   a build folder inside the tree (build); the tests are built there first. What make was called with
+#               (CC, OPT) is not known here: use a folder that was built with plain `make`
+#   NOH_ASSETS  as for tests/run.sh
+#   NOH_TEST    only rows whose mutant, test or code holds this: NOH_TEST=ragdoll
+#   JOBS        copies of the tree that work at a time (as many as there are processors)
+#   NOH_LIMIT_S seconds that one test may take (300)
+#
+# Copies lie in NOH_BUILD/mutants and are removed at the end, interrupted or not. A mutant costs the objects that read
+# what it touches, one program, and one function of it: outputs come back from NOH_BUILD, with their times.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+
+build=${NOH_BUILD:-build}
+build=${build#"$PWD"/}
+case $build in /* | *..*) echo "mutants.sh: NOH_BUILD has to be a folder inside $PWD"; exit 1 ;; esac
+case ${NOH_ASSETS:-} in '' | /*) ;; *) NOH_ASSETS=$PWD/$NOH_ASSETS ;; esac
+export NOH_ASSETS="${NOH_ASSETS:-}" NOH_SAN='' CMOCKA_MESSAGE_OUTPUT=TAP CC="${CC:-gcc}"
+[ -n "${NOH_ANGLE:-}" ] || [ ! -f "$build/angle/libGLESv2.so" ] || export NOH_ANGLE="$PWD/$build/angle"
+jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+limit=${NOH_LIMIT_S:-300}
+tree=$PWD work=$PWD/$build/mutants
+tab=$(printf '\t')
+unset MAKEFLAGS MAKELEVEL
+
+# ---- one row ----
+
+# Runs a program in the background, so that a signal reaches it: timeout ends all that it started.
+child=
+limited() { # SECONDS COMMAND...
+    timeout -k 5 "$@" &
+    child=$!
+    wait $child
+}
+
+# Runs a row's test of the build in a folder and sets told: `passes`, `skips: REASON`, `fails`, or what else happened.
+verdict() { # FOLDER PROGRAM FUNCTION LOG
+    case $2 in *.sh) set -- "$1" "tests/$2" '.*' "$4" sh ;; *) set -- "$1" "$2" "$3" "$4" ;; esac
+    # shellcheck disable=SC2086 # a word or none
+    limited "$limit" env -C "$1" NOH_BUILD="$1/$build" NOH_EMBED="$1/$build/embed" NOH_FUNCTION="${3#.\*}" ${5:-} "$2" \
+        >"$4" 2>&1 </dev/null
+    status=$?
+    if [ $status = 124 ] || [ $status = 137 ]; then
+        told="takes more than $limit s"
+    elif grep -q 'exception: ' "$4"; then
+        told=crashes
+    elif grep -q "^not ok [0-9]* - $3\$" "$4"; then
+        told=fails
+    elif [ $status != 0 ]; then
+        told="ends with $status"
+    elif grep -q '^SKIP: ' "$4"; then
+        told=$(sed -n 's/^SKIP: /skips: /p' "$4" | head -n 1)
+    elif grep -q "^ok [0-9]* - $3\$" "$4"; then
+        told=passes
+    else
+        told='runs no such test'
+    fi
+}
+
+# The files that a patch edits.
+edited() { # PATCH
+    sed -n 's|^+++ b/||p' "$1"
+}
+
+goal() { # PROGRAM
+    case $1 in *.sh) echo "$build/noh" ;; *) echo "$1" ;; esac
+}
+
+# Takes the mutant out: sources and outputs are again those of the tree, with their times.
+restore() { # NUMBER PATCH
+    for file in $(edited "$2"); do
+        cp -p "$file" "$work/$1/$file"
+    done
+    (cd "$work/$1" && find "$build" -type f -newer "$work/$1.stamp") >"$work/$1.new"
+    while read -r file; do
+        case $file in
+        *.[oad] | */gen/*) cp -p "$file" "$work/$1/$file" 2>/dev/null || rm -f "$work/$1/$file" ;;
+        *) rm -f "$work/$1/$file" ;;
+        esac
+    done <"$work/$1.new"
+}
+
+# The test passes on the tree itself, or skips there: it is run once, whatever the number of its mutants.
+on_the_tree() { # PROGRAM FUNCTION
+    key=$work/log/tree.$(echo "$1 $2" | tr ' /' __)
+    [ -f "$key.told" ] && told=$(cat "$key.told") && return
+    verdict "$tree" "$1" "$2" "$key"
+    echo "$told" >"$key.told"
+}
+
+one() { # NUMBER NAME PROGRAM FUNCTION
+    copy=$work/$1 patch=tests/mutants/$2.patch log=$work/log/$2
+    on_the_tree "$3" "$4"
+    case $told in
+    passes) ;;
+    skips:*) echo "skip - $2 # SKIP${told#skips:}" && return ;;
+    *) echo "not ok - $2: on the tree as it is, $3 $4 $told" && tail -n 12 "$key" | sed 's/^/#   /' && return ;;
+    esac
+    touch "$copy.stamp"
+    sleep 0.02 # what is written from here on is newer
+    if ! patch -d "$copy" -p1 -F0 -s -t --no-backup-if-mismatch -r - <"$patch" >"$log" 2>&1; then
+        told='does not apply'
+    elif ! limited 900 make -C "$copy" -j1 --no-print-directory DEPS=0 WERROR= BUILD="$build" "$(goal "$3")" >"$log" 2>&1 </dev/null; then
+        told='does not compile'
+    else
+        verdict "$copy" "$3" "$4" "$log"
+    fi
+    restore "$1" "$patch"
+    case $told in
+    fails) echo "ok - $2" ;;
+    passes) echo "not ok - $2: $3 $4 passes" ;;
+    *) echo "not ok - $2: $told" && tail -n 12 "$log" | sed 's/^/#   /' ;;
+    esac
+}
+
+# ---- a copy of the tree, which takes every JOBS-th row ----
+
+copy() { # FOLDER
+    mkdir -p "$1/$build" "$work/log"
+    for file in *; do
+        case $file in build*) ;; *) cp -pR "$file" "$1/" ;; esac
+    done
+    (cd "$build" && find . \( -path ./mutants -o -path ./web -o -path ./tests/log -o -path ./angle \) -prune -o -type f \
+        \( -name '*.[oad]' -o -path './gen/*' -o -name embed -o -name '*.noh' -o -name '*.glb' \) -print) |
+        tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
+}
+
+worker() { # NUMBER
+    trap 'kill $child 2>/dev/null; exit 1' TERM INT HUP
+    trap - EXIT
+    copy "$work/$1" || exit 1
+    awk -v n="$1" -v jobs="$jobs" 'NR % jobs == n % jobs' "$work/rows" >"$work/$1.rows"
+    while IFS="$tab" read -r name program function; do
+        one "$1" "$name" "$program" "$function"
+    done <"$work/$1.rows"
+}
+
+# ---- all ----
+
+workers=
+clean() {
+    trap - EXIT
+    # shellcheck disable=SC2086 # numbers
+    [ -z "$workers$child" ] || { kill $workers $child; wait; } 2>/dev/null
+    rm -rf "$work"
+}
+trap clean EXIT
+trap 'clean; exit 130' INT TERM HUP
+rm -rf "$work"
+mkdir -p "$work/log" || exit 1
+
+awk -f tests/support/techniques.awk tests/README.md | while IFS="$tab" read -r code test mutant _; do
+    case "$code $test $mutant" in *"${NOH_TEST:-}"*) ;; *) continue ;; esac
+    [ -f "tests/mutants/$mutant.patch" ] || continue
+    program=${test%% *} function=${test#* }
+    case $program in
+    *.sh) ;;
+    *) program=$(find tests -name "$program.c" | head -n 1) program=$build/${program%.c} ;;
+    esac
+    echo "$mutant$tab$program$tab$function"
+done >"$work/rows"
+[ -s "$work/rows" ] || { echo "no mutant is named ${NOH_TEST:-}"; exit 1; }
+
+# shellcheck disable=SC2046 # words
+limited 7200 make -j"$jobs" --no-print-directory DEPS=0 BUILD="$build" "$build/noh" \
+    $(cut -f2 "$work/rows" | grep -v '\.sh$' | sort -u) >"$work/make" 2>&1 </dev/null ||
+    { tail -n 20 "$work/make"; echo 'the tests cannot be built'; exit 1; }
+
+number=0 passed=0 failed=0 skipped=0
+tell() { # A LINE OF A RESULT
+    case $1 in
+    'ok '*) passed=$((passed + 1)) ;;
+    'not ok '*) failed=$((failed + 1)) ;;
+    'skip '*) skipped=$((skipped + 1)) ;;
+    *) echo "$1"; return ;;
+    esac
+    number=$((number + 1))
+    case $1 in skip*) line="ok ${1#skip }" ;; *) line=$1 ;; esac
+    echo "${line%%ok - *}ok $number - ${line#*ok - }"
+}
+
+mkfifo "$work/results"
+n=0
+while [ $n -lt "$jobs" ]; do
+    n=$((n + 1))
+    worker $n >"$work/results" &
+    workers="$workers $!"
+done
+while IFS= read -r line; do
+    tell "$line"
+done <"$work/results"
+wait
+workers=
+[ $((passed + skipped + failed)) -ge "$(wc -l <"$work/rows")" ] || failed=$((failed + 1))
+echo "1..$number"
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ] && [ $passed != 0 ]
