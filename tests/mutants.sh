@@ -10,7 +10,7 @@
 #   NOH_BUILD   a build folder inside the tree (build); the tests are built there first. What make was called with
 #               (CC, OPT) is not known here: use a folder that was built with plain `make`
 #   NOH_ASSETS  as for tests/run.sh
-#   NOH_TEST    only rows whose mutant, test or code holds this: NOH_TEST=ragdoll
+#   NOH_TEST    only rows whose mutant, test or code holds one of these words: NOH_TEST='ragdoll hair'
 #   JOBS        copies of the tree that work at a time (as many as there are processors)
 #   NOH_LIMIT_S seconds that one test may take (300)
 #
@@ -157,8 +157,16 @@ trap 'clean; exit 130' INT TERM HUP
 rm -rf "$work"
 mkdir -p "$work/log" || exit 1
 
+is_wanted() {
+    [ -n "${NOH_TEST:-}" ] || return 0
+    for word in $NOH_TEST; do
+        case $1 in *"$word"*) return 0 ;; esac
+    done
+    return 1
+}
+
 awk -f tests/support/techniques.awk tests/README.md | while IFS="$tab" read -r code test mutant _; do
-    case "$code $test $mutant" in *"${NOH_TEST:-}"*) ;; *) continue ;; esac
+    is_wanted "$code $test $mutant" || continue
     [ -f "tests/mutants/$mutant.patch" ] || continue
     program=${test%% *} function=${test#* }
     case $program in

@@ -23,19 +23,26 @@ typedef struct stage {
     noh_gl_camera camera;
 } stage;
 
-static void open_stage(stage *st)
+/* bytes: a pack; freed with the stage */
+static void open_stage_of(stage *st, uint8_t *bytes, const size_t *count)
 {
-    const test_model_desc desc = { 1, 9, 3, TEST_UVS, 5 };
-    size_t count;
     memset(st, 0, sizeof *st);
     st->g = fixture_gpu();
-    st->bytes = test_pack(&desc, &count);
+    st->bytes = bytes;
     st->file.path = "a pack in memory";
-    st->file.pack = test_open(st->bytes, count);
+    st->file.pack = test_open(st->bytes, *count);
     parts_open(&st->parts, st->g, &st->file, NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO, 1);
     parts_update(&st->parts, NULL);
     assert_int_equal(canvas_open(&st->c, st->g, SIDE, SIDE), 0);
     parts_camera(&st->parts, "0,0", SIDE, &st->camera);
+}
+
+static void open_stage(stage *st)
+{
+    const test_model_desc desc = { 1, 9, 3, TEST_UVS, 5 };
+    size_t count;
+    uint8_t *bytes = test_pack(&desc, &count);
+    open_stage_of(st, bytes, &count);
 }
 
 static void close_stage(stage *st)
@@ -107,6 +114,44 @@ static void defaults_come_first(void **state)
     assert_true(fabs(brightness(&st, FIRST) - lit) < 0.5); /* the next pass sets it again, whatever was reset */
     assert_true(fabs(brightness(&st, NEVER) - lit) < 0.5);
     close_stage(&st);
+}
+
+/* Every range of a mesh's triangles is drawn, each once: a grid of three ranges looks like the same grid of one. */
+static void ranges_make_the_whole_mesh(void **state)
+{
+    const test_model_desc desc = { 1, 9, 0, TEST_UVS, 5 };
+    uint8_t *rgba[2] = { test_zeros((size_t)SIDE * SIDE * 4u), test_zeros((size_t)SIDE * SIDE * 4u) };
+    (void)state;
+    for (uint32_t i = 0; i < 2; i++) {
+        model *m = test_model(&desc);
+        model_mesh *mesh = &m->meshes[0];
+        const uint32_t ranges = i ? 3u : 1u, third = mesh->index_count / 9u * 3u;
+        stage st;
+        size_t count;
+        if (i) mesh->submeshes = realloc(mesh->submeshes, ranges * sizeof *mesh->submeshes);
+        for (uint32_t r = 1; r < ranges; r++) {
+            mesh->submeshes[r] = mesh->submeshes[0];
+            mesh->submeshes[r].first_index = r * third;
+            mesh->submeshes[r].index_count = r == 1 ? third : mesh->index_count - 2u * third;
+            mesh->submeshes[r].vertex_count = 0;
+        }
+        if (i) mesh->submeshes[0].index_count = third;
+        mesh->submesh_count = ranges;
+        uint8_t *bytes = test_pack_of(m, &count, NULL);
+        open_stage_of(&st, bytes, &count);
+        assert_int_equal(test_mesh(&st.file.pack, 0).header->submesh_count, ranges);
+        canvas_begin(&st.c);
+        noh_gl_draw_begin(&st.parts.renderer, &st.camera);
+        draw_mesh(&st);
+        noh_gl_draw_end(&st.parts.renderer);
+        assert_int_equal(canvas_read(&st.c, rgba[i]), 0);
+        close_stage(&st);
+        model_free(m);
+    }
+    assert_false(lit_quad_is_background(rgba[0] + 4u * (SIDE / 2u * SIDE + SIDE / 2u)));
+    assert_memory_equal(rgba[0], rgba[1], (size_t)SIDE * SIDE * 4u);
+    free(rgba[0]);
+    free(rgba[1]);
 }
 
 /* A light in world space needs normals in world space: by the inverse transpose, made unit again in every pixel, and
@@ -242,8 +287,11 @@ static void influences_go_with_the_draw(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults_come_first),          cmocka_unit_test(light_and_normal_in_one_space),
-        cmocka_unit_test(each_mesh_has_its_own_stride), cmocka_unit_test(a_failed_shader_is_an_error_without_a_message),
+        cmocka_unit_test(defaults_come_first),
+        cmocka_unit_test(ranges_make_the_whole_mesh),
+        cmocka_unit_test(light_and_normal_in_one_space),
+        cmocka_unit_test(each_mesh_has_its_own_stride),
+        cmocka_unit_test(a_failed_shader_is_an_error_without_a_message),
         cmocka_unit_test(influences_go_with_the_draw),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

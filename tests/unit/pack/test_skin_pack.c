@@ -137,6 +137,28 @@ static forged reach(uint8_t *bytes)
 LIES(X)
 #undef X
 
+/* What is read with a vertex's record lies in its palette, and what that names in its skin. */
+static void expect_limits(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+        const noh_mesh mesh = test_mesh(pack, i);
+        const noh_mesh_header *h = mesh.header;
+        noh_skin skin;
+        if (h->skin == NOH_NONE) continue;
+        assert_int_equal(noh_pack_skin_at(pack, h->skin, &skin, NULL), NOH_OK);
+        for (uint32_t j = 0; j < h->palette_joint_count; j++) {
+            assert_true(mesh.palette_joints[j] < skin.header->joint_count);
+        }
+        for (uint32_t v = 0; v < h->vertex_count; v++) {
+            const uint32_t *words = mesh.influences + (size_t)v * NOH_INFLUENCE_WORDS(h->influence_count);
+            const noh_palette *palette = &mesh.palettes[noh_mesh_palette(&mesh, v)];
+            for (uint32_t k = 0; k < h->influence_count; k++) {
+                assert_true((words[k / 4u] >> 8u * (k % 4u) & 255u) < palette->joint_count);
+            }
+        }
+    }
+}
+
 /* With repaired checksums every flip is refused, or the pack that opens is read without a step out of bounds. */
 static void repaired_flips_stay_in_bounds(void **state)
 {
@@ -151,6 +173,7 @@ static void repaired_flips_stay_in_bounds(void **state)
         pack_repair(bytes, count);
         if (noh_pack_open(bytes, count, &pack, NULL) == NOH_OK) {
             opened += 1;
+            expect_limits(&pack);
             if (opened % 16 == 0) {
                 (void)pack_walk(&pack, (uint32_t)bit);
             }

@@ -162,6 +162,115 @@ static void parts_set_floats_in_their_order(void **state)
     }
 }
 
+/* ---- the order of a frame ---- */
+
+/* What a part between the face and the ragdoll sees, and what it does on demand: turns a shoulder by a quarter. */
+typedef struct witness {
+    float head[4];
+    uint32_t bends, reserved[3];
+} witness;
+
+typedef struct witness_joints {
+    uint32_t head, arm;
+} witness_joints;
+
+static void stand_between(noh_part_work *w)
+{
+    const witness_joints *j = w->user;
+    witness *seen = w->state;
+    static const float quarter[4] = { 0.70710678f, 0.0f, 0.0f, 0.70710678f };
+    memcpy(seen->head, w->local[j->head].rotation, sizeof seen->head);
+    if (seen->bends) noh_quat_mul(w->local[j->arm].rotation, quarter, w->local[j->arm].rotation);
+}
+
+static float joint_moves(const cast *c, noh_actor actor, const char *name, float at[12])
+{
+    const uint32_t joint = noh_stage_find(c->stage, 0, NOH_NAME_JOINT, name);
+    float now[12], worst = 0.0f;
+    assert_int_equal(noh_actor_joint(c->stage, actor, joint, now, NULL), NOH_OK);
+    for (int i = 0; i < 12; i++) worst = fmaxf(worst, fabsf(now[i] - at[i]));
+    memcpy(at, now, sizeof now);
+    return worst;
+}
+
+static void frames_of(const cast *c, uint32_t count)
+{
+    for (uint32_t f = 0; f < count; f++)
+        assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+}
+
+/* Each step of a frame works on what the one before has left: parts see where the face has turned the head; who lies,
+ * lies as the ragdoll does, whatever parts do to the limbs; and springs hang on the limbs that lie there, not on those
+ * of the clip, which walks on. */
+static void face_parts_ragdoll_and_springs_in_this_order(void **state)
+{
+    static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
+    static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
+    static const noh_look posed = { .posed = 1 };
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    const float aside[3] = { 6.0f, 1.5f, 3.0f };
+    noh_kind_face face;
+    witness_joints joints;
+    const noh_stage_part part = {
+        .name = "witness", .modify = stand_between, .user = &joints, .state_bytes = sizeof(witness)
+    };
+    float hand[12] = { 0 }, sleeve[12] = { 0 }, apart = 0.0f;
+    noh_actor lies, stands;
+    cast c;
+    (void)state;
+    memset(&face, 0, sizeof face);
+    for (int e = 0; e < 2; e++) {
+        face.face.eyes[e][0] = e ? -0.035f : 0.035f;
+        face.face.eyes[e][1] = 1.55f;
+        face.face.eyes[e][2] = 0.11f;
+    }
+    memset(&c, 0, sizeof c);
+    cast_map(&c, PUPPETS, "demo/puppet.noh");
+    c.kinds[0] = (noh_kind_desc){
+        .mesh = &c.packs[0], .actor_count = 2, .face = &face, .ragdoll = &ragdoll, .parts = &part, .part_count = 1
+    };
+    c.desc.kinds = c.kinds;
+    c.desc.kind_count = 1;
+    cast_make(&c, NULL);
+    joints.head = noh_stage_find(c.stage, 0, NOH_NAME_JOINT, "head");
+    joints.arm = noh_stage_find(c.stage, 0, NOH_NAME_JOINT, "upper_arm.L");
+    assert_true(joints.head != NOH_NONE && joints.arm != NOH_NONE);
+    for (int i = 0; i < 2; i++) {
+        noh_actor *actor = i ? &stands : &lies;
+        assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_look(c.stage, *actor, &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c.stage, *actor, 0, "walk", NULL, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_face_flags(c.stage, *actor, NOH_FACE_NO_WANDER, NULL), NOH_OK);
+    }
+    assert_int_equal(noh_actor_look_at(c.stage, lies, aside, NULL), NOH_OK);
+    frames_of(&c, 90);
+    for (int i = 0; i < 4; i++) {
+        apart += fabsf(((witness *)noh_actor_part(c.stage, lies, 0))->head[i] -
+                       ((witness *)noh_actor_part(c.stage, stands, 0))->head[i]);
+    }
+    assert_true(apart > 0.1f);
+    assert_int_equal(noh_actor_kill(c.stage, lies, NULL), NOH_OK);
+    for (int f = 0; f < 900 && noh_actor_body(c.stage, lies) != NOH_BODY_LIES; f++) frames_of(&c, 1);
+    assert_int_equal(noh_actor_body(c.stage, lies), NOH_BODY_LIES);
+    frames_of(&c, 300);
+    (void)joint_moves(&c, lies, "forearm.L", hand);
+    (void)joint_moves(&c, lies, "sleeve.L", sleeve);
+    for (int f = 0; f < 60; f++) {
+        frames_of(&c, 1);
+        assert_true(joint_moves(&c, lies, "forearm.L", hand) < 1e-3f); /* it breathes */
+        assert_true(joint_moves(&c, lies, "sleeve.L", sleeve) < 2e-3f);
+    }
+    ((witness *)noh_actor_part(c.stage, lies, 0))->bends = 1;
+    frames_of(&c, 1);
+    assert_true(joint_moves(&c, lies, "forearm.L", hand) < 1e-3f);
+    (void)joint_moves(&c, stands, "forearm.L", hand);
+    ((witness *)noh_actor_part(c.stage, stands, 0))->bends = 1;
+    frames_of(&c, 1);
+    assert_true(joint_moves(&c, stands, "forearm.L", hand) > 0.1f);
+    cast_close_stage(&c);
+    noh_file_unmap(&c.files[0]);
+}
+
 /* ---- time ---- */
 
 typedef struct log_state {
@@ -315,6 +424,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_head_turns_to_a_target),
         cmocka_unit_test(parts_set_floats_in_their_order),
+        cmocka_unit_test(face_parts_ragdoll_and_springs_in_this_order),
         cmocka_unit_test(parts_are_told_how_much_time_has_passed),
         cmocka_unit_test(every_byte_of_parts_is_planned),
         cmocka_unit_test(states_of_parts_are_put_back),
