@@ -61,6 +61,7 @@ static void codes_are_rounded_not_cut(void **state)
             assert_int_equal((int)(sampled * 255.0 + 0.5), code);
             cut_wrong += (int)(sampled * 255.0) != code;
         }
+        assert_true(fabsf((float)region_weight_byte((uint8_t)code) - 255.0f * region_weight((uint8_t)code)) <= 0.5f);
     }
     assert_int_equal(cut_wrong, 255);
 }

@@ -326,6 +326,24 @@ static void lids_shut_on_all_people(void **state)
     drop_people(&p);
 }
 
+/* The source passes over targets of another topology without a word. */
+static void another_topology_fails_the_build(void **state)
+{
+    static char mask[512], identity[512];
+    const char *build = getenv("NOH_BUILD"), *inputs[1] = { mask };
+    convert_options o;
+    convert_failure failure;
+    byte_buffer none = { 0 };
+    (void)state;
+    (void)snprintf(identity, sizeof identity, "%s", test_asset("hero/identity.glb"));
+    (void)snprintf(mask, sizeof mask, "%s/mask.glb", build ? build : "build");
+    memset(&o, 0, sizeof o);
+    o.identity = identity;
+    assert_int_not_equal(convert_files(inputs, 1, &o, &none, &failure), 0);
+    assert_non_null(strstr(failure.error.what, "the same order of vertices"));
+    buffer_free(&none);
+}
+
 /* An expression moves a person's vertices by the deltas that it moves the mesh's own by: nothing has to be copied. */
 static void people_share_the_deltas_of_expressions(void **state)
 {
@@ -489,6 +507,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(a_head_is_grouped),
         cmocka_unit_test(lids_shut_on_all_people),
         cmocka_unit_test(people_share_the_deltas_of_expressions),
+        cmocka_unit_test(another_topology_fails_the_build),
         cmocka_unit_test(weights_that_know_each_other_keep_a_face_whole),
         cmocka_unit_test(blended_normals_are_made_unit),
         cmocka_unit_test(weights_reach_both_their_ends),
