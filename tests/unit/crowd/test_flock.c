@@ -94,8 +94,10 @@ static void coincident_agents_part(void **state)
     }
 }
 
+static noh_crowd *flock(uint32_t flags, uint32_t turn);
+
 /* Three in a row, parted in place, one pair after the other: where they end depends on who is first. Read and written
- * apart they end alike. */
+ * apart they end alike, and so does a crowd that meets a post. */
 static void the_order_of_agents_changes_nothing(void **state)
 {
     static const int orders[2][3] = { { 0, 1, 2 }, { 2, 1, 0 } };
@@ -123,6 +125,14 @@ static void the_order_of_agents_changes_nothing(void **state)
     }
     assert_true(fabsf(literal[0][0] - literal[1][0]) > 0.05f);
     assert_memory_equal(ours[0], ours[1], sizeof ours[0]);
+    noh_crowd *forth = flock(0, 0), *back = flock(0, 31);
+    for (int i = 0; i < 300; i++) {
+        noh_crowd_step(forth, NOH_CROWD_STEP_TICKS);
+        noh_crowd_step(back, NOH_CROWD_STEP_TICKS);
+    }
+    assert_int_equal(noh_crowd_hash(forth), noh_crowd_hash(back));
+    free(forth);
+    free(back);
 }
 
 static void sums_of_pushes_keep_their_size(void **state)

@@ -130,6 +130,7 @@ static void counts_have_four_bytes(void **state)
     for (uint32_t i = 8; i-- > 0;) as_long = as_long << 8 | at[i];
     assert_int_equal(at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24, w.grown.hair_count);
     assert_int_equal(w.cut.desc.hair_count, w.grown.hair_count);
+    assert_int_equal(w.cut.desc.point_count, w.grown.point_count);
     assert_true(as_long != w.grown.hair_count && as_long > NOH_HAIRS_MAX);
     close_wig(&w);
 }
