@@ -13,6 +13,7 @@
 #define SLOW_STEPS 6u    /* a tenth of a second, after which what is slow is braked, more and more in another half */
 #define BRAKE_STEPS 30u
 #define SLACK_PART 0.00115f /* of its size: 2 mm of 1.75 m */
+#define PUSH_PART 4.6f      /* of its size in a second, by which a push changes one body alone: 8 m/s of 1.75 m */
 #define SPEED_PART 23.0f    /* of its size in a second: 40 m/s of 1.75 m */
 
 /* ---- rigs ---- */
@@ -311,11 +312,30 @@ float *noh_ragdoll_scratch(noh_ragdolls *set)
     return (float *)(void *)(scratch + (32u - (uintptr_t)scratch % 32u) % 32u);
 }
 
+/* ---- origins ---- */
+
+static float whole(float x)
+{
+    return x > -8388608.0f && x < 8388608.0f ? (float)(int32_t)(x < 0.0f ? x - 0.5f : x + 0.5f) : x;
+}
+
+void noh_ragdoll_origin_near(const float at[3], float origin[3])
+{
+    for (int k = 0; k < 3; k++) origin[k] = whole(at[k]);
+}
+
+/* A point that counts from one origin, from another one. */
+static void from_origin(const float point[3], const float old[3], const float origin[3], float out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = point[k] - (origin[k] - old[k]);
+}
+
 static void rest_doll(noh_ragdoll_doll *doll, const noh_ragdoll_rig *rig)
 {
+    noh_ragdoll_origin_near(rig->bodies[0].position, doll->origin);
     for (uint32_t i = 0; i < rig->body_count; i++) {
         noh_ragdoll_state *s = &doll->bodies[i];
-        memcpy(s->position, rig->bodies[i].position, sizeof s->position);
+        noh_sub3(rig->bodies[i].position, doll->origin, s->position);
         memcpy(s->rotation, rig->bodies[i].rotation, sizeof s->rotation);
         s->goal_rotation[3] = 1.0f;
     }
@@ -370,6 +390,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     }
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
+        if (!is_finite3(doll->origin)) return "state: a ragdoll is nowhere";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
                 return "state: a ragdoll's body is not finite";
@@ -387,6 +408,8 @@ static void wake(noh_ragdoll_doll *doll)
     doll->slow = 0;
 }
 
+static const float world_origin[3] = { 0.0f, 0.0f, 0.0f };
+
 static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
 {
     uint32_t i = 0;
@@ -396,6 +419,12 @@ static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
 
 noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *bodies,
                              const noh_ragdoll_motion *motions, noh_error *error)
+{
+    return noh_ragdoll_place_about(set, doll, world_origin, bodies, motions, error);
+}
+
+noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+                                   const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error)
 {
     const uint32_t count = set->shape.body_count;
     uint32_t bad = first_bad_pose(bodies, count);
@@ -408,9 +437,11 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
         return noh_fail(error, NOH_ERR_ARG, "a ragdoll's body is placed where no number is, or not by a unit rotation",
                         bad, 0);
     }
+    noh_ragdoll_origin_near(bodies[0].position, d->origin);
+    noh_madd3(d->origin, 1.0f, origin, d->origin);
     for (uint32_t i = 0; i < count; i++) {
         noh_ragdoll_state *s = &d->bodies[i];
-        memcpy(s->position, bodies[i].position, sizeof s->position);
+        from_origin(bodies[i].position, origin, d->origin, s->position);
         memcpy(s->rotation, bodies[i].rotation, sizeof s->rotation);
         memset(s->velocity, 0, sizeof s->velocity);
         memset(s->spin, 0, sizeof s->spin);
@@ -426,6 +457,12 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
 noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *goals, uint32_t held,
                               const float *hertz, noh_error *error)
 {
+    return noh_ragdoll_follow_about(set, doll, world_origin, goals, held, hertz, error);
+}
+
+noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+                                    const noh_ragdoll_pose *goals, uint32_t held, const float *hertz, noh_error *error)
+{
     const uint32_t count = set->shape.body_count;
     uint32_t bad = goals ? first_bad_pose(goals, count) : count;
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
@@ -439,7 +476,7 @@ noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdol
     memset(d->hertz, 0, sizeof d->hertz);
     d->held = goals ? held : 0;
     for (uint32_t i = 0; goals && i < count; i++) {
-        memcpy(d->bodies[i].goal_position, goals[i].position, sizeof goals[i].position);
+        from_origin(goals[i].position, origin, d->origin, d->bodies[i].goal_position);
         memcpy(d->bodies[i].goal_rotation, goals[i].rotation, sizeof goals[i].rotation);
         if (hertz) d->hertz[i] = hertz[i];
     }
@@ -447,7 +484,7 @@ noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdol
     return NOH_OK;
 }
 
-/* The body whose surface is nearest to a point. */
+/* The body whose surface is nearest to a point from the doll's origin. */
 static uint32_t nearest_body(const noh_ragdoll_shape *shape, const noh_ragdoll_doll *d, const float point[3])
 {
     uint32_t nearest = 0;
@@ -476,19 +513,114 @@ static void turn_by(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, 
     for (int i = 0; i < 3; i++) out[i] = v[i] / c->inertia_across + extra * axis[i];
 }
 
+/* What is free of a doll, as one rigid body. */
+typedef struct whole_doll {
+    float mass, centre[3], reach; /* reach: of the farthest body's centre */
+    float inertia[3][3];          /* about the centre; rows and columns */
+} whole_doll;
+
+static int is_free(const noh_ragdoll_doll *d, uint32_t i)
+{
+    return !(d->held >> i & 1u);
+}
+
+static void add_inertia(whole_doll *w, const noh_ragdoll_constants *c, const noh_ragdoll_state *s)
+{
+    static const float z[3] = { 0.0f, 0.0f, 1.0f };
+    float axis[3], arm[3];
+    noh_quat_rotate(s->rotation, z, axis);
+    noh_sub3(s->position, w->centre, arm);
+    const float square = noh_dot3(arm, arm);
+    w->reach = larger(w->reach, noh_sqrt(square));
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            w->inertia[i][k] += (c->inertia_along - c->inertia_across) * axis[i] * axis[k] - c->mass * arm[i] * arm[k];
+        }
+        w->inertia[i][i] += c->inertia_across + c->mass * square;
+    }
+}
+
+static whole_doll whole_of(const noh_ragdoll_shape *shape, const noh_ragdoll_doll *d)
+{
+    whole_doll w;
+    memset(&w, 0, sizeof w);
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        if (is_free(d, i)) w.mass += shape->bodies[i].mass;
+    }
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        if (is_free(d, i)) noh_madd3(w.centre, shape->bodies[i].mass / w.mass, d->bodies[i].position, w.centre);
+    }
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        if (is_free(d, i)) add_inertia(&w, &shape->bodies[i], &d->bodies[i]);
+    }
+    return w;
+}
+
+/* I^-1 v, by cross products of its columns. */
+static void spin_by(const whole_doll *w, const float v[3], float out[3])
+{
+    float minors[3][3];
+    for (int i = 0; i < 3; i++) noh_cross3(w->inertia[(i + 1) % 3], w->inertia[(i + 2) % 3], minors[i]);
+    const float determinant = noh_dot3(w->inertia[0], minors[0]);
+    for (int i = 0; i < 3; i++) out[i] = determinant > 0.0f ? noh_dot3(minors[i], v) / determinant : 0.0f;
+}
+
+/* All free bodies as if they were one: by mass, and turned so far that none gets more than twice the mean speed, or more
+ * than a doll may have. */
+static void push_whole(const noh_ragdoll_shape *shape, noh_ragdoll_doll *d, const float point[3],
+                       const float impulse[3])
+{
+    const whole_doll w = whole_of(shape, d);
+    float speed[3] = { 0.0f, 0.0f, 0.0f }, arm[3], twist[3], spin[3];
+    if (!(w.mass > 0.0f)) return;
+    noh_madd3(speed, 1.0f / w.mass, impulse, speed);
+    noh_sub3(point, w.centre, arm);
+    noh_cross3(arm, impulse, twist);
+    spin_by(&w, twist, spin);
+    const float fast = noh_length3(speed), left = larger(shape->speed_max - fast, 0.0f);
+    const float rim = noh_length3(spin) * w.reach, most = left < fast ? left : fast;
+    if (rim > most) noh_madd3(spin, most / rim - 1.0f, spin, spin);
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        noh_ragdoll_state *s = &d->bodies[i];
+        float around[3];
+        if (!is_free(d, i)) continue;
+        noh_sub3(s->position, w.centre, arm);
+        noh_cross3(spin, arm, around);
+        noh_madd3(s->velocity, 1.0f, speed, s->velocity);
+        noh_madd3(s->velocity, 1.0f, around, s->velocity);
+        noh_madd3(s->spin, 1.0f, spin, s->spin);
+    }
+}
+
+/* A body alone. */
+static void push_body(const noh_ragdoll_constants *c, noh_ragdoll_state *s, const float point[3],
+                      const float impulse[3])
+{
+    float arm[3], twist[3], spin[3];
+    noh_sub3(point, s->position, arm);
+    noh_cross3(arm, impulse, twist);
+    turn_by(c, s, twist, spin);
+    noh_madd3(s->velocity, 1.0f / c->mass, impulse, s->velocity);
+    noh_madd3(s->spin, 1.0f, spin, s->spin);
+}
+
 void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3])
 {
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
-    if (!is_finite3(point) || !is_finite3(impulse)) return;
-    const uint32_t i = nearest_body(&set->shape, d, point);
-    noh_ragdoll_state *s = &d->bodies[i];
-    float arm[3], twist[3], spin[3];
-    noh_sub3(point, s->position, arm);
-    noh_cross3(arm, impulse, twist);
-    turn_by(&set->shape.bodies[i], s, twist, spin);
-    noh_madd3(s->velocity, 1.0f / set->shape.bodies[i].mass, impulse, s->velocity);
-    noh_madd3(s->spin, 1.0f, spin, s->spin);
+    const float most = 1e15f; /* squares stay finite */
+    float from[3], own[3], rest[3];
+    if (!is_finite3(point) || !(noh_dot3(impulse, impulse) < most * most)) return;
+    noh_sub3(point, d->origin, from);
+    const uint32_t i = nearest_body(&set->shape, d, from);
+    const float alone = PUSH_PART * set->size * set->shape.bodies[i].mass, size = noh_length3(impulse);
+    const float part = !is_free(d, i) ? 0.0f : size > alone ? alone / size : 1.0f;
+    for (int k = 0; k < 3; k++) {
+        own[k] = part * impulse[k];
+        rest[k] = impulse[k] - own[k];
+    }
+    if (part > 0.0f) push_body(&set->shape.bodies[i], &d->bodies[i], from, own);
+    if (part < 1.0f) push_whole(&set->shape, d, from, rest);
     wake(d);
 }
 
@@ -554,12 +686,30 @@ static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
     }
 }
 
+/* Its origin goes along with its first body. */
+static void follow_origin(const noh_ragdolls *set, noh_ragdoll_doll *d)
+{
+    for (int k = 0; k < 3; k++) {
+        const float at = d->bodies[0].position[k], to = d->origin[k] + whole(at), by = to - d->origin[k];
+        if ((at >= -1.0f && at <= 1.0f) || !noh_is_finite(to)) continue;
+        d->origin[k] = to;
+        for (uint32_t i = 0; i < set->shape.body_count; i++) {
+            d->bodies[i].position[k] -= by;
+            d->bodies[i].goal_position[k] -= by;
+            d->lain[i][k] -= by;
+        }
+    }
+}
+
 static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
 {
     noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set), *awake[NOH_RAGDOLL_LANES_MAX];
     uint32_t count = 0;
     for (uint32_t i = 0; i < set->count; i++) {
-        if (!dolls[i].asleep) awake[count++] = &dolls[i];
+        if (!dolls[i].asleep) {
+            follow_origin(set, &dolls[i]);
+            awake[count++] = &dolls[i];
+        }
         if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
             noh_ragdoll_step_dolls(&set->shape, world, awake, count, scratch);
             for (uint32_t k = 0; k < count; k++) {
@@ -588,10 +738,46 @@ uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint3
 
 void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose *bodies)
 {
+    float origin[3];
+    noh_ragdoll_bodies_local(set, doll, origin, bodies);
+    for (uint32_t i = 0; i < set->shape.body_count; i++) {
+        noh_madd3(bodies[i].position, 1.0f, origin, bodies[i].position);
+    }
+}
+
+void noh_ragdoll_bodies_local(const noh_ragdolls *set, uint32_t doll, float origin[3], noh_ragdoll_pose *bodies)
+{
     const noh_ragdoll_doll *d = doll_of(set, doll);
+    memcpy(origin, d->origin, sizeof d->origin);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
         memcpy(bodies[i].position, d->bodies[i].position, sizeof bodies[i].position);
         memcpy(bodies[i].rotation, d->bodies[i].rotation, sizeof bodies[i].rotation);
+    }
+}
+
+/* source  Knuth: The Art of Computer Programming, volume 2, section 4.2.2 (the error of a sum) */
+void noh_ragdoll_origin_shift(float origin[3], const float by[3], float lost[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const float old = origin[k], to = old + by[k], kept = to - by[k];
+        lost[k] = (old - kept) + (by[k] - (to - kept));
+        origin[k] = to;
+    }
+}
+
+void noh_ragdolls_shift(noh_ragdolls *set, const float by[3])
+{
+    noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set);
+    NOH_ASSERT(is_finite3(by));
+    for (uint32_t d = 0; d < set->count; d++) {
+        float lost[3];
+        noh_ragdoll_origin_shift(dolls[d].origin, by, lost);
+        for (uint32_t i = 0; i < set->shape.body_count; i++) {
+            noh_ragdoll_state *s = &dolls[d].bodies[i];
+            noh_madd3(s->position, 1.0f, lost, s->position);
+            noh_madd3(s->goal_position, 1.0f, lost, s->goal_position);
+            noh_madd3(dolls[d].lain[i], 1.0f, lost, dolls[d].lain[i]);
+        }
     }
 }
 

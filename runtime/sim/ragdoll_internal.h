@@ -7,8 +7,10 @@
 #include "sim/ragdoll.h"
 
 #define NOH_RAGDOLL_LANES_MAX 8u
-#define NOH_RAGDOLL_LANE_FLOATS 49u /* of a body in the shared memory, for each lane */
-#define NOH_RAGDOLL_SCRATCH_FLOATS (NOH_RAGDOLL_BODIES_MAX * NOH_RAGDOLL_LANE_FLOATS * NOH_RAGDOLL_LANES_MAX)
+#define NOH_RAGDOLL_LANE_FLOATS 52u                       /* of a body in the shared memory, for each lane */
+#define NOH_RAGDOLL_PLACE_FLOATS (7u + NOH_OBSTACLES_MAX) /* of the doll: its origin, and planes from there */
+#define NOH_RAGDOLL_SCRATCH_FLOATS \
+    ((NOH_RAGDOLL_BODIES_MAX * NOH_RAGDOLL_LANE_FLOATS + NOH_RAGDOLL_PLACE_FLOATS) * NOH_RAGDOLL_LANES_MAX)
 
 /* A body of a doll. Lanes have these floats in the same order. */
 typedef struct noh_ragdoll_state {
@@ -24,8 +26,10 @@ typedef struct noh_ragdoll_doll {
     float hertz[NOH_RAGDOLL_BODIES_MAX];
     uint32_t held;
     uint32_t asleep;
-    uint32_t still; /* steps since then */
-    uint32_t slow;  /* steps since anything of it was fast */
+    uint32_t still;  /* steps since then */
+    uint32_t slow;   /* steps since anything of it was fast */
+    float origin[3]; /* of all its positions, near its first body: floats have as many digits everywhere */
+    uint32_t reserved;
 } noh_ragdoll_doll;
 
 /* What dolls share of a body and of the joint to its parent, in the bodies' own spaces. */
@@ -80,6 +84,22 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
 
 /* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; undefined before and after */
 uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch);
+
+/* The public calls of these names, with positions that count from `origin`, a point of the bodies' space. */
+noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+                                   const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error);
+noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+                                    const noh_ragdoll_pose *goals, uint32_t held, const float *hertz, noh_error *error);
+
+/* As they are kept: *origin is where they count from.
+ * shapes  bodies[body_count] */
+void noh_ragdoll_bodies_local(const noh_ragdolls *set, uint32_t doll, float origin[3], noh_ragdoll_pose *bodies);
+
+/* The origin for what is at `at`, in whole metres while floats have them. */
+void noh_ragdoll_origin_near(const float at[3], float origin[3]);
+
+/* An origin moves; lost: what its floats cannot hold, for all that counts from it to be moved by. */
+void noh_ragdoll_origin_shift(float origin[3], const float by[3], float lost[3]);
 
 /* What is wrong with a copy of the set from outside; NULL: it is good. */
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy);

@@ -16,6 +16,8 @@
 #endif
 #include "sim/lanes3_internal.h"
 #include "sim/ragdoll_internal.h"
+#include "sim/vector_internal.h"
+#include "sim/world_internal.h"
 
 #define POINTS 3u /* of a body that touch the world: its two ends, and one between */
 
@@ -31,8 +33,18 @@ typedef struct lane_body {
     lane4 q_before;
     lane3 normals[POINTS];
     lanes at[POINTS], pushed[POINTS]; /* where along the axis, and by how much in this substep */
+    lanes approach[POINTS];           /* the speed at which it came, below 0; of a world that bounces */
 } lane_body;
 NOH_STATIC_ASSERT(sizeof(lane_body) == NOH_RAGDOLL_LANE_FLOATS * sizeof(lanes), lane_body);
+
+/* A world as the dolls of the lanes have it, each from its own origin. */
+typedef struct lane_world {
+    lane3 origin;
+    lane3 root;     /* where the first body is in this substep */
+    lanes push_out; /* how far what overlapped before a substep comes apart in it */
+    lanes plane_distances[NOH_OBSTACLES_MAX];
+} lane_world;
+NOH_STATIC_ASSERT(sizeof(lane_world) == NOH_RAGDOLL_PLACE_FLOATS * sizeof(lanes), lane_world);
 NOH_STATIC_ASSERT(NOH_LANES <= NOH_RAGDOLL_LANES_MAX, lane_count);
 
 /* ---- dolls in and out ---- */
@@ -58,6 +70,16 @@ static void store_doll(const noh_ragdoll_shape *shape, noh_ragdoll_doll *doll, c
         const float *from = (const float *)(const void *)&bodies[i];
         float *to = (float *)(void *)&doll->bodies[i];
         for (uint32_t k = 0; k < NOH_RAGDOLL_MOVES; k++) to[k] = from[k * NOH_LANES + lane];
+    }
+}
+
+static void load_place(const noh_world *world, const noh_ragdoll_doll *doll, lane_world *place, uint32_t lane)
+{
+    float *to = (float *)(void *)place;
+    for (uint32_t k = 0; k < 3; k++) to[k * NOH_LANES + lane] = doll->origin[k];
+    to = (float *)(void *)place->plane_distances;
+    for (uint32_t i = 0; world && i < world->plane_count; i++) {
+        to[i * NOH_LANES + lane] = noh_plane_distance(&world->planes[i], doll->origin);
     }
 }
 
@@ -253,30 +275,49 @@ NOH_ALWAYS_INLINE lane3 contact_arm(const lane_body *b, uint32_t point, lanes ra
     return lane3_madd(lane3_scale(b->z, b->at[point]), lanes_negate(radius), b->normals[point]);
 }
 
+/* How far a point of a body at `arm` has come in this substep. */
+NOH_ALWAYS_INLINE lane3 moved_at(const lane_body *b, lane3 arm)
+{
+    const lane3 turned = lane4_difference(b->q, b->q_before);
+    return lane3_add(lane3_sub(b->p, b->p_before), lane3_cross(turned, arm));
+}
+
+/* How far to push where `depth` is below 0 after a way of `moved` along the normal: all of what this substep has brought,
+ * and of what was there before only so much that nothing is thrown. */
+NOH_ALWAYS_INLINE lanes way_out(lanes depth, lanes moved, lanes push_out)
+{
+    const lanes zero = lanes_set(0.0f), before = lanes_sub(depth, moved);
+    return lanes_max(lanes_sub(lanes_min(zero, lanes_add(before, push_out)), depth), zero);
+}
+
 /* Out of the world along n, as far as `depth` is below 0; then back along the ground by what it has moved there, as far
  * as friction holds. */
 static inline void touch(lane_body *b, const noh_ragdoll_constants *c, uint32_t point, lanes at, lane3 n, lanes depth,
-                         float friction)
+                         const noh_world *world, lanes push_out)
 {
     const lanes zero = lanes_set(0.0f), mask = lanes_less(depth, zero);
     if (!lanes_any(mask)) return;
     b->normals[point] = lane3_choose(mask, n, b->normals[point]);
     b->at[point] = lanes_choose(mask, at, b->at[point]);
     const lane3 r = contact_arm(b, point, lanes_set(c->radius)), cross = lane3_cross(r, n);
-    const lanes push = over_weight(mask, lanes_negate(depth), push_weight(b, cross));
+    const lanes far = way_out(depth, lane3_dot(moved_at(b, r), n), push_out);
+    const lanes push = over_weight(mask, far, push_weight(b, cross));
+    if (world->restitution > 0.0f) {
+        const lanes speed = lane3_dot(lane3_add(b->v, lane3_cross(b->w, r)), n);
+        b->approach[point] = lanes_choose(mask, speed, b->approach[point]);
+    }
     b->pushed[point] = lanes_add(b->pushed[point], push);
     b->p = lane3_choose(mask, lane3_madd(b->p, lanes_mul(push, b->mass), n), b->p);
     turn_body(b, mask, lane3_scale(inverse_inertia(b, cross), push));
 
     const lane3 arm = contact_arm(b, point, lanes_set(c->radius));
-    const lane3 turned = lane4_difference(b->q, b->q_before);
-    const lane3 moved = lane3_add(lane3_sub(b->p, b->p_before), lane3_cross(turned, arm));
+    const lane3 moved = moved_at(b, arm);
     const lane3 slid = lane3_madd(moved, lanes_negate(lane3_dot(moved, n)), n);
     const lanes square = lane3_dot(slid, slid), slides = lanes_and(mask, lanes_less(lanes_set(1e-18f), square));
     const lanes inverse = lanes_inverse_root(slides, square);
     const lane3 back = lane3_scale(slid, lanes_negate(inverse)), about = lane3_cross(arm, back);
     const lanes whole = over_weight(slides, lanes_mul(square, inverse), push_weight(b, about));
-    const lanes held = lanes_min(whole, lanes_mul(lanes_set(friction), b->pushed[point]));
+    const lanes held = lanes_min(whole, lanes_mul(lanes_set(world->friction), b->pushed[point]));
     b->p = lane3_choose(slides, lane3_madd(b->p, lanes_mul(held, b->mass), back), b->p);
     turn_body(b, slides, lane3_scale(inverse_inertia(b, about), held));
 }
@@ -286,15 +327,15 @@ static inline lanes end_of(const noh_ragdoll_constants *c, uint32_t point)
     return lanes_set(point == 0 ? c->half : point == 1 ? -c->half : 0.0f);
 }
 
-static void touch_planes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+static void touch_planes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world, const lane_world *place)
 {
     for (uint32_t i = 0; i < world->plane_count; i++) {
         const lane3 n = lane3_set(world->planes[i].normal);
-        const lanes far = lanes_set(world->planes[i].distance + c->radius);
+        const lanes far = lanes_add(place->plane_distances[i], lanes_set(c->radius));
         for (uint32_t point = 0; point < 2; point++) {
             const lanes at = end_of(c, point);
             const lanes depth = lanes_sub(lane3_dot(lane3_madd(b->p, at, b->z), n), far);
-            touch(b, c, point, at, n, depth, world->friction);
+            touch(b, c, point, at, n, depth, world, place->push_out);
         }
     }
 }
@@ -311,7 +352,7 @@ NOH_ALWAYS_INLINE void set_lane(lanes *v, uint32_t lane, float value)
 }
 
 /* A height field is looked up lane by lane. */
-static void touch_field(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+static void touch_field(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world, const lane_world *place)
 {
     for (uint32_t point = 0; point < 2; point++) {
         const lanes at = end_of(c, point);
@@ -319,15 +360,18 @@ static void touch_field(lane_body *b, const noh_ragdoll_constants *c, const noh_
         lane3 n = { lanes_set(0.0f), lanes_set(1.0f), lanes_set(0.0f) };
         lanes depth = lanes_set(1.0f);
         for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
+            const float origin[3] = { lane_of(&place->origin.x, lane), lane_of(&place->origin.y, lane),
+                                      lane_of(&place->origin.z, lane) };
             float height, normal[3];
-            if (noh_field_height(world->field, lane_of(&end.x, lane), lane_of(&end.z, lane), &height, normal)) {
+            if (noh_field_height_about(world->field, origin, lane_of(&end.x, lane), lane_of(&end.z, lane), &height,
+                                       normal)) {
                 set_lane(&n.x, lane, normal[0]);
                 set_lane(&n.y, lane, normal[1]);
                 set_lane(&n.z, lane, normal[2]);
                 set_lane(&depth, lane, (lane_of(&end.y, lane) - height) * normal[1] - c->radius);
             }
         }
-        touch(b, c, point, at, n, depth, world->friction);
+        touch(b, c, point, at, n, depth, world, place->push_out);
     }
 }
 
@@ -351,11 +395,30 @@ NOH_ALWAYS_INLINE void closest(lane3 a, lane3 half_a, lane3 b, lane3 half_b, lan
     at[1] = t;
 }
 
-static void touch_capsules(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+/* From a capsule's axis to the first body: the way out for all bodies whose axes are inside of it, or they would be
+ * caught around it. */
+static lane3 way_to_root(const lane_world *place, const noh_capsule *k, lane3 middle, lane3 half)
+{
+    static const float up[3] = { 0.0f, 1.0f, 0.0f };
+    const lanes one = lanes_set(1.0f), square = lanes_max(lane3_dot(half, half), lanes_set(1e-12f));
+    const lane3 from = lane3_sub(place->root, middle);
+    const lanes t = lanes_max(lanes_min(lanes_div(lane3_dot(from, half), square), one), lanes_set(-1.0f));
+    const lane3 out = lane3_madd(from, lanes_negate(t), half);
+    const lanes far = lane3_dot(out, out), some = lanes_less(lanes_set(1e-6f), far);
+    float axis[3], across[3];
+    noh_sub3(k->to, k->from, axis);
+    noh_normalize3(axis, up);
+    noh_perpendicular3(axis, up, across);
+    return lane3_choose(some, lane3_scale(out, lanes_inverse_root(some, far)), lane3_set(across));
+}
+
+static void touch_capsules(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world,
+                           const lane_world *place)
 {
     for (uint32_t i = 0; i < world->capsule_count; i++) {
         const noh_capsule *k = &world->capsules[i];
-        const lane3 from = lane3_set(k->from), to = lane3_set(k->to);
+        const lane3 from = lane3_sub(lane3_set(k->from), place->origin);
+        const lane3 to = lane3_sub(lane3_set(k->to), place->origin);
         const lane3 middle = lane3_scale(lane3_add(from, to), lanes_set(0.5f));
         const lane3 half = lane3_scale(lane3_sub(to, from), lanes_set(0.5f));
         lanes at[2];
@@ -363,9 +426,16 @@ static void touch_capsules(lane_body *b, const noh_ragdoll_constants *c, const n
         const lanes along = lanes_mul(at[0], lanes_set(c->half));
         const lane3 d = lane3_sub(lane3_madd(b->p, along, b->z), lane3_madd(middle, at[1], half));
         const lanes square = lane3_dot(d, d), mask = lanes_less(lanes_set(1e-12f), square);
-        const lanes inverse = lanes_inverse_root(mask, square);
-        const lanes depth = lanes_sub(lanes_mul(square, inverse), lanes_set(k->radius + c->radius));
-        touch(b, c, 2, along, lane3_scale(d, inverse), lanes_choose(mask, depth, lanes_set(1.0f)), world->friction);
+        const lanes inverse = lanes_inverse_root(mask, square), reach = lanes_set(k->radius + c->radius);
+        const lanes inside = lanes_less(square, lanes_set(k->radius * k->radius));
+        lanes depth = lanes_choose(mask, lanes_sub(lanes_mul(square, inverse), reach), lanes_set(1.0f));
+        lane3 n = lane3_scale(d, inverse);
+        if (lanes_any(inside)) {
+            const lane3 out = way_to_root(place, k, middle, half);
+            n = lane3_choose(inside, out, n);
+            depth = lanes_choose(inside, lanes_sub(lane3_dot(d, out), reach), depth);
+        }
+        touch(b, c, 2, along, n, depth, world, place->push_out);
     }
 }
 
@@ -380,54 +450,91 @@ NOH_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
     return lanes_choose(lanes_less(sign, lanes_set(0.0f)), lanes_negate(size), size);
 }
 
-/* Outwards from a box, in its space, and how far outside the point is: from the nearest side where it is inside. */
-NOH_ALWAYS_INLINE lanes out_of_box(const noh_obb *box, lane3 l, lane3 *n)
+/* What a way out of one side of a box costs a point and the first body together: the side below or above 0. */
+NOH_ALWAYS_INLINE lanes cost_of_side(lanes at, lanes root, float half, lanes *below)
 {
-    const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f);
+    const lanes h = lanes_set(half), zero = lanes_set(0.0f);
+    const lanes up = lanes_add(lanes_sub(h, at), lanes_max(lanes_sub(h, root), zero));
+    const lanes down = lanes_add(lanes_add(h, at), lanes_max(lanes_add(h, root), zero));
+    *below = lanes_less(down, up);
+    return lanes_min(down, up);
+}
+
+/* Out of a box that holds the point: by one side for all that is inside, or a doll would be caught around it. */
+static lanes out_with_root(const noh_obb *box, lane3 l, lane3 root, lane3 *n)
+{
+    const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), less = lanes_set(-1.0f);
+    lane3 below;
+    const lanes x = cost_of_side(l.x, root.x, box->half[0], &below.x);
+    const lanes y = cost_of_side(l.y, root.y, box->half[1], &below.y);
+    const lanes z = cost_of_side(l.z, root.z, box->half[2], &below.z);
+    const lanes not_x = lanes_less(lanes_min(y, z), x), not_y = lanes_less(z, y);
+    n->x = lanes_choose(not_x, zero, lanes_choose(below.x, less, one));
+    n->y = lanes_choose(not_x, lanes_choose(not_y, zero, lanes_choose(below.y, less, one)), zero);
+    n->z = lanes_choose(lanes_and(not_x, not_y), lanes_choose(below.z, less, one), zero);
+    const lanes half = lanes_choose(not_x, lanes_choose(not_y, lanes_set(box->half[2]), lanes_set(box->half[1])),
+                                    lanes_set(box->half[0]));
+    return lanes_sub(lane3_dot(l, *n), half);
+}
+
+/* Outwards from a box, in its space, and how far outside the point is, which the box does not hold. */
+NOH_ALWAYS_INLINE lanes out_of_box(const noh_obb *box, lane3 l, lane3 *n, lanes *outside)
+{
+    const lanes zero = lanes_set(0.0f);
     const lane3 past = { past_side(l.x, box->half[0]), past_side(l.y, box->half[1]), past_side(l.z, box->half[2]) };
     const lane3 off = { lanes_max(past.x, zero), lanes_max(past.y, zero), lanes_max(past.z, zero) };
-    const lanes square = lane3_dot(off, off), outside = lanes_less(lanes_set(1e-12f), square);
-    const lanes inverse = lanes_inverse_root(outside, square);
-    const lanes most = lanes_max(lanes_max(past.x, past.y), past.z);
-    const lanes x = lanes_less(past.x, most), y = lanes_less(past.y, most); /* not the nearest side */
-    const lane3 side = { lanes_choose(x, zero, one), lanes_choose(x, lanes_choose(y, zero, one), zero),
-                         lanes_choose(lanes_and(x, y), one, zero) };
-    const lane3 size = lane3_choose(outside, lane3_scale(off, inverse), side);
+    const lanes square = lane3_dot(off, off);
+    *outside = lanes_less(lanes_set(1e-12f), square);
+    const lanes inverse = lanes_inverse_root(*outside, square);
+    const lane3 size = lane3_scale(off, inverse);
     n->x = with_sign(size.x, l.x);
     n->y = with_sign(size.y, l.y);
     n->z = with_sign(size.z, l.z);
-    return lanes_choose(outside, lanes_mul(square, inverse), most);
+    return lanes_mul(square, inverse);
 }
 
-static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world, const lane_world *place)
 {
     for (uint32_t i = 0; i < world->box_count; i++) {
         const noh_obb *box = &world->boxes[i];
         const lane4 q = lane4_set(box->rotation);
-        const lane3 centre = lane3_set(box->centre);
+        const lane3 centre = lane3_sub(lane3_set(box->centre), place->origin);
+        const lanes all = lanes_less(lanes_set(0.0f), lanes_set(1.0f));
         for (uint32_t point = 0; point < POINTS; point++) {
             const lanes half = lanes_set(c->half), to = lane3_dot(lane3_sub(centre, b->p), b->z);
             const lanes nearest = lanes_max(lanes_min(to, half), lanes_negate(half));
             const lanes at = point < 2 ? end_of(c, point) : nearest;
             const lane3 from = lane3_sub(lane3_madd(b->p, at, b->z), centre);
+            const lane3 l = lane4_rotate(lane4_conjugate(q), from);
+            lanes outside;
             lane3 n;
-            const lanes depth = out_of_box(box, lane4_rotate(lane4_conjugate(q), from), &n);
-            touch(b, c, point, at, lane4_rotate(q, n), lanes_sub(depth, lanes_set(c->radius)), world->friction);
+            lanes depth = out_of_box(box, l, &n, &outside);
+            const lanes inside = lanes_choose(outside, lanes_set(0.0f), all);
+            if (lanes_any(inside)) {
+                const lane3 root = lane4_rotate(lane4_conjugate(q), lane3_sub(place->root, centre));
+                lane3 out;
+                depth = lanes_choose(outside, depth, out_with_root(box, l, root, &out));
+                n = lane3_choose(outside, n, out);
+            }
+            depth = lanes_sub(depth, lanes_set(c->radius));
+            touch(b, c, point, at, lane4_rotate(q, n), depth, world, place->push_out);
         }
     }
 }
 
-static inline void solve_world(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world)
+static inline void solve_world(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world,
+                               const lane_world *place)
 {
-    touch_planes(b, c, world);
-    if (world->field) touch_field(b, c, world);
-    touch_capsules(b, c, world);
-    touch_boxes(b, c, world);
+    touch_planes(b, c, world, place);
+    if (world->field) touch_field(b, c, world, place);
+    touch_capsules(b, c, world, place);
+    touch_boxes(b, c, world, place);
 }
 
 /* ---- bodies of a doll against each other ---- */
 
-static inline void solve_pair(const noh_ragdoll_shape *shape, const noh_ragdoll_pair *pair, lane_body *bodies)
+static inline void solve_pair(const noh_ragdoll_shape *shape, const noh_ragdoll_pair *pair, lane_body *bodies,
+                              lanes push_out)
 {
     lane_body *a = &bodies[pair->a], *b = &bodies[pair->b];
     const float half_a = shape->bodies[pair->a].half, half_b = shape->bodies[pair->b].half;
@@ -443,7 +550,10 @@ static inline void solve_pair(const noh_ragdoll_shape *shape, const noh_ragdoll_
     const lanes mask = lanes_and(lanes_less(lanes_set(1e-12f), square), lanes_less(square, lanes_mul(least, least)));
     if (!lanes_any(mask)) return;
     const lanes inverse = lanes_inverse_root(mask, square);
-    push_pair(a, ra, b, rb, mask, lane3_scale(d, inverse), lanes_sub(least, lanes_mul(square, inverse)));
+    const lane3 n = lane3_scale(d, inverse);
+    const lanes moved = lane3_dot(lane3_sub(moved_at(b, rb), moved_at(a, ra)), n);
+    const lanes depth = lanes_sub(lanes_mul(square, inverse), least);
+    push_pair(a, ra, b, rb, mask, n, way_out(depth, moved, push_out));
 }
 
 /* ---- substeps ---- */
@@ -464,17 +574,25 @@ static inline void predict(lane_body *b, lanes h, float seconds, float speed_max
     for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
 }
 
-/* What leaves the world is stopped: nothing bounces. */
-static inline void stop_bounce(lane_body *b, const noh_ragdoll_constants *c)
+/* What leaves the world is stopped, or leaves at a share of the speed at which it came; what came at no more than gravity
+ * makes in two substeps only rests. */
+static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float restitution, float seconds)
 {
+    const lanes zero = lanes_set(0.0f);
     for (uint32_t point = 0; point < POINTS; point++) {
         lanes mask = lanes_less(lanes_set(0.0f), b->pushed[point]);
         if (!lanes_any(mask)) continue;
         const lane3 n = b->normals[point], r = contact_arm(b, point, lanes_set(c->radius));
         const lanes away = lane3_dot(lane3_add(b->v, lane3_cross(b->w, r)), n);
         const lane3 cross = lane3_cross(r, n);
-        mask = lanes_and(mask, lanes_less(lanes_set(0.0f), away));
-        const lanes push = over_weight(mask, lanes_negate(away), push_weight(b, cross));
+        lanes wanted = zero;
+        if (restitution > 0.0f) {
+            const lanes fast = lanes_less(b->approach[point], lanes_set(-2.0f * NOH_GRAVITY * seconds));
+            wanted = lanes_choose(fast, lanes_mul(b->approach[point], lanes_set(-restitution)), zero);
+        }
+        const lanes over = lanes_sub(away, wanted);
+        mask = lanes_and(mask, lanes_or(lanes_less(zero, over), lanes_less(zero, wanted)));
+        const lanes push = over_weight(mask, lanes_negate(over), push_weight(b, cross));
         b->v = lane3_choose(mask, lane3_madd(b->v, lanes_mul(push, b->mass), n), b->v);
         b->w = lane3_choose(mask, lane3_madd(b->w, push, inverse_inertia(b, cross)), b->w);
     }
@@ -501,19 +619,21 @@ static inline void rub_joint(const joint *j, float seconds)
     j->b->w = lane3_choose(mask, lane3_madd(j->b->w, lanes_negate(held), inverse_inertia(j->b, n)), j->b->w);
 }
 
-static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *bodies, float seconds)
+static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies,
+                    float seconds)
 {
     const lanes h = lanes_set(seconds);
     for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, seconds, shape->speed_max);
-    for (uint32_t i = 0; i < shape->pair_count; i++) solve_pair(shape, &shape->pairs[i], bodies);
+    for (uint32_t i = 0; i < shape->pair_count; i++) solve_pair(shape, &shape->pairs[i], bodies, place->push_out);
     for (uint32_t i = 1; i < shape->body_count; i++) {
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
         solve_joint(&j, h);
     }
-    for (uint32_t i = 0; world && i < shape->body_count; i++) solve_world(&bodies[i], &shape->bodies[i], world);
+    place->root = bodies[0].p;
+    for (uint32_t i = 0; world && i < shape->body_count; i++) solve_world(&bodies[i], &shape->bodies[i], world, place);
     for (uint32_t i = 0; i < shape->body_count; i++) {
         take_velocity(&bodies[i], lanes_set(1.0f / seconds));
-        if (world) stop_bounce(&bodies[i], &shape->bodies[i]);
+        if (world) bounce(&bodies[i], &shape->bodies[i], world->restitution, seconds);
     }
     for (uint32_t i = 1; i < shape->body_count; i++) {
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
@@ -521,21 +641,26 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
     }
 }
 
-static inline void settle_world(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *b, uint32_t body)
+static inline void settle_world(const noh_ragdoll_shape *shape, const noh_world *world, const lane_world *place,
+                                lane_body *b, uint32_t body)
 {
     noh_ragdoll_constants thinner = shape->bodies[body];
     const float most = 0.5f * thinner.radius;
     thinner.radius -= shape->slack < most ? shape->slack : most;
     for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
-    solve_world(b, &thinner, world);
+    solve_world(b, &thinner, world, place);
 }
 
 /* What the substeps have left, brought together without a change of speed: joints once more, then their anchors from
  * the last body to the first, which is the way that they do not come in a substep, or what the ground has pushed apart
  * would stay so as long as it pushes. The world comes last, but takes only what is deeper than its slack: the whole of
  * it would push joints apart again. */
-static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_body *bodies)
+static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies)
 {
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        bodies[i].p_before = bodies[i].p;
+        bodies[i].q_before = bodies[i].q;
+    }
     for (uint32_t i = 1; i < shape->body_count; i++) {
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
         solve_joint(&j, lanes_set(0.0f));
@@ -544,8 +669,9 @@ static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
         solve_anchors(&j);
     }
+    place->root = bodies[0].p;
     for (uint32_t i = 0; i < shape->body_count; i++) {
-        if (world) settle_world(shape, world, &bodies[i], i);
+        if (world) settle_world(shape, world, place, &bodies[i], i);
         bodies[i].q = lane4_normalize(bodies[i].q);
     }
 }
@@ -564,15 +690,19 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
                       uint32_t count, float *scratch)
 {
     lane_body *bodies = (lane_body *)(void *)scratch;
+    lane_world *place = (lane_world *)(void *)(bodies + NOH_RAGDOLL_BODIES_MAX);
     const float seconds = 1.0f / (60.0f * (float)shape->substeps);
     for (uint32_t first = 0; first < count; first += NOH_LANES) {
         const uint32_t lanes_used = count - first < NOH_LANES ? count - first : NOH_LANES;
         for (uint32_t lane = 0; lane < NOH_LANES; lane++) { /* lanes without a doll repeat the last one */
-            load_doll(shape, dolls[first + (lane < lanes_used ? lane : lanes_used - 1u)], bodies, lane);
+            const noh_ragdoll_doll *doll = dolls[first + (lane < lanes_used ? lane : lanes_used - 1u)];
+            load_doll(shape, doll, bodies, lane);
+            load_place(world, doll, place, lane);
         }
+        place->push_out = lanes_set(NOH_PUSH_OUT_SPEED * seconds);
         for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));
-        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, bodies, seconds);
-        settle(shape, world, bodies);
+        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, place, bodies, seconds);
+        settle(shape, world, place, bodies);
         for (uint32_t lane = 0; lane < lanes_used; lane++) store_doll(shape, dolls[first + lane], bodies, lane);
     }
 }

@@ -3,6 +3,7 @@
 #include "base/trig.h"
 #include "sim/ragdoll_internal.h"
 #include "sim/vector_internal.h"
+#include "sim/world_internal.h"
 
 static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 {
@@ -77,9 +78,12 @@ static float separation(const joint *j)
 /* ---- the world ---- */
 
 /* How deep a point that is `radius` thick is in a box: out of the nearest side. */
-static float in_box(const noh_obb *box, const float point[3], float radius)
+static float in_box(const noh_obb *at, const float origin[3], const float point[3], float radius)
 {
+    noh_obb local = *at;
+    const noh_obb *box = &local;
     float closest[3], d[3], back[4], least = 1e30f;
+    noh_sub3(at->centre, origin, local.centre);
     noh_obb_closest(box, point, closest);
     noh_sub3(point, closest, d);
     if (!noh_obb_holds(box, point)) return radius - noh_length3(d);
@@ -93,33 +97,38 @@ static float in_box(const noh_obb *box, const float point[3], float radius)
     return least + radius;
 }
 
-static float in_ground(const noh_world *world, const float point[3], float radius)
+/* point: from the origin */
+static float in_ground(const noh_world *world, const float origin[3], const float point[3], float radius)
 {
     float deepest = 0.0f, height, normal[3];
     for (uint32_t i = 0; i < world->plane_count; i++) {
         const noh_plane *p = &world->planes[i];
-        deepest = larger(deepest, p->distance + radius - noh_dot3(point, p->normal));
+        const float distance = noh_plane_distance(p, origin);
+        deepest = larger(deepest, distance + radius - noh_dot3(point, p->normal));
     }
     for (uint32_t i = 0; i < world->box_count; i++) {
-        deepest = larger(deepest, in_box(&world->boxes[i], point, radius));
+        deepest = larger(deepest, in_box(&world->boxes[i], origin, point, radius));
     }
-    if (world->field && noh_field_height(world->field, point[0], point[2], &height, normal)) {
+    if (world->field && noh_field_height_about(world->field, origin, point[0], point[2], &height, normal)) {
         deepest = larger(deepest, radius - (point[1] - height) * normal[1]);
     }
     return deepest;
 }
 
-static float in_capsules(const noh_world *world, const float from[3], const float to[3], float radius)
+static float in_capsules(const noh_world *world, const float origin[3], const float from[3], const float to[3],
+                         float radius)
 {
     float deepest = 0.0f;
     for (uint32_t i = 0; i < world->capsule_count; i++) {
         const noh_capsule *k = &world->capsules[i];
-        float along[2], p[3], q[3], d[3];
-        noh_segments_closest(from, to, k->from, k->to, along);
+        float along[2], p[3], q[3], d[3], a[3], b[3];
+        noh_sub3(k->from, origin, a);
+        noh_sub3(k->to, origin, b);
+        noh_segments_closest(from, to, a, b, along);
         noh_sub3(to, from, d);
         noh_madd3(from, along[0], d, p);
-        noh_sub3(k->to, k->from, d);
-        noh_madd3(k->from, along[1], d, q);
+        noh_sub3(b, a, d);
+        noh_madd3(a, along[1], d, q);
         noh_sub3(p, q, d);
         deepest = larger(deepest, k->radius + radius - noh_length3(d));
     }
@@ -128,10 +137,10 @@ static float in_capsules(const noh_world *world, const float from[3], const floa
 
 /* ---- all ---- */
 
-static float energy_of(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float axis[3])
+static float energy_of(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float axis[3], float height)
 {
     const float along = noh_dot3(s->spin, axis), all = noh_dot3(s->spin, s->spin);
-    return 0.5f * c->mass * noh_dot3(s->velocity, s->velocity) + c->mass * NOH_GRAVITY * s->position[1] +
+    return 0.5f * c->mass * noh_dot3(s->velocity, s->velocity) + c->mass * NOH_GRAVITY * height +
            0.5f * (c->inertia_across * (all - along * along) + c->inertia_along * along * along);
 }
 
@@ -148,11 +157,11 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
         noh_quat_rotate(s->rotation, z, axis);
         noh_madd3(s->position, c->half, axis, from);
         noh_madd3(s->position, -c->half, axis, to);
-        m->energy += energy_of(c, s, axis);
+        m->energy += energy_of(c, s, axis, d->origin[1] + s->position[1]);
         if (world) {
-            m->penetration = larger(m->penetration, in_ground(world, from, c->radius));
-            m->penetration = larger(m->penetration, in_ground(world, to, c->radius));
-            m->penetration = larger(m->penetration, in_capsules(world, from, to, c->radius));
+            m->penetration = larger(m->penetration, in_ground(world, d->origin, from, c->radius));
+            m->penetration = larger(m->penetration, in_ground(world, d->origin, to, c->radius));
+            m->penetration = larger(m->penetration, in_capsules(world, d->origin, from, to, c->radius));
         }
         if (i) {
             const joint j = { c, &d->bodies[c->parent], s };

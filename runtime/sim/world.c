@@ -3,6 +3,7 @@
 
 #include "base/assert.h"
 #include "sim/vector_internal.h"
+#include "sim/world_internal.h"
 
 /* ---- checks ---- */
 
@@ -61,19 +62,22 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
     if (w->field && !good_field(w->field)) {
         return noh_fail(error, NOH_ERR_ARG, "a height field has no area, or a number that is not finite", 0, 0);
     }
-    return is_size(w->friction) ? NOH_OK : noh_fail(error, NOH_ERR_ARG, "friction is below 0 or not finite", 0, 0);
+    if (!is_size(w->friction)) return noh_fail(error, NOH_ERR_ARG, "friction is below 0 or not finite", 0, 0);
+    if (!(w->restitution >= 0.0f && w->restitution <= 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "restitution of a world is not in 0..1", 0, 0);
+    return NOH_OK;
 }
 
 /* ---- height field ---- */
 
-/* The four heights of a cell. */
-static void corners_of(const noh_field *f, uint32_t column, uint32_t row, float h[4])
+/* The four heights of a cell; base: of a height of 0. */
+static void corners_of(const noh_field *f, uint32_t column, uint32_t row, float base, float h[4])
 {
     const uint16_t *at = f->heights + (size_t)row * f->width + column;
-    h[0] = (float)at[0] * f->scale + f->origin[1];
-    h[1] = (float)at[1] * f->scale + f->origin[1];
-    h[2] = (float)at[f->width] * f->scale + f->origin[1];
-    h[3] = (float)at[f->width + 1u] * f->scale + f->origin[1];
+    h[0] = (float)at[0] * f->scale + base;
+    h[1] = (float)at[1] * f->scale + base;
+    h[2] = (float)at[f->width] * f->scale + base;
+    h[3] = (float)at[f->width + 1u] * f->scale + base;
 }
 
 /* Which cell, and where in it. */
@@ -85,16 +89,10 @@ static uint32_t cell_of(float at, uint32_t count, float *part)
     return cell;
 }
 
-int noh_field_height(const noh_field *f, float x, float z, float *height, float normal[3])
+/* At u, v in a cell. */
+static void height_in_cell(const noh_field *f, const float h[4], float u, float v, float *height, float normal[3])
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
-    const float column = (x - f->origin[0]) / f->spacing, row = (z - f->origin[2]) / f->spacing;
-    float u, v, h[4];
-    if (!(column >= 0.0f && row >= 0.0f && column <= (float)(f->width - 1u) && row <= (float)(f->depth - 1u))) {
-        return 0;
-    }
-    const uint32_t c = cell_of(column, f->width, &u), r = cell_of(row, f->depth, &v);
-    corners_of(f, c, r, h);
     *height = (h[0] + (h[1] - h[0]) * u) * (1.0f - v) + (h[2] + (h[3] - h[2]) * u) * v;
     if (normal) {
         normal[0] = -((h[1] - h[0]) * (1.0f - v) + (h[3] - h[2]) * v);
@@ -102,7 +100,46 @@ int noh_field_height(const noh_field *f, float x, float z, float *height, float 
         normal[2] = -((h[2] - h[0]) * (1.0f - u) + (h[3] - h[1]) * u);
         noh_normalize3(normal, up);
     }
+}
+
+int noh_field_height(const noh_field *f, float x, float z, float *height, float normal[3])
+{
+    const float column = (x - f->origin[0]) / f->spacing, row = (z - f->origin[2]) / f->spacing;
+    float u, v, h[4];
+    if (!(column >= 0.0f && row >= 0.0f && column <= (float)(f->width - 1u) && row <= (float)(f->depth - 1u))) {
+        return 0;
+    }
+    const uint32_t c = cell_of(column, f->width, &u), r = cell_of(row, f->depth, &v);
+    corners_of(f, c, r, f->origin[1], h);
+    height_in_cell(f, h, u, v, height, normal);
     return 1;
+}
+
+/* A double has the digits that a float far away lacks. */
+static double along_grid(const noh_field *f, const float origin[3], int axis, float at)
+{
+    return (((double)origin[axis] - (double)f->origin[axis]) + (double)at) / (double)f->spacing;
+}
+
+int noh_field_height_about(const noh_field *f, const float origin[3], float x, float z, float *height, float normal[3])
+{
+    const double column = along_grid(f, origin, 0, x), row = along_grid(f, origin, 2, z);
+    float h[4];
+    if (!(column >= 0.0 && row >= 0.0 && column <= (double)(f->width - 1u) && row <= (double)(f->depth - 1u))) {
+        return 0;
+    }
+    const uint32_t c = (uint32_t)column < f->width - 2u ? (uint32_t)column : f->width - 2u;
+    const uint32_t r = (uint32_t)row < f->depth - 2u ? (uint32_t)row : f->depth - 2u;
+    corners_of(f, c, r, f->origin[1] - origin[1], h);
+    height_in_cell(f, h, (float)(column - (double)c), (float)(row - (double)r), height, normal);
+    return 1;
+}
+
+float noh_plane_distance(const noh_plane *p, const float origin[3])
+{
+    double distance = (double)p->distance;
+    for (int i = 0; i < 3; i++) distance -= (double)p->normal[i] * (double)origin[i];
+    return (float)distance;
 }
 
 /* A ray in cells: x and z in spacings, y as it is. */
@@ -116,7 +153,7 @@ typedef struct walk {
 static float hit_in_cell(const walk *w, uint32_t column, uint32_t row, float t0, float t1)
 {
     float h[4];
-    corners_of(w->field, column, row, h);
+    corners_of(w->field, column, row, w->field->origin[1], h);
     const float a = h[1] - h[0], b = h[2] - h[0], c = h[3] - h[2] - a;
     const float u = w->from[0] - (float)column + t0 * w->step[0], v = w->from[2] - (float)row + t0 * w->step[2];
     const float du = w->step[0], dv = w->step[2];

@@ -20,6 +20,8 @@
 extern "C" {
 #endif
 
+#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second, at which what overlaps comes apart */
+
 /* Solid below: points with normal . x < distance are inside. */
 typedef struct noh_plane {
     float normal[3]; /* unit */
@@ -48,9 +50,10 @@ typedef struct noh_world {
     uint32_t plane_count, capsule_count, box_count; /* each 0..NOH_OBSTACLES_MAX */
     const noh_field *field;                         /* NULL: none */
     float friction;                                 /* 0.. of everything */
+    float restitution; /* 0..1: the share of its speed towards an obstacle with which a body leaves it; 0: no bounce */
 } noh_world;
 
-/* errors  ARG a normal or rotation is not unit, a number is not finite, a field has no area (where: which);
+/* errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area (where: which);
  *         LIMIT more than NOH_OBSTACLES_MAX of a kind */
 noh_result noh_world_check(const noh_world *world, noh_error *error);
 

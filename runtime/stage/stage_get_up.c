@@ -10,6 +10,7 @@
 #include "base/assert.h"
 #include "base/quat.h"
 #include "sim/vector_internal.h"
+#include "sim/world_internal.h"
 #include "stage/stage_internal.h"
 #include "stage/stage_ragdoll.h"
 
@@ -19,12 +20,12 @@
 
 /* ---- which clip ---- */
 
-/* Its bodies as a pose of the clip's begins, or as what plays now has them. */
-static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, uint32_t clip,
-                            noh_ragdoll_pose *bodies, noh_error *error)
+/* Its bodies as a pose of the clip's begins, or as what plays now has them, from where b's count. */
+static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, const noh_stage_body *b,
+                            uint32_t clip, noh_ragdoll_pose *bodies, noh_error *error)
 {
     const noh_character_desc desc = noh_stage_character_desc(k, 0);
-    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     noh_character_scratch scratch;
     noh_clip_set set = k->set;
     noh_stage_sampler sampler;
@@ -55,13 +56,13 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
     *chosen = NOH_NONE;
     memset(tried, 0, sizeof tried);
     memset(bodies, 0, sizeof tried);
-    if (!how->clips || !how->clip_count) return bodies_of(s, k, a, NOH_NONE, bodies, error);
+    if (!how->clips || !how->clip_count) return bodies_of(s, k, a, b, NOH_NONE, bodies, error);
     for (uint32_t i = 0; i < how->clip_count; i++) {
         const uint32_t clip = noh_stage_find(s, (uint32_t)(k - s->kinds), NOH_NAME_CLIP, how->clips[i]);
         noh_result result;
         if (clip == NOH_NONE)
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name to get up by", i, 0);
-        result = bodies_of(s, k, a, clip, tried, error);
+        result = bodies_of(s, k, a, b, clip, tried, error);
         if (result != NOH_OK) return result;
         const float like = noh_ragdoll_likeness(tried, b->bodies[0]);
         if (i && !(like > best)) continue;
@@ -74,25 +75,32 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
 
 /* ---- where it stands ---- */
 
-/* The highest ground at a place that is not above `top`; 0: there is none. */
-static int ground_below(const noh_world *w, const float at[3], float top, float *height)
+/* The highest ground at a place that is not above `top`; 0: there is none. All from the origin. */
+static int ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
 {
     const noh_ray down = { { at[0], top, at[2] }, { 0.0f, -1.0f, 0.0f }, 1e30f };
     float found = -1e30f, y;
     for (uint32_t i = 0; i < w->plane_count; i++) {
         const float *n = w->planes[i].normal;
         if (n[1] < 0.1f) continue;
-        y = (w->planes[i].distance - n[0] * at[0] - n[2] * at[2]) / n[1];
+        y = (noh_plane_distance(&w->planes[i], origin) - n[0] * at[0] - n[2] * at[2]) / n[1];
         if (y <= top && y > found) found = y;
     }
-    if (w->field && noh_field_height(w->field, at[0], at[2], &y, NULL) && y <= top && y > found) found = y;
+    if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &y, NULL) && y <= top && y > found) {
+        found = y;
+    }
     for (uint32_t i = 0; i < w->box_count; i++) {
-        const float far = noh_ray_obb(&down, &w->boxes[i]);
+        noh_obb box = w->boxes[i];
+        noh_sub3(box.centre, origin, box.centre);
+        const float far = noh_ray_obb(&down, &box);
         if (far > 0.0f && top - far > found) found = top - far;
     }
     for (uint32_t i = 0; i < w->capsule_count; i++) {
         const noh_capsule *c = &w->capsules[i];
-        const float far = noh_ray_capsule(&down, c->from, c->to, c->radius);
+        float from[3], to[3];
+        noh_sub3(c->from, origin, from);
+        noh_sub3(c->to, origin, to);
+        const float far = noh_ray_capsule(&down, from, to, c->radius);
         if (far > 0.0f && top - far > found) found = top - far;
     }
     *height = found;
@@ -103,16 +111,18 @@ static int ground_below(const noh_world *w, const float at[3], float top, float 
 static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_stage_body *b,
                         const noh_ragdoll_pose *bodies)
 {
-    noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place);
+    noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     const noh_ragdoll_pose *first = &b->bodies[0][0];
     float ground;
     noh_ragdoll_place_under(bodies, b->bodies[0], k->ragdoll->rig.body_count, &frame);
-    if (!k->ragdoll->world || !ground_below(k->ragdoll->world, first->position,
+    if (!k->ragdoll->world || !ground_below(k->ragdoll->world, b->origin, first->position,
                                             first->position[1] + k->ragdoll->rig.bodies[0].radius, &ground)) {
         ground = frame.position[1] + first->position[1] - bodies[0].position[1];
     }
     frame.position[1] = ground;
-    for (int i = 0; i < 3; i++) a->place.position[i] = frame.position[i] / k->ragdoll->metres;
+    for (int i = 0; i < 3; i++) {
+        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) / (double)k->ragdoll->metres);
+    }
     memcpy(a->place.rotation, frame.rotation, sizeof frame.rotation);
     a->before = a->place;
     a->on_its_way = 0;
@@ -143,7 +153,7 @@ static void differ(const noh_stage_kind *k, const noh_stage_body *b, const noh_p
                    differences *d)
 {
     const noh_ragdoll_fit *fit = &k->ragdoll->fit;
-    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
     float weights[NOH_RAGDOLL_BODIES_MAX], before[NOH_RAGDOLL_BODIES_MAX][4], from[3];
     advanced(b, fit->body_count, seconds, bodies);

@@ -117,12 +117,13 @@ typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_O
 
 /* After it, of a kind with ragdolls. */
 typedef struct noh_stage_body {
-    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* world, metres: of the last pose, and of the one before; while
-                                                         * it falls those of its ragdoll, and where its clips have them
-                                                         */
+    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* metres from `origin`: of the last pose, and of the one
+                                                         * before; while it falls those of its ragdoll, and where its
+                                                         * clips have them */
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX]; /* RISE_BEGINS: of bodies[0]. RISE_GOES_ON: of each body's joint
                                                          * how far it is turned from its clips, and how fast: radians */
-    float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit */
+    float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit; while
+                                                         * it falls offset: from its first body to its place, metres */
     float hertz[NOH_RAGDOLL_BODIES_MAX], animated[NOH_RAGDOLL_BODIES_MAX]; /* noh_body_hold */
     uint32_t held;                                                         /* bit i: body i */
     uint32_t rise_ticks;                                                   /* for how long it gets up */
@@ -133,8 +134,8 @@ typedef struct noh_stage_body {
     uint8_t state;                                                         /* noh_body_state, of the first three */
     uint8_t rise;                                                          /* noh_stage_rise */
     uint8_t dead;
-    uint8_t goals; /* 1: bodies[1] is where its clips have them */
-    uint32_t reserved[3];
+    uint8_t goals;   /* 1: bodies[1] is where its clips have them */
+    float origin[3]; /* world, metres: near to its bodies, so that floats have as many digits everywhere */
 } noh_stage_body;
 
 typedef struct noh_stage_free {
@@ -598,10 +599,12 @@ noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error);
 noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index);
 void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
 void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks);
+void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3]); /* the world's units; places are not moved */
 /* *b stays as it is where the result is not NOH_OK. */
 noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
                                noh_stage_body **b, noh_error *error);
-noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place);
+/* A place as bodies that count from `origin` have it. */
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
 void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
 /* Whether a ragdoll moves its place. */

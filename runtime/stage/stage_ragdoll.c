@@ -7,6 +7,7 @@
 #include "base/assert.h"
 #include "base/math_internal.h"
 #include "sim/ragdoll_internal.h"
+#include "sim/vector_internal.h"
 #include "stage/fall.h"
 #include "stage/stage_internal.h"
 
@@ -72,10 +73,12 @@ noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error)
 
 /* ---- poses ---- */
 
-noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place)
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3])
 {
     noh_ragdoll_frame f;
-    for (int i = 0; i < 3; i++) f.position[i] = place->position[i] * k->ragdoll->metres;
+    for (int i = 0; i < 3; i++) {
+        f.position[i] = (float)((double)place->position[i] * (double)k->ragdoll->metres - (double)origin[i]);
+    }
     memcpy(f.rotation, place->rotation, sizeof f.rotation);
     f.metres = k->ragdoll->metres * place->scale;
     return f;
@@ -88,11 +91,27 @@ void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b,
     }
 }
 
+/* What is remembered counts from near to a place. */
+static void move_origin(const noh_stage_kind *k, noh_stage_body *b, const noh_place *place)
+{
+    float at[3], origin[3];
+    for (int i = 0; i < 3; i++) at[i] = place->position[i] * k->ragdoll->metres;
+    noh_ragdoll_origin_near(at, origin);
+    for (int i = 0; i < 3; i++) {
+        const float by = origin[i] - b->origin[i];
+        for (uint32_t n = 0; n < 2u * NOH_RAGDOLL_BODIES_MAX; n++) {
+            b->bodies[n / NOH_RAGDOLL_BODIES_MAX][n % NOH_RAGDOLL_BODIES_MAX].position[i] -= by;
+        }
+        b->origin[i] = origin[i];
+    }
+}
+
 /* Where its bodies are now, and where they were in the pose before. */
 static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
 {
-    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place);
     if (w->cut) b->poses = 0;
+    move_origin(k, b, &w->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     if (b->poses && w->clock > b->clocks[0]) {
         memcpy(b->bodies[1], b->bodies[0], sizeof b->bodies[1]);
         b->clocks[1] = b->clocks[0];
@@ -113,7 +132,7 @@ static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
 
 static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
 {
-    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     float weights[NOH_RAGDOLL_BODIES_MAX];
     b->goals = b->doll && has_goals(k, b);
     if (b->goals) noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[1]);
@@ -133,15 +152,28 @@ void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_
 
 /* ---- time ---- */
 
-/* The place goes where the first body goes, unless that is held. */
+/* Where its place lies from its first body, one axis of it: in the world's units. */
+static float carried_to(const noh_stage_kind *k, const noh_stage_body *b, int i)
+{
+    const double from = (double)b->bodies[0][0].position[i] + (double)b->offset[i];
+    return (float)(((double)b->origin[i] + from) / (double)k->ragdoll->metres);
+}
+
+/* Where the game has moved a place, or as it begins to fall. */
+static void take_offset(const noh_stage_kind *k, noh_stage_body *b, const noh_place *place)
+{
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, place, b->origin);
+    noh_sub3(frame.position, b->bodies[0][0].position, b->offset);
+}
+
+/* The place goes where the first body goes, unless that is held: as far from it as ever, so that small ways add up. */
 static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_actor *a)
 {
-    noh_ragdoll_pose now[NOH_RAGDOLL_BODIES_MAX];
-    noh_ragdoll_bodies(k->dolls, b->doll - 1u, now);
-    for (int i = 0; i < 3 && noh_stage_is_carried(b); i++) {
-        a->place.position[i] += (now[0].position[i] - b->bodies[0][0].position[i]) / k->ragdoll->metres;
-    }
-    memcpy(b->bodies[0], now, k->ragdoll->rig.body_count * sizeof now[0]);
+    int moved = 0;
+    for (int i = 0; i < 3; i++) moved |= a->place.position[i] != carried_to(k, b, i);
+    if (moved) take_offset(k, b, &a->place);
+    noh_ragdoll_bodies_local(k->dolls, b->doll - 1u, b->origin, b->bodies[0]);
+    for (int i = 0; i < 3 && noh_stage_is_carried(b); i++) a->place.position[i] = carried_to(k, b, i);
     if (b->dead && noh_ragdoll_sleeps(k->dolls, b->doll - 1u)) {
         b->state = NOH_BODY_LIES;
         b->doll = 0;
@@ -157,8 +189,8 @@ static void tell_dolls(const noh_stage_kind *k)
         const noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive || !b->doll) continue;
         used[b->doll - 1u] = 1;
-        (void)noh_ragdoll_follow(k->dolls, b->doll - 1u, b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held,
-                                 b->hertz, NULL);
+        (void)noh_ragdoll_follow_about(k->dolls, b->doll - 1u, b->origin,
+                                       b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
     }
     for (uint32_t i = 0; i < k->desc->ragdoll->count; i++) {
         if (!used[i]) noh_ragdoll_dolls(k->dolls)[i].asleep = 1;
@@ -174,6 +206,22 @@ void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks)
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (k->actors[i].alive && b->doll) follow_doll(k, b, &k->actors[i]);
+    }
+}
+
+void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3])
+{
+    float metres[3];
+    for (int i = 0; i < 3; i++) metres[i] = by[i] * k->ragdoll->metres;
+    noh_ragdolls_shift(k->dolls, metres);
+    for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+        noh_stage_body *b = noh_stage_body_of(k, a);
+        float lost[3];
+        noh_ragdoll_origin_shift(b->origin, metres, lost);
+        for (uint32_t n = 0; n < 2u * NOH_RAGDOLL_BODIES_MAX; n++) {
+            float *at = b->bodies[n / NOH_RAGDOLL_BODIES_MAX][n % NOH_RAGDOLL_BODIES_MAX].position;
+            noh_madd3(at, 1.0f, lost, at);
+        }
     }
 }
 
@@ -211,7 +259,8 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
     const int stands = b->state == NOH_BODY_STANDS;
     if (stands && !b->poses) {
-        const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place);
+        move_origin(k, b, &a->place);
+        const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
         noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, k->skeleton.bind_pose, &frame, b->bodies[0]);
     }
     memset(motions, 0, sizeof motions);
@@ -219,7 +268,9 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
-    return noh_ragdoll_place(k->dolls, doll - 1u, b->bodies[0], motions, error);
+    const noh_result result = noh_ragdoll_place_about(k->dolls, doll - 1u, b->origin, b->bodies[0], motions, error);
+    if (result == NOH_OK) take_offset(k, b, &a->place);
+    return result;
 }
 
 static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
@@ -351,7 +402,7 @@ static int is_finite_hold(const noh_stage_body *b, uint32_t i)
     for (int n = 0; n < 3; n++) {
         sum += b->motions[i].velocity[n] - b->motions[i].velocity[n];
         sum += b->motions[i].spin[n] - b->motions[i].spin[n];
-        sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n];
+        sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n] + b->origin[n] - b->origin[n];
     }
     return sum == 0.0f && b->hertz[i] >= 0.0f && noh_is_finite(b->hertz[i]) && b->animated[i] >= 0.0f &&
            b->animated[i] <= 1.0f;

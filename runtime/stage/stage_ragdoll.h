@@ -15,10 +15,13 @@
  * Getting up: among clips that begin on the ground, the one whose pelvis lies most like the ragdoll's is played. The
  * place moves under it, on the ground, and the difference between the poses decays from the bodies' velocities.
  *
+ * It falls alike at any distance from the origin that a place can have: bodies are kept from an origin near to them. What
+ * is inside an obstacle as it begins to fall comes out at NOH_PUSH_OUT_SPEED (sim/world.h) and is not thrown.
+ *
  * For one limp limb, hold all bodies, release the limb, and let the actor fall: the limb hangs from a body that clips
  * move. For a fall with strength, give joints a `hertz`: they turn towards the angles of the clips.
  *
- * All of it is part of the stage's state: 1,488 bytes an actor (NOH_ACTOR_RAGDOLL_BYTES), and 1,808 bytes for each that
+ * All of it is part of the stage's state: 1,488 bytes an actor (NOH_ACTOR_RAGDOLL_BYTES), and 1,824 bytes for each that
  * falls at once; saved, restored, forked and hashed. Dolls are stepped by noh_stage_step, on its thread. Errors:
  * NOT_FOUND the actor is gone; ARG its kind has no ragdolls, or a value is out of range.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 7; it leaves hand-over and getting up open */
@@ -46,7 +49,8 @@ typedef struct noh_kind_ragdoll {
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* Let an actor fall with a push.
- * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds
+ * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, of which much is
+ *         spread over all bodies, up to a limit of about 40 m/s (noh_ragdoll_push)
  * errors  as noh_actor_fall; also ARG not finite */
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                          noh_error *error);

@@ -510,7 +510,7 @@ static noh_ragdolls *thrown_set(const noh_ragdoll_rig *rig, uint32_t count)
 }
 
 /* After ten seconds, awake and asleep. The number is that of every processor: change it only with the algorithm. */
-#define BITS 0x93000dcau
+#define BITS 0xd40e171eu
 static void bits_are_those_of_every_processor(void **state)
 {
     const noh_ragdoll_rig rig = figure_rig();
@@ -528,12 +528,21 @@ static void bits_are_those_of_every_processor(void **state)
 typedef void (*step_dolls)(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                            uint32_t count, float *scratch);
 
+/* On all kinds of obstacles, bouncing, some of it inside of them and each from an origin of its own. */
 static uint32_t hash_by(step_dolls step, const noh_ragdoll_rig *rig)
 {
-    const noh_world world = ground_world(0.6f);
+    static uint16_t heights[16];
+    const noh_capsule post = { { 0.2f, 0.0f, 0.1f }, { 0.2f, 1.5f, 0.1f }, 0.2f };
+    const noh_obb box = { { -0.3f, 0.4f, 0.0f }, { 0.3f, 0.4f, 0.5f }, { 0.0f, 0.38268343f, 0.0f, 0.92387953f } };
+    const noh_field field = { heights, 4, 4, { -6.0f, 0.1f, -6.0f }, 4.0f, 1.0f };
+    const noh_world world = { &ground, &post, &box, 1, 1, 1, &field, 0.6f, 0.3f };
     noh_ragdolls *set = thrown_set(rig, 8);
     noh_ragdoll_doll *dolls[8];
-    for (uint32_t d = 0; d < 8; d++) dolls[d] = &noh_ragdoll_dolls(set)[d];
+    for (uint32_t d = 0; d < 8; d++) {
+        dolls[d] = &noh_ragdoll_dolls(set)[d];
+        dolls[d]->origin[0] += 0.125f * (float)d;
+        dolls[d]->origin[1] -= 0.0625f * (float)d;
+    }
     for (int i = 0; i < 600; i++) step(&set->shape, &world, dolls, 8, noh_ragdoll_scratch(set));
     const uint32_t hash = hash_of(set, 8, rig->body_count);
     free(set);
@@ -597,6 +606,294 @@ static void a_push_wakes_it(void **state)
     assert_true(fabsf(motions[1].velocity[2] * rig.bodies[1].mass - 20.0f) < 0.01f);
     assert_int_equal(noh_ragdolls_step(set, &world, 10 * FRAME), 6 * FRAME);
     free(set);
+}
+
+/* ---- far from the origin, overlaps, pushes, bounces ---- */
+
+/* A ground, a field, a post and a box at `base`, in steps that floats still have at 100 km. */
+typedef struct room {
+    noh_plane plane;
+    noh_capsule post;
+    noh_obb box;
+    noh_field field;
+    noh_world world;
+    uint16_t heights[16 * 16];
+} room;
+
+static void room_at(room *r, const float base[3])
+{
+    const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, base[1] - 0.25f };
+    const noh_capsule post = { { base[0] + 0.5f, base[1], base[2] },
+                               { base[0] + 0.5f, base[1] + 1.0f, base[2] },
+                               0.2f };
+    const noh_obb box = { { base[0], base[1] + 0.25f, base[2] - 0.5f },
+                          { 0.3f, 0.3f, 0.3f },
+                          { 0.0f, 0.0f, 0.0f, 1.0f } };
+    memset(r, 0, sizeof *r);
+    for (uint32_t i = 0; i < 16 * 16; i++) r->heights[i] = (uint16_t)(7u * i % 5u);
+    r->plane = plane;
+    r->post = post;
+    r->box = box;
+    r->field.heights = r->heights;
+    r->field.width = r->field.depth = 16;
+    for (int k = 0; k < 3; k++) r->field.origin[k] = base[k] - (k == 1 ? 0.125f : 6.0f);
+    r->field.spacing = 0.75f;
+    r->field.scale = 0.03125f;
+    r->world.planes = &r->plane;
+    r->world.capsules = &r->post;
+    r->world.boxes = &r->box;
+    r->world.plane_count = r->world.capsule_count = r->world.box_count = 1;
+    r->world.field = &r->field;
+    r->world.friction = 0.6f;
+}
+
+/* The bits of a fall at `base`, counted from there. */
+static uint32_t fall_at(const float base[3], uint32_t substeps)
+{
+    static room r;
+    const noh_ragdoll_rig rig = figure_rig();
+    noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdolls *set = made(&rig, 1, substeps);
+    uint32_t hash = 0;
+    room_at(&r, base);
+    seed = 11;
+    thrown(&rig, poses, motions);
+    noh_ragdoll_place_about(set, 0, base, poses, motions, NULL);
+    for (int i = 0; i < 240; i++) {
+        float origin[3];
+        noh_ragdolls_step(set, &r.world, FRAME);
+        noh_ragdoll_bodies_local(set, 0, origin, poses);
+        for (uint32_t n = 0; n < rig.body_count; n++) {
+            for (int k = 0; k < 3; k++) poses[n].position[k] += origin[k] - base[k];
+        }
+        const uint8_t *bytes = (const uint8_t *)poses;
+        for (size_t n = 0; n < rig.body_count * sizeof *poses; n++) hash = (hash ^ bytes[n]) * 16777619u;
+    }
+    free(set);
+    return hash;
+}
+
+static void it_falls_far_away_as_at_the_origin(void **state)
+{
+    static const float bases[][3] = { { 0.0f, 512.0f, 0.0f },
+                                      { 10000.0f, -300.0f, 7.0f },
+                                      { 0.0f, 100000.0f, 0.0f },
+                                      { -100000.0f, 0.0f, 100000.0f },
+                                      { 1e6f, 16384.0f, -1e6f } };
+    static const float zero[3];
+    (void)state;
+    for (uint32_t substeps = 5; substeps <= 20; substeps += 5) {
+        const uint32_t hash = fall_at(zero, substeps);
+        for (size_t i = 0; i < sizeof bases / sizeof *bases; i++) assert_int_equal(fall_at(bases[i], substeps), hash);
+    }
+}
+
+/* Through the public calls, whose floats have steps of 8 mm there. */
+static void it_falls_by_half_g_t_squared(void **state)
+{
+    const noh_ragdoll_rig rig = figure_rig();
+    const float bases[] = { 512.0f, 10000.0f, 100000.0f };
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
+        noh_ragdolls *set = made(&rig, 1, 20);
+        rest_poses(&rig, poses);
+        for (uint32_t n = 0; n < rig.body_count; n++) poses[n].position[1] += bases[i];
+        noh_ragdoll_place(set, 0, poses, NULL, NULL);
+        for (int n = 0; n < 60; n++) noh_ragdolls_step(set, NULL, FRAME);
+        noh_ragdoll_bodies(set, 0, poses);
+        assert_true(fabsf(poses[0].position[1] - (bases[i] + 1.0f - 4.91f)) < 0.005f + bases[i] * 1.2e-7f);
+        free(set);
+    }
+}
+
+/* Moved by any way, even one that floats at the new place cannot say, it goes on as it would. */
+static void a_shifted_space_goes_on(void **state)
+{
+    const float way[3] = { 100000.3f, -777.77f, 12345.678f }, back[3] = { -100000.3f, 777.77f, -12345.678f };
+    const noh_ragdoll_rig rig = figure_rig();
+    noh_ragdoll_pose moved[NOH_RAGDOLL_BODIES_MAX], stayed[NOH_RAGDOLL_BODIES_MAX];
+    (void)state;
+    noh_ragdolls *a = thrown_set(&rig, 2), *b = thrown_set(&rig, 2);
+    noh_ragdolls_shift(b, way);
+    for (int i = 0; i < 90; i++) {
+        noh_ragdolls_step(a, NULL, FRAME);
+        noh_ragdolls_step(b, NULL, FRAME);
+    }
+    noh_ragdolls_shift(b, back);
+    for (uint32_t d = 0; d < 2; d++) {
+        noh_ragdoll_bodies(a, d, stayed);
+        noh_ragdoll_bodies(b, d, moved);
+        for (uint32_t i = 0; i < rig.body_count; i++) {
+            for (int k = 0; k < 3; k++) assert_true(fabsf(stayed[i].position[k] - moved[i].position[k]) < 0.001f);
+        }
+    }
+    free(a);
+    free(b);
+}
+
+/* Where a doll that starts so goes: its highest speed upwards, the farthest way of its first body, what is left. */
+typedef struct outcome {
+    float up, away, penetration;
+} outcome;
+
+static outcome start_in(const noh_world *world, float height)
+{
+    const noh_ragdoll_rig rig = figure_rig();
+    noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_measures m;
+    noh_ragdolls *set = made(&rig, 1, 10);
+    outcome o = { 0.0f, 0.0f, 0.0f };
+    float from[3];
+    rest_poses(&rig, poses);
+    for (uint32_t i = 0; i < rig.body_count; i++) poses[i].position[1] += height;
+    memcpy(from, poses[0].position, sizeof from);
+    noh_ragdoll_place(set, 0, poses, NULL, NULL);
+    for (int i = 0; i < 480; i++) {
+        noh_ragdolls_step(set, world, FRAME);
+        noh_ragdoll_bodies(set, 0, poses);
+        noh_ragdoll_motions(set, 0, motions);
+        const float x = poses[0].position[0] - from[0], y = poses[0].position[1] - from[1];
+        const float z = poses[0].position[2] - from[2], far = sqrtf(x * x + y * y + z * z);
+        if (far > o.away) o.away = far;
+        if (motions[0].velocity[1] > o.up) o.up = motions[0].velocity[1];
+    }
+    noh_ragdoll_measure(set, 0, world, &m);
+    o.penetration = m.penetration;
+    free(set);
+    return o;
+}
+
+/* Inside a post, a box, a wall, the ground and a field: out of it at a walk's speed, not shot away. */
+static void what_starts_inside_is_not_thrown(void **state)
+{
+    static uint16_t heights[16];
+    static noh_field field = { heights, 4, 4, { -6.0f, 0.0f, -6.0f }, 4.0f, 1.0f };
+    noh_world world = ground_world(0.6f);
+    noh_capsule post = { { 0.0f, 0.2f, 0.0f }, { 0.0f, 1.6f, 0.0f }, 0.25f };
+    noh_obb box = { { 0.0f, 0.5f, 0.0f }, { 0.4f, 0.5f, 0.4f }, { 0.0f, 0.38268343f, 0.0f, 0.92387953f } };
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        const float at = 0.1f * (float)i, sunk = i < 7 ? -at : -3.0f;
+        outcome o = start_in(&world, sunk);
+        print_message("sunk %4.1f m: up %.2f m/s, away %.2f m, inside %.4f m\n", (double)-sunk, (double)o.up,
+                      (double)o.away, (double)o.penetration);
+        assert_true(o.up < 2.5f && o.away < 1.3f - sunk && o.penetration < 0.01f);
+        world.plane_count = 0;
+        world.field = &field;
+        o = start_in(&world, sunk);
+        assert_true(o.up < 2.5f && o.away < 1.3f - sunk && o.penetration < 0.01f);
+        world.plane_count = 1;
+        world.field = NULL;
+        if (i == 7) break;
+        post.from[0] = post.to[0] = at;
+        world.capsules = &post;
+        world.capsule_count = 1;
+        o = start_in(&world, 0.0f);
+        print_message("post at %.1f m: up %.2f m/s, away %.2f m, inside %.4f m\n", (double)at, (double)o.up,
+                      (double)o.away, (double)o.penetration);
+        assert_true(o.up < 2.5f && o.away < 2.0f && o.penetration < 0.01f);
+        world.capsule_count = 0;
+        box.centre[0] = at;
+        world.boxes = &box;
+        world.box_count = 1;
+        o = start_in(&world, 0.0f);
+        print_message("box at %.1f m: up %.2f m/s, away %.2f m, inside %.4f m\n", (double)at, (double)o.up,
+                      (double)o.away, (double)o.penetration);
+        assert_true(o.up < 2.5f && o.away < 2.0f && o.penetration < 0.01f);
+        world.box_count = 0;
+    }
+}
+
+/* Bodies of a doll that start in each other come apart slowly, too. */
+static void what_starts_in_itself_is_not_thrown(void **state)
+{
+    noh_ragdoll_rig rig = chain(2, NOH_RAGDOLL_LOOSE);
+    noh_ragdoll_pose poses[2];
+    noh_ragdoll_motion motions[2];
+    float most = 0.0f;
+    (void)state;
+    rig.joints[1].flags |= NOH_RAGDOLL_SLIDES;
+    for (int k = 0; k < 3; k++) {
+        rig.joints[1].linear_min[k] = -1.0f;
+        rig.joints[1].linear_max[k] = 1.0f;
+    }
+    rig.bodies[1].position[0] = 0.3f; /* at rest they are apart */
+    rig.pair_count = 1;
+    rig.pairs[0][1] = 1;
+    noh_ragdolls *set = made(&rig, 1, 10);
+    rest_poses(&rig, poses);
+    poses[1].position[0] = 0.01f;
+    poses[1].position[1] = poses[0].position[1];
+    noh_ragdoll_place(set, 0, poses, NULL, NULL);
+    for (int i = 0; i < 30; i++) {
+        noh_ragdolls_step(set, NULL, FRAME);
+        noh_ragdoll_motions(set, 0, motions);
+        most = fabsf(motions[1].velocity[0]) > most ? fabsf(motions[1].velocity[0]) : most;
+    }
+    noh_ragdoll_bodies(set, 0, poses);
+    assert_true(most < 1.5f * NOH_PUSH_OUT_SPEED && poses[1].position[0] - poses[0].position[0] > 0.079f);
+    free(set);
+}
+
+/* Up to the limit that the header states, the whole doll takes all of a push, however strong it is. */
+static void a_push_is_spread(void **state)
+{
+    const noh_ragdoll_rig rig = figure_rig();
+    float mass = 0.0f;
+    (void)state;
+    for (uint32_t i = 0; i < rig.body_count; i++) mass += rig.bodies[i].mass;
+    for (float push = 50.0f; push < 3200.0f; push *= 2.0f) {
+        const float impulse[3] = { 0.0f, 0.0f, push };
+        noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
+        noh_ragdolls *set = made(&rig, 1, 10);
+        float centre = 0.0f;
+        rest_poses(&rig, poses);
+        poses[1].position[2] -= 0.1f;
+        noh_ragdoll_push(set, 0, poses[1].position, impulse);
+        for (int i = 0; i < 60; i++) noh_ragdolls_step(set, NULL, FRAME);
+        noh_ragdoll_bodies(set, 0, poses);
+        for (uint32_t i = 0; i < rig.body_count; i++) centre += rig.bodies[i].mass / mass * poses[i].position[2];
+        print_message("%4.0f Ns: %.3f m of %.3f\n", (double)push, (double)centre, (double)(push / mass));
+        assert_true(fabsf(centre / (push / mass) - 1.0f) < 0.03f);
+        free(set);
+    }
+}
+
+/* A ball comes back to e^2 of the height that it fell; one that bounces at all comes to rest. */
+static void a_ball_bounces(void **state)
+{
+    noh_ragdoll_rig rig = chain(1, 0);
+    noh_world world = ground_world(0.0f);
+    (void)state;
+    rig.bodies[0].half = 0.0f;
+    rig.bodies[0].radius = 0.5f;
+    rig.bodies[0].inertia_across = rig.bodies[0].inertia_along;
+    rig.bodies[0].position[1] = 1.5f;
+    for (int i = 0; i <= 4; i++) {
+        noh_ragdolls *set = made(&rig, 1, 20);
+        noh_ragdoll_pose pose;
+        float least = 9.0f, top = 0.0f;
+        world.restitution = 0.25f * (float)i;
+        assert_int_equal(noh_world_check(&world, NULL), NOH_OK);
+        rest_poses(&rig, &pose);
+        noh_ragdoll_place(set, 0, &pose, NULL, NULL);
+        for (int n = 0; n < 60 * (i < 4 ? 20 : 1); n++) {
+            noh_ragdolls_step(set, &world, FRAME);
+            noh_ragdoll_bodies(set, 0, &pose);
+            least = pose.position[1] < least ? pose.position[1] : least;
+            if (n >= 29 && n < 60 && pose.position[1] > top) top = pose.position[1];
+        }
+        const float e = world.restitution;
+        print_message("restitution %.2f: up to %.4f m\n", (double)e, (double)top - 0.5);
+        assert_true(fabsf(top - 0.5f - e * e) < 0.015f && least > 0.498f);
+        if (i < 4) assert_true(fabsf(pose.position[1] - 0.5f) < 0.001f);
+        free(set);
+    }
+    world.restitution = 1.5f;
+    assert_int_equal(noh_world_check(&world, NULL), NOH_ERR_ARG);
 }
 
 static void bad_rigs_are_refused(void **state)
@@ -708,6 +1005,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_width_gives_the_same_bits),
     cmocka_unit_test(a_copy_goes_on),
     cmocka_unit_test(a_push_wakes_it),
+    cmocka_unit_test(it_falls_far_away_as_at_the_origin),
+    cmocka_unit_test(it_falls_by_half_g_t_squared),
+    cmocka_unit_test(a_shifted_space_goes_on),
+    cmocka_unit_test(what_starts_inside_is_not_thrown),
+    cmocka_unit_test(what_starts_in_itself_is_not_thrown),
+    cmocka_unit_test(a_push_is_spread),
+    cmocka_unit_test(a_ball_bounces),
     cmocka_unit_test(bad_rigs_are_refused),
 };
 

@@ -3,6 +3,7 @@
 #include "support/stage_fixture.h"
 
 #include "stage/fall.h"
+#include "stage/stage_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,6 +125,87 @@ static void speeds_are_handed_over(void **state)
     assert_true(distance(at[0], at[1]) > 0.005f); /* it walks */
     for (int i = 0; i < 3; i++) assert_true(fabsf(at[2][i] - 2.0f * at[1][i] + at[0][i]) < 0.006f);
     close_cast(&c);
+}
+
+/* One that stood there falls at 100 km as at the origin, to the step that floats have there, and gets up. */
+static void it_falls_far_away(void **state)
+{
+    static const float bases[4][3] = {
+        { 0.0f, 0.0f, 0.0f }, { 0.0f, 512.0f, 0.0f }, { 10000.0f, 1000.0f, -10000.0f }, { -100000.0f, 0.0f, 100000.0f }
+    };
+    static const char *const names[] = { "head", "hand.L", "foot.R", "hips" };
+    static float shown[120][TEST_COUNT(names)][3];
+    (void)state;
+    for (int at = 0; at < 4; at++) {
+        const float *base = bases[at], step = at < 3 ? 0.0015f : 0.012f;
+        const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, base[1] };
+        const noh_world world = { .planes = &plane, .plane_count = 1, .friction = 0.6f };
+        const noh_kind_ragdoll ragdoll = { .count = 1, .substeps = 20, .world = &world };
+        const noh_look posed = { .posed = 1 };
+        const noh_place place = { { base[0], base[1], base[2] }, { 0, 0, 0, 0 }, 0.0f };
+        noh_actor actor;
+        cast c;
+        open_cast(&c, 1, &ragdoll, 1);
+        c.kinds[0].root_axes = 0;
+        cast_make(&c, NULL);
+        assert_int_equal(noh_stage_spawn(c.stage, 0, &place, &actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c.stage, actor, 0, "idle", NULL, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
+        run(&c, 20);
+        assert_int_equal(noh_actor_fall(c.stage, actor, &said), NOH_OK);
+        for (uint32_t f = 0; f < 120; f++) {
+            run(&c, 1);
+            for (size_t i = 0; i < TEST_COUNT(names); i++) {
+                float now[3];
+                joint_at(&c, actor, names[i], now);
+                for (int k = 0; k < 3; k++) now[k] -= base[k];
+                if (!at) memcpy(shown[f][i], now, sizeof now);
+                assert_true(distance(now, shown[f][i]) < step);
+            }
+        }
+        assert_int_equal(noh_actor_rise(c.stage, actor, 0, NULL, &said), NOH_OK);
+        run(&c, 300);
+        float head[3];
+        joint_at(&c, actor, "head", head);
+        assert_true(head[1] - base[1] > 1.2f);
+        close_cast(&c);
+    }
+}
+
+/* The game moves its world while actors stand, fall and lie: all of them go on as they would. */
+static void a_world_is_shifted(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 2 };
+    const float way[3] = { 5000.5f, -100.25f, 12345.75f };
+    float at[2][3], stayed[2][3];
+    noh_actor actors[2];
+    cast c;
+    (void)state;
+    for (int shifts = 0; shifts < 2; shifts++) {
+        open_cast(&c, 2, &ragdoll, 1);
+        cast_make(&c, NULL);
+        actors[0] = enter(&c, 0.0f);
+        actors[1] = enter(&c, 2.0f);
+        run(&c, 20);
+        assert_int_equal(noh_actor_fall(c.stage, actors[0], NULL), NOH_OK);
+        run(&c, 10);
+        if (shifts) {
+            noh_stage_shift_ragdolls(&c.stage->kinds[0], way);
+            for (uint32_t i = 0; i < 2; i++) {
+                noh_place *place = &c.stage->kinds[0].actors[i].place;
+                for (int k = 0; k < 3; k++) place->position[k] += way[k];
+            }
+        }
+        assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK); /* at the speed of before */
+        run(&c, 20);
+        for (uint32_t i = 0; i < 2; i++) {
+            joint_at(&c, actors[i], "hips", at[i]);
+            for (int k = 0; k < 3; k++) at[i][k] -= shifts ? way[k] : 0.0f;
+            if (!shifts) memcpy(stayed[i], at[i], sizeof at[i]);
+            assert_true(distance(at[i], stayed[i]) < 0.003f);
+        }
+        close_cast(&c);
+    }
 }
 
 static void a_hit_pushes(void **state)
@@ -580,6 +662,8 @@ static void the_same_bits_for_any_jobs_and_after_a_restore(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(who_walks_falls_and_lies),
     cmocka_unit_test(speeds_are_handed_over),
+    cmocka_unit_test(it_falls_far_away),
+    cmocka_unit_test(a_world_is_shifted),
     cmocka_unit_test(a_hit_pushes),
     cmocka_unit_test(what_cannot_fall_is_told),
     cmocka_unit_test(who_lies_gets_up),
