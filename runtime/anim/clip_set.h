@@ -49,6 +49,10 @@ typedef struct noh_clip_entry {
     uint32_t first_marker, marker_count; /* in the set's markers */
 } noh_clip_entry;
 
+/* The root joint in a clip's first and last frame, as the source has them: rotation, then translation. What `sample`
+ * gives at the two ends may be off by the clip's error. */
+typedef float noh_root_ends[2][7];
+
 /* The root displacement of one clip; made by noh_root_track_measure (root_motion.h). */
 struct noh_root_track;
 
@@ -64,13 +68,14 @@ typedef struct noh_clip_set {
     uint32_t float_count; /* 0..NOH_FLOATS_MAX: morph weights and named floats */
     uint32_t mask_count;  /* 0..NOH_MASKS_MAX */
     uint32_t event_count, marker_count;
-    const noh_clip_entry *clips;        /* [clip_count] */
-    const noh_event_key *events;        /* [event_count]; may be NULL where that is 0 */
-    const noh_marker *markers;          /* [marker_count]; may be NULL where that is 0 */
-    const noh_transform *bind_pose;     /* [joint_count]; never NULL */
-    const float *float_defaults;        /* [float_count]; NULL: all 0 */
-    const uint8_t *masks;               /* [mask_count][joint_count + float_count], 255 = full weight */
-    const struct noh_root_track *roots; /* [clip_count]; NULL: the root joint moves in its pose */
+    const noh_clip_entry *clips;           /* [clip_count] */
+    const noh_event_key *events;           /* [event_count]; may be NULL where that is 0 */
+    const noh_marker *markers;             /* [marker_count]; may be NULL where that is 0 */
+    const noh_transform *bind_pose;        /* [joint_count]; never NULL */
+    const float *float_defaults;           /* [float_count]; NULL: all 0 */
+    const uint8_t *masks;                  /* [mask_count][joint_count + float_count], 255 = full weight */
+    const struct noh_root_track *roots;    /* [clip_count]; NULL: the root joint moves in its pose */
+    const noh_root_ends *const *root_ends; /* [clip_count]; NULL: the ends are what `sample` gives */
     noh_clip_sample_fn sample;
     void *user; /* for sample */
 } noh_clip_set;

@@ -80,12 +80,21 @@ static void turn_vector(uint32_t up, uint64_t half_turns, double v[3])
     v[b] = s * va + c * vb;
 }
 
-/* The heading: the angle of the twist about the up axis, which is twice the half angle that a quaternion holds. */
+/* The heading: the angle of the twist about the up axis, which is twice the half angle that a quaternion holds. Where a
+ * float's arc tangent is off by, the tangent of the difference says, in double: passes add up what headings lose. */
 static uint32_t heading(uint32_t up, const noh_transform *root)
 {
+    const double along = (double)root->rotation[up], w = (double)root->rotation[3];
     float twist[4];
+    double s, c, rest;
+    uint32_t turn;
     noh_quat_twist(root->rotation, up, twist);
-    return noh_turn_from_radians(2.0f * noh_atan2(twist[up], twist[3]));
+    turn = noh_turn_from_radians(2.0f * noh_atan2(twist[up], twist[3]));
+    sin_cos_half(turn, &s, &c);
+    rest = w * c + along * s;
+    if (along * along + w * w <= 1e-12) return turn;        /* a twist of none, as noh_quat_twist has it */
+    rest = (along * c - w * s) / rest * 1367130551.1528633; /* 2^33 / 2 pi */
+    return turn + (uint32_t)(int32_t)(rest < 0.0 ? rest - 0.5 : rest + 0.5);
 }
 
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root)
@@ -101,13 +110,13 @@ noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *
 }
 
 /* rest = inverse(E) * root: subtract E's translation, then turn both what is left of the translation and the rotation
- * back by the heading. */
-void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
+ * back by the heading, as far as it is not `facing`. */
+static void remove_motion(uint32_t axes, uint32_t up, uint32_t facing, noh_transform *root)
 {
     noh_root_pose e = noh_root_extract(axes, up, root);
     float back[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     double rest[3];
-    NOH_ASSERT(root && axes <= 15u && up <= 2u);
+    e.turn -= facing;
     /* half of minus the turn, as a signed angle: the quaternion of the inverse heading */
     noh_sin_cos(-0.5f * noh_radians_from_turn(e.turn), &back[up], &back[3]);
     for (int i = 0; i < 3; i++) {
@@ -120,6 +129,12 @@ void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
     noh_quat_mul(back, root->rotation, root->rotation);
 }
 
+void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
+{
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
+    remove_motion(axes, up, 0u, root);
+}
+
 void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
                           noh_transform *pose, float *floats)
 {
@@ -127,7 +142,7 @@ void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_
                joint_count <= set->joint_count);
     set->sample(set->user, clip, clip_tick, joint_count, pose, set->float_count, floats);
     if (set->roots && set->roots[clip].axes) {
-        noh_root_remove(set->roots[clip].axes, set->roots[clip].up, &pose[0]);
+        remove_motion(set->roots[clip].axes, set->roots[clip].up, set->roots[clip].facing, &pose[0]);
     }
 }
 
@@ -184,12 +199,49 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
     return out;
 }
 
-/* E at a tick of the clip. */
-static noh_root_pose sample_root(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up, uint32_t clip_tick)
+/* E of the joint that sampling gives at a tick. */
+static noh_root_pose sampled_root(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
+                                  uint32_t clip_tick)
 {
     noh_transform root;
     set->sample(set->user, clip, clip_tick, 1, &root, 0, NULL);
     return noh_root_extract(axes, up, &root);
+}
+
+/* E at a tick of the clip. */
+static noh_root_pose root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, uint32_t clip_tick)
+{
+    const uint32_t left = set->clips[clip].duration_ticks - clip_tick, end = left < clip_tick,
+                   away = end ? left : clip_tick;
+    noh_root_pose e;
+    if (clip_tick == 0) return track->start;
+    if (left == 0) return track->end;
+    e = sampled_root(set, clip, track->axes, track->up, clip_tick);
+    e.turn -= track->facing;
+    if (away < NOH_ROOT_SEAM_TICKS) {
+        const double part = (double)(NOH_ROOT_SEAM_TICKS - away) / NOH_ROOT_SEAM_TICKS;
+        for (int i = 0; i < 3; i++) e.translation[i] += part * (double)track->seam[end][i];
+        e.turn += (uint32_t)(int32_t)(part * track->seam_turn[end]);
+    }
+    return e;
+}
+
+/* One end of a track: the source's, and how far the sampled one is from it. */
+static noh_root_pose measure_end(const noh_clip_set *set, uint32_t clip, uint32_t end, noh_root_track *t)
+{
+    const noh_root_ends *ends = set->root_ends ? set->root_ends[clip] : NULL;
+    const noh_root_pose sampled = sampled_root(set, clip, t->axes, t->up, end ? set->clips[clip].duration_ticks : 0u);
+    noh_root_pose e = sampled;
+    if (ends) {
+        noh_transform root;
+        memset(&root, 0, sizeof root);
+        memcpy(root.rotation, (*ends)[end], sizeof root.rotation);
+        memcpy(root.translation, &(*ends)[end][4], sizeof root.translation);
+        e = noh_root_extract(t->axes, t->up, &root);
+    }
+    for (int i = 0; i < 3; i++) t->seam[end][i] = (float)(e.translation[i] - sampled.translation[i]);
+    t->seam_turn[end] = (int32_t)(e.turn - sampled.turn);
+    return e;
 }
 
 noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
@@ -206,8 +258,11 @@ noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32
     t.axes = axes;
     t.up = up;
     if (axes) {
-        t.start = sample_root(set, clip, axes, up, 0);
-        t.end = sample_root(set, clip, axes, up, set->clips[clip].duration_ticks);
+        t.start = measure_end(set, clip, 0, &t);
+        t.end = measure_end(set, clip, 1, &t);
+        t.facing = t.start.turn;
+        t.end.turn -= t.facing;
+        t.start.turn = 0;
         back = noh_root_inverse(up, &t.start);
         t.loop = noh_root_compose(up, &back, &t.end);
     }
@@ -223,8 +278,8 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
     /* a ping-pong clip comes back to where it was, so only a repeating one adds up its passes */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop)
                                              : 0;
-    noh_root_pose a = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
-    noh_root_pose b = sample_root(set, clip, track->axes, up, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
+    noh_root_pose a = root_at(set, track, clip, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
+    noh_root_pose b = root_at(set, track, clip, (uint32_t)(noh_time_clip(to, duration, loop) / 65536));
     noh_root_pose back = noh_root_inverse(up, &a), step, start_back;
     if (passes == 0) {
         return noh_root_compose(up, &back, &b);

@@ -5,6 +5,10 @@
  * From position a to b of a clip the character moves by
  *   inverse(E(a)) * E(b)                                         within one pass
  *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)      across n seams, L = inverse(E(0)) * E(end)
+ * Headings count from the clip's own axes: the yaw of the first frame stays in the pose, so that a clip that walks along
+ * z moves its character along z whichever way its first frame faces.
+ * E(0) and E(end) are the source's where the set has them (root_ends); what sampling has in between goes over to them
+ * within NOH_ROOT_SEAM_TICKS of either end. So a loop that closes in the source never drifts, however lossy its clip.
  * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
  * without rounding, and the sum of the n displacements is a geometric series of rotations.
  *
@@ -29,6 +33,9 @@ extern "C" {
 #define NOH_ROOT_HEADING 8u
 #define NOH_ROOT_GROUND (NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_HEADING) /* for y up */
 
+#define NOH_ROOT_SEAM_TICKS \
+    200u /* 1/240 s: less than a frame, so that no position is off by more than its clip's error */
+
 /* A displacement: turn about the up axis, then translate. */
 typedef struct noh_root_pose {
     double translation[3]; /* model units */
@@ -41,9 +48,13 @@ typedef struct noh_root_track {
     uint32_t axes;                  /* NOH_ROOT_*; 0: none is extracted */
     uint32_t up;                    /* 0, 1, 2: x, y, z */
     noh_root_pose start, end, loop; /* E(0), E(duration), L */
+    float seam[2][3];               /* E(0) and E(duration) less what sampling gives there */
+    int32_t seam_turn[2];
+    uint32_t facing; /* heading of the first frame, 2^-32 turns, which stays in the pose */
+    uint32_t reserved;
 } noh_root_track;
 
-/* E of a root joint's transform, and the transform without it. */
+/* E of a root joint's transform, its heading counted from the model's axes, and the transform without it. */
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root);
 void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
 
@@ -59,7 +70,7 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 /* a composed with itself n times; n < 0: its inverse, -n times. In closed form: constant time, no drift. */
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n);
 
-/* Measure a root track by sampling the two ends of its clip. Joint 0 is the root.
+/* Measure a root track by the two ends of its clip. Joint 0 is the root.
  * errors  ARG clip, axes, up */
 noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
                                   noh_root_track *track, noh_error *error);

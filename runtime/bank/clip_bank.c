@@ -38,6 +38,7 @@ typedef struct parts {
     noh_clip_group *groups;
     float *defaults, *sampled;
     noh_root_track *roots;
+    const noh_root_ends **root_ends;
     uint32_t *packs, *pack_clips;
     const noh_clip **opened;
     uint8_t *clip_memory, *cache_memory;
@@ -171,6 +172,7 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     p->opened = noh_arena_carve(arena, n->clip_count * sizeof *p->opened, 8u);
     p->bound = noh_arena_carve(arena, n->clip_count * sizeof *p->bound, 8u);
     p->roots = noh_arena_carve(arena, c->roots ? n->clip_count * sizeof *p->roots : 0u, 8u);
+    p->root_ends = c->roots ? noh_arena_carve(arena, n->clip_count * sizeof *p->root_ends, 8u) : NULL;
     p->clips = noh_arena_carve(arena, n->clip_count * sizeof *p->clips, 4u);
     p->events = noh_arena_carve(arena, n->event_count * sizeof *p->events, 4u);
     p->markers = noh_arena_carve(arena, n->marker_count * sizeof *p->markers, 4u);
@@ -358,6 +360,7 @@ static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, par
     p->packs[m] = from->at.pack;
     p->pack_clips[m] = from->at.index;
     p->bound[m].joint_count = clip->info.joint_count;
+    if (p->root_ends) p->root_ends[m] = clip->info.joint_count ? &from->packed.header->root_ends : NULL;
     memset(to, 0, sizeof *to);
     to->name_hash = noh_hash_name(from->packed.name);
     to->duration_ticks = (uint32_t)clip->info.duration_ticks;
@@ -398,6 +401,7 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     bank->clips.clips = p->clips;
     bank->clips.events = p->events;
     bank->clips.markers = p->markers;
+    bank->clips.root_ends = p->root_ends;
     bank->clips.bind_pose = b->header ? b->skeleton.bind_pose
                                       : (const noh_transform *)(const void *)p->clips; /* not NULL; of no joints */
     bank->clips.float_defaults = p->defaults;

@@ -200,6 +200,22 @@ static noh_result check_clip_errors(const noh_check *check, const noh_clip_heade
     return result;
 }
 
+/* The ends of the root joint: unit rotations where there are joints. */
+static noh_result check_root_ends(const noh_check *check, const noh_clip_header *h)
+{
+    const uint64_t at = offsetof(noh_clip_header, root_ends);
+    noh_result result = noh_check_floats(check, h->root_ends[0], 14, "root joint's first or last frame is not finite");
+    for (uint32_t i = 0; i < 2 && !result; i++) {
+        const float *q = h->root_ends[i];
+        const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (h->joint_count && !(square > 0.99f && square < 1.01f)) {
+            result = noh_check_fail(check, "root joint's rotation in the first or last frame is not unit",
+                                    at + i * sizeof h->root_ends[0]);
+        }
+    }
+    return result;
+}
+
 noh_result noh_check_clip(noh_check *check)
 {
     const noh_clip_header *h = (const noh_clip_header *)(const void *)check->bytes;
@@ -224,5 +240,6 @@ noh_result noh_check_clip(noh_check *check)
     if (!result) result = noh_check_end(check);
     if (!result) result = check_events(check, h);
     if (!result) result = check_markers(check, h);
+    if (!result) result = check_root_ends(check, h);
     return result ? result : check_clip_errors(check, h);
 }

@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 #define NOH_PACK_MAGIC 0x50484f4eu /* "NOHP" */
-#define NOH_PACK_VERSION 4u
+#define NOH_PACK_VERSION 5u
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
 #define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')
@@ -436,6 +436,9 @@ typedef struct noh_clip_header {
      * Above 0: there were no meshes, and both are bounds for points at this distance from each joint (--shell-cm), in
      * the skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure). */
     float error_shell;
+    /* The root joint in the source's first and last frame: rotation x, y, z, w, then translation. The compressed clip
+     * is off by up to its bound, which root motion would add up, pass by pass. 0 without joints. */
+    float root_ends[2][7];
 } noh_clip_header;
 
 typedef struct noh_clip_event {
@@ -686,7 +689,7 @@ NOH_STATIC_ASSERT(sizeof(noh_skin_header) == 16, skin_header);
 NOH_STATIC_ASSERT(sizeof(noh_palette) == 8, palette);
 NOH_STATIC_ASSERT(NOH_VERTICES_MAX <= 1u << NOH_TEXEL_VERTEX_BITS, texel_vertex);
 NOH_STATIC_ASSERT(NOH_SUBMESHES_MAX <= 1u << (32u - NOH_TEXEL_VERTEX_BITS), texel_palette);
-NOH_STATIC_ASSERT(sizeof(noh_clip_header) == 68, clip_header);
+NOH_STATIC_ASSERT(sizeof(noh_clip_header) == 124, clip_header);
 NOH_STATIC_ASSERT(sizeof(noh_clip_event) == 24, clip_event);
 NOH_STATIC_ASSERT(sizeof(noh_clip_marker) == 12, clip_marker);
 NOH_STATIC_ASSERT(sizeof(noh_pack_header) == 64, pack_header);

@@ -392,6 +392,9 @@ static void lies_about_lod_are_named(void **state)
     f = forge();
     f.clip->error_shell = -3.0f;
     expect_refused(&f, "shell");
+    f = forge();
+    f.clip->root_ends[1][3] += 0.5f;
+    expect_refused(&f, "root joint's rotation");
 }
 
 int main(int argument_count, char **arguments)

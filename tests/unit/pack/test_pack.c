@@ -525,6 +525,7 @@ static float nan_value(void)
       f->clip->update_rate_error[1] = f->clip->update_rate_error[2] + 1.0f)                                          \
     X(clip_shell_negative, DATA, "shell", f->clip->error_shell = -1.0f)                                              \
     X(clip_shell_infinite, DATA, "shell", f->clip->error_shell = INFINITE)                                           \
+    X(clip_root_end_nan, DATA, "root joint's first or last", f->clip->root_ends[1][6] = nan_value())                 \
     X(clip_clip_one_more, DATA, "", f->clip->clip_bytes += 1)                                                        \
     X(clip_clip_elsewhere, DATA, "begin", f->clip->clip_offset += 16)
 
@@ -722,7 +723,8 @@ static void errors_say_where(void **state)
     X(clip->event_count, = NOH_CLIP_EVENTS_MAX + 1u)    \
     X(clip->marker_count, = NOH_CLIP_MARKERS_MAX + 1u)  \
     X(clip->update_rate_error[0], = 1.0f)               \
-    X(clip->error_shell, = -1.0f)
+    X(clip->error_shell, = -1.0f)                       \
+    X(clip->root_ends[0][4], = INFINITE)
 
 static void an_error_is_at_its_field(void **state)
 {

@@ -310,6 +310,16 @@ static uint32_t skeleton_index(const encoded_clips *m, uint32_t set)
     return index;
 }
 
+/* The root joint as the source has it in the first and the last frame. */
+static void root_ends(const raw_clip *clip, float ends[2][7])
+{
+    for (uint32_t i = 0; i < 2 && clip->joint_count; i++) {
+        const size_t at = i ? (size_t)(clip->frame_count - 1u) * clip->joint_count : 0u;
+        memcpy(ends[i], clip->rotations + 4u * at, 16);
+        memcpy(ends[i] + 4, clip->translations + 3u * at, 12);
+    }
+}
+
 static noh_clip_header clip_header(const encoded_clips *m, const encoded_clip *clip)
 {
     noh_clip_header h;
@@ -322,6 +332,7 @@ static noh_clip_header clip_header(const encoded_clips *m, const encoded_clip *c
     h.joint_error_count = clip->errors.level_count;
     memcpy(h.update_rate_error, clip->errors.update_rate, sizeof h.update_rate_error);
     h.error_shell = clip->errors.shell;
+    root_ends(clip->raw, h.root_ends);
     for (uint32_t i = 0; i < clip->raw->event_count; i++) {
         *(clip->raw->events[i].is_marker ? &h.marker_count : &h.event_count) += 1;
     }
