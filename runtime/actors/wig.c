@@ -121,7 +121,7 @@ int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, fl
     float to_joint[12] = { units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f, 0.0f, 0.0f, 0.0f, units, 0.0f };
     float joint[12], rotation[4], at[3];
     memcpy(joint, shown->world, sizeof joint);
-    if (wig->joint < k->skeleton.joint_count && noh_actor_joint(stage, actor, wig->joint, joint, NULL) == NOH_OK) {
+    if (wig->joint < k->skeleton.joint_count && noh_stage_joint(stage, actor, wig->joint, joint, NULL) == NOH_OK) {
         noh_stage_joint_at(k, k->skeleton.bind_pose, wig->joint, rotation, at);
         noh_quat_conjugate(rotation, rotation);
         for (int i = 0; i < 3; i++) {

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "anim/root_internal.h"
 #include "base/quat.h"
 #include "base/trig.h"
 
@@ -297,4 +298,37 @@ noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, 
                           int64_t position)
 {
     return noh_root_between(set, track, clip, loop, 0, position);
+}
+
+/* v turned by q, as noh_quat_rotate does it. */
+static void rotate_double(const double q[4], double v[3])
+{
+    double t[3], r[3];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        t[i] = 2.0 * (q[j] * v[k] - q[k] * v[j]);
+    }
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        r[i] = v[i] + q[3] * t[i] + (q[j] * t[k] - q[k] * t[j]);
+    }
+    memcpy(v, r, sizeof r);
+}
+
+void noh_root_drive(uint32_t up, const noh_root_pose *moved, double scale, double position[3], double rotation[4])
+{
+    double step[3], s, c, square = 0.0, q[4];
+    uint32_t a, b;
+    for (int i = 0; i < 3; i++) step[i] = moved->translation[i] * scale;
+    rotate_double(rotation, step);
+    for (int i = 0; i < 3; i++) position[i] += step[i];
+    if (!moved->turn) return;
+    ground_axes(up, &a, &b);
+    sin_cos_half(moved->turn, &s, &c);
+    q[up] = rotation[up] * c + rotation[3] * s;
+    q[3] = rotation[3] * c + rotation[up] * -s; /* sums only: see noh_quat_mul */
+    q[a] = rotation[a] * c + rotation[b] * s;
+    q[b] = rotation[b] * c + rotation[a] * -s;
+    for (int i = 0; i < 4; i++) square += q[i] * q[i];
+    for (int i = 0; i < 4; i++) rotation[i] = q[i] * (1.5 - 0.5 * square); /* a step of Newton's towards length 1 */
 }

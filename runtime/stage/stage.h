@@ -571,7 +571,18 @@ typedef struct noh_stage_view {
     float light[3];     /* unit vector towards the key light */
     uint32_t height_px; /* of the picture; 0: casts shadows only, and asks for no detail of its own */
     uint32_t cut;       /* 1: the camera has jumped: detail is chosen afresh, nothing fades */
+    /* What the floats of the last column of view_projection and of `eye` are short of, far from the origin. 0: nothing;
+     * then the picture as a whole is off by what they lose. noh_view_orbit fills them */
+    float column_rest[4], eye_rest[3];
 } noh_stage_view;
+
+/* Far from the origin. Root motion, poses, bounds, culling and pictures are as exact 1,000,000 units from the origin as
+ * there: to a tenth of a millimetre, where a unit is a metre (test_stage_far). An actor's place keeps what its floats
+ * lose, and a frame reckons relative to a point near its first camera. What this interface takes and gives in floats is
+ * rounded to them: to 0.5 mm at 8 km, 4 mm at 100 km, 32 mm at 1,000 km.
+ * This is that point: what world matrices on the GPU, and cameras that shaders are given, are relative to. A shader that
+ * wants a position of the world adds it. All 0 while the camera is within 512 units of the origin. */
+void noh_stage_origin(const noh_stage *stage, float origin[3]);
 
 /* What shows in this frame: views[view_count], 0..NOH_STAGE_VIEWS_MAX. An actor is shown if any of them sees it, in the
  * finest detail that one of them asks for.

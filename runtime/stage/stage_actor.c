@@ -1,6 +1,7 @@
 /* stage_actor.c: actors come and go, and stand somewhere. */
 #include <string.h>
 
+#include "anim/root_internal.h"
 #include "base/math_internal.h"
 #include "base/quat.h"
 #include "pose/local_to_model.h"
@@ -107,13 +108,28 @@ void noh_place_matrix(const noh_place *place, float matrix[12])
     noh_transform_matrix(&t, matrix);
 }
 
-/* part  0: before the last step, 1: after it */
-static void mix_places(const noh_stage_actor *a, float part, noh_place *out)
+static void place_less(const noh_place *place, const float rest[3], const float origin[3], noh_place *out)
 {
-    *out = part > 0.0f ? a->place : a->before;
-    if (part > 0.0f && part < 1.0f && memcmp(&a->before, &a->place, sizeof a->place) != 0) {
+    *out = *place;
+    for (int i = 0; i < 3; i++) {
+        out->position[i] = (float)((double)place->position[i] - (double)origin[i] + (double)rest[i]);
+    }
+}
+
+/* part  0: before the last step, 1: after it. In a difference to `origin` that is near, nothing is lost. */
+static void mix_places(const noh_stage_actor *a, float part, const float origin[3], noh_place *out)
+{
+    noh_place before;
+    if (part > 0.0f) {
+        place_less(&a->place, a->rest, origin, out);
+    } else {
+        place_less(&a->before, a->rest_before, origin, out);
+    }
+    if (part > 0.0f && part < 1.0f) {
+        place_less(&a->before, a->rest_before, origin, &before);
+        if (memcmp(&before, out, sizeof before) == 0) return;
         for (int i = 0; i < 3; i++) {
-            out->position[i] = a->before.position[i] + (a->place.position[i] - a->before.position[i]) * part;
+            out->position[i] = before.position[i] + (out->position[i] - before.position[i]) * part;
         }
         noh_quat_nlerp(a->before.rotation, a->place.rotation, part, out->rotation);
         out->scale = a->before.scale + (a->place.scale - a->before.scale) * part;
@@ -126,22 +142,38 @@ static float part_of_step(uint32_t behind_ticks, uint32_t step_ticks)
     return behind_ticks < step_ticks ? (float)(step_ticks - behind_ticks) / (float)step_ticks : 0.0f;
 }
 
-void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out)
+static const float nowhere[3];
+
+void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, const float origin[3], noh_place *out)
 {
-    mix_places(a, part_of_step(s->head->behind_ticks, s->head->step_ticks), out);
+    mix_places(a, part_of_step(s->head->behind_ticks, s->head->step_ticks), a->parent ? nowhere : origin, out);
+}
+
+void noh_stage_keep_before(noh_stage_actor *a)
+{
+    a->before = a->place;
+    memcpy(a->rest_before, a->rest, sizeof a->rest);
+}
+
+static void put(noh_stage_actor *a, const noh_place *place)
+{
+    a->place = *place;
+    memset(a->rest, 0, sizeof a->rest);
+    memset(a->rotation_rest, 0, sizeof a->rotation_rest);
 }
 
 /* A place from outside a step: until the step that it belongs to is over, or a frame has shown it, `before` stays. */
 static void go_to(noh_stage_actor *a, const noh_place *place)
 {
-    if (!a->on_its_way) a->before = a->place;
+    if (!a->on_its_way) noh_stage_keep_before(a);
     a->on_its_way = 1;
-    a->place = *place;
+    put(a, place);
 }
 
 static void be_at(noh_stage_actor *a, const noh_place *place)
 {
-    a->place = a->before = *place;
+    put(a, place);
+    noh_stage_keep_before(a);
 }
 
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error)
@@ -185,7 +217,7 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
     if (!(alpha >= 0.0f && alpha <= 1.0f)) {
         return noh_fail(error, NOH_ERR_ARG, "alpha is outside of 0..1", 0, 0);
     }
-    mix_places(a, part_of_step(noh_stage_behind(stage, alpha), stage->head->step_ticks), place);
+    mix_places(a, part_of_step(noh_stage_behind(stage, alpha), stage->head->step_ticks), nowhere, place);
     return NOH_OK;
 }
 
@@ -197,7 +229,7 @@ noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error)
     if (result != NOH_OK) {
         return result;
     }
-    be_at(a, &a->place);
+    noh_stage_keep_before(a);
     noh_character_cut(noh_stage_character(k, noh_stage_index(k, a)));
     return NOH_OK;
 }
@@ -254,12 +286,26 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     return NOH_OK;
 }
 
+static void shift(noh_place *place, float rest[3], const float by[3])
+{
+    for (int i = 0; i < 3; i++) {
+        noh_split((double)place->position[i] + (double)rest[i] + (double)by[i], &place->position[i], &rest[i]);
+    }
+}
+
+void noh_stage_shift_actor(noh_stage_actor *a, const float by[3])
+{
+    shift(&a->place, a->rest, by);
+    shift(&a->before, a->rest_before, by);
+}
+
 /* What hung on it stays where it was shown. */
-static void let_go(noh_stage_actor *child, const noh_place *shown)
+static void let_go(const noh_stage *s, noh_stage_actor *child, const noh_place *shown)
 {
     child->parent = 0;
     child->joint = 0;
     be_at(child, shown);
+    noh_stage_shift_actor(child, s->origin);
 }
 
 static float length3(const float *m)
@@ -288,11 +334,11 @@ static void place_of_matrix(const float m[12], noh_place *place)
     noh_quat_normalize(q);
 }
 
-/* Where an actor is in the world: its own place, or that on its parent's joint. */
+/* Where an actor is in the world, less the stage's origin: its own place, or that on its parent's joint. */
 static void world_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out)
 {
     float matrix[12];
-    noh_stage_shown_place(s, a, out);
+    noh_stage_shown_place(s, a, s->origin, out);
     if (a->parent) {
         noh_stage_world(s, (uint32_t)(a - s->actors), matrix);
         place_of_matrix(matrix, out);
@@ -306,7 +352,7 @@ static void let_go_all(noh_stage *s, uint32_t parent)
         if (child->alive && child->parent == parent) {
             noh_place shown;
             world_place(s, child, &shown);
-            let_go(child, &shown);
+            let_go(s, child, &shown);
         }
     }
 }
@@ -393,7 +439,7 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
     if (!parent.id) {
         noh_place shown;
         world_place(stage, a, &shown);
-        let_go(a, &shown);
+        let_go(stage, a, &shown);
         return NOH_OK;
     }
     p = noh_stage_actor_of(stage, parent, &of_parent);
@@ -410,6 +456,6 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
     }
     a->parent = parent.id;
     a->joint = joint;
-    be_at(a, &a->place); /* from now on relative to the joint */
+    noh_stage_keep_before(a); /* from now on relative to the joint */
     return NOH_OK;
 }

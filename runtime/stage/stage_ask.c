@@ -25,13 +25,13 @@ void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
     const noh_stage_actor *a = &s->actors[index], *on;
     noh_stage_kind *k;
     noh_place place;
-    noh_stage_shown_place(s, a, &place);
+    noh_stage_shown_place(s, a, s->origin, &place);
     noh_place_matrix(&place, matrix);
     on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, &k) : NULL;
     if (on) {
         const noh_character *ch = noh_stage_character(k, noh_stage_index(k, on));
         float joint[12], world[12];
-        noh_stage_shown_place(s, on, &place);
+        noh_stage_shown_place(s, on, s->origin, &place);
         noh_place_matrix(&place, world);
         if (ch->time.posed && a->joint < k->skeleton.joint_count) {
             joint_matrix(ch, a->joint, joint);
@@ -41,7 +41,20 @@ void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
     }
 }
 
+/* Back from the stage's origin. */
+static void to_world(const noh_stage *s, float matrix[12])
+{
+    for (int i = 0; i < 3; i++) matrix[4 * i + 3] += s->origin[i];
+}
+
 noh_result noh_actor_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error)
+{
+    const noh_result result = noh_stage_joint(stage, actor, joint, matrix, error);
+    if (result == NOH_OK) to_world(stage, matrix);
+    return result;
+}
+
+noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
@@ -74,6 +87,13 @@ noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose
 }
 
 noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
+{
+    const noh_result result = noh_stage_sphere(stage, actor, sphere, error);
+    for (int i = 0; i < 3 && result == NOH_OK; i++) sphere[i] += stage->origin[i];
+    return result;
+}
+
+noh_result noh_stage_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
@@ -132,6 +152,7 @@ noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t i
     out->weights = k->weights + (size_t)noh_stage_index(k, a) * k->weight_count + mesh->first_weight;
     memcpy(out->world, shown->world, sizeof out->world);
     if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, out->world);
+    to_world(stage, out->world);
     if (matrices && mesh->skinned) {
         noh_character_skin(noh_stage_character(k, noh_stage_index(k, a)), &mesh->skin, matrices);
     }
@@ -168,7 +189,7 @@ noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_acto
         return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor was not shown in the last frame", actor.id, 0);
     }
     ch = noh_stage_character(k, noh_stage_index(k, a));
-    noh_stage_shown_place(stage, a, &place);
+    noh_stage_shown_place(stage, a, stage->origin, &place);
     take_levels(k, shown, ch, out);
     joints = noh_lod_joint_count(&ch->lod, &k->table);
     out->joint_count = joints && joints < k->skeleton.joint_count ? joints : k->skeleton.joint_count;

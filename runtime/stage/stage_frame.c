@@ -21,6 +21,24 @@ uint32_t noh_stage_behind(const noh_stage *s, float alpha)
     return (uint32_t)((1.0 - (double)alpha) * (double)s->head->step_ticks + 0.5);
 }
 
+/* That of the first camera, or of the first light where there is no camera. */
+static void choose_origin(noh_stage *s, const noh_stage_view *views, uint32_t count)
+{
+    uint32_t v = 0;
+    while (v < count && !views[v].height_px) v++;
+    if (count) {
+        noh_view_origin(&views[v < count ? v : 0u], s->origin);
+    } else {
+        memset(s->origin, 0, sizeof s->origin);
+    }
+}
+
+void noh_stage_origin(const noh_stage *stage, float origin[3])
+{
+    NOH_ASSERT(stage && origin);
+    memcpy(origin, stage->origin, sizeof stage->origin);
+}
+
 noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error)
 {
     return noh_stage_frame_between(stage, views, view_count, 1.0f, error);
@@ -36,9 +54,10 @@ noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     stage->cut = 0;
+    choose_origin(stage, views, view_count);
     for (uint32_t v = 0; v < view_count; v++) {
-        stage->views[v] = views[v];
-        noh_view_planes_of(&views[v], &stage->planes[v]);
+        noh_view_less(&views[v], stage->origin, &stage->views[v]);
+        noh_view_planes_of(&stage->views[v], &stage->planes[v]);
         stage->cut |= views[v].cut != 0;
     }
     stage->view_count = view_count;

@@ -73,6 +73,8 @@ typedef struct noh_stage_actor {
     uint16_t was_seen;   /* in the last frame */
     uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
+    /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
+    float rest[3], rest_before[3], rotation_rest[4];
 } noh_stage_actor;
 
 /* [4] as it is drawn; NULL: white. */
@@ -154,7 +156,7 @@ typedef struct noh_stage_head {
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 32, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 160, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 200, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
@@ -372,7 +374,8 @@ struct noh_stage {
     int graph_begun;                       /* by a callback of this step */
     noh_stage_event_fn on_key;
     void *on_key_user;
-    noh_stage_view views[NOH_STAGE_VIEWS_MAX];
+    noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
+    float origin[3];                           /* of the last frame: noh_view_origin */
     noh_view_planes planes[NOH_STAGE_VIEWS_MAX];
     uint32_t view_count;
     int cut;
@@ -523,10 +526,16 @@ noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, 
                             noh_error *error);
 noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an actor's index in the stage */
 noh_result noh_stage_gone(noh_error *error, noh_actor actor);
-/* Its own place as the last frame shows it. */
-void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, noh_place *out);
-/* Where an actor is drawn: its place, or that on its parent's joint as that was posed last. */
+/* Its own place as the last frame shows it, its position less `origin`; that of one which hangs on another is relative
+ * to the joint, and stays so. */
+void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, const float origin[3], noh_place *out);
+void noh_stage_keep_before(noh_stage_actor *a); /* where it is becomes where it was */
+void noh_stage_shift_actor(noh_stage_actor *a, const float by[3]);
+/* Where an actor is drawn, less the stage's origin: its place, or that on its parent's joint as that was posed last. */
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
+/* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
+noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);
+noh_result noh_stage_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
 noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
 noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
@@ -659,6 +668,11 @@ uint32_t noh_stage_influence_levels(const noh_stage_kind *k); /* at least 1: a r
 uint32_t noh_stage_run_count(const noh_stage_kind *k);        /* without that of fading actors */
 uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in `order` */
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
+/* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix is
+ * what noh_lighting_shadow takes too. */
+void noh_view_origin(const noh_stage_view *view, float origin[3]);
+void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out);
+void noh_projection_less(float view_projection[16], const float origin[3], const float rest[4]);
 
 #ifdef __cplusplus
 }

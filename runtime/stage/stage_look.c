@@ -87,7 +87,7 @@ static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_stage_ki
     if (a->parent) {
         on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
         if (!on || on->look.hidden) return 0;
-        noh_stage_shown_place(s, on, &place);
+        noh_stage_shown_place(s, on, s->origin, &place);
         of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
     }
     ch = noh_stage_character(of, noh_stage_index(of, on));
@@ -111,7 +111,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_lod_settings settings = s->desc.lod;
     noh_place place;
     float world[12], scale = 0.0f, asked;
-    noh_stage_shown_place(s, a, &place);
+    noh_stage_shown_place(s, a, s->origin, &place);
     shown->views = look_from(s, index, k, &place, world, &scale);
     a->on_its_way = 0;
     shown->due = NOH_DUE_NOT;

@@ -113,7 +113,7 @@ noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float d
         return noh_fail(error, NOH_ERR_ARG, "the direction of a ray has no length, or its distance_max is not above 0",
                         0, 0);
     }
-    memcpy(r.origin, origin, sizeof r.origin);
+    for (int i = 0; i < 3; i++) r.origin[i] = origin[i] - stage->origin[i];
     memcpy(r.direction, direction, sizeof r.direction);
     r.distance = distance_max;
     for (uint32_t i = 0; i < stage->actor_count; i++) {
@@ -122,7 +122,7 @@ noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float d
         if (!stage->actors[i].alive || k->desc->unpickable || stage->actors[i].look.hidden || !stage->shown[i].views ||
             stage->shown[i].frame != stage->frame)
             continue;
-        if (noh_actor_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {
+        if (noh_stage_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {
             pick_actor(stage, k, i, &r, hit, &found);
         }
     }

@@ -57,6 +57,14 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (!a->alive) return NULL;
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
+    for (int i = 0; i < 3 && !what; i++) {
+        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]))
+            what = "state: an actor's place is not a number";
+    }
+    for (int i = 0; i < 4 && !what; i++) {
+        if (!(a->rotation_rest[i] > -0.01f && a->rotation_rest[i] < 0.01f))
+            what = "state: an actor's rotation is not unit, or its scale not in 0..10^12";
+    }
     if (what) return what;
     if (!(a->look.pixels >= 0.0f && a->look.pixels <= NOH_PIXELS_MAX))
         return "state: an actor's look asks for no error";

@@ -2,8 +2,7 @@
 #include <string.h>
 
 #include "anim/controller_pose.h"
-#include "base/quat.h"
-#include "base/trig.h"
+#include "anim/root_internal.h"
 #include "clip/pack_clip.h"
 #include "stage/stage_internal.h"
 
@@ -77,17 +76,12 @@ const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count)
 
 static void drive(noh_stage_actor *a, const noh_root_pose *moved, uint32_t up)
 {
-    float step[3], turn[4] = { 0.0f, 0.0f, 0.0f, 0.0f }, sine, cosine;
-    for (int i = 0; i < 3; i++) step[i] = (float)moved->translation[i] * a->place.scale;
-    noh_quat_rotate(a->place.rotation, step, step);
-    for (int i = 0; i < 3; i++) a->place.position[i] += step[i];
-    if (moved->turn) {
-        noh_sin_cos_turn(moved->turn / 2u, &sine, &cosine);
-        turn[up] = sine;
-        turn[3] = cosine;
-        noh_quat_mul(a->place.rotation, turn, a->place.rotation);
-        noh_quat_normalize(a->place.rotation);
-    }
+    double position[3], rotation[4];
+    for (int i = 0; i < 3; i++) position[i] = (double)a->place.position[i] + (double)a->rest[i];
+    for (int i = 0; i < 4; i++) rotation[i] = (double)a->place.rotation[i] + (double)a->rotation_rest[i];
+    noh_root_drive(up, moved, (double)a->place.scale, position, rotation);
+    for (int i = 0; i < 3; i++) noh_split(position[i], &a->place.position[i], &a->rest[i]);
+    for (int i = 0; i < 4; i++) noh_split(rotation[i], &a->place.rotation[i], &a->rotation_rest[i]);
 }
 
 /* What the clips of an actor have moved it by, those of its graph as far as that plays. */
@@ -186,7 +180,7 @@ static void step_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t
     t.k = k;
     t.a = &k->actors[index];
     t.before = noh_character_controller(ch)->clock;
-    if (!t.a->on_its_way) t.a->before = t.a->place;
+    if (!t.a->on_its_way) noh_stage_keep_before(t.a);
     t.a->on_its_way = 1; /* places that callbacks set belong to this step */
     if (k->graph_count) {
         step_both(&t, ch, ticks);

@@ -19,6 +19,39 @@ static void multiply(const float a[16], const float b[16], float out[16])
     }
 }
 
+/* ---- far from the origin ---- */
+
+#define NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
+#define GRID 16.0f /* a multiple of it is an exact float up to 2^28, and so is its difference to what is near it */
+
+static float on_grid(float x)
+{
+    if (!(x > NEAR_ORIGIN || x < -NEAR_ORIGIN) || !noh_is_number(x)) return 0.0f;
+    if (x >= 134217728.0f || x <= -134217728.0f) return x;
+    return (float)(int32_t)(x / GRID + (x < 0.0f ? -0.5f : 0.5f)) * GRID;
+}
+
+void noh_projection_less(float m[16], const float origin[3], const float rest[4])
+{
+    if (origin[0] == 0.0f && origin[1] == 0.0f && origin[2] == 0.0f) return;
+    for (int r = 0; r < 4; r++) {
+        double column = (double)m[12 + r] + (rest ? (double)rest[r] : 0.0);
+        for (int c = 0; c < 3; c++) column += (double)m[4 * c + r] * (double)origin[c];
+        m[12 + r] = (float)column;
+    }
+}
+
+void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out)
+{
+    *out = *view;
+    noh_projection_less(out->view_projection, origin, view->height_px ? view->column_rest : NULL);
+    for (int i = 0; i < 3; i++) {
+        if (origin[i] != 0.0f) {
+            out->eye[i] = (float)((double)view->eye[i] - (double)origin[i] + (double)view->eye_rest[i]);
+        }
+    }
+}
+
 /* World to eye: the axes are rows. */
 static void eye_matrix(const float axes[3][3], const float eye[3], float out[16])
 {
@@ -36,6 +69,22 @@ static void cross(const float a[3], const float b[3], float out[3])
 {
     for (int i = 0; i < 3; i++) {
         out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+    }
+}
+
+/* What eye and last column are short of: the column takes the eye, by the matrix's own floats, to 0. */
+static void keep_rests(noh_stage_view *view, const float target[3], float distance, const float back[3], float depth)
+{
+    const float *m = view->view_projection;
+    double eye[3];
+    for (int i = 0; i < 3; i++) {
+        eye[i] = (double)target[i] + (double)distance * (double)back[i];
+        view->eye_rest[i] = (float)(eye[i] - (double)view->eye[i]);
+    }
+    for (int r = 0; r < 4; r++) {
+        double column = r == 2 ? (double)depth : 0.0;
+        for (int c = 0; c < 3; c++) column -= (double)m[4 * c + r] * eye[c];
+        view->column_rest[r] = (float)(column - (double)m[12 + r]);
     }
 }
 
@@ -66,6 +115,7 @@ void noh_view_orbit(noh_stage_view *view, const float target[3], float yaw_rad, 
     projection[11] = -1.0f;
     projection[14] = 2.0f * near * far / (near - far);
     multiply(projection, world_to_eye, view->view_projection);
+    keep_rests(view, target, distance, axes[2], projection[14]);
     view->height_px = height;
 }
 
@@ -132,16 +182,31 @@ static int unproject(const noh_stage_view *view, float x, float y, float z, floa
     return 1;
 }
 
+void noh_view_origin(const noh_stage_view *view, float origin[3])
+{
+    const float *e = view->eye;
+    float at[3];
+    memcpy(at, e, sizeof at);
+    if (e[0] == 0.0f && e[1] == 0.0f && e[2] == 0.0f && !unproject(view, 0.0f, 0.0f, 0.0f, at)) {
+        memset(at, 0, sizeof at); /* a view without an eye: what is in its middle */
+    }
+    for (int i = 0; i < 3; i++) origin[i] = on_grid(at[i]);
+}
+
 int noh_view_ray(const noh_stage_view *view, float x, float y, uint32_t width, uint32_t height, float origin[3],
                  float direction[3])
 {
     const float cx = 2.0f * (x + 0.5f) / (float)width - 1.0f, cy = 1.0f - 2.0f * (y + 0.5f) / (float)height;
-    float far[3];
+    noh_stage_view near_by;
+    float far[3], from[3];
     NOH_ASSERT(view && width && height && origin && direction);
-    if (!unproject(view, cx, cy, -1.0f, origin) || !unproject(view, cx, cy, 0.5f, far)) {
+    noh_view_origin(view, from);
+    noh_view_less(view, from, &near_by);
+    if (!unproject(&near_by, cx, cy, -1.0f, origin) || !unproject(&near_by, cx, cy, 0.5f, far)) {
         return 0;
     }
     for (int i = 0; i < 3; i++) direction[i] = far[i] - origin[i];
+    for (int i = 0; i < 3; i++) origin[i] += from[i];
     noh_normalize3(direction, direction);
     return 1;
 }

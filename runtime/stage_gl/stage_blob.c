@@ -5,6 +5,7 @@
 #include "gl/gl_lost.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
+#include "stage/stage_internal.h"
 
 #define ROWS 3u
 #define TEXT_OF(number) #number
@@ -56,11 +57,13 @@ noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_by
     return create_objects(blob, log, log_bytes, error);
 }
 
-static void begin(const noh_stage_blob *b, const noh_stage_view *view)
+static void begin(const noh_stage_blob *b, const noh_stage_view *view, const float origin[3])
 {
     const noh_gl_api *gl = b->gl;
+    noh_stage_view near_by;
+    noh_view_less(view, origin, &near_by);
     gl->UseProgram(b->program);
-    gl->UniformMatrix4fv(b->camera, 1, GL_FALSE, view->view_projection);
+    gl->UniformMatrix4fv(b->camera, 1, GL_FALSE, near_by.view_projection);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(GL_LEQUAL);
     gl->DepthMask(GL_FALSE);
@@ -71,12 +74,12 @@ static void begin(const noh_stage_blob *b, const noh_stage_view *view)
     gl->BindVertexArray(b->vertex_array);
 }
 
-static void draw_some(noh_stage_blob *b, const noh_blob *blobs, uint32_t count)
+static void draw_some(noh_stage_blob *b, const noh_blob *blobs, uint32_t count, const float origin[3])
 {
     float rows[ROWS * NOH_BLOBS_DRAWN][4];
     for (uint32_t i = 0; i < count; i++) {
         float(*row)[4] = rows + ROWS * i;
-        memcpy(row[0], blobs[i].centre, 3 * sizeof(float));
+        for (int n = 0; n < 3; n++) row[0][n] = blobs[i].centre[n] - origin[n];
         memcpy(row[1], blobs[i].along, 3 * sizeof(float));
         memcpy(row[2], blobs[i].across, 3 * sizeof(float));
         row[0][3] = blobs[i].darkness;
@@ -89,11 +92,13 @@ static void draw_some(noh_stage_blob *b, const noh_blob *blobs, uint32_t count)
 
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count)
 {
+    float origin[3];
     NOH_ASSERT(blob && blob->gl && view && (blobs || !count));
     if (!count) return;
-    begin(blob, view);
+    noh_view_origin(view, origin);
+    begin(blob, view, origin);
     for (uint32_t first = 0; first < count; first += NOH_BLOBS_DRAWN) {
-        draw_some(blob, blobs + first, count - first < NOH_BLOBS_DRAWN ? count - first : NOH_BLOBS_DRAWN);
+        draw_some(blob, blobs + first, count - first < NOH_BLOBS_DRAWN ? count - first : NOH_BLOBS_DRAWN, origin);
     }
     blob->gl->BindVertexArray(0);
     blob->gl->Disable(GL_BLEND);

@@ -6,6 +6,7 @@
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 #include "stage_gl/lit_source_internal.h"
+#include "stage_gl/stage_gl_internal.h"
 
 static noh_result create_objects(noh_stage_floor *f, char *log, size_t log_bytes, noh_error *error)
 {
@@ -89,14 +90,20 @@ void noh_stage_floor_draw(const noh_stage_floor *level, const noh_gl_light *ligh
                           const noh_stage_view *view, const float disc[4])
 {
     const noh_gl_api *gl;
-    float rows[NOH_LIGHTING_ROWS][4];
+    noh_lighting near_light;
+    noh_stage_view near_by;
+    float rows[NOH_LIGHTING_ROWS][4], origin[3];
     NOH_ASSERT(level && level->gl && light && lighting && view && disc);
     gl = level->gl;
     if (!light->desc.shadow_px || view->eye[1] <= disc[1]) return;
-    noh_lighting_pack(lighting, light->desc.shadow_px, rows);
+    noh_view_origin(view, origin);
+    noh_view_less(view, origin, &near_by);
+    noh_gl_lighting_less(lighting, origin, &near_light);
+    noh_lighting_pack(&near_light, light->desc.shadow_px, rows);
     gl->UseProgram(level->program);
-    gl->UniformMatrix4fv(gl->GetUniformLocation(level->program, "u_camera"), 1, GL_FALSE, view->view_projection);
-    gl->Uniform4fv(gl->GetUniformLocation(level->program, "u_disc"), 1, disc);
+    gl->UniformMatrix4fv(gl->GetUniformLocation(level->program, "u_camera"), 1, GL_FALSE, near_by.view_projection);
+    gl->Uniform4f(gl->GetUniformLocation(level->program, "u_disc"), disc[0] - origin[0], disc[1] - origin[1],
+                  disc[2] - origin[2], disc[3]);
     gl->Uniform4fv(gl->GetUniformLocation(level->program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
     gl->Uniform3f(gl->GetUniformLocation(level->program, "noh_key"), lighting->key_direction[0],
                   lighting->key_direction[1], lighting->key_direction[2]);

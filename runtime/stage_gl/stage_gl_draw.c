@@ -180,6 +180,12 @@ static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colou
     return NOH_OK;
 }
 
+void noh_gl_lighting_less(const noh_lighting *lighting, const float origin[3], noh_lighting *out)
+{
+    *out = *lighting;
+    noh_projection_less(out->shadow, origin, NULL);
+}
+
 static void begin_draw(drawing *d, const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view)
 {
     noh_gl_camera camera;
@@ -191,7 +197,11 @@ static void begin_draw(drawing *d, const noh_stage *stage, noh_gl_renderer *rend
     memcpy(camera.view_projection, stage->views[view].view_projection, sizeof camera.view_projection);
     memcpy(camera.eye, stage->views[view].eye, sizeof camera.eye);
     memcpy(camera.key, stage->views[view].light, sizeof camera.key);
-    if (stage->desc.light) noh_gl_renderer_light(renderer, d->gl->light, d->gl->lighting);
+    if (stage->desc.light && d->gl->lighting) {
+        noh_lighting *near_by = &((noh_stage_gl *)stage->gpu)->lighting_less;
+        noh_gl_lighting_less(d->gl->lighting, stage->origin, near_by);
+        noh_gl_renderer_light(renderer, d->gl->light, near_by);
+    }
     noh_gl_draw_begin(renderer, &camera);
 }
 

@@ -60,6 +60,7 @@ typedef struct noh_stage_gl {
     size_t variants_bytes; /* of any renderer of all meshes */
     noh_gl_light *light;   /* NULL: none */
     const noh_lighting *lighting;
+    noh_lighting lighting_less; /* `lighting`, its shadow's matrix less the origin of what is drawn */
 } noh_stage_gl;
 
 struct noh_stage_shader {
@@ -76,6 +77,9 @@ typedef struct noh_gl_drawing {
     uint32_t view;
     int pass;
 } noh_gl_drawing;
+
+/* A lighting whose shadow's matrix takes positions less `origin`. */
+void noh_gl_lighting_less(const noh_lighting *lighting, const float origin[3], noh_lighting *out);
 
 /* The opaque meshes of one actor, drawn by a renderer of all meshes of the stage. End it with noh_gl_draw_end.
  * errors  as noh_stage_decals_draw: nothing has begun */

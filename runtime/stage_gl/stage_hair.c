@@ -249,7 +249,9 @@ void noh_hair_bind(const noh_stage_hair *h, const noh_stage *s, GLuint program, 
     if (h->lit && gl->light && gl->lighting && program == h->color) {
         float rows[NOH_LIGHTING_ROWS][4];
         const float *key = gl->lighting->key_direction;
-        noh_lighting_pack(gl->lighting, gl->light->desc.shadow_px, rows);
+        noh_lighting near_by;
+        noh_gl_lighting_less(gl->lighting, s->origin, &near_by);
+        noh_lighting_pack(&near_by, gl->light->desc.shadow_px, rows);
         api->Uniform4fv(named(h, program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
         api->Uniform3f(named(h, program, "noh_key"), key[0], key[1], key[2]);
         api->ActiveTexture(GL_TEXTURE1);

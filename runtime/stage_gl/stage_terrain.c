@@ -152,14 +152,17 @@ static GLint named(const noh_stage_terrain *t, GLuint program, const char *name)
     return t->gl->GetUniformLocation(program, name);
 }
 
-static void bind_light(const noh_stage_terrain *t, const noh_stage *s)
+static void bind_light(const noh_stage_terrain *t, const noh_stage *s, const noh_stage_view *v)
 {
     const noh_stage_gl *gl = s->gpu;
     const noh_gl_api *api = t->gl;
-    float rows[NOH_LIGHTING_ROWS][4];
+    float rows[NOH_LIGHTING_ROWS][4], origin[3];
+    noh_lighting near_by;
     if (!gl->light || !gl->lighting) return;
     const float *key = gl->lighting->key_direction;
-    noh_lighting_pack(gl->lighting, gl->light->desc.shadow_px, rows);
+    noh_view_origin(v, origin);
+    noh_gl_lighting_less(gl->lighting, origin, &near_by);
+    noh_lighting_pack(&near_by, gl->light->desc.shadow_px, rows);
     api->Uniform4fv(named(t, t->color, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
     api->Uniform3f(named(t, t->color, "noh_key"), key[0], key[1], key[2]);
     api->ActiveTexture(GL_TEXTURE1);
@@ -173,9 +176,14 @@ static void bind(const noh_stage_terrain *t, GLuint program, const noh_stage_vie
     const noh_gl_api *api = t->gl;
     const noh_field *f = &t->lod.field;
     const float *flat = t->desc.flat, *steep = t->desc.steep;
+    noh_stage_view near_by;
+    float o[3];
+    noh_view_origin(v, o);
+    noh_view_less(v, o, &near_by);
     api->UseProgram(program);
-    api->UniformMatrix4fv(named(t, program, "u_view_projection"), 1, GL_FALSE, v->view_projection);
-    api->Uniform4f(named(t, program, "u_origin"), f->origin[0], f->origin[1], f->origin[2], f->spacing);
+    api->UniformMatrix4fv(named(t, program, "u_view_projection"), 1, GL_FALSE, near_by.view_projection);
+    api->Uniform4f(named(t, program, "u_origin"), f->origin[0] - o[0], f->origin[1] - o[1], f->origin[2] - o[2],
+                   f->spacing);
     api->Uniform4f(named(t, program, "u_scale"), f->scale, 0.0f, 0.0f, 0.0f);
     api->Uniform4f(named(t, program, "u_light"), v->light[0], v->light[1], v->light[2], 0.0f);
     api->Uniform4f(named(t, program, "u_flat"), flat[0], flat[1], flat[2], 1.0f);
@@ -222,7 +230,7 @@ void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, 
     NOH_ASSERT(terrain && view);
     noh_gl_group_begin(terrain->gl, "noh terrain", NULL);
     bind(terrain, terrain->color, view);
-    if (terrain->desc.lit && stage) bind_light(terrain, stage);
+    if (terrain->desc.lit && stage) bind_light(terrain, stage, view);
     draw_blocks(terrain, terrain->color, 0);
     unbind(terrain);
     noh_gl_group_end(terrain->gl);

@@ -1,0 +1,200 @@
+/* test_stage_far.c: a stage far from the origin: places keep what floats lose, and what a frame makes of them is relative
+ * to its camera, so that all is as it is at the origin. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "anim/root_internal.h"
+#include "stage/stage_internal.h"
+#include "stage/view.h"
+#include "support/stage_fixture.h"
+
+static const float places[] = { 100000.0f, -100000.0f, 1000000.0f };
+
+static double exactly(const noh_stage *s, noh_actor actor, int axis)
+{
+    const noh_stage_actor *a = noh_stage_actor_of(s, actor, NULL);
+    return (double)a->place.position[axis] + (double)a->rest[axis];
+}
+
+static noh_actor walker_at(cast *c, float x, float z)
+{
+    const noh_place place = { .position = { x, 0.0f, z }, .rotation = { 0.0f, 0.6f, 0.0f, 0.8f } };
+    const noh_play play = { .fade_ticks = 1 };
+    noh_actor actor;
+    assert_int_equal(noh_stage_spawn(c->stage, PUPPETS, &place, &actor, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c->stage, actor, 0, "walk", &play, NULL), NOH_OK);
+    return actor;
+}
+
+/* Ten seconds at any rate lead as far as at the origin. */
+static void root_motion_goes_all_the_way(void **state)
+{
+    static const uint32_t rates[] = { 30, 60, 144, 240 };
+    (void)state;
+    for (size_t r = 0; r < TEST_COUNT(rates); r++) {
+        for (size_t p = 0; p < TEST_COUNT(places); p++) {
+            const float x = places[p];
+            noh_actor here, there;
+            double way;
+            cast c;
+            cast_open(&c);
+            cast_make(&c, NULL);
+            here = walker_at(&c, 0.0f, 0.0f);
+            there = walker_at(&c, x, x);
+            for (uint32_t i = 0; i < 10u * rates[r]; i++) {
+                assert_int_equal(noh_stage_step(c.stage, 48000u / rates[r], NULL, NULL, NULL), NOH_OK);
+            }
+            way = hypot(exactly(c.stage, here, 0), exactly(c.stage, here, 2));
+            assert_true(way > 4.9);
+            assert_true(fabs(exactly(c.stage, there, 0) - (double)x - exactly(c.stage, here, 0)) < 1e-6);
+            assert_true(fabs(exactly(c.stage, there, 2) - (double)x - exactly(c.stage, here, 2)) < 1e-6);
+            cast_close(&c);
+        }
+    }
+}
+
+/* A quarter turn a second, for a day: what turns add up to is as exact as they are, and the way closes. */
+static void a_day_of_turns_adds_nothing(void **state)
+{
+    const noh_root_pose quarter = { { 0.25, 0.0, 0.5 }, 0x40000000u, 0 }, sixth = { { 0.1, 0.0, 0.0 }, 0x2aaaaaabu, 0 };
+    double position[3] = { 1e6, 0.0, -1e6 }, rotation[4] = { 0.0, 0.6, 0.0, 0.8 };
+    (void)state;
+    for (uint32_t i = 0; i < 86400u * 60u; i++) {
+        noh_root_drive(1, i < 86400u ? &quarter : &sixth, 2.0, position, rotation);
+    }
+    /* the sixths are 2^-32 turns too long: so many of those they add up to */
+    assert_true(fabs(2.0 * atan2(rotation[1], rotation[3]) -
+                     remainder(2.0 * atan2(0.6, 0.8) + 6.283185307179586 * (86400.0 * 59.0) / 3.0 / 4294967296.0,
+                               6.283185307179586)) < 1e-5);
+    assert_true(fabs(rotation[1] * rotation[1] + rotation[3] * rotation[3] - 1.0) < 1e-12);
+    assert_true(fabs(position[0] - 1e6) < 1e-3 && fabs(position[2] + 1e6) < 1e-3);
+}
+
+/* ---- frames ---- */
+
+typedef struct shot {
+    float joints[24][12]; /* less the middle of the picture */
+    float sphere[3], held[12];
+    noh_actor_detail detail;
+    noh_stage_hit hit;
+    float direction[3];
+    uint32_t joint_count;
+} shot;
+
+static void take(float x, uint32_t view_frame, float alpha, shot *out)
+{
+    const float middle[3] = { x, 0.9f, x };
+    const noh_place grip = { .position = { 0.1f, 0.0f, 0.05f }, .scale = 0.1f };
+    noh_actor actor, held;
+    noh_stage_view view;
+    float matrix[12], origin[3];
+    cast c;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    memset(out, 0, sizeof *out);
+    actor = walker_at(&c, x, x);
+    assert_int_equal(noh_stage_spawn(c.stage, TUBES, &grip, &held, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(c.stage, held, actor, 5, NULL), NOH_OK);
+    noh_view_orbit(&view, middle, 0.3f + 0.1f * (float)view_frame, 0.2f, 4.0f, 640, 480);
+    for (int i = 0; i < 40; i++) {
+        assert_int_equal(noh_stage_step(c.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_frame_between(c.stage, &view, 1, alpha, NULL), NOH_OK);
+        assert_int_equal(noh_stage_frame_end(c.stage, NULL), NOH_OK);
+    }
+    noh_stage_origin(c.stage, origin);
+    for (uint32_t j = 0; j < 24 && noh_stage_joint(c.stage, actor, j, out->joints[j], NULL) == NOH_OK; j++) {
+        for (int i = 0; i < 3; i++) out->joints[j][4 * i + 3] -= i == 1 ? -origin[1] : x - origin[i];
+        out->joint_count++;
+        assert_int_equal(noh_actor_joint(c.stage, actor, j, matrix, NULL), NOH_OK);
+        for (int i = 0; i < 3; i++) { /* outside it is rounded to a float of the world */
+            const float rounding = 1e-4f + fabsf(x) * 6e-8f;
+            assert_true(fabsf(matrix[4 * i + 3] - (i == 1 ? 0.0f : x) - out->joints[j][4 * i + 3]) <= 2.0f * rounding);
+        }
+    }
+    noh_stage_world(c.stage, held.id & 0xffffu, out->held);
+    assert_int_equal(noh_stage_sphere(c.stage, actor, matrix, NULL), NOH_OK);
+    for (int i = 0; i < 3; i++) {
+        out->held[4 * i + 3] -= i == 1 ? -origin[1] : x - origin[i];
+        out->sphere[i] = matrix[i] - (i == 1 ? -origin[1] : x - origin[i]);
+    }
+    assert_int_equal(noh_actor_detail_of(c.stage, actor, &out->detail, NULL), NOH_OK);
+    assert_true(noh_view_ray(&view, 320.0f, 200.0f, 640, 480, origin, out->direction));
+    (void)noh_stage_pick(c.stage, origin, out->direction, 100.0f, &out->hit, NULL);
+    cast_close(&c);
+}
+
+static float farthest(const float *a, const float *b, uint32_t count)
+{
+    float worst = 0.0f;
+    for (uint32_t i = 0; i < count; i++) worst = fmaxf(worst, fabsf(a[i] - b[i]));
+    return worst;
+}
+
+/* Joints, what hangs on them, spheres and detail are the same to a tenth of a millimetre, between steps too. */
+static void frames_are_the_same_anywhere(void **state)
+{
+    static const float alphas[] = { 1.0f, 0.37f };
+    (void)state;
+    for (size_t n = 0; n < TEST_COUNT(alphas); n++) {
+        shot here, there;
+        take(0.0f, 1, alphas[n], &here);
+        assert_true(here.joint_count > 10);
+        for (size_t p = 0; p < TEST_COUNT(places); p++) {
+            take(places[p], 1, alphas[n], &there);
+            assert_int_equal(there.joint_count, here.joint_count);
+            assert_true(farthest(here.joints[0], there.joints[0], 12 * here.joint_count) < 1e-4f);
+            assert_true(farthest(here.held, there.held, 12) < 1e-4f);
+            assert_true(farthest(here.sphere, there.sphere, 3) < 1e-4f);
+            assert_true(farthest(here.direction, there.direction, 3) < 1e-5f);
+            assert_true(fabsf(here.detail.pixels_per_metre - there.detail.pixels_per_metre) <
+                        1e-4f * here.detail.pixels_per_metre);
+            assert_int_equal(here.detail.level, there.detail.level);
+            assert_int_equal(here.detail.joint_count, there.detail.joint_count);
+            /* the ray's origin is a float of the world: so far beside */
+            assert_int_equal(here.hit.actor.id != 0, there.hit.actor.id != 0);
+            assert_true(fabsf(here.hit.distance - there.hit.distance) < 1e-3f + fabsf(places[p]) * 5e-7f);
+        }
+    }
+}
+
+/* A camera of the game's own, whose floats have lost what they lose, still sees a figure that holds together: only as a
+ * whole it is beside. And near the origin nothing is changed, not by a bit. */
+static void cameras_without_rests_are_taken(void **state)
+{
+    const float middle[3] = { 100000.0f, 0.9f, 100000.0f }, zero[3] = { 0.0f, 0.9f, 0.0f };
+    noh_stage_view view, less;
+    float origin[3];
+    (void)state;
+    noh_view_orbit(&view, middle, 0.3f, 0.1f, 4.0f, 640, 480);
+    memset(view.column_rest, 0, sizeof view.column_rest);
+    memset(view.eye_rest, 0, sizeof view.eye_rest);
+    noh_view_origin(&view, origin);
+    assert_true(origin[0] == 100000.0f && origin[1] == 0.0f && origin[2] == 100000.0f);
+    noh_view_less(&view, origin, &less);
+    noh_view_orbit(&view, zero, 0.3f, 0.1f, 4.0f, 640, 480);
+    assert_true(farthest(less.view_projection, view.view_projection, 12) < 1e-6f); /* all but the last column */
+    assert_true(farthest(less.view_projection + 12, view.view_projection + 12, 4) < 0.05f);
+    noh_view_origin(&view, origin);
+    assert_true(origin[0] == 0.0f && origin[1] == 0.0f && origin[2] == 0.0f);
+    noh_view_less(&view, origin, &less);
+    assert_memory_equal(&less, &view, sizeof view);
+    memset(view.eye, 0, sizeof view.eye); /* one that says not where its eye is */
+    noh_view_orbit(&less, middle, 0.3f, 0.1f, 4.0f, 640, 480);
+    memset(less.eye, 0, sizeof less.eye);
+    noh_view_origin(&less, origin);
+    assert_true(fabsf(origin[0] - middle[0]) < 64.0f && fabsf(origin[2] - middle[2]) < 64.0f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(root_motion_goes_all_the_way),
+        cmocka_unit_test(a_day_of_turns_adds_nothing),
+        cmocka_unit_test(frames_are_the_same_anywhere),
+        cmocka_unit_test(cameras_without_rests_are_taken),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
