@@ -201,6 +201,15 @@ static void set_weight(const noh_change *c, noh_change_target *t, float weight)
     }
 }
 
+/* A track that has reached its full weight plays as any other from then on. */
+static void settle_full(noh_track *track)
+{
+    if (track->full > 0.0f && track->weight >= track->full) {
+        track->full = 0.0f;
+        track->full_from = 0;
+    }
+}
+
 /* A change is over: set its end value exactly. A travelling position has arrived already. */
 static void finish(noh_change *c, noh_change_target *t)
 {
@@ -216,6 +225,10 @@ static void finish(noh_change *c, noh_change_target *t)
         } else if (c->curve == NOH_CURVE_JUMP) {
             track->root_position = track->position;
         }
+        break;
+    case NOH_CHANGE_WEIGHT:
+        set_weight(c, t, float_of(c->to));
+        settle_full(track);
         break;
     default: set_weight(c, t, float_of(c->to)); break;
     }

@@ -1,7 +1,7 @@
 /* controller_pose.c: the pose and the root motion of a controller.
  *
- * A pose is made in four steps: the low group's tracks are blended; the high group's result is laid over them; additive
- * tracks are added in the order of their indices; what is left of an inertial transition is added last, since it is the
+ * A pose is made in four steps: the low group's tracks are blended, and laid over the bind pose as far as they hide it
+ * (noh_track_cover); the high group's result is laid over them; additive tracks are added in the order of their indices; what is left of an inertial transition is added last, since it is the
  * difference between two such results. A single track with its full weight skips the blend, which would return it. */
 #include "anim/controller_pose.h"
 
@@ -119,6 +119,58 @@ static uint32_t sum_group(const view *v, noh_track_group group)
     return count;
 }
 
+static int is_low(const view *v, const noh_track *t)
+{
+    return t->group == NOH_GROUP_LOW && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t);
+}
+
+/* Whether a low track hides the bind pose in part alone. */
+static int some_shine_through(const view *v)
+{
+    for (uint32_t i = 0; i < v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i);
+        if (is_low(v, t) && noh_track_cover(t) < 1.0f) return 1;
+    }
+    return 0;
+}
+
+/* The most that any low track hides of each joint and float. */
+static void find_covers(const view *v, float *joints, float *floats)
+{
+    memset(joints, 0, v->c->lod_joint_count * sizeof *joints);
+    if (v->set->float_count) memset(floats, 0, v->set->float_count * sizeof *floats);
+    for (uint32_t i = 0; i < v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i);
+        const noh_mask_view mask = noh_clip_set_mask(v->set, t->mask);
+        const float cover = noh_track_cover(t);
+        const uint32_t flags = v->set->clips[t->clip].flags;
+        if (!is_low(v, t)) continue;
+        for (uint32_t j = 0; j < v->c->lod_joint_count && !(flags & NOH_CLIP_FLOATS_ONLY); j++) {
+            if ((!mask.joints || mask.joints[j]) && cover > joints[j]) joints[j] = cover;
+        }
+        for (uint32_t f = 0; f < v->set->float_count && !(flags & NOH_CLIP_JOINTS_ONLY); f++) {
+            if ((!mask.floats || mask.floats[f]) && cover > floats[f]) floats[f] = cover;
+        }
+    }
+}
+
+/* Let the bind pose and the floats' defaults shine through the low group's result. Floats whose weights sum to less than
+ * `full` of the blend show their defaults in part already. */
+static void lay_over_bind(const view *v, noh_transform *pose, float *floats)
+{
+    const noh_blend *b = &v->scratch->blend;
+    find_covers(v, v->scratch->below, v->scratch->float_below);
+    for (uint32_t j = 0; j < v->c->lod_joint_count; j++) {
+        const float cover = v->scratch->below[j];
+        if (cover < 1.0f) noh_pose_mix(1, &v->set->bind_pose[j], &pose[j], cover, NULL, &pose[j]);
+    }
+    for (uint32_t f = 0; f < v->set->float_count; f++) {
+        const float rest = v->set->float_defaults ? v->set->float_defaults[f] : 0.0f, sum = b->float_weights[f];
+        const float shown = sum < b->full ? sum : 1.0f, cover = v->scratch->float_below[f];
+        if (cover < shown) floats[f] = rest + (floats[f] - rest) * (cover / shown);
+    }
+}
+
 /* Blend the low tracks, blend the high tracks, lay the high result over the low one. */
 static void blend_groups(const view *v, noh_transform *pose, float *floats)
 {
@@ -126,6 +178,7 @@ static void blend_groups(const view *v, noh_transform *pose, float *floats)
     noh_blend_begin(&s->blend);
     (void)sum_group(v, NOH_GROUP_LOW);
     noh_blend_finish(&s->blend, v->set->bind_pose, v->set->float_defaults, pose, floats);
+    if (some_shine_through(v)) lay_over_bind(v, pose, floats);
     noh_blend_begin_over(&s->blend);
     if (sum_group(v, NOH_GROUP_HIGH)) {
         noh_blend_cover(&s->blend, v->c->priority_blend, pose, floats);
@@ -140,7 +193,7 @@ static const noh_track *only_track(const view *v)
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
         if (!(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t)) {
-            if (only || t->mask || t->weight < full_weight(v->c)) {
+            if (only || t->mask || t->weight < full_weight(v->c) || (is_low(v, t) && noh_track_cover(t) < 1.0f)) {
                 return NULL;
             }
             only = t;
@@ -308,9 +361,10 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 /* ---- root motion ---- */
 
 /* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the
- * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. */
+ * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. `cover` is how far
+ * they hide the bind pose, which does not move. */
 typedef struct root_sum {
-    double translation[3], turn, weight, total;
+    double translation[3], turn, weight, total, cover;
 } root_sum;
 
 static void add_root(root_sum *sum, const noh_root_pose *move, double weight, double part)
@@ -355,6 +409,7 @@ static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track
                 move = noh_root_between(set, root, t->clip, (noh_loop)t->loop, t->root_position, t->position);
             }
             add_root(&sum, &move, (double)t->weight, part);
+            if ((double)noh_track_cover(t) > sum.cover) sum.cover = (double)noh_track_cover(t);
         }
         t->root_position = t->position;
     }
@@ -372,6 +427,15 @@ static noh_root_pose mean_root(const root_sum *sum)
     return out;
 }
 
+static void scale_root(noh_root_pose *move, double part)
+{
+    const double turn = (double)(int32_t)move->turn * part;
+    for (int i = 0; i < 3; i++) {
+        move->translation[i] *= part;
+    }
+    move->turn = (uint32_t)(uint64_t)(int64_t)(turn < 0.0 ? turn - 0.5 : turn + 0.5);
+}
+
 /* Each group's displacement is the weighted mean of its tracks', and the high one covers the low one by the priority
  * blend times its mean mask, exactly as noh_blend_cover covers the pose of joint 0. */
 noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip_set *set, const noh_given_root *given)
@@ -386,6 +450,7 @@ noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip
     low_sum = group_root(c, set, NOH_GROUP_LOW, given);
     high_sum = group_root(c, set, NOH_GROUP_HIGH, given);
     low = mean_root(&low_sum);
+    if (low_sum.cover < 1.0) scale_root(&low, low_sum.cover);
     high = mean_root(&high_sum);
     if (high_sum.total < (double)full_weight(c)) high_sum.total = (double)full_weight(c);
     cover = high_sum.weight > 0.0 ? (double)c->priority_blend * high_sum.weight / high_sum.total : 0.0;

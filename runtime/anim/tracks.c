@@ -113,6 +113,14 @@ int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
 
+float noh_track_cover(const noh_track *track)
+{
+    NOH_ASSERT(track);
+    const float from = (float)track->full_from / 255.0f;
+    if (track->full < 0.0f) return -track->full;
+    return track->weight < track->full ? from + (1.0f - from) * (track->weight / track->full) : 1.0f;
+}
+
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)
 {
     noh_loop loop = (noh_loop)track->loop;

@@ -59,8 +59,13 @@ typedef struct noh_track {
     uint16_t clip;
     uint8_t mask; /* 1 + index, 0: none */
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
-    uint8_t placed; /* 1: it has not moved since it was started or sought */
-    uint8_t reserved[6];
+    uint8_t placed;    /* 1: it has not moved since it was started or sought */
+    uint8_t full_from; /* of 255: how far it hides the bind pose at weight 0, where full is above 0 */
+    uint8_t reserved;
+    float
+        full; /* how far a track of the low group hides the bind pose (noh_track_cover), -1..NOH_WEIGHT_MAX. 0: wholly,
+                 * at any weight, as it starts. Above 0: wholly at this weight, and in proportion below it, so that a
+                 * track that plays alone can be faded in or out. Below 0: by -full, at any weight. May be set */
 } noh_track;
 
 NOH_STATIC_ASSERT(sizeof(noh_track) == 48, track);
@@ -80,6 +85,10 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
 
 /* Whether a ONCE track has reached its end in the direction of play. */
 int noh_track_ended(const noh_track *track, const noh_clip_entry *clip);
+
+/* How far a track of the low group hides the bind pose, 0..1. Of several tracks the one that hides the most counts,
+ * joint by joint; what their weights sum to does not matter there. */
+float noh_track_cover(const noh_track *track);
 
 /* The clip tick to sample, `ago` ticks before now at the present speed. */
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago);

@@ -414,7 +414,7 @@ typedef struct noh_play {
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error);
 
-/* Fade a layer out; fade_ticks as above.
+/* Fade a layer out, its root motion too, to what else plays there, or to the bind pose; fade_ticks as above.
  * errors  as noh_actor_play */
 noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t fade_ticks, noh_error *error);
 

@@ -140,6 +140,47 @@ static noh_result fade_others(player *p, uint32_t but, uint32_t ticks, noh_error
     return result;
 }
 
+/* ---- the bind pose behind a base layer ----
+ *
+ * The weights of base layers are relative, so a layer that plays alone would show in full until its weight is 0. What
+ * fades it out, or in while it fades out, therefore says how far its tracks hide the bind pose. */
+
+static int is_heard(const noh_track *t)
+{
+    return t->mode != NOH_TRACK_OFF && t->weight > 0.0f;
+}
+
+/* The layer fades to what else plays, or to the bind pose: its tracks hide less of it by and by. */
+static void let_go(player *p)
+{
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        noh_track *t = track_at(p, i);
+        if (p->layer->mode != NOH_LAYER_BASE || !is_heard(t)) continue;
+        t->full = t->weight / noh_track_cover(t);
+        if (t->full > NOH_WEIGHT_MAX) t->full = NOH_WEIGHT_MAX;
+        t->full_from = 0;
+    }
+}
+
+/* Track `next` is about to fade in while the layer's others fade out. What they hide of the bind pose they hide until
+ * they end; if that is not all of it, `next` hides as much, and more by and by. */
+static void take_over(player *p, uint32_t next, float weight)
+{
+    float most = 0.0f;
+    for (uint32_t i = 0; i < p->layer->track_count; i++) {
+        noh_track *t = track_at(p, i);
+        float cover;
+        if (i == next || !is_heard(t)) continue;
+        cover = noh_track_cover(t);
+        t->full = cover < 1.0f ? -cover : 0.0f;
+        if (cover > most) most = cover;
+    }
+    if (most > 0.0f && most < 1.0f) {
+        track_at(p, next)->full = weight;
+        track_at(p, next)->full_from = (uint8_t)(255.0f * most);
+    }
+}
+
 /* ---- playing ---- */
 
 static uint32_t free_track(const player *p)
@@ -296,6 +337,7 @@ static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_erro
 {
     const int beside = (play->flags & NOH_PLAY_BESIDE) != 0;
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
+    const float weight = play->weight > 0.0f ? play->weight : 1.0f;
     const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints &&
                              !something_plays(p, track, is_graph(p, clip));
     const int at_once = ticks <= 1u || from_nothing;
@@ -309,7 +351,8 @@ static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_erro
     }
     if (result == NOH_OK && !beside) result = fade_others(p, track, ticks, error);
     if (result == NOH_OK && !at_once) {
-        result = fade_in(p, track, play->weight > 0.0f ? play->weight : 1.0f, ticks, error);
+        if (!beside && p->layer->mode == NOH_LAYER_BASE) take_over(p, track, weight);
+        result = fade_in(p, track, weight, ticks, error);
     }
     if (result == NOH_OK) {
         set_started(p->a, p->layer_index, track);
@@ -337,7 +380,15 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
 /* Whether the clip plays already, and is not on its way out. */
 static int plays(const player *p, uint32_t clip)
 {
-    const noh_track *track = track_at(p, started(p->a, p->layer_index));
+    const noh_change *changes = (const noh_change *)(const void *)((const uint8_t *)p->c + p->c->changes_offset);
+    const uint32_t i = started(p->a, p->layer_index);
+    const noh_track *track = track_at(p, i);
+    for (uint32_t c = 0; c < p->c->change_count; c++) {
+        if (changes[c].state == NOH_CHANGE_WAITING && changes[c].kind == NOH_CHANGE_MODE &&
+            changes[c].track == p->layer->first_track + i && changes[c].to == NOH_TRACK_OFF) {
+            return 0;
+        }
+    }
     return track->mode != NOH_TRACK_OFF && track->clip == clip && !noh_track_ended(track, &p->k->set.clips[clip]);
 }
 
@@ -419,6 +470,7 @@ noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uin
     player p;
     noh_result result = open_player(stage, actor, layer, &p, error);
     if (result == NOH_OK) result = make_room(&p, NOH_NONE, error);
+    if (result == NOH_OK) let_go(&p);
     if (result == NOH_OK) result = fade_others(&p, NOH_NONE, fade_ticks ? fade_ticks : FADE_TICKS, error);
     if (result == NOH_OK) noh_character_wake(noh_stage_character(p.k, noh_stage_index(p.k, p.a)));
     return result;
