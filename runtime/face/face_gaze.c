@@ -16,6 +16,8 @@
 #define HEAD_SHARE 0.8f
 #define HEAD_TICKS 24000u /* 0.5 s, to 95 % of its way */
 #define TREMOR_RAD (0.08f * NOH_DEGREE)
+#define BEHIND (160.0f * NOH_DEGREE)
+#define TURN (360.0f * NOH_DEGREE)
 #define BIG_SHIFT (20.0f * NOH_DEGREE) /* more often than not with a blink */
 
 /* ---- the gaze ---- */
@@ -28,6 +30,14 @@ void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float m
     noh_quat_rotate(rotation, middle, middle);
 }
 
+/* A yaw to what is behind counts on over the shoulder to which the head has turned: it would else swing from one side to
+ * the other with every small motion there. */
+static float over_shoulder(float yaw, float head)
+{
+    if (yaw < -BEHIND && head > 0.0f) return yaw + TURN;
+    return yaw > BEHIND && head < 0.0f ? yaw - TURN : yaw;
+}
+
 static void goal_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3])
 {
     float way[3], across;
@@ -36,7 +46,7 @@ static void goal_from(const noh_face *face, const noh_face_desc *desc, const flo
         way[i] = face->target[i] - way[i];
     }
     across = noh_sqrt(way[0] * way[0] + way[2] * way[2]);
-    gaze[0] = noh_atan2(way[0], way[2]) + face->away[0] + face->tremor[0];
+    gaze[0] = over_shoulder(noh_atan2(way[0], way[2]), face->head[0].goal) + face->away[0] + face->tremor[0];
     gaze[1] = noh_atan2(way[1], across) + face->away[1] + face->tremor[1];
     gaze[2] = 1.0f / noh_sqrt(noh_dot3(way, way));
 }

@@ -195,7 +195,7 @@ void noh_gaze_init(noh_gaze *gaze)
 static int is_look(const noh_ik_look *look)
 {
     const float square = noh_dot3(look->direction, look->direction);
-    return look->follows <= 1u && square > 0.99f && square < 1.01f;
+    return look->follows <= 3u && square > 0.99f && square < 1.01f;
 }
 
 const char *noh_gaze_check(const noh_gaze *g)

@@ -4,9 +4,9 @@
  *   noh_gaze_init       looks ahead
  *   noh_gaze_step       a pose looks on: within a cone, at a limited speed
  *
- * The head turns as sim/ik.h has it (noh_ik_look_step): what is behind is let go of. Spine and neck take their shares
- * of its turn. Eyes are quicker: they are on the target while the head still turns, and take a quarter of the way for
- * themselves. What clips do to joints of eyes is not kept.
+ * The head turns as sim/ik.h has it (noh_ik_look_step): towards what is outside of its cone as far as it may. Spine and
+ * neck take their shares of its turn. Eyes are quicker: they are on the target while the head still turns, and take a
+ * quarter of the way for themselves. What clips do to joints of eyes is not kept.
  *
  * For bodies whose face does not live by itself: faces (face/face.h, stage/stage_face.h) have a gaze of their own.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 11, "Look-At Inverse Kinematics", which turns the

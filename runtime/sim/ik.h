@@ -58,22 +58,23 @@ void noh_ik_two_bone(const noh_ik_limb *limb, const float target[3], const float
 typedef struct noh_ik_look_desc {
     float angle_max;   /* radians from ahead; 0..pi; default (0) 60 degrees */
     float release_max; /* a target farther off than this is let go of, until it is within angle_max again;
-                        * angle_max..pi; default (0) angle_max and 20 degrees more */
+                        * angle_max..pi; default (0) pi: none is */
     float speed_max;   /* radians per second; default (0) 4 */
 } noh_ik_look_desc;
 
 /* 16 bytes: a copy of it looks where it looks. */
 typedef struct noh_ik_look {
     float direction[3]; /* unit, where it looks */
-    uint32_t follows;   /* 0: what it was to look at is behind */
+    uint32_t follows;   /* 0: nothing, or what was let go of; 1: a target; 2, 3: one behind, over the left or the right
+                         * shoulder */
 } noh_ik_look;
 
 /* shapes  ahead[3], unit: where the head looks of itself */
 void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
 
-/* Time moves on, and the look turns towards a target: along a great circle, never beyond the cone. A target behind is
- * let go of, and the look comes back to what is ahead: it would else turn from side to side with every small motion
- * there.
+/* Time moves on, and the look turns towards a target: along a great circle, never beyond the cone. A target outside of
+ * the cone is looked towards as far as the cone goes. Within 20 degrees of straight behind, the look stays over the
+ * shoulder where the target came from: it would else turn from side to side with every small motion there.
  * ranges   seconds >= 0
  * ahead    unit; of the animated pose, in the space of what carries the head
  * target   from the head, any length; NULL or 0: nothing to look at

@@ -48,7 +48,7 @@ typedef struct noh_kind_face {
 } noh_kind_face;
 
 /* Where the eyes of a kind are at rest, for noh_kind_face.face.eyes: the joints of the eyes; without these behind what
- * its recipes blink with: the middle of what moves on each side, 0.19 of their distance further in.
+ * its recipes blink with, or turn eyes with: the middle of what moves on each side, 0.19 of their distance further in.
  * kind     mesh, skeleton, nodes and face (NULL: as zeros) as a stage would be given them
  * scratch  [scratch_bytes] aligned to NOH_MEMORY_ALIGN, yours again afterwards; noh_kind_find_eyes_size tells how much
  * shapes   eyes: centres of the left and the right one, model space

@@ -1,4 +1,5 @@
-/* stage_face_eyes.c: where the eyes of a kind are at rest: at their joints, or behind what blinks. */
+/* stage_face_eyes.c: where the eyes of a kind are at rest: at their joints, behind what blinks, or behind what targets of
+ * looks move. */
 #include <string.h>
 
 #include "base/math_internal.h"
@@ -8,7 +9,7 @@
 #include "stage/stage_face.h"
 #include "stage/stage_internal.h"
 
-#define BEHIND_LIDS 0.19f /* of the distance of the eyes: their centres lie behind the lids */
+#define BEHIND_LIDS 0.19f /* of the distance of the eyes: their centres lie behind the lids, and behind their fronts */
 #define APART_MIN 1e-3f   /* model units */
 
 /* What moves on one side of the face. */
@@ -123,13 +124,19 @@ static int is_blink(const noh_face_link *link)
     return link->channel == NOH_CHANNEL_BLINK_LEFT || link->channel == NOH_CHANNEL_BLINK_RIGHT;
 }
 
-/* A target that both lids share counts once: it moves both sides. */
-static void add_links(search *s, uint32_t count)
+static int is_of_eyes(const noh_face_link *link)
 {
+    return link->channel >= NOH_CHANNEL_EYES && link->channel < NOH_CHANNEL_EYES + 8;
+}
+
+/* A target that both sides share counts once: it moves both. */
+static void add_links(search *s, uint32_t count, int (*wanted)(const noh_face_link *link))
+{
+    memset(s->lids, 0, sizeof s->lids);
     for (uint32_t i = 0; i < count; i++) {
-        int seen = !is_blink(&s->links[i]);
+        int seen = !wanted(&s->links[i]);
         for (uint32_t j = 0; j < i && !seen; j++) {
-            seen = is_blink(&s->links[j]) && s->links[j].target == s->links[i].target;
+            seen = wanted(&s->links[j]) && s->links[j].target == s->links[i].target;
         }
         if (!seen) add_link(s, s->links[i].target);
     }
@@ -177,8 +184,10 @@ noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t s
         noh_local_to_model(&s.skeleton, s.skeleton.bind_pose, s.skeleton.joint_count, s.model);
     }
     (void)noh_stage_face_bind(kind, find_target, &s, s.links, links);
-    add_links(&s, links);
-    return place(&s, eyes) ? NOH_OK
-                           : noh_fail(error, NOH_ERR_NOT_FOUND,
-                                      "a face has no joints for its eyes, and no targets that shut both", 0, 0);
+    add_links(&s, links, is_blink);
+    if (place(&s, eyes)) return NOH_OK;
+    add_links(&s, links, is_of_eyes);
+    if (place(&s, eyes)) return NOH_OK;
+    return noh_fail(error, NOH_ERR_NOT_FOUND,
+                    "a face has no joints for its eyes, and no targets that shut or turn both", 0, 0);
 }

@@ -51,9 +51,24 @@ noh render "$puppet" -o "$work/no.png" --ground stairs
 expect 2 'a ground without a clip'
 noh sheet "$puppet" -o "$work/no.png" --clip walk --ground stairs --to bow
 expect 2 'a ground in a transition'
-noh render "$build/mask.noh" -o "$work/no.png" --look-at 1,2,3
-expect 1 'a mask has nothing to turn'
+sh "$(dirname "$0")/../support/small_glb.sh" >"$work/small.glb"
+noh build "$work/small.glb" -o "$work/small.noh"
+noh render "$work/small.noh" -o "$work/no.png" --look-at 1,2,3
+expect 1 'two joints without a head look at nothing'
 check 'and says so' grep -q 'look-at' "$work/err"
+# A mask has no joints: targets turn its eyes, at once, to either side and as far as they go where the point is behind.
+mask() {
+    noh render "$build/mask.noh" -o "$work/mask_$1.png" --size 96x96 --camera face --look-at "$2"
+    expect 0 "a mask looks $1"
+}
+mask ahead 0,0,2
+mask left 2,0,0.5
+mask behind 2,0,-1
+mask right -2,0,0.5
+for other in left right behind; do
+    check "not ahead: $other" sh -c '! cmp -s "$1" "$2"' - "$work/mask_ahead.png" "$work/mask_$other.png"
+done
+check 'not the same side' sh -c '! cmp -s "$1" "$2"' - "$work/mask_left.png" "$work/mask_right.png"
 noh render "$build/mask.noh" -o "$work/face.png" --size 64x64 --look-at 1,2,3 --face on
-expect 0 'but its face looks'
+expect 0 'a face that lives looks'
 finish

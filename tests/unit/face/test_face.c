@@ -406,6 +406,28 @@ static void eyes_stay_within_their_limits_and_the_head_helps(void **state)
     assert_true(fabs((double)pose.head_angles[0]) * DEGREES < 0.01); /* 11 degrees: the eyes alone */
 }
 
+/* A target that goes round behind: the head turns as far as it may, and changes sides once. */
+static void a_target_behind_is_looked_at_over_one_shoulder(void **state)
+{
+    noh_face face = face_of(5, NOH_FACE_CALM);
+    (void)state;
+    for (int d = 0; d < 360; d++) {
+        const float yaw = (float)(d / DEGREES), point[3] = { 3.0f * sinf(yaw), 0.09f, 3.0f * cosf(yaw) };
+        noh_face_pose pose;
+        assert_int_equal(noh_face_follow(&face, &desc, point, NULL), NOH_OK);
+        noh_face_step(&face, &desc, SECOND);
+        pose = pose_of(&face);
+        if (d > 112 && d < 198) assert_true(fabs((double)pose.head_angles[0] * DEGREES - 75.0) < 0.2);
+        if (d > 202 && d < 248) assert_true(fabs((double)pose.head_angles[0] * DEGREES + 75.0) < 0.2);
+    }
+    for (int n = 0; n < 50; n++) { /* to and fro behind */
+        const float point[3] = { n & 1 ? 0.3f : -0.3f, 0.09f, -3.0f };
+        assert_int_equal(noh_face_look_at(&face, &desc, point, NULL), NOH_OK);
+        noh_face_step(&face, &desc, SECOND);
+        if (n) assert_true((double)pose_of(&face).head_angles[0] * DEGREES < -74.0);
+    }
+}
+
 static void lids_follow_the_eyes_at_once(void **state)
 {
     noh_face face = face_of(4, NOH_FACE_CALM);
@@ -586,6 +608,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(each_eye_aims_at_its_target),
         cmocka_unit_test(saccades_follow_the_main_sequence),
         cmocka_unit_test(eyes_stay_within_their_limits_and_the_head_helps),
+        cmocka_unit_test(a_target_behind_is_looked_at_over_one_shoulder),
         cmocka_unit_test(lids_follow_the_eyes_at_once),
         cmocka_unit_test(steps_may_be_cut_anywhere),
         cmocka_unit_test(a_copy_goes_on_as_the_face),

@@ -393,10 +393,66 @@ static void a_look_stays_in_its_cone(void **state)
     assert_true(fabs(look_angle(35.0f, &look, q) - 35.0) < 1e-3);
     assert_true(fabs(look_angle(-59.0f, &look, q) + 59.0) < 1e-3);
     assert_true(fabs(look_angle(70.0f, &look, q) - 60.0) < 1e-3);
-    assert_true(fabs(look_angle(79.0f, &look, q) - 60.0) < 1e-3);
-    assert_true(fabs(look_angle(85.0f, &look, q)) < 1e-3); /* let go of */
-    assert_true(fabs(look_angle(70.0f, &look, q)) < 1e-3); /* and not yet taken up again */
+    assert_true(fabs(look_angle(100.0f, &look, q) - 60.0) < 1e-3);
+    assert_true(fabs(look_angle(-159.0f, &look, q) + 60.0) < 1e-3);
     assert_true(fabs(look_angle(58.0f, &look, q) - 58.0) < 1e-3);
+}
+
+static void a_look_lets_go_where_it_is_asked_to(void **state)
+{
+    const noh_ik_look_desc desc = { 0.0f, (float)(80.0 * DEGREE), 0.0f };
+    static const float angles[][2] = { { 79.0f, 60.0f }, { 85.0f, 0.0f }, { 70.0f, 0.0f }, { 58.0f, 58.0f } };
+    noh_ik_look look;
+    (void)state;
+    noh_ik_look_init(&look, ahead);
+    (void)look_angle(20.0f, &look, (float[4]){ 0 });
+    for (int i = 0; i < 4; i++) {
+        const double at = (double)angles[i][0] * DEGREE;
+        const float target[3] = { (float)sin(at), 0.0f, (float)cos(at) };
+        float q[4], v[3];
+        noh_ik_look_step(&look, &desc, ahead, target, 10.0f, q);
+        noh_quat_rotate(q, ahead, v);
+        assert_true(fabs(atan2((double)v[0], (double)v[2]) / DEGREE - (double)angles[i][1]) < 1e-3);
+    }
+}
+
+/* Round about: min(angle, 60 degrees), continuous where the target enters and leaves the cone; behind it stays over the
+ * shoulder where it came from, and changes sides once, 20 degrees past straight behind. */
+static void a_target_goes_round_a_look(void **state)
+{
+    for (int way = -1; way <= 1; way += 2) {
+        noh_ik_look look;
+        float q[4];
+        noh_ik_look_init(&look, ahead);
+        for (int d = 0; d < 360; d++) {
+            const double angle = look_angle((float)(way * d), &look, q) * way;
+            if (d == 200) continue; /* rounding has the choice */
+            const double wanted = d < 200 ? fmin(d, 60.0) : fmax(d - 360.0, -60.0);
+            if (fabs(angle - wanted) > 1e-2) fail_msg("%g at %d, not %g", angle, d, wanted);
+        }
+    }
+    (void)state;
+}
+
+/* From one side to the other a wide cone is crossed in front, never behind, at the limited speed. */
+static void a_wide_look_changes_sides_in_front(void **state)
+{
+    const noh_ik_look_desc desc = { (float)(130.0 * DEGREE), 0.0f, 2.0f };
+    noh_ik_look look;
+    (void)state;
+    noh_ik_look_init(&look, ahead);
+    for (int n = 0; n < 1000; n++) {
+        const double at = (n < 300 ? 120.0 : -125.0) * DEGREE;
+        const float target[3] = { (float)sin(at), 0.05f, (float)cos(at) };
+        float q[4], before[3];
+        double dot = 0.0;
+        memcpy(before, look.direction, sizeof before);
+        noh_ik_look_step(&look, &desc, ahead, target, 0.01f, q);
+        for (int i = 0; i < 3; i++) dot += (double)before[i] * (double)look.direction[i];
+        assert_true(acos(fmin(dot, 1.0)) <= 0.02 + 1e-3);
+        if (n == 299 || n == 999)
+            assert_true(fabs(atan2((double)look.direction[0], (double)look.direction[2]) - at) < 1e-3);
+    }
 }
 
 /* A target that is behind and moves from side to side swings the book's head about, from one limit to the other. */
@@ -532,6 +588,9 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(a_scaled_hinge_turns_as_far_as_an_unscaled_one),
         cmocka_unit_test(opposite_vectors_get_an_axis),
         cmocka_unit_test(a_look_stays_in_its_cone),
+        cmocka_unit_test(a_look_lets_go_where_it_is_asked_to),
+        cmocka_unit_test(a_target_goes_round_a_look),
+        cmocka_unit_test(a_wide_look_changes_sides_in_front),
         cmocka_unit_test(a_target_behind_does_not_swing_the_head),
         cmocka_unit_test(a_look_turns_no_faster_than_it_can),
         cmocka_unit_test(a_look_does_not_depend_on_steps),

@@ -7,6 +7,8 @@
 
 #include "cli/message.h"
 
+#define SETTLE_S 2.0
+
 /* ---- its kinds ---- */
 
 /* The skeleton that moves what a node draws; NOH_NONE: rigid. */
@@ -274,7 +276,8 @@ static int open_actors(figure *f)
     }
     const figure_body *body = f->desc.body;
     const int status = body ? figure_body_place(body, f->stage, f->kinds, f->actors, f->stage_desc.kind_count) : 0;
-    return status ? status : figure_set_look(f, &f->look);
+    if (status || figure_set_look(f, &f->look)) return status ? status : EXIT_FAILED;
+    return body && body->has_faces ? figure_live(f, SETTLE_S, 0.0) : 0; /* eyes take their time to turn */
 }
 
 int figure_set_look(figure *f, const noh_look *look)

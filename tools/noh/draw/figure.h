@@ -183,6 +183,8 @@ int figure_check_target(const pack_file *file, const char *name);
 
 int figure_pose(figure *f);
 
+/* Where a kind's eyes are; 0: nowhere. */
+int figure_find_eyes(const noh_kind_desc *kind, noh_kind_face *face, noh_error *error);
 /* The faces of kinds whose eyes can be found: a bit for each that has one. */
 uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces);
 /* --feel EMOTION=AMOUNT, of all its faces. */

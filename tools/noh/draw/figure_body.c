@@ -8,6 +8,7 @@
 
 #include "cli/args.h"
 #include "cli/message.h"
+#include "figure.h"
 #include "gl/gl_program.h"
 #include "tool_shaders.gen.h"
 
@@ -121,6 +122,16 @@ float figure_body_height(const figure_body *b, const float at[3])
 
 /* ---- parts ---- */
 
+/* A kind without joints that look has a face, whose eyes look; it does nothing else. */
+static int add_face(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *error)
+{
+    if (!figure_find_eyes(kind, &b->faces[k], error)) return 0;
+    b->faces[k].flags = NOH_FACE_CALM;
+    kind->face = &b->faces[k];
+    b->has_faces = 1;
+    return 1;
+}
+
 static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *error)
 {
     noh_ragdoll_source source;
@@ -132,7 +143,8 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
     if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &source.joints, &header, error)) return 0;
     source.metres = (float)header->unit_cm / 100.0f;
     b->metre = 1.0f / source.metres;
-    if (b->looks && (kind->face || !noh_gaze_rig_make(&source, &b->gazes[k].rig, error))) {
+    if (b->looks &&
+        (kind->face || !noh_gaze_rig_make(&source, &b->gazes[k].rig, error) || add_face(b, kind, k, error))) {
         b->parts[k][count++] = noh_stage_gaze_part(&b->gazes[k]);
     }
     if (b->has_ground && !noh_feet_rig_make(&source, &b->feet[k].rig, error)) {
@@ -152,7 +164,9 @@ int figure_body_add(figure_body *b, const char *file, noh_kind_desc *kinds, uint
     int can = 0;
     b->metre = 1.0f;
     for (uint32_t k = 0; k < kind_count; k++) {
-        if (kinds[k].skeleton == NOH_NONE && kinds[k].face) can |= !b->has_ground;
+        if (kinds[k].skeleton == NOH_NONE && b->looks && (kinds[k].face || add_face(b, &kinds[k], k, &error))) {
+            can |= !b->has_ground;
+        }
         if (kinds[k].skeleton != NOH_NONE) can |= add_to(b, &kinds[k], k, &error);
     }
     if (!can) {

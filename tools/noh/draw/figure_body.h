@@ -28,6 +28,8 @@ typedef struct figure_body {
     float metre; /* in the pack's unit */
     /* of each kind */
     noh_kind_gaze gazes[NOH_STAGE_KINDS_MAX];
+    noh_kind_face faces[NOH_STAGE_KINDS_MAX]; /* where no joint turns: eyes that targets turn */
+    int has_faces;
     noh_kind_feet feet[NOH_STAGE_KINDS_MAX];
     noh_stage_part parts[NOH_STAGE_KINDS_MAX][2];
     /* what is drawn; zeros: nothing */

@@ -6,15 +6,21 @@
 #include "cli/message.h"
 #include "figure.h"
 
+int figure_find_eyes(const noh_kind_desc *kind, noh_kind_face *face, noh_error *error)
+{
+    const size_t bytes = noh_kind_find_eyes_size(kind);
+    void *scratch = malloc(bytes + 1u);
+    memset(face, 0, sizeof *face);
+    const int found = scratch && !noh_kind_find_eyes(kind, scratch, bytes, face->face.eyes, error);
+    free(scratch);
+    return found;
+}
+
 uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces)
 {
     uint32_t found = 0;
     for (uint32_t k = 0; k < kind_count; k++) {
-        const size_t bytes = noh_kind_find_eyes_size(&kinds[k]);
-        void *scratch = malloc(bytes + 1u);
-        memset(&faces[k], 0, sizeof faces[k]);
-        if (scratch && !noh_kind_find_eyes(&kinds[k], scratch, bytes, faces[k].face.eyes, NULL)) found |= 1u << k;
-        free(scratch);
+        if (figure_find_eyes(&kinds[k], &faces[k], NULL)) found |= 1u << k;
     }
     return found;
 }
