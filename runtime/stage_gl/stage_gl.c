@@ -456,8 +456,8 @@ static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, 
 }
 
 /* One actor's mesh: its weights and its place. */
-static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_shown *shown,
-                         const uint8_t *tint, const float *weights)
+static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_actor *actor,
+                         const noh_stage_shown *shown, const float *weights)
 {
     noh_gl_morph_binding morph;
     float world[12];
@@ -470,9 +470,9 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
         (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
-    if (!item->mirrored) {
+    if (!noh_gl_is_mirrored(item, actor, shown)) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
-        (void)noh_gl_skin_set_tint(item->skin, shown->place, tint, NULL);
+        (void)noh_gl_skin_set_tint(item->skin, shown->place, noh_stage_tint_of(actor), NULL);
         upload_regions(mesh, item, shown->place, weights);
     }
 }
@@ -498,7 +498,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
     const float *weights = k->weights + (size_t)index * k->weight_count;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        upload_place(mesh, &items[m], shown, noh_stage_tint_of(&k->actors[index]), weights + mesh->first_weight);
+        upload_place(mesh, &items[m], &k->actors[index], shown, weights + mesh->first_weight);
         if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }
 }

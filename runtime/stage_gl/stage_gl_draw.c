@@ -114,7 +114,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
     const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
     const noh_gl_skin_binding skin = skin_of(item, first, influences);
     noh_gl_morph_binding morph;
-    if (item->mirrored || !noh_gl_is_crowd(d->k) || has_streams(item)) {
+    if (!noh_gl_is_crowd(d->k) || has_streams(item)) {
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
         return;
     }
@@ -133,16 +133,26 @@ static uint32_t wears(const drawing *d, uint32_t place)
     return look->texture_set | (uint32_t)look->wrinkle_models << 16 | (uint32_t)look->smoothed << 24;
 }
 
+static int is_mirrored(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    return noh_gl_is_mirrored(&d->on_gl->items[mesh], actor_at(d, place), shown_at(d, place));
+}
+
 static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
 {
+    const uint32_t caps = noh_stage_influence_levels(d->k);
     const uint32_t end = d->k->runs[run + 1u];
     uint32_t at = d->k->runs[run];
     while (at < end) {
         uint32_t first;
         while (at < end && !is_seen(d, at)) at++;
         first = at;
-        while (at < end && is_seen(d, at) && wears(d, at) == wears(d, first)) at++;
-        if (at > first) draw_together(d, mesh, run, first, at - first);
+        while (at < end && is_seen(d, at) && wears(d, at) == wears(d, first) && !is_mirrored(d, mesh, at)) at++;
+        if (at > first) {
+            draw_together(d, mesh, run, first, at - first);
+        } else if (at < end) {
+            draw_alone(d, mesh, at++, run / caps, 0.0f, 1.0f);
+        }
     }
 }
 

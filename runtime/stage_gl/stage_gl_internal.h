@@ -29,6 +29,15 @@ typedef struct noh_gl_item {
     int mirrored; /* its node mirrors: a crowd cannot be drawn */
 } noh_gl_item;
 
+/* Whether an actor's item is mirrored, by its node or by the joint that the actor hangs on: it is drawn alone then,
+ * because one draw has one winding. Places of their own never mirror. */
+static inline int noh_gl_is_mirrored(const noh_gl_item *item, const noh_stage_actor *actor,
+                                     const noh_stage_shown *shown)
+{
+    float rows[12];
+    return item->mirrored || (actor->parent && noh_gl_normal_rows(shown->world, rows) < 0.0f);
+}
+
 /* Whether an actor has a slot, and the mesh targets: 0: it is drawn without them. */
 static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown *shown)
 {

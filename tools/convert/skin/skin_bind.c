@@ -7,6 +7,7 @@
 #include "convert/clips/model_clips.h"
 #include "mesh_join.h"
 #include "convert/model/model_build.h"
+#include "skin_mirror.h"
 #include "skin_rigid.h"
 
 static int fail_memory(model_error *error)
@@ -140,7 +141,8 @@ static int mark_dual_quaternion(model *m, const char *name, model_error *error)
 int skins_bind(model *m, model_clips *made, const skin_options *options, model_error *error)
 {
     const uint32_t limit = options->influences ? options->influences : NOH_INFLUENCES_MAX;
-    if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report)) {
+    if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report) ||
+        skins_mirror(m)) {
         return fail_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {

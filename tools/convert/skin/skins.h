@@ -21,7 +21,8 @@ typedef struct skin_options {
 
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
  * become skinned ones (skin_rigid.h); a mesh that is drawn with several skins, or both with and without one, is copied.
- * Weights that are left out give a warning. 0, or 1 and a filled error. */
+ * What joints mirror is wound for it (skin_mirror.h). Weights that are left out give a warning. 0, or 1 and a filled
+ * error. */
 int skins_bind(model *m, struct model_clips *made, const skin_options *options, model_error *error);
 
 #endif

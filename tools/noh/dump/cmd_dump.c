@@ -21,10 +21,19 @@ typedef struct dump_args {
     figure_desc figure;
 } dump_args;
 
+/* A node that mirrors turns triangles and cofactors over. */
+static int mirrors(const float w[12])
+{
+    return ((double)w[0] * w[5] - (double)w[1] * w[4]) * w[10] + ((double)w[1] * w[6] - (double)w[2] * w[5]) * w[8] +
+               ((double)w[2] * w[4] - (double)w[0] * w[6]) * w[9] <
+           0.0;
+}
+
 /* A normal by the inverse transpose, which is the cofactor matrix up to a factor; unlike the inverse it exists for
  * every matrix. Transforming it by the matrix itself would tilt it under unequal scales. */
 static void transform_normal(const float w[12], const float n[3], double out[3])
 {
+    const double side = mirrors(w) ? -1.0 : 1.0;
     double length = 0.0;
     for (int i = 0; i < 3; i++) {
         const float *a = w + 4 * ((i + 1) % 3), *b = w + 4 * ((i + 2) % 3);
@@ -33,7 +42,7 @@ static void transform_normal(const float w[12], const float n[3], double out[3])
                  ((double)a[0] * b[1] - (double)a[1] * b[0]) * n[2];
         length += out[i] * out[i];
     }
-    length = length > 0.0 ? sqrt(length) : 1.0;
+    length = side * (length > 0.0 ? sqrt(length) : 1.0);
     for (int i = 0; i < 3; i++) {
         out[i] /= length;
     }
@@ -54,7 +63,7 @@ static void dump_vertex(byte_buffer *out, const noh_vertex *v, const float world
     buffer_print(out, "vn %.6f %.6f %.6f\nvt %.7g %.7g\n", n[0], n[1], n[2], (double)v->uv[0], 1.0 - (double)v->uv[1]);
 }
 
-static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
+static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first, int turned)
 {
     for (uint32_t s = 0; s < mesh->header->submesh_count; s++) {
         const noh_submesh *sub = &mesh->submeshes[s];
@@ -64,7 +73,7 @@ static void dump_faces(byte_buffer *out, const noh_mesh *mesh, uint32_t first)
         for (uint32_t i = 0; i < sub->index_count; i += 3) {
             buffer_print(out, "f");
             for (uint32_t k = 0; k < 3; k++) {
-                uint32_t v = first + noh_mesh_index(mesh, sub->first_index + i + k);
+                uint32_t v = first + noh_mesh_index(mesh, sub->first_index + i + (turned ? (3 - k) % 3 : k));
                 buffer_print(out, " %u/%u/%u", v, v, v);
             }
             buffer_print(out, "\n");
@@ -82,7 +91,7 @@ static void dump_mesh(byte_buffer *out, const noh_mesh *mesh, const noh_vertex *
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         dump_vertex(out, &vertices[v], world);
     }
-    dump_faces(out, mesh, *first);
+    dump_faces(out, mesh, *first, mirrors(world));
     *first += mesh->header->vertex_count;
 }
 

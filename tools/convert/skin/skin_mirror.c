@@ -1,0 +1,121 @@
+#include "skin_mirror.h"
+
+#include <stdlib.h>
+
+#include "convert/model/affine.h"
+#include "convert/model/model_build.h"
+
+/* A scale of 0 counts as positive: the sign is then that of the other axes, and of the pose once the scale grows. */
+static int node_side(const model *m, uint32_t node)
+{
+    int side = 1;
+    for (uint32_t n = node; n != MODEL_NONE; n = m->nodes[n].parent) {
+        for (int i = 0; i < 3; i++) side = m->nodes[n].scale[i] < 0.0f ? -side : side;
+    }
+    return side;
+}
+
+static int joint_side(const model *m, const model_skin *skin, uint32_t joint)
+{
+    double bind[16];
+    affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
+    return affine_determinant(bind) < 0.0 ? -node_side(m, skin->joints[joint]) : node_side(m, skin->joints[joint]);
+}
+
+/* ---- all of it ---- */
+
+static void negate(float *values, uint32_t count, uint32_t stride)
+{
+    for (size_t i = 0; values && i < count; i++) values[i * stride] = 0.0f - values[i * stride];
+}
+
+static void turn_over(uint32_t *triangle)
+{
+    const uint32_t second = triangle[1];
+    triangle[1] = triangle[2];
+    triangle[2] = second;
+}
+
+/* By x = 0, as seen from mesh space. */
+static void mirror_mesh(model_mesh *mesh)
+{
+    const uint32_t count = mesh->vertex_count;
+    negate(mesh->position, count, 3);
+    negate(mesh->normal, count, 3);
+    negate(mesh->tangent, count, 4);
+    if (mesh->tangent) negate(mesh->tangent + 3, count, 4);
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        negate(mesh->targets[t].position, count, 3);
+        negate(mesh->targets[t].normal, count, 3);
+        negate(mesh->targets[t].tangent, count, 3);
+    }
+    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) turn_over(mesh->indices + i);
+}
+
+static void mirror_skin(model *m, uint32_t index)
+{
+    model_skin *skin = &m->skins[index];
+    for (uint32_t j = 0; j < skin->joint_count; j++) negate(skin->inverse_bind + 16 * (size_t)j, 3, 1);
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (m->meshes[i].bound && m->meshes[i].skin == index) mirror_mesh(&m->meshes[i]);
+    }
+}
+
+/* ---- a part of it ---- */
+
+static int vertex_mirrors(const model_mesh *mesh, const signed char *sides, uint32_t vertex)
+{
+    const size_t first = (size_t)vertex * MODEL_INFLUENCES_MAX;
+    float sum = 0.0f;
+    for (size_t i = first; i < first + MODEL_INFLUENCES_MAX && mesh->joint_weights[i] > 0.0f; i++) {
+        sum += mesh->joint_weights[i] * (float)sides[mesh->joints[i]];
+    }
+    return sum < 0.0f;
+}
+
+static int wind_mesh(model *m, model_mesh *mesh, const signed char *sides)
+{
+    uint32_t mirrored = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) mirrored += (uint32_t)vertex_mirrors(mesh, sides, v);
+    for (uint32_t i = 0; mirrored && i + 2 < mesh->index_count; i += 3) {
+        int corners = 0;
+        for (uint32_t k = 0; k < 3; k++) corners += vertex_mirrors(mesh, sides, mesh->indices[i + k]);
+        if (corners > 1) turn_over(mesh->indices + i);
+    }
+    return mirrored && mirrored < mesh->vertex_count &&
+           model_warn(m,
+                      "mesh '%.40s': its joints mirror %u of its %u vertices; triangles face as most of their corners "
+                      "do (apply negative scales before the file is written)",
+                      mesh->name, mirrored, mesh->vertex_count);
+}
+
+static int wind_meshes(model *m, uint32_t index, const signed char *sides)
+{
+    int failed = 0;
+    for (uint32_t i = 0; !failed && i < m->mesh_count; i++) {
+        if (m->meshes[i].bound && m->meshes[i].skin == index) failed = wind_mesh(m, &m->meshes[i], sides);
+    }
+    return failed;
+}
+
+int skins_mirror(model *m)
+{
+    int failed = 0;
+    for (uint32_t s = 0; !failed && s < m->skin_count; s++) {
+        const model_skin *skin = &m->skins[s];
+        signed char *sides = model_zeros(skin->joint_count, 1);
+        uint32_t mirrored = 0;
+        if (!sides) return 1;
+        for (uint32_t j = 0; j < skin->joint_count; j++) {
+            sides[j] = (signed char)joint_side(m, skin, j);
+            mirrored += sides[j] < 0;
+        }
+        if (mirrored && mirrored == skin->joint_count) {
+            mirror_skin(m, s);
+        } else if (mirrored) {
+            failed = wind_meshes(m, s, sides);
+        }
+        free(sides);
+    }
+    return failed;
+}
