@@ -27,11 +27,14 @@ typedef struct work {
     double *base_tangent; /* [vertex_count][3] ours, not the file's */
 } work;
 
+/* Copies of split vertices are in no submesh's range, but in its triangles. */
 static void spread_missing(const model_mesh *mesh, const uint8_t *by_submesh, uint8_t *by_vertex)
 {
     for (uint32_t s = 0; s < mesh->submesh_count; ++s) {
         const model_submesh *sub = &mesh->submeshes[s];
-        memset(by_vertex + sub->first_vertex, by_submesh ? by_submesh[s] : sub->missing, sub->vertex_count);
+        const uint8_t missing = by_submesh ? by_submesh[s] : sub->missing;
+        memset(by_vertex + sub->first_vertex, missing, sub->vertex_count);
+        for (uint32_t i = 0; i < sub->index_count; ++i) by_vertex[mesh->indices[sub->first_index + i]] = missing;
     }
 }
 
@@ -211,9 +214,29 @@ static void base_tangents_write(work *w)
     }
 }
 
+static int grow_bits(uint8_t **bits, uint32_t before, const uint32_t *sources, uint32_t count)
+{
+    uint8_t *grown = realloc(*bits, (size_t)before + count);
+    if (!grown) return 1;
+    for (uint32_t i = 0; i < count; ++i) grown[before + i] = grown[sources[i]];
+    *bits = grown;
+    return 0;
+}
+
+static int split_vertices(work *w)
+{
+    const uint32_t before = w->mesh->vertex_count;
+    uint32_t *sources = NULL, count = 0;
+    int failed = tangents_split(&w->groups, w->mesh, w->missing, &sources, &count) ||
+                 (count && (grow_bits(&w->missing, before, sources, count) ||
+                            grow_bits(&w->target_missing, before, sources, count)));
+    free(sources);
+    return failed;
+}
+
 static int base_tangents(work *w)
 {
-    if (tangents_build(w->mesh, w->weld, &w->groups)) return 1;
+    if (tangents_build(w->mesh, &w->groups) || split_vertices(w)) return 1;
     tangents_evaluate(&w->groups, w->mesh, NULL, NULL, NULL, NULL);
     w->base_tangent = model_zeros(w->mesh->vertex_count, 3 * sizeof(double));
     free(w->touched);

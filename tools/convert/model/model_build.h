@@ -5,7 +5,7 @@
  *   model_warn     add a sentence to the model's warnings
  *   weld_vertices  which vertices are one point of the surface
  *   normals_*      fans of smooth corners, and their normals in any pose
- *   tangents_*     groups of corners that share a tangent, likewise */
+ *   tangents_*     groups of corners that share a tangent, likewise; vertices with several are split */
 #ifndef NOH_CONVERT_MODEL_MODEL_BUILD_H
 #define NOH_CONVERT_MODEL_MODEL_BUILD_H
 
@@ -36,7 +36,7 @@ int model_warn(model *m, const char *format, ...);
 int weld_vertices(const model_mesh *mesh, uint32_t *out);
 
 /* A fan: the corners around one point that share one normal. A vertex is in only one fan, because vertices are never
- * split. */
+ * split for normals. */
 typedef struct normal_fans {
     uint32_t corner_count, fan_count;
     uint32_t *corner_fan; /* [corner_count]; a corner is an entry of mesh->indices */
@@ -56,17 +56,26 @@ int normals_build(const model_mesh *mesh, const uint32_t *weld, normal_fans *out
 void normals_evaluate(normal_fans *fans, const model_mesh *mesh, const float *delta, const uint8_t *touched);
 void normals_free(normal_fans *fans);
 
-/* A tangent group: welded vertices with equal normals and UVs. */
+/* A tangent group: the corners of a fan, which share a tangent. */
 typedef struct tangent_groups {
     uint32_t group_count;
+    uint32_t *corner_group; /* [index_count]; MODEL_NONE: the triangle has no area, or its UVs have none and no fan
+                             * reaches it */
     uint32_t *vertex_group; /* [vertex_count] */
     double *sum;            /* [group_count][3] of the last tangents_evaluate; zero where there are no usable UVs */
-    signed char *hand;      /* [group_count] +1 or -1: the side with the larger weight in the base pose */
+    signed char *hand;      /* [group_count] +1 where the UVs run counter-clockwise in the base pose, else -1 */
 } tangent_groups;
 
-/* Group the vertices and choose each group's handedness from the base pose.
- * Needs mesh->normal; without mesh->uv every sum is zero. Returns 1 when out of memory. */
-int tangents_build(const model_mesh *mesh, const uint32_t *weld, tangent_groups *out);
+/* Find the fans of the base pose. A vertex that has several belongs to the one with the hand of its file's tangent and
+ * the largest weight. Needs mesh->normal; without mesh->uv every sum is zero. Returns 1 when out of memory. */
+int tangents_build(const model_mesh *mesh, tangent_groups *out);
+
+/* Give each further fan of a vertex whose tangent is missing a copy of that vertex.
+ * missing   [vertex_count] MODEL_MISSING_* bits
+ * *sources  [*count] what was copied, to be freed; the copies follow the vertices that were there
+ * Returns 1 when out of memory. */
+int tangents_split(tangent_groups *groups, model_mesh *mesh, const uint8_t *missing, uint32_t **sources,
+                   uint32_t *count);
 
 /* Angle-weighted tangents in one pose: base plus deltas.
  * position_delta, normal_delta  [vertex_count][3] or NULL
