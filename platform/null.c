@@ -11,7 +11,7 @@
 noh_platform_context *noh_null_current;
 
 static const char *const call_names[NULL_CALL_COUNT] = {
-#define NULL_NAME(field, TYPE) "gl" #field,
+#define NULL_NAME(field, result, parameters) "gl" #field,
     NULL_CALLS(NULL_NAME)
 #undef NULL_NAME
         "glFramebufferTexture",

@@ -44,7 +44,7 @@ typedef struct null_unit {
 /* Every function that the platform has: calls are counted by these. */
 #define NULL_CALLS(X) NOH_GL_REQUIRED(X) NOH_GL_EXTRA(X)
 enum {
-#define NULL_CALL(field, TYPE) NULL_##field,
+#define NULL_CALL(field, result, parameters) NULL_##field,
     NULL_CALLS(NULL_CALL)
 #undef NULL_CALL
         NULL_FramebufferTexture,

@@ -14,6 +14,9 @@
 #ifndef NOH_PLATFORM_PLATFORM_H
 #define NOH_PLATFORM_PLATFORM_H
 
+#include <GLES3/gl32.h>
+#include <GLES2/gl2ext.h>
+
 #include "base/result.h"
 #include "gl/gl_api.h"
 

@@ -1,6 +1,7 @@
 /* noh_gl.h: all of noh with OpenGL ES 3.x. Includes noh.h.
  *
- * noh creates no context and links no GL. Make a context current, then:
+ * noh creates no context and links no GL. It includes no GL header and defines no GL name: include the header or loader
+ * that you use, before or after this one. Make a context current, then:
  *
  *     noh_gl_api_load         fill a table of GL functions through your lookup (eglGetProcAddress and the like)
  *     noh_gl_caps_probe       find out what this GPU can do

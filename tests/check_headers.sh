@@ -4,6 +4,8 @@
 #   - limits.h holds every limit
 #   - each public header compiles alone, without a warning: C99, C11 and C++17, gcc and clang, for 32 bits too (NOH_LONG:
 #     each compiler with each)
+#   - noh_gl.h stands before, behind and between the headers of GL and of its loaders, in C and C++; no macro and no type of
+#     GL's comes from it
 #   - all functions that they declare link, from C and from C++
 # NOH_HEADERS is where they lie: runtime, or PREFIX/include/noh of an installed library.
 . "$(dirname "$0")/cli/lib.sh"
@@ -73,6 +75,64 @@ if [ -n "${NOH_LONG:-}" ]; then
     alone clang -std=c99
     alone g++ -std=c++17 -m32
 fi
+
+# ---- other headers of GL ----
+
+# NAME LANGUAGE FLAGS HEADER: a program that calls GL by that header, with noh_gl.h on each side of it. What the header
+# itself warns of is not ours.
+with_header() {
+    for order in before behind both; do
+        {
+            [ $order = behind ] || echo '#include "noh_gl.h"'
+            printf '#include %s\n' "$4"
+            [ $order = before ] || echo '#include "noh_gl.h"'
+            echo 'static noh_gl_api table;'
+            echo 'int main(void)'
+            echo '{'
+            echo '    unsigned name = 0;'
+            echo '    GLuint same = name;'
+            echo '    table.GenBuffers(1, &same);'
+            echo '    glClear(GL_COLOR_BUFFER_BIT);'
+            echo '    return table.GetError ? (int)table.GetError() : GL_NO_ERROR;'
+            echo '}'
+        } >"$work/order.$2"
+        # shellcheck disable=SC2086
+        check "$1, noh_gl.h $order, $3" "$(compiler_of "$2")" -x "$2" $3 -Wall -Wextra -Wpedantic -Werror "-I$headers" \
+            -isystem "$work/glad/include" -isystem /usr/include/SDL2 -fsyntax-only "$work/order.$2"
+    done
+}
+compiler_of() {
+    if [ "$1" = c ]; then echo gcc; else echo g++; fi
+}
+in_orders() { # NAME HEADER FOUND
+    if ! printf '#include %s\n' "$2" | gcc -isystem "$work/glad/include" -isystem /usr/include/SDL2 -E -x c - >/dev/null 2>&1; then
+        skip "$1 and noh_gl.h" "$3 is not here"
+        return
+    fi
+    with_header "$1" c -std=c99 "$2"
+    with_header "$1" c++ -std=c++17 "$2"
+}
+if command -v glad >/dev/null 2>&1; then
+    for api in gl:core=4.5 gles2=3.2; do
+        glad --reproducible --quiet --out-path "$work/glad" --api $api c >/dev/null 2>&1
+    done
+fi
+in_orders 'OpenGL ES 2' '<GLES2/gl2.h>' libgles-dev
+in_orders 'OpenGL ES 3.0' '<GLES3/gl3.h>' libgles-dev
+in_orders 'OpenGL ES 3.2' '<GLES3/gl32.h>' libgles-dev
+in_orders 'desktop OpenGL' '<GL/gl.h>' libgl-dev
+in_orders SDL '<SDL_opengl.h>' libsdl2-dev
+in_orders 'SDL of OpenGL ES' '<SDL_opengles2.h>' libsdl2-dev
+in_orders GLEW '<GL/glew.h>' libglew-dev
+in_orders glad '<glad/gl.h>' python3-glad
+in_orders 'glad of OpenGL ES' '<glad/gles2.h>' python3-glad
+
+printf '#include "noh_gl.h"\n' | gcc "-I$headers" -dM -E -x c - | grep -E '^#define (_*gl[a-z0-9]*_h_|GL_|GLAPI|APIENTRY|KHRONOS|gl[A-Z])' >"$work/macros"
+check 'noh_gl.h defines no macro of GL'"'"'s' sh -c '! grep . "$1"' - "$work/macros"
+printf '#include "noh_gl.h"\ntypedef struct own { int own; } GLuint, GLenum, GLint, GLsizei, GLfloat, GLsync, GLboolean;\n' >"$work/own.c"
+check 'and declares no type of GL'"'"'s' gcc "-I$headers" -fsyntax-only "$work/own.c"
+
+# ---- functions ----
 
 # Every function that is declared, by gcc's own list, in one table.
 if ! printf '#include "noh_gl.h"\n' | gcc -std=c99 "-I$headers" -fsyntax-only -aux-info "$work/functions" -x c - 2>/dev/null; then

@@ -42,6 +42,8 @@ libosmesa6:a second GL
 ?clang:a second compiler
 ?cmake:using the installed library
 ?gcc-12-multilib:32 bits
+?libglew-dev:noh_gl.h beside its header
+?python3-glad:noh_gl.h beside its headers
 ?libespeak-ng1:noh speak
 ?espeak-ng-data:noh speak
 ?libsndfile1:noh speak on recordings

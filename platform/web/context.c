@@ -42,7 +42,7 @@ static const struct {
 } functions[] = {
 #define glGetString get_string
 #define glGetStringi get_string_i
-#define WEB_FUNCTION(field, TYPE) { "gl" #field, (noh_gl_proc)gl##field },
+#define WEB_FUNCTION(field, result, parameters) { "gl" #field, (noh_gl_proc)gl##field },
     NOH_GL_REQUIRED(WEB_FUNCTION)
 #undef WEB_FUNCTION
 };

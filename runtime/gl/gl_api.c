@@ -5,6 +5,7 @@
  * the context does not support, so the version and the extension strings decide, and they also decide the suffix under
  * which a function is found. The table is built apart and copied once nothing can fail any more. */
 #include "gl/gl_api.h"
+#include "gl/gl_names_internal.h"
 
 #include <string.h>
 
@@ -78,11 +79,11 @@ static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sen
 static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *missing = NULL;
-#define NOH_GL_TAKE(field, TYPE) \
-    api->field = (PFNGL##TYPE##PROC)get_required(get, user, "gl" #field " is missing", &missing);
+#define NOH_GL_TAKE(field, result, parameters) \
+    api->field = (result(NOH_GL_CALL *) parameters)get_required(get, user, "gl" #field " is missing", &missing);
     NOH_GL_REQUIRED(NOH_GL_TAKE)
 #undef NOH_GL_TAKE
-#define NOH_GL_TAKE(field, TYPE) api->field = (PFNGL##TYPE##PROC)get(user, "gl" #field);
+#define NOH_GL_TAKE(field, result, parameters) api->field = (result(NOH_GL_CALL *) parameters)get(user, "gl" #field);
     NOH_GL_EXTRA(NOH_GL_TAKE)
 #undef NOH_GL_TAKE
     return missing;
@@ -166,8 +167,8 @@ static void load_optional(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *suffix[NOH_GL_GROUP_COUNT];
     choose_suffixes(api, suffix);
-#define NOH_GL_TAKE(field, TYPE, name, group) \
-    api->field = (PFNGL##TYPE##PROC)get_suffixed(get, user, name, suffix[group]);
+#define NOH_GL_TAKE(field, result, parameters, name, group) \
+    api->field = (result(NOH_GL_CALL *) parameters)get_suffixed(get, user, name, suffix[group]);
     NOH_GL_OPTIONAL(NOH_GL_TAKE)
 #undef NOH_GL_TAKE
 }

@@ -8,15 +8,15 @@
  * The library links no GL: the application makes a context current and passes a lookup function. The table is a plain
  * struct in the caller's memory and belongs to that context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
  *
+ * No header of noh includes one of GL's, defines a GL_ name or declares a GL type, so noh goes with every GL header and
+ * loader, in any order. Include the one that you use for names such as GL_TRIANGLES. Here GLenum and GLuint are unsigned,
+ * GLint and GLsizei int, GLsizeiptr ptrdiff_t, as they are in all of them.
+ *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H
 #define NOH_GL_GL_API_H
 
-#ifndef GL_GLES_PROTOTYPES
-#define GL_GLES_PROTOTYPES 0 /* types only: calls go through the table */
-#endif
-#include <GLES3/gl32.h>
-#include <GLES2/gl2ext.h>
+#include <stddef.h>
 
 #include "base/result.h"
 
@@ -24,202 +24,216 @@
 extern "C" {
 #endif
 
+/* How GL functions are called; GL_APIENTRY in GL's headers. */
+#if defined(_WIN32) && !defined(_WIN64)
+#define NOH_GL_CALL __stdcall
+#else
+#define NOH_GL_CALL
+#endif
+
+struct __GLsync; /* GLsync points to it */
+
+/* GLDEBUGPROC: source, type, id, severity, length, message, user */
+typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, unsigned, int, const char *,
+                                                 const void *);
+
 /* Of desktop OpenGL: the vertex shader says how large points are. In OpenGL ES it always does. */
 #define NOH_GL_PROGRAM_POINT_SIZE 0x8642u
 
 /* What the library itself calls: all of it is OpenGL ES 3.0 core, and noh_gl_api_load refuses a context that lacks any.
  * tests/check_gl_calls.sh compares the list with the calls in runtime/; platform/README.md prints it for porters.
- * X(field, the name as Khronos spells it in the type PFNGL...PROC) */
-#define NOH_GL_REQUIRED(X)                                            \
-    /* state */                                                       \
-    X(Enable, ENABLE)                                                 \
-    X(Disable, DISABLE)                                               \
-    X(BlendFunc, BLENDFUNC)                                           \
-    X(BlendFuncSeparate, BLENDFUNCSEPARATE)                           \
-    X(BlendEquation, BLENDEQUATION)                                   \
-    X(Viewport, VIEWPORT)                                             \
-    X(Scissor, SCISSOR)                                               \
-    X(DepthFunc, DEPTHFUNC)                                           \
-    X(DepthMask, DEPTHMASK)                                           \
-    X(ColorMask, COLORMASK)                                           \
-    X(FrontFace, FRONTFACE)                                           \
-    X(ClearBufferfv, CLEARBUFFERFV)                                   \
-    X(Flush, FLUSH)                                                   \
-    /* questions */                                                   \
-    X(GetError, GETERROR)                                             \
-    X(GetString, GETSTRING)                                           \
-    X(GetStringi, GETSTRINGI)                                         \
-    X(GetIntegerv, GETINTEGERV)                                       \
-    /* shaders and programs */                                        \
-    X(CreateShader, CREATESHADER)                                     \
-    X(ShaderSource, SHADERSOURCE)                                     \
-    X(CompileShader, COMPILESHADER)                                   \
-    X(GetShaderiv, GETSHADERIV)                                       \
-    X(GetShaderInfoLog, GETSHADERINFOLOG)                             \
-    X(DeleteShader, DELETESHADER)                                     \
-    X(CreateProgram, CREATEPROGRAM)                                   \
-    X(AttachShader, ATTACHSHADER)                                     \
-    X(LinkProgram, LINKPROGRAM)                                       \
-    X(GetProgramiv, GETPROGRAMIV)                                     \
-    X(GetProgramInfoLog, GETPROGRAMINFOLOG)                           \
-    X(UseProgram, USEPROGRAM)                                         \
-    X(DeleteProgram, DELETEPROGRAM)                                   \
-    X(GetActiveAttrib, GETACTIVEATTRIB)                               \
-    X(GetAttribLocation, GETATTRIBLOCATION)                           \
-    X(GetUniformLocation, GETUNIFORMLOCATION)                         \
-    X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX)                     \
-    X(UniformBlockBinding, UNIFORMBLOCKBINDING)                       \
-    X(Uniform1i, UNIFORM1I)                                           \
-    X(Uniform2i, UNIFORM2I)                                           \
-    X(Uniform3i, UNIFORM3I)                                           \
-    X(Uniform4i, UNIFORM4I)                                           \
-    X(Uniform2f, UNIFORM2F)                                           \
-    X(Uniform3f, UNIFORM3F)                                           \
-    X(Uniform4f, UNIFORM4F)                                           \
-    X(Uniform3fv, UNIFORM3FV)                                         \
-    X(Uniform4fv, UNIFORM4FV)                                         \
-    X(UniformMatrix4fv, UNIFORMMATRIX4FV)                             \
-    /* buffers */                                                     \
-    X(GenBuffers, GENBUFFERS)                                         \
-    X(DeleteBuffers, DELETEBUFFERS)                                   \
-    X(BindBuffer, BINDBUFFER)                                         \
-    X(BindBufferBase, BINDBUFFERBASE)                                 \
-    X(BindBufferRange, BINDBUFFERRANGE)                               \
-    X(BufferData, BUFFERDATA)                                         \
-    X(BufferSubData, BUFFERSUBDATA)                                   \
-    /* vertices */                                                    \
-    X(GenVertexArrays, GENVERTEXARRAYS)                               \
-    X(DeleteVertexArrays, DELETEVERTEXARRAYS)                         \
-    X(BindVertexArray, BINDVERTEXARRAY)                               \
-    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)               \
-    X(VertexAttribPointer, VERTEXATTRIBPOINTER)                       \
-    X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)                     \
-    X(VertexAttribDivisor, VERTEXATTRIBDIVISOR)                       \
-    X(VertexAttrib4f, VERTEXATTRIB4F)                                 \
-    X(VertexAttribI4i, VERTEXATTRIBI4I)                               \
-    /* textures */                                                    \
-    X(GenTextures, GENTEXTURES)                                       \
-    X(DeleteTextures, DELETETEXTURES)                                 \
-    X(ActiveTexture, ACTIVETEXTURE)                                   \
-    X(BindTexture, BINDTEXTURE)                                       \
-    X(TexStorage2D, TEXSTORAGE2D)                                     \
-    X(TexStorage3D, TEXSTORAGE3D)                                     \
-    X(TexSubImage2D, TEXSUBIMAGE2D)                                   \
-    X(TexSubImage3D, TEXSUBIMAGE3D)                                   \
-    X(CompressedTexSubImage2D, COMPRESSEDTEXSUBIMAGE2D)               \
-    X(TexParameteri, TEXPARAMETERI)                                   \
-    X(PixelStorei, PIXELSTOREI)                                       \
-    /* framebuffers */                                                \
-    X(GenFramebuffers, GENFRAMEBUFFERS)                               \
-    X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                         \
-    X(BindFramebuffer, BINDFRAMEBUFFER)                               \
-    X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                     \
-    X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER)               \
-    X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)                 \
-    X(DrawBuffers, DRAWBUFFERS)                                       \
-    X(ReadBuffer, READBUFFER)                                         \
-    X(ReadPixels, READPIXELS)                                         \
-    X(GenRenderbuffers, GENRENDERBUFFERS)                             \
-    X(DeleteRenderbuffers, DELETERENDERBUFFERS)                       \
-    X(BindRenderbuffer, BINDRENDERBUFFER)                             \
-    X(RenderbufferStorageMultisample, RENDERBUFFERSTORAGEMULTISAMPLE) \
-    /* draws */                                                       \
-    X(DrawElements, DRAWELEMENTS)                                     \
-    X(DrawElementsInstanced, DRAWELEMENTSINSTANCED)                   \
-    X(DrawArraysInstanced, DRAWARRAYSINSTANCED)                       \
-    /* transform feedback */                                          \
-    X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)
+ * X(field, result, parameters) */
+#define NOH_GL_REQUIRED(X)                                                                                  \
+    /* state */                                                                                             \
+    X(Enable, void, (unsigned))                                                                             \
+    X(Disable, void, (unsigned))                                                                            \
+    X(BlendFunc, void, (unsigned, unsigned))                                                                \
+    X(BlendFuncSeparate, void, (unsigned, unsigned, unsigned, unsigned))                                    \
+    X(BlendEquation, void, (unsigned))                                                                      \
+    X(Viewport, void, (int, int, int, int))                                                                 \
+    X(Scissor, void, (int, int, int, int))                                                                  \
+    X(DepthFunc, void, (unsigned))                                                                          \
+    X(DepthMask, void, (unsigned char))                                                                     \
+    X(ColorMask, void, (unsigned char, unsigned char, unsigned char, unsigned char))                        \
+    X(FrontFace, void, (unsigned))                                                                          \
+    X(ClearBufferfv, void, (unsigned, int, const float *))                                                  \
+    X(Flush, void, (void))                                                                                  \
+    /* questions */                                                                                         \
+    X(GetError, unsigned, (void))                                                                           \
+    X(GetString, const unsigned char *, (unsigned))                                                         \
+    X(GetStringi, const unsigned char *, (unsigned, unsigned))                                              \
+    X(GetIntegerv, void, (unsigned, int *))                                                                 \
+    /* shaders and programs */                                                                              \
+    X(CreateShader, unsigned, (unsigned))                                                                   \
+    X(ShaderSource, void, (unsigned, int, const char *const *, const int *))                                \
+    X(CompileShader, void, (unsigned))                                                                      \
+    X(GetShaderiv, void, (unsigned, unsigned, int *))                                                       \
+    X(GetShaderInfoLog, void, (unsigned, int, int *, char *))                                               \
+    X(DeleteShader, void, (unsigned))                                                                       \
+    X(CreateProgram, unsigned, (void))                                                                      \
+    X(AttachShader, void, (unsigned, unsigned))                                                             \
+    X(LinkProgram, void, (unsigned))                                                                        \
+    X(GetProgramiv, void, (unsigned, unsigned, int *))                                                      \
+    X(GetProgramInfoLog, void, (unsigned, int, int *, char *))                                              \
+    X(UseProgram, void, (unsigned))                                                                         \
+    X(DeleteProgram, void, (unsigned))                                                                      \
+    X(GetActiveAttrib, void, (unsigned, unsigned, int, int *, int *, unsigned *, char *))                   \
+    X(GetAttribLocation, int, (unsigned, const char *))                                                     \
+    X(GetUniformLocation, int, (unsigned, const char *))                                                    \
+    X(GetUniformBlockIndex, unsigned, (unsigned, const char *))                                             \
+    X(UniformBlockBinding, void, (unsigned, unsigned, unsigned))                                            \
+    X(Uniform1i, void, (int, int))                                                                          \
+    X(Uniform2i, void, (int, int, int))                                                                     \
+    X(Uniform3i, void, (int, int, int, int))                                                                \
+    X(Uniform4i, void, (int, int, int, int, int))                                                           \
+    X(Uniform2f, void, (int, float, float))                                                                 \
+    X(Uniform3f, void, (int, float, float, float))                                                          \
+    X(Uniform4f, void, (int, float, float, float, float))                                                   \
+    X(Uniform3fv, void, (int, int, const float *))                                                          \
+    X(Uniform4fv, void, (int, int, const float *))                                                          \
+    X(UniformMatrix4fv, void, (int, int, unsigned char, const float *))                                     \
+    /* buffers */                                                                                           \
+    X(GenBuffers, void, (int, unsigned *))                                                                  \
+    X(DeleteBuffers, void, (int, const unsigned *))                                                         \
+    X(BindBuffer, void, (unsigned, unsigned))                                                               \
+    X(BindBufferBase, void, (unsigned, unsigned, unsigned))                                                 \
+    X(BindBufferRange, void, (unsigned, unsigned, unsigned, ptrdiff_t, ptrdiff_t))                          \
+    X(BufferData, void, (unsigned, ptrdiff_t, const void *, unsigned))                                      \
+    X(BufferSubData, void, (unsigned, ptrdiff_t, ptrdiff_t, const void *))                                  \
+    /* vertices */                                                                                          \
+    X(GenVertexArrays, void, (int, unsigned *))                                                             \
+    X(DeleteVertexArrays, void, (int, const unsigned *))                                                    \
+    X(BindVertexArray, void, (unsigned))                                                                    \
+    X(EnableVertexAttribArray, void, (unsigned))                                                            \
+    X(VertexAttribPointer, void, (unsigned, int, unsigned, unsigned char, int, const void *))               \
+    X(VertexAttribIPointer, void, (unsigned, int, unsigned, int, const void *))                             \
+    X(VertexAttribDivisor, void, (unsigned, unsigned))                                                      \
+    X(VertexAttrib4f, void, (unsigned, float, float, float, float))                                         \
+    X(VertexAttribI4i, void, (unsigned, int, int, int, int))                                                \
+    /* textures */                                                                                          \
+    X(GenTextures, void, (int, unsigned *))                                                                 \
+    X(DeleteTextures, void, (int, const unsigned *))                                                        \
+    X(ActiveTexture, void, (unsigned))                                                                      \
+    X(BindTexture, void, (unsigned, unsigned))                                                              \
+    X(TexStorage2D, void, (unsigned, int, unsigned, int, int))                                              \
+    X(TexStorage3D, void, (unsigned, int, unsigned, int, int, int))                                         \
+    X(TexSubImage2D, void, (unsigned, int, int, int, int, int, unsigned, unsigned, const void *))           \
+    X(TexSubImage3D, void, (unsigned, int, int, int, int, int, int, int, unsigned, unsigned, const void *)) \
+    X(CompressedTexSubImage2D, void, (unsigned, int, int, int, int, int, unsigned, int, const void *))      \
+    X(TexParameteri, void, (unsigned, unsigned, int))                                                       \
+    X(PixelStorei, void, (unsigned, int))                                                                   \
+    /* framebuffers */                                                                                      \
+    X(GenFramebuffers, void, (int, unsigned *))                                                             \
+    X(DeleteFramebuffers, void, (int, const unsigned *))                                                    \
+    X(BindFramebuffer, void, (unsigned, unsigned))                                                          \
+    X(FramebufferTexture2D, void, (unsigned, unsigned, unsigned, unsigned, int))                            \
+    X(FramebufferTextureLayer, void, (unsigned, unsigned, unsigned, int, int))                              \
+    X(CheckFramebufferStatus, unsigned, (unsigned))                                                         \
+    X(DrawBuffers, void, (int, const unsigned *))                                                           \
+    X(ReadBuffer, void, (unsigned))                                                                         \
+    X(ReadPixels, void, (int, int, int, int, unsigned, unsigned, void *))                                   \
+    X(GenRenderbuffers, void, (int, unsigned *))                                                            \
+    X(DeleteRenderbuffers, void, (int, const unsigned *))                                                   \
+    X(BindRenderbuffer, void, (unsigned, unsigned))                                                         \
+    X(RenderbufferStorageMultisample, void, (unsigned, int, unsigned, int, int))                            \
+    /* draws */                                                                                             \
+    X(DrawElements, void, (unsigned, int, unsigned, const void *))                                          \
+    X(DrawElementsInstanced, void, (unsigned, int, unsigned, const void *, int))                            \
+    X(DrawArraysInstanced, void, (unsigned, int, int, int))                                                 \
+    /* transform feedback */                                                                                \
+    X(TransformFeedbackVaryings, void, (unsigned, int, const char *const *, unsigned))
 
 /* More of ES 3.0, for renderers: NULL where the lookup does not know a function. The library never calls these. */
-#define NOH_GL_EXTRA(X)                                   \
-    /* state */                                           \
-    X(IsEnabled, ISENABLED)                               \
-    X(PolygonOffset, POLYGONOFFSET)                       \
-    X(CullFace, CULLFACE)                                 \
-    X(ClearColor, CLEARCOLOR)                             \
-    X(ClearDepthf, CLEARDEPTHF)                           \
-    X(Clear, CLEAR)                                       \
-    X(ClearBufferuiv, CLEARBUFFERUIV)                     \
-    X(ClearBufferiv, CLEARBUFFERIV)                       \
-    X(ClearBufferfi, CLEARBUFFERFI)                       \
-    X(Finish, FINISH)                                     \
-    /* questions */                                       \
-    X(GetInteger64v, GETINTEGER64V)                       \
-    X(GetFloatv, GETFLOATV)                               \
-    /* shaders and programs */                            \
-    X(DetachShader, DETACHSHADER)                         \
-    X(BindAttribLocation, BINDATTRIBLOCATION)             \
-    X(GetActiveUniformBlockiv, GETACTIVEUNIFORMBLOCKIV)   \
-    X(Uniform1iv, UNIFORM1IV)                             \
-    X(Uniform4iv, UNIFORM4IV)                             \
-    X(Uniform1ui, UNIFORM1UI)                             \
-    X(Uniform2ui, UNIFORM2UI)                             \
-    X(Uniform4ui, UNIFORM4UI)                             \
-    X(Uniform1uiv, UNIFORM1UIV)                           \
-    X(Uniform4uiv, UNIFORM4UIV)                           \
-    X(Uniform1f, UNIFORM1F)                               \
-    X(Uniform1fv, UNIFORM1FV)                             \
-    X(UniformMatrix3fv, UNIFORMMATRIX3FV)                 \
-    /* buffers */                                         \
-    X(CopyBufferSubData, COPYBUFFERSUBDATA)               \
-    X(FlushMappedBufferRange, FLUSHMAPPEDBUFFERRANGE)     \
-    /* vertices */                                        \
-    X(DisableVertexAttribArray, DISABLEVERTEXATTRIBARRAY) \
-    X(VertexAttrib4fv, VERTEXATTRIB4FV)                   \
-    /* textures */                                        \
-    X(CopyTexSubImage3D, COPYTEXSUBIMAGE3D)               \
-    X(GenSamplers, GENSAMPLERS)                           \
-    X(DeleteSamplers, DELETESAMPLERS)                     \
-    X(BindSampler, BINDSAMPLER)                           \
-    X(SamplerParameteri, SAMPLERPARAMETERI)               \
-    /* framebuffers */                                    \
-    X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)   \
-    X(BlitFramebuffer, BLITFRAMEBUFFER)                   \
-    X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)       \
-    X(RenderbufferStorage, RENDERBUFFERSTORAGE)           \
-    X(GetInternalformativ, GETINTERNALFORMATIV)           \
-    /* draws */                                           \
-    X(DrawArrays, DRAWARRAYS)                             \
-    X(DrawRangeElements, DRAWRANGEELEMENTS)               \
-    /* transform feedback */                              \
-    X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK)     \
-    X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)         \
-    /* queries */                                         \
-    X(GenQueries, GENQUERIES)                             \
-    X(DeleteQueries, DELETEQUERIES)                       \
-    X(BeginQuery, BEGINQUERY)                             \
-    X(EndQuery, ENDQUERY)                                 \
-    X(GetQueryObjectuiv, GETQUERYOBJECTUIV)
+#define NOH_GL_EXTRA(X)                                                                     \
+    /* state */                                                                             \
+    X(IsEnabled, unsigned char, (unsigned))                                                 \
+    X(PolygonOffset, void, (float, float))                                                  \
+    X(CullFace, void, (unsigned))                                                           \
+    X(ClearColor, void, (float, float, float, float))                                       \
+    X(ClearDepthf, void, (float))                                                           \
+    X(Clear, void, (unsigned))                                                              \
+    X(ClearBufferuiv, void, (unsigned, int, const unsigned *))                              \
+    X(ClearBufferiv, void, (unsigned, int, const int *))                                    \
+    X(ClearBufferfi, void, (unsigned, int, float, int))                                     \
+    X(Finish, void, (void))                                                                 \
+    /* questions */                                                                         \
+    X(GetInteger64v, void, (unsigned, int64_t *))                                           \
+    X(GetFloatv, void, (unsigned, float *))                                                 \
+    /* shaders and programs */                                                              \
+    X(DetachShader, void, (unsigned, unsigned))                                             \
+    X(BindAttribLocation, void, (unsigned, unsigned, const char *))                         \
+    X(GetActiveUniformBlockiv, void, (unsigned, unsigned, unsigned, int *))                 \
+    X(Uniform1iv, void, (int, int, const int *))                                            \
+    X(Uniform4iv, void, (int, int, const int *))                                            \
+    X(Uniform1ui, void, (int, unsigned))                                                    \
+    X(Uniform2ui, void, (int, unsigned, unsigned))                                          \
+    X(Uniform4ui, void, (int, unsigned, unsigned, unsigned, unsigned))                      \
+    X(Uniform1uiv, void, (int, int, const unsigned *))                                      \
+    X(Uniform4uiv, void, (int, int, const unsigned *))                                      \
+    X(Uniform1f, void, (int, float))                                                        \
+    X(Uniform1fv, void, (int, int, const float *))                                          \
+    X(UniformMatrix3fv, void, (int, int, unsigned char, const float *))                     \
+    /* buffers */                                                                           \
+    X(CopyBufferSubData, void, (unsigned, unsigned, ptrdiff_t, ptrdiff_t, ptrdiff_t))       \
+    X(FlushMappedBufferRange, void, (unsigned, ptrdiff_t, ptrdiff_t))                       \
+    /* vertices */                                                                          \
+    X(DisableVertexAttribArray, void, (unsigned))                                           \
+    X(VertexAttrib4fv, void, (unsigned, const float *))                                     \
+    /* textures */                                                                          \
+    X(CopyTexSubImage3D, void, (unsigned, int, int, int, int, int, int, int, int))          \
+    X(GenSamplers, void, (int, unsigned *))                                                 \
+    X(DeleteSamplers, void, (int, const unsigned *))                                        \
+    X(BindSampler, void, (unsigned, unsigned))                                              \
+    X(SamplerParameteri, void, (unsigned, unsigned, int))                                   \
+    /* framebuffers */                                                                      \
+    X(FramebufferRenderbuffer, void, (unsigned, unsigned, unsigned, unsigned))              \
+    X(BlitFramebuffer, void, (int, int, int, int, int, int, int, int, unsigned, unsigned))  \
+    X(InvalidateFramebuffer, void, (unsigned, int, const unsigned *))                       \
+    X(RenderbufferStorage, void, (unsigned, unsigned, int, int))                            \
+    X(GetInternalformativ, void, (unsigned, unsigned, unsigned, int, int *))                \
+    /* draws */                                                                             \
+    X(DrawArrays, void, (unsigned, int, int))                                               \
+    X(DrawRangeElements, void, (unsigned, unsigned, unsigned, int, unsigned, const void *)) \
+    /* transform feedback */                                                                \
+    X(BeginTransformFeedback, void, (unsigned))                                             \
+    X(EndTransformFeedback, void, (void))                                                   \
+    /* queries */                                                                           \
+    X(GenQueries, void, (int, unsigned *))                                                  \
+    X(DeleteQueries, void, (int, const unsigned *))                                         \
+    X(BeginQuery, void, (unsigned, unsigned))                                               \
+    X(EndQuery, void, (unsigned))                                                           \
+    X(GetQueryObjectuiv, void, (unsigned, unsigned, unsigned *))
 
 /* Functions that a context may lack: NULL if so. The loader goes by the version and the extension strings, because most
  * lookups return a stub for any name. A field may hold the core function or its KHR, EXT or OES form.
- * X(field, type, name without suffix, group) */
-#define NOH_GL_OPTIONAL(X)                                                                      \
-    X(MapBufferRange, MAPBUFFERRANGE, "glMapBufferRange", NOH_GL_GROUP_MAP)                     \
-    X(UnmapBuffer, UNMAPBUFFER, "glUnmapBuffer", NOH_GL_GROUP_MAP)                              \
-    X(FenceSync, FENCESYNC, "glFenceSync", NOH_GL_GROUP_MAP)                                    \
-    X(ClientWaitSync, CLIENTWAITSYNC, "glClientWaitSync", NOH_GL_GROUP_MAP)                     \
-    X(DeleteSync, DELETESYNC, "glDeleteSync", NOH_GL_GROUP_MAP)                                 \
-    X(FramebufferTexture, FRAMEBUFFERTEXTURE, "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
-    X(ObjectLabel, OBJECTLABEL, "glObjectLabel", NOH_GL_GROUP_DEBUG)                            \
-    X(PushDebugGroup, PUSHDEBUGGROUP, "glPushDebugGroup", NOH_GL_GROUP_DEBUG)                   \
-    X(PopDebugGroup, POPDEBUGGROUP, "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                      \
-    X(DebugMessageCallback, DEBUGMESSAGECALLBACK, "glDebugMessageCallback", NOH_GL_GROUP_DEBUG) \
-    X(DebugMessageControl, DEBUGMESSAGECONTROL, "glDebugMessageControl", NOH_GL_GROUP_DEBUG)    \
-    X(TimeGenQueries, GENQUERIESEXT, "glGenQueries", NOH_GL_GROUP_TIMER)                        \
-    X(TimeDeleteQueries, DELETEQUERIESEXT, "glDeleteQueries", NOH_GL_GROUP_TIMER)               \
-    X(TimeBeginQuery, BEGINQUERYEXT, "glBeginQuery", NOH_GL_GROUP_TIMER)                        \
-    X(TimeEndQuery, ENDQUERYEXT, "glEndQuery", NOH_GL_GROUP_TIMER)                              \
-    X(TimeGetQueryiv, GETQUERYIVEXT, "glGetQueryiv", NOH_GL_GROUP_TIMER)                        \
-    X(TimeGetQueryObjectuiv, GETQUERYOBJECTUIVEXT, "glGetQueryObjectuiv", NOH_GL_GROUP_TIMER)   \
-    X(TimeGetQueryObjectui64v, GETQUERYOBJECTUI64VEXT, "glGetQueryObjectui64v", NOH_GL_GROUP_TIMER)
+ * X(field, result, parameters, name without suffix, group) */
+#define NOH_GL_OPTIONAL(X)                                                                                             \
+    X(MapBufferRange, void *, (unsigned, ptrdiff_t, ptrdiff_t, unsigned), "glMapBufferRange", NOH_GL_GROUP_MAP)        \
+    X(UnmapBuffer, unsigned char, (unsigned), "glUnmapBuffer", NOH_GL_GROUP_MAP)                                       \
+    X(FenceSync, struct __GLsync *, (unsigned, unsigned), "glFenceSync", NOH_GL_GROUP_MAP)                             \
+    X(ClientWaitSync, unsigned, (struct __GLsync *, unsigned, uint64_t), "glClientWaitSync", NOH_GL_GROUP_MAP)         \
+    X(DeleteSync, void, (struct __GLsync *), "glDeleteSync", NOH_GL_GROUP_MAP)                                         \
+    X(FramebufferTexture, void, (unsigned, unsigned, unsigned, int), "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
+    X(ObjectLabel, void, (unsigned, unsigned, int, const char *), "glObjectLabel", NOH_GL_GROUP_DEBUG)                 \
+    X(PushDebugGroup, void, (unsigned, unsigned, int, const char *), "glPushDebugGroup", NOH_GL_GROUP_DEBUG)           \
+    X(PopDebugGroup, void, (void), "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                                              \
+    X(DebugMessageCallback, void, (noh_gl_debug_callback, const void *), "glDebugMessageCallback", NOH_GL_GROUP_DEBUG) \
+    X(DebugMessageControl, void, (unsigned, unsigned, unsigned, int, const unsigned *, unsigned char),                 \
+      "glDebugMessageControl", NOH_GL_GROUP_DEBUG)                                                                     \
+    X(TimeGenQueries, void, (int, unsigned *), "glGenQueries", NOH_GL_GROUP_TIMER)                                     \
+    X(TimeDeleteQueries, void, (int, const unsigned *), "glDeleteQueries", NOH_GL_GROUP_TIMER)                         \
+    X(TimeBeginQuery, void, (unsigned, unsigned), "glBeginQuery", NOH_GL_GROUP_TIMER)                                  \
+    X(TimeEndQuery, void, (unsigned), "glEndQuery", NOH_GL_GROUP_TIMER)                                                \
+    X(TimeGetQueryiv, void, (unsigned, unsigned, int *), "glGetQueryiv", NOH_GL_GROUP_TIMER)                           \
+    X(TimeGetQueryObjectuiv, void, (unsigned, unsigned, unsigned *), "glGetQueryObjectuiv", NOH_GL_GROUP_TIMER)        \
+    X(TimeGetQueryObjectui64v, void, (unsigned, unsigned, uint64_t *), "glGetQueryObjectui64v", NOH_GL_GROUP_TIMER)
 
 typedef struct noh_gl_api {
-#define NOH_GL_FIELD(field, TYPE) PFNGL##TYPE##PROC field;
+#define NOH_GL_FIELD(field, result, parameters) result(NOH_GL_CALL *field) parameters;
     NOH_GL_REQUIRED(NOH_GL_FIELD)
     NOH_GL_EXTRA(NOH_GL_FIELD)
 #undef NOH_GL_FIELD
-#define NOH_GL_FIELD(field, TYPE, name, group) PFNGL##TYPE##PROC field;
+#define NOH_GL_FIELD(field, result, parameters, name, group) result(NOH_GL_CALL *field) parameters;
     NOH_GL_OPTIONAL(NOH_GL_FIELD)
 #undef NOH_GL_FIELD
 
@@ -252,7 +266,7 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 
 /* Return the oldest pending GL error, or GL_NO_ERROR, and clear the rest. Calls glGetError at most 16 times, because a
  * lost context may report an error for ever. */
-GLenum noh_gl_error_take(const noh_gl_api *api);
+unsigned noh_gl_error_take(const noh_gl_api *api);
 
 /* The same as a result. Every create clears pending errors first and calls this last, so it never returns NOH_OK after
  * the driver refused one of its calls.

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "gl/gl_debug.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_program.h"
 #include "gl/gl_quirks.h"
 #include "shaders.gen.h"

@@ -1,5 +1,6 @@
 /* gl_debug.c: labels and groups of KHR_debug. */
 #include "gl/gl_debug.h"
+#include "gl/gl_names_internal.h"
 
 #define GROUP_ID 0x6e6f68u /* "noh": tells our groups from the application's */
 

@@ -21,7 +21,7 @@ extern "C" {
 /* Label an object with the text "what of", or only "what" where `of` is NULL or "". It is cut to NOH_GL_LABEL_BYTES.
  * kind  GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or GL_RENDERBUFFER
  * name  an object that was bound at least once */
-void noh_gl_label(const noh_gl_api *api, GLenum kind, GLuint name, const char *what, const char *of);
+void noh_gl_label(const noh_gl_api *api, unsigned kind, unsigned name, const char *what, const char *of);
 
 /* Groups nest; each begin needs its end. The text is made as above. */
 void noh_gl_group_begin(const noh_gl_api *api, const char *what, const char *of);

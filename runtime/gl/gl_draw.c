@@ -12,6 +12,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_material_internal.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_skin_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)

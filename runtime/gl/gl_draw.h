@@ -54,10 +54,10 @@ typedef struct noh_gl_mesh {
     noh_mesh mesh; /* the finest LOD level that was uploaded */
     const noh_mesh_header
         *room; /* of the finest level that the buffers have room for: that of `mesh`, or a finer one */
-    GLuint vertex_array;
+    unsigned vertex_array;
     noh_gl_buffer positions, attributes, influences, indices; /* no influences in a rigid mesh */
     noh_gl_buffer transfer;                                   /* records; none without a transfer */
-    GLenum index_type;
+    unsigned index_type;
 } noh_gl_mesh;
 
 /* The exact GPU bytes of a mesh's buffers. `mesh` may be any LOD level: what only finer levels use is not counted. */
@@ -148,7 +148,7 @@ typedef struct noh_gl_camera {
 
 /* Some triangles of a mesh's level, in an index buffer of your own. */
 typedef struct noh_gl_triangles {
-    GLuint buffer;           /* of uint32_t, three for each triangle, in the order of `numbers` */
+    unsigned buffer;         /* of uint32_t, three for each triangle, in the order of `numbers` */
     uint32_t first;          /* triangle of the buffer */
     const uint32_t *numbers; /* [count] rising: of the level */
     uint32_t count;

@@ -4,6 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "light/sh_internal.h"
 
 /* ---- what shaders are told ---- */

@@ -75,7 +75,7 @@ typedef struct noh_gl_light {
     noh_gl_ledger *ledger;
     noh_gl_light_desc desc;
     noh_gl_texture cube, shadow; /* GL_RGB9_E5; GL_DEPTH_COMPONENT16, compared, one texel without shadows */
-    GLuint framebuffer;          /* 0 without shadows */
+    unsigned framebuffer;        /* 0 without shadows */
 } noh_gl_light;
 
 uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc);

@@ -4,6 +4,7 @@
  * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel; where it is compressed, blocks in
  * place of texels. A renderbuffer counts its samples. */
 #include "gl/gl_memory.h"
+#include "gl/gl_names_internal.h"
 
 #define SIDE_MAX 65536u
 

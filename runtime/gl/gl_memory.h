@@ -33,44 +33,44 @@ typedef struct noh_gl_ledger {
 } noh_gl_ledger;
 
 typedef struct noh_gl_buffer {
-    GLuint name; /* 0: none */
+    unsigned name; /* 0: none */
     uint64_t bytes;
 } noh_gl_buffer;
 
 /* A texture with immutable storage. */
 typedef struct noh_gl_texture {
-    GLuint name; /* 0: none */
-    GLenum target : 31;
-    GLenum premultiplied : 1; /* colours were multiplied by their alpha: of NOH_TEXTURE_ETC2_RGBA1 */
+    unsigned name; /* 0: none */
+    unsigned target : 31;
+    unsigned premultiplied : 1; /* colours were multiplied by their alpha: of NOH_TEXTURE_ETC2_RGBA1 */
     uint64_t bytes;
 } noh_gl_texture;
 
 typedef struct noh_gl_renderbuffer {
-    GLuint name; /* 0: none */
+    unsigned name; /* 0: none */
     uint64_t bytes;
 } noh_gl_renderbuffer;
 
 #define NOH_GL_CUBE UINT32_MAX
 
 typedef struct noh_gl_texture_desc {
-    GLenum format;   /* a sized internal format that noh_gl_texel_bytes knows, or one of ETC2's or RG11_EAC */
+    unsigned format; /* a sized internal format that noh_gl_texel_bytes knows, or one of ETC2's or RG11_EAC */
     uint32_t width;  /* texels, 1..65536 */
     uint32_t height; /* texels, 1..65536 */
     uint32_t layers; /* 0: a GL_TEXTURE_2D; NOH_GL_CUBE: the six faces of a GL_TEXTURE_CUBE_MAP, as high as wide;
                       * else a GL_TEXTURE_2D_ARRAY of 1..65536 layers */
     uint32_t levels; /* mip levels; 0: one; at most 1 + log2 of the longer side */
-    GLenum filter;   /* for minifying and magnifying; 0: GL_NEAREST. GL_LINEAR with mip levels is trilinear */
-    GLenum wrap;     /* 0: GL_CLAMP_TO_EDGE */
+    unsigned filter; /* for minifying and magnifying; 0: GL_NEAREST. GL_LINEAR with mip levels is trilinear */
+    unsigned wrap;   /* 0: GL_CLAMP_TO_EDGE */
 } noh_gl_texture_desc;
 
 /* The bytes of one texel of an internal format; 0 for a format that noh does not use, or that has blocks. */
-uint32_t noh_gl_texel_bytes(GLenum format);
+uint32_t noh_gl_texel_bytes(unsigned format);
 
 /* The bytes of a texture; 0 for an impossible desc. */
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc);
 
 /* The bytes of a renderbuffer; 0 for impossible arguments. samples 0 and 1 are the same. */
-uint64_t noh_gl_renderbuffer_bytes(GLenum format, uint32_t width, uint32_t height, uint32_t samples);
+uint64_t noh_gl_renderbuffer_bytes(unsigned format, uint32_t width, uint32_t height, uint32_t samples);
 
 /* The bytes of all objects that exist. */
 uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
@@ -88,8 +88,8 @@ typedef struct noh_gl_device {
  * the bound vertex array: bind vertex array 0 before you make one.
  * errors  ARG bytes is 0; LIMIT it does not fit a GLsizeiptr; MEMORY GL_OUT_OF_MEMORY, `need` is `bytes`;
  *         GL the driver refused it */
-noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum target, uint64_t bytes,
-                                const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error);
+noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned target, uint64_t bytes,
+                                const void *data, unsigned usage, noh_gl_buffer *out, noh_error *error);
 void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer);
 
 /* Make a texture, its content undefined. Leaves texture unit 0 active. Compare the size with the limits of noh_gl_caps
@@ -102,14 +102,14 @@ void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 /* Make a renderbuffer. samples: 0 or 1 for none. The driver may take more samples than asked; the ledger counts those
  * that were asked for.
  * errors  ARG an unknown format, no size, or more than 64 samples; MEMORY, GL as noh_gl_buffer_create */
-noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLenum format, uint32_t width,
+noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned format, uint32_t width,
                                       uint32_t height, uint32_t samples, noh_gl_renderbuffer *out, noh_error *error);
 void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_renderbuffer *renderbuffer);
 
 /* Make a framebuffer; it has no bytes of its own.
  * errors  MEMORY, GL as noh_gl_buffer_create */
-noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *out, noh_error *error);
-void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *framebuffer);
+noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *out, noh_error *error);
+void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *framebuffer);
 
 #ifdef __cplusplus
 }

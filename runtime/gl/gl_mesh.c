@@ -8,6 +8,7 @@
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 
 static uint64_t position_bytes(const noh_mesh *mesh)
 {

@@ -10,6 +10,7 @@
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_program.h"
 
 /* ---- making ---- */

@@ -123,7 +123,7 @@ typedef struct noh_gl_morph_plan {
     noh_morph_path path;                /* never AUTO or BLEND */
     noh_accumulate accumulate;          /* never AUTO */
     const char *reason;                 /* why this path, in words; a string constant */
-    GLenum layer_format;                /* 0 (streams, vertices), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or
+    unsigned layer_format;              /* 0 (streams, vertices), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or
                                          * RGB16F */
     uint32_t layer_count;               /* 3; 2 without tangents */
     uint32_t occlusion;                 /* 1: a mesh has a transfer (light/transfer.h), and what targets change of its
@@ -164,18 +164,18 @@ typedef struct noh_gl_morph_stats {
 /* Where an instance's accumulated deltas are. The last four numbers go into noh_morph of common_layers.glsl in
  * this order. */
 typedef struct noh_gl_morph_binding {
-    GLuint texture;  /* GL_TEXTURE_2D_ARRAY */
-    int is_uint;     /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT;
+    unsigned texture; /* GL_TEXTURE_2D_ARRAY */
+    int is_uint;      /* 1: it holds the bits of floats as RGBA32UI: build your shader with NOH_LAYERS_UINT;
                       * NOH_LAYERS_STREAMS: there is no texture: build it with NOH_STREAMS; NOH_LAYERS_VERTICES: there
                       * is nothing to add: with NOH_VERTICES, or not at all */
-    int layer_count; /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
+    int layer_count;  /* 2: it has no layer of tangents: build your shader with NOH_TWO_LAYERS */
     /* Finished vertices: noh_gl_mesh_bind. There is no texture then, and `touched` is 0 */
-    GLuint vertex_buffer;                        /* else 0 */
-    GLuint vertex_array;                         /* that reads them: noh_gl_morph_set_mesh; else 0 */
+    unsigned vertex_buffer;                      /* else 0 */
+    unsigned vertex_array;                       /* that reads them: noh_gl_morph_set_mesh; else 0 */
     uint32_t vertex_offset, vertex_stride;       /* bytes; a stride of 20 has a tangent */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; vertices that any target moves */
     /* With NOH_LAYERS_STREAMS, by the weights that the instance has now: noh_gl_morph_bind_streams */
-    GLuint stream_buffer;                           /* else 0 */
+    unsigned stream_buffer;                         /* else 0 */
     uint32_t stream_offsets[NOH_MORPH_STREAMS_MAX]; /* bytes */
     float streams[NOH_MORPH_STREAMS_MAX][4]; /* weight x scale of position, normal, tangent; the widths of the fields */
 } noh_gl_morph_binding;
@@ -292,7 +292,7 @@ uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint3
 /* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the
  * uniform noh_streams of `program`, which is in use. Does nothing on other paths. The vertex array keeps the buffer:
  * delete the mesh when the accumulator is deleted. */
-void noh_gl_morph_bind_streams(const noh_gl_api *api, GLuint program, const noh_gl_morph_binding *binding);
+void noh_gl_morph_bind_streams(const noh_gl_api *api, unsigned program, const noh_gl_morph_binding *binding);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 #include "light/transfer.h"
 
 /* Floats to halves in place. Half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "deform/morph_finish.h"
 #include "gl/gl_morph.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_table_internal.h"
 
 #define NOH_TILE_CHUNK 64u       /* tiles of delta texels that are sent at once at load: at most 16 KiB */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_quirks.h"
 
 static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",   "per-layer",

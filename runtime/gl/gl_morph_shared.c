@@ -4,6 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 
 /* ---- where things are ---- */
 

@@ -8,6 +8,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 
 #define STREAM_CHUNK (NOH_STREAM_CHUNK / NOH_STREAM_STRIDE) /* vertices that are sent at once at load */
 

@@ -14,6 +14,7 @@
 #include "gl/gl_debug.h"
 #include "gl/gl_draw.h"
 #include "gl/gl_morph_internal.h"
+#include "gl/gl_names_internal.h"
 
 /* A refused glBufferSubData goes unseen (glGetError would wait for the GPU in some browsers), so now and then all of a
  * slot is written. */

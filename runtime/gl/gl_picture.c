@@ -6,6 +6,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 
 #define STRIP_BLOCKS 16u
 

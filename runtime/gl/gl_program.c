@@ -3,6 +3,7 @@
 #include "gl/gl_program.h"
 
 #include "gl/gl_debug.h"
+#include "gl/gl_names_internal.h"
 
 #include <string.h>
 

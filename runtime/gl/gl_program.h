@@ -27,8 +27,8 @@ typedef struct noh_gl_source {
 
 /* What a vertex array has at a location, as a vertex shader declares it. */
 typedef struct noh_gl_input {
-    GLuint location;
-    GLenum type; /* of the declaration: GL_FLOAT_VEC3, GL_INT_VEC2, GL_UNSIGNED_INT and so on */
+    unsigned location;
+    unsigned type; /* of the declaration: GL_FLOAT_VEC3, GL_INT_VEC2, GL_UNSIGNED_INT and so on */
 } noh_gl_input;
 
 typedef struct noh_gl_program_desc {
@@ -48,7 +48,7 @@ typedef struct noh_gl_program_desc {
 
     const char *const *varyings; /* outputs of the vertex stage for transform feedback */
     uint32_t varying_count;      /* default 0: no transform feedback */
-    GLenum varying_mode;         /* 0: GL_INTERLEAVED_ATTRIBS */
+    unsigned varying_mode;       /* 0: GL_INTERLEAVED_ATTRIBS */
 
     /* All that the vertex arrays have that it will draw. Reading an integer as a float, or what is not there, is
      * undefined and no GL error, so each active input is held against these: it is at one of their locations, of the
@@ -66,11 +66,11 @@ typedef struct noh_gl_program_desc {
  * errors  ARG a stage is missing or has too many pieces; DATA it does not compile or link, `what` says which, `where`
  *         is the GL stage (0: linking), or it reads an input that `inputs` does not have, at location `where`; GL,
  * MEMORY the driver refused a call */
-noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint *program, char *log,
+noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, unsigned *program, char *log,
                                  size_t log_bytes, noh_error *error);
 
 /* Delete a program and set it to 0; 0 is left alone. ledger NULL: it was not counted. */
-void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, GLuint *program);
+void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *program);
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 #include "gl/gl_draw.h"
 #include "gl/gl_lost.h"
 #include "gl/gl_material_internal.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_renderer_internal.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)

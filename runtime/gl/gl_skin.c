@@ -10,6 +10,7 @@
 #include "deform/dual_quaternion.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_skin_internal.h"
 
 static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };

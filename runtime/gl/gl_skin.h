@@ -67,7 +67,7 @@ typedef struct noh_gl_skin noh_gl_skin;
 /* Where an instance's palettes are. */
 typedef struct noh_gl_skin_binding {
     noh_palette_mode mode;
-    GLuint name;         /* the uniform buffer, or the texture (GL_TEXTURE_2D) */
+    unsigned name;       /* the uniform buffer, or the texture (GL_TEXTURE_2D) */
     uint32_t first;      /* the instance's first row of four floats */
     uint32_t stride;     /* rows from there to the next instance of the same mesh */
     uint32_t width_log2; /* row i is the texel (i & (width - 1), i >> width_log2); 0 for a uniform buffer */

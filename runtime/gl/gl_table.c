@@ -1,4 +1,5 @@
 /* gl_table.c: tables of texels in 2-D textures (gl_table_internal.h). */
+#include "gl/gl_names_internal.h"
 #include "gl/gl_table_internal.h"
 
 #define WIDTH_LOG2_MIN 8u

@@ -8,6 +8,7 @@
 #define NOH_GL_GL_TABLE_INTERNAL_H
 
 #include "gl/gl_memory.h"
+#include "gl/gl_names_internal.h"
 
 #define NOH_GL_TABLE_TEXELS_MAX (1u << 22)
 

@@ -1,5 +1,6 @@
 /* gl_timer.c: a ring of queries. `oldest` is the next to be read, the `flying` queries from there on are in flight, and
  * the one behind them is the next to begin. A clock that became disjoint makes all of them worthless. */
+#include "gl/gl_names_internal.h"
 #include "gl/gl_timer.h"
 
 #include <string.h>

@@ -22,7 +22,7 @@ extern "C" {
 #define NOH_GL_TIMER_FLIGHT 4u
 
 typedef struct noh_gl_timer {
-    GLuint queries[NOH_GL_TIMER_FLIGHT];
+    unsigned queries[NOH_GL_TIMER_FLIGHT];
     uint32_t oldest; /* index into queries of the oldest in flight */
     uint32_t flying; /* ended and not polled */
     int available;   /* 0: the context cannot time */

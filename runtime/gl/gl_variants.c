@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "gl/gl_draw.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 

@@ -68,8 +68,8 @@ typedef struct noh_gl_variant_key {
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     uint8_t has_camera; /* 1: its program was given the camera of this pass */
-    GLuint program;
-    GLint u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
+    unsigned program;
+    int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
         u_wrinkle_models, u_surface_values, u_surface_more, u_rest;
 } noh_gl_variant;
@@ -112,7 +112,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
  * stage    GL_VERTEX_SHADER or GL_FRAGMENT_SHADER
  * text     [bytes], zero-terminated; untouched if it is too small; NULL with 0 only asks
  * returns  the bytes that it takes, with the zero */
-size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, size_t bytes);
+size_t noh_gl_shader_prefix(noh_gl_variant_key key, unsigned stage, char *text, size_t bytes);
 
 /* Shaders of your own. The texts are bodies without #version: noh_gl_shader_prefix goes before each, so one pair serves
  * every key (shaders_es/README.md). With only one of them, the other is the library's: its varyings are those of
@@ -126,7 +126,7 @@ typedef struct noh_gl_shader_desc {
     /* Called before each draw, when the program is in use and the library's uniforms are set: set your uniforms and
      * bind textures to units from NOH_UNIT_USER on, which stay bound. Leave program, vertex array and render state as
      * they are. material: that of the submesh. NULL: nothing to set */
-    void (*bind)(void *user, const noh_gl_api *api, GLuint program, const noh_material *material);
+    void (*bind)(void *user, const noh_gl_api *api, unsigned program, const noh_material *material);
     void *user;
     noh_debug_view view; /* what mesh.frag shows; a fragment shader of yours finds it as NOH_DEBUG_VIEW. 0: lit, or the
                           * view of the renderer's desc */

@@ -23,7 +23,7 @@ typedef struct noh_backdrop {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
     int encode_srgb;
-    GLuint program, vertex_array;
+    unsigned program, vertex_array;
 } noh_backdrop;
 
 /* encode_srgb  as in noh_stage_desc

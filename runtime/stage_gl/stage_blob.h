@@ -22,9 +22,9 @@ extern "C" {
 typedef struct noh_stage_blob {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
-    GLuint program, vertex_array;
-    GLint camera, rows; /* uniforms */
-    uint32_t draws;     /* calls of all noh_stage_blob_draw so far */
+    unsigned program, vertex_array;
+    int camera, rows; /* uniforms */
+    uint32_t draws;   /* calls of all noh_stage_blob_draw so far */
 } noh_stage_blob;
 
 /* errors  DATA, GL, MEMORY as noh_gl_program_create: nothing is left behind */

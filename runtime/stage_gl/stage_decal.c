@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "shaders.gen.h"
 #include "stage_gl/stage_patch_internal.h"
 

@@ -25,7 +25,7 @@ extern "C" {
 
 /* What is drawn on the marks: tiles of a texture, from its upper left corner on. */
 typedef struct noh_decal_picture {
-    GLuint texture;         /* GL_TEXTURE_2D, sRGB, with alpha that is not multiplied in; 0: round spots, without one */
+    unsigned texture;       /* GL_TEXTURE_2D, sRGB, with alpha that is not multiplied in; 0: round spots, without one */
     uint32_t columns, rows; /* of tiles, 1..; texture 0: not used */
 } noh_decal_picture;
 
@@ -36,8 +36,8 @@ typedef struct noh_stage_decals {
     noh_stage_shader *shader;
     noh_gl_texture rows; /* GL_RGBA32F, 4 x NOH_DECALS_MAX */
     noh_decal_picture picture;
-    uint32_t count; /* of the draw that is under way */
-    GLuint corners; /* of stage_patch.h, likewise; 0: marks are looked up alone */
+    uint32_t count;   /* of the draw that is under way */
+    unsigned corners; /* of stage_patch.h, likewise; 0: marks are looked up alone */
     uint32_t corner_row;
     uint32_t draws; /* of all meshes so far */
 } noh_stage_decals;

@@ -22,7 +22,7 @@ typedef struct noh_stage_floor {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
     int encode_srgb;
-    GLuint program, vertex_array;
+    unsigned program, vertex_array;
 } noh_stage_floor;
 
 /* encode_srgb  as in noh_stage_desc

@@ -28,8 +28,8 @@ typedef struct noh_stage_hair {
     float *points; /* [hair_count][point_count][3] */
     int lit, encode_srgb;
     noh_gl_texture texture; /* GL_RGB32F: control hairs, then the corners of patches */
-    GLuint color, depth;    /* programs */
-    GLuint vertex_array;
+    unsigned color, depth;  /* programs */
+    unsigned vertex_array;
     float world[12];        /* from head space */
     float pixels_per_metre; /* of head space; 0: nothing sees it */
     uint32_t views;         /* a bit for each that does */

@@ -2,6 +2,7 @@
 #ifndef NOH_STAGE_GL_STAGE_HAIR_INTERNAL_H
 #define NOH_STAGE_GL_STAGE_HAIR_INTERNAL_H
 
+#include "gl/gl_names_internal.h"
 #include "stage_gl/stage_hair.h"
 
 #define NOH_HAIR_BODY_TEXELS 5u /* of a crowd: 3 rows of 4 from head space, first hair, fade, strips */

@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "gl/gl_light.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "stage_gl/stage_gl_internal.h"
 #include "stage_gl/stage_hair_internal.h"
 

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "stage_gl/stage_patch_internal.h"
 
 #define TRIANGLES_SENT 64u /* at once: what fits on the stack */

@@ -4,6 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
+#include "gl/gl_names_internal.h"
 #include "gl/gl_program.h"
 #include "gl/gl_shader_text.h"
 #include "shaders.gen.h"

@@ -31,8 +31,8 @@ typedef struct noh_stage_terrain {
     noh_stage_terrain_desc desc;
     noh_terrain_lod lod;
     noh_gl_texture heights; /* GL_R16UI */
-    GLuint color, depth;    /* programs */
-    GLuint vertex_array;
+    unsigned color, depth;  /* programs */
+    unsigned vertex_array;
     uint32_t draws, triangles; /* of the last noh_stage_terrain_draw */
 } noh_stage_terrain;
 

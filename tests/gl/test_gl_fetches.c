@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <GLES3/gl32.h>
+
 #include "gl/gl_variants.h"
 
 /* ---- a preprocessor: conditions, and defines without arguments ---- */

@@ -332,7 +332,7 @@ static uint32_t refuse_each_restore(const create_case *c, maker *m, const char *
 /* ---- the test ---- */
 
 static const char *const functions[] = {
-#define NAME(field, TYPE) "gl" #field,
+#define NAME(field, result, parameters) "gl" #field,
     NOH_GL_REQUIRED(NAME)
 #undef NAME
         "glFramebufferTexture",

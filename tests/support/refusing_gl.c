@@ -1,5 +1,7 @@
 #include "refusing_gl.h"
 
+#include <GLES3/gl32.h>
+
 #include <string.h>
 
 static noh_gl_api real;

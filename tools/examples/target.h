@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <GLES3/gl32.h>
+
 #include "noh_gl.h"
 
 #define STB_IMAGE_WRITE_STATIC
