@@ -91,6 +91,13 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
             return out_of_memory(&failure->error);
         }
     }
+    for (uint32_t i = 0; i < (*out)->wrinkle_count; i++) {
+        const wrinkle_row *row = &(*out)->wrinkles[i];
+        if (!has_target(s->m, row->target) &&
+            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->target)) {
+            return out_of_memory(&failure->error);
+        }
+    }
     failure->line = 0;
     failure->file = model_file;
     return 0;
@@ -191,7 +198,7 @@ static int read_recipe(const convert_options *options, const source *s, recipe_t
     if (named && options->report) {
         fprintf(options->report, "%u correctives by the names of their targets (--no-correctives: none)\n", named);
     }
-    if (!(*out)->count) {
+    if (!(*out)->count && !(*out)->wrinkle_count) {
         recipe_free(*out);
         *out = NULL;
     }
@@ -450,10 +457,11 @@ static void report_warnings(FILE *report, const source *s)
     }
 }
 
-static int make_wrinkles(const source *s, const convert_options *options, model_error *error)
+static int make_wrinkles(const source *s, const recipe_text *recipe, const convert_options *options, model_error *error)
 {
     wrinkle_settings settings = options->wrinkles;
     settings.report = options->report;
+    settings.recipe = recipe;
     return options->only != CONVERT_CLIPS && wrinkles_make(s->m, &settings, error);
 }
 
@@ -500,7 +508,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
-    failed = make_wrinkles(s, options, error);
+    failed = make_wrinkles(s, recipe, options, error);
     set_textures(s, options);
     if (options->report) {
         report_warnings(options->report, s);

@@ -1,14 +1,19 @@
 /* test_wrinkles.c: principal strains, generated creases, regions and their matrix. */
 #include "support/support.h"
+#include "support/wrinkle_sheet.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "convert/model/model_build.h"
 #include "convert/wrinkle/wrinkle_creases.h"
+#include "convert/wrinkle/wrinkle_make.h"
 #include "convert/wrinkle/wrinkle_regions.h"
+#include "file/png_file.h"
+#include "pack/format.h"
 
 #define PI 3.14159265358979323846
 
@@ -205,6 +210,149 @@ static void a_painted_mask_gets_its_matrix(void **state)
     wrinkle_field_free(&f);
 }
 
+/* ---- targets that compress nothing ---- */
+
+#define MASK_SIDE 64u
+
+static char mask_path[64];
+
+/* Region 0 left of 0.45, region 4 right of 0.55. */
+static void write_mask(void)
+{
+    static uint8_t codes[MASK_SIDE * MASK_SIDE * 4];
+    memset(codes, 0, sizeof codes);
+    for (uint32_t i = 0; i < MASK_SIDE * MASK_SIDE; ++i) {
+        const float u = ((float)(i % MASK_SIDE) + 0.5f) / MASK_SIDE;
+        if (u < 0.45f) codes[4 * i] = 75;
+        if (u > 0.55f) codes[4 * i + 1] = 165;
+    }
+    snprintf(mask_path, sizeof mask_path, "/tmp/noh_mask_%ld.png", (long)getpid());
+    assert_int_equal(tool_write_png(mask_path, MASK_SIDE, MASK_SIDE, codes), 0);
+}
+
+static model *sheet_with_mask(const sheet_target *targets, uint32_t count, const recipe_text *recipe)
+{
+    model *m = wrinkle_sheet_make(targets, count);
+    model_error error = { "", "" };
+    wrinkle_settings settings = { .models = NOH_WRINKLE_BY_REGION, .recipe = recipe };
+    write_mask();
+    settings.mask = mask_path;
+    if (wrinkles_make(m, &settings, &error)) print_message("%s\n", error.what);
+    unlink(mask_path);
+    return m;
+}
+
+static void squeeze_left(float at[3])
+{
+    if (at[0] < 0.0f) at[0] *= 0.5f;
+}
+static void grow(float at[3])
+{
+    if (at[0] > 0.0f) at[0] *= 1.37f;
+}
+static void slide(float at[3])
+{
+    at[0] += 0.3f, at[1] += 0.1f, at[2] += 0.2f;
+}
+static void turn(float at[3])
+{
+    const float x = at[0], y = at[1];
+    at[0] = 0.8f * x - 0.6f * y + 1000.0f; /* far away coordinates are rounded to more */
+    at[1] = 0.6f * x + 0.8f * y - 300.0f;
+}
+static void stay(float at[3])
+{
+    (void)at;
+}
+static void shrink_slightly(float at[3])
+{
+    if (at[0] > 0.0f) at[0] *= 0.999f;
+}
+
+static unsigned tie(const model *m, uint32_t target, uint32_t region)
+{
+    return m->meshes[0].wrinkles[target * REGION_COUNT + region];
+}
+
+/* What moves a region alike, turns it, lets it grow, leaves it, or compresses it by less than shows, is not tied to it,
+ * and an expression that does so beside one that compresses it neither. */
+static void targets_that_compress_nothing_are_tied_to_no_region(void **state)
+{
+    (void)state;
+    const sheet_target targets[] = {
+        { "squeeze", squeeze_left },  { "grow", grow }, { "slide", slide }, { "turn", turn }, { "stay", stay },
+        { "slight", shrink_slightly }
+    };
+    const uint32_t count = sizeof targets / sizeof targets[0];
+    model *m = sheet_with_mask(targets, count, NULL);
+    assert_non_null(m->meshes[0].wrinkles);
+    for (uint32_t t = 0; t < count; ++t) {
+        for (uint32_t r = 0; r < REGION_COUNT; ++r) assert_int_equal(tie(m, t, r), t == 0 && r == 0 ? 255 : 0);
+    }
+    assert_int_equal(m->warning_count, 1);
+    assert_non_null(strstr(m->warnings[0], "in region 4 of the mask"));
+    model_free(m);
+}
+
+/* ---- an artist's table ---- */
+
+static recipe_text *recipe_of(const char *text)
+{
+    recipe_text *recipe = recipe_new();
+    model_error error = { "", "" };
+    uint32_t line = 0;
+    assert_int_equal(recipe_add_text(recipe, text, strlen(text), &line, &error), 0);
+    return recipe;
+}
+
+static void rows_of_a_recipe_tie_expressions_to_regions(void **state)
+{
+    (void)state;
+    const sheet_target targets[] = { { "squeeze", squeeze_left }, { "slide", slide } };
+    recipe_text *recipe = recipe_of("wrinkle slide 4 0.6 # painted on the right\nwrinkle slide 11\n");
+    model *m = sheet_with_mask(targets, 2, recipe);
+    assert_int_equal(tie(m, 0, 0), 255); /* without rows: as measured */
+    assert_int_equal(tie(m, 1, 0), 0);
+    assert_int_equal(tie(m, 1, 4), 153);
+    assert_int_equal(tie(m, 1, 11), 255);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+    recipe_free(recipe);
+    recipe = recipe_of("wrinkle squeeze 4 1\nwrinkle squeeze 0 0\n"); /* in place of what is measured */
+    m = sheet_with_mask(targets, 2, recipe);
+    assert_int_equal(tie(m, 0, 0), 0);
+    assert_int_equal(tie(m, 0, 4), 255);
+    assert_non_null(strstr(m->warnings[0], "in region 0 of the mask"));
+    model_free(m);
+    m = sheet_with_mask(targets + 1, 1, NULL); /* nothing is compressed, and nobody says more */
+    assert_null(m->meshes[0].wrinkles);
+    model_free(m);
+    recipe_free(recipe);
+    recipe = recipe_of("wrinkle slide 0\n");
+    m = sheet_with_mask(targets + 1, 1, recipe);
+    assert_int_equal(tie(m, 0, 0), 255);
+    model_free(m);
+    recipe_free(recipe);
+}
+
+static void rows_of_wrinkles_that_are_wrong_are_refused(void **state)
+{
+    (void)state;
+    static const char *const lines[] = { "wrinkle a",        "wrinkle a 12",
+                                         "wrinkle a -1",     "wrinkle a 1.5",
+                                         "wrinkle a 1 1.01", "wrinkle a 1 -0.1",
+                                         "wrinkle a 1 1 1",  "wrinkle a 1\nwrinkle a 1 0.5",
+                                         "wrinkle a b" };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        recipe_text *recipe = recipe_new();
+        model_error error = { "", "" };
+        uint32_t line = 0;
+        assert_int_equal(recipe_add_text(recipe, lines[i], strlen(lines[i]), &line, &error), 1);
+        assert_true(error.what[0] != '\0');
+        recipe_free(recipe);
+    }
+}
+
 /* ---- real faces ---- */
 
 static void slope_at(const wrinkle_field *f, const wrinkle_raster *r, const uint8_t *map, size_t at, double slope[3])
@@ -340,6 +488,9 @@ int main(void)
         cmocka_unit_test(creases_lie_across_the_compression),
         cmocka_unit_test(regions_follow_targets),
         cmocka_unit_test(a_painted_mask_gets_its_matrix),
+        cmocka_unit_test(targets_that_compress_nothing_are_tied_to_no_region),
+        cmocka_unit_test(rows_of_a_recipe_tie_expressions_to_regions),
+        cmocka_unit_test(rows_of_wrinkles_that_are_wrong_are_refused),
         cmocka_unit_test(creases_follow_the_principal_axis),
         cmocka_unit_test(creases_of_a_human_head),
     };

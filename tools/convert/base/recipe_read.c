@@ -6,6 +6,7 @@
 #include "convert/base/input_file.h"
 #include "convert/base/text_scan.h"
 #include "face/recipe.h"
+#include "pack/format.h"
 
 #define CHANNEL_ANY "blink-left, eye-right-up, lids-down, joy-upper, joy-mouth, PP, aa and so on (noh help FORMATS)"
 
@@ -39,6 +40,21 @@ int recipe_add_row(recipe_text *recipe, const char *target, const char *channel,
     row->weight = weight;
     row->line = line;
     return !row->target || !row->channel;
+}
+
+int recipe_add_wrinkle(recipe_text *recipe, const char *target, uint32_t region, float weight, uint32_t line)
+{
+    wrinkle_row *rows = NULL;
+    char *name;
+    if (recipe->wrinkle_count < NOH_FACE_ROWS_MAX) {
+        rows = realloc(recipe->wrinkles, (recipe->wrinkle_count + 1u) * sizeof *rows);
+    }
+    if (!rows) return 1;
+    recipe->wrinkles = rows;
+    name = copy_of(target);
+    if (!name) return 1;
+    rows[recipe->wrinkle_count++] = (wrinkle_row){ name, region, line, weight };
+    return 0;
 }
 
 static int add_row(text_scan *s, recipe_text *recipe, uint32_t line, const char *channel, text_word word, float weight)
@@ -211,6 +227,51 @@ static int read_shares(text_scan *s, recipe_text *recipe)
     return 0;
 }
 
+/* ---- wrinkles ---- */
+
+static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_word word, uint32_t region, float weight)
+{
+    char target[NOH_NAME_BYTES_MAX];
+    memcpy(target, word.text, word.size);
+    target[word.size] = '\0';
+    for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
+        const wrinkle_row *other = &recipe->wrinkles[i];
+        if (other->region == region && strcmp(other->target, target) == 0) {
+            return text_fail(s, line, "%s has region %u already, in line %u", target, region, other->line);
+        }
+    }
+    if (recipe->wrinkle_count == NOH_FACE_ROWS_MAX) {
+        return text_fail(s, line, "there are more than %u rows of wrinkles, which is the limit", NOH_FACE_ROWS_MAX);
+    }
+    return recipe_add_wrinkle(recipe, target, region, weight, line) ? text_fail(s, line, "out of memory") : 0;
+}
+
+/* Behind the word `wrinkle`. */
+static int read_wrinkle(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "wrinkle TARGET REGION [WEIGHT]";
+    const uint32_t line = s->line;
+    text_word target, word;
+    double region, weight = 1.0;
+    char shown[TEXT_SHOWN];
+    if (take_target(s, line, form, &target) || text_take_on_line(s, &word)) return 1;
+    if (!word.size) return text_fail(s, line, "the region is missing: a row of wrinkles is `%s`", form);
+    if (text_number(s, word, &region)) return 1;
+    if (!(region >= 0.0 && region < NOH_WRINKLE_REGIONS) || region != (double)(uint32_t)region) {
+        return text_fail(s, line, "'%s' is no region: they are 0 to %u, in the order of noh mask",
+                         text_show(word, shown), NOH_WRINKLE_REGIONS - 1u);
+    }
+    if (text_take_on_line(s, &word)) return 1;
+    if (word.size) {
+        if (text_number(s, word, &weight)) return 1;
+        if (!(weight >= 0.0 && weight <= 1.0)) {
+            return text_fail(s, line, "the weight %s is not within 0 to 1", text_show(word, shown));
+        }
+        if (end_rule(s, form)) return 1;
+    }
+    return add_wrinkle(s, recipe, line, target, (uint32_t)region, (float)weight);
+}
+
 /* ---- lines ---- */
 
 static int read_line(text_scan *s, recipe_text *recipe)
@@ -225,6 +286,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "range")) return read_range(s, recipe);
     if (text_is(channel, "oppose")) return read_opposites(s, recipe);
     if (text_is(channel, "share")) return read_shares(s, recipe);
+    if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
     count = find_channels(channel, channels);
     if (!count) {
         return text_fail(s, channel.line, "'%s' is no channel: they are " CHANNEL_ANY, text_show(channel, shown));
@@ -267,7 +329,7 @@ int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error
         return 1;
     }
     failed = recipe_add_text(*out, text, size, line, error);
-    if (!failed && !(*out)->count) {
+    if (!failed && !(*out)->count && !(*out)->wrinkle_count) {
         text_scan s;
         *line = 1;
         text_start(&s, text, size, error);
@@ -284,6 +346,10 @@ void recipe_free(recipe_text *recipe)
         free(recipe->rows[i].target);
         free(recipe->rows[i].channel);
     }
+    for (uint32_t i = 0; recipe && i < recipe->wrinkle_count; i++) {
+        free(recipe->wrinkles[i].target);
+    }
     if (recipe) free(recipe->rows);
+    if (recipe) free(recipe->wrinkles);
     free(recipe);
 }

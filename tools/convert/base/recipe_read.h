@@ -1,6 +1,6 @@
 /* recipe_read.h: an artist's recipe as text: one row a line, CHANNEL TARGET [WEIGHT], or one corrective,
  * corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ..., which makes one row for each driver: channel '+' and its name.
- */
+ * wrinkle TARGET REGION [WEIGHT] is a row of the table from expressions to wrinkle regions. */
 #ifndef NOH_CONVERT_BASE_RECIPE_READ_H
 #define NOH_CONVERT_BASE_RECIPE_READ_H
 
@@ -15,9 +15,17 @@ typedef struct recipe_row {
     uint32_t line;
 } recipe_row;
 
+/* How much a target wrinkles a region of the skin, 0..1. */
+typedef struct wrinkle_row {
+    char *target;
+    uint32_t region, line;
+    float weight;
+} wrinkle_row;
+
 typedef struct recipe_text {
     recipe_row *rows;
-    uint32_t count;
+    wrinkle_row *wrinkles; /* for wrinkles_make; packs have the table that comes of them */
+    uint32_t count, wrinkle_count;
 } recipe_text;
 
 recipe_text *recipe_new(void); /* NULL: out of memory */
@@ -27,6 +35,8 @@ int recipe_add_text(recipe_text *recipe, const char *text, size_t size, uint32_t
 
 /* Add one row. 0, or 1 when there are too many or memory is out. */
 int recipe_add_row(recipe_text *recipe, const char *target, const char *channel, float weight, uint32_t line);
+
+int recipe_add_wrinkle(recipe_text *recipe, const char *target, uint32_t region, float weight, uint32_t line);
 
 /* 0, or 1 with *line and *error; free in both cases. */
 int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error *error);

@@ -68,6 +68,19 @@ static int read_mesh(recipe_text *extras, model *m, const model_mesh *mesh)
     return 0;
 }
 
+/* Those of targets that the recipe has no row of. */
+static int add_wrinkles(recipe_text *recipe, uint32_t own, const recipe_text *extras)
+{
+    int failed = 0;
+    for (uint32_t i = 0; !failed && i < extras->wrinkle_count; i++) {
+        const wrinkle_row *row = &extras->wrinkles[i];
+        int has = 0;
+        for (uint32_t k = 0; k < own; k++) has |= strcmp(recipe->wrinkles[k].target, row->target) == 0;
+        failed = !has && recipe_add_wrinkle(recipe, row->target, row->region, row->weight, 0);
+    }
+    return failed;
+}
+
 int recipe_add_extras(recipe_text *recipe, model *m)
 {
     recipe_text *extras = recipe_new();
@@ -78,6 +91,7 @@ int recipe_add_extras(recipe_text *recipe, model *m)
         const recipe_row *row = &extras->rows[i];
         if (!has_row(recipe, own, row)) failed = recipe_add_row(recipe, row->target, row->channel, row->weight, 0);
     }
+    failed = failed || add_wrinkles(recipe, recipe->wrinkle_count, extras);
     recipe_free(extras);
     return failed;
 }

@@ -306,7 +306,7 @@ static void write_recipe(writer *w)
 {
     const recipe_text *recipe = w->clips->recipe;
     noh_recipe_header h;
-    if (!recipe) return;
+    if (!recipe || !recipe->count) return;
     memset(&h, 0, sizeof h);
     h.row_count = recipe->count;
     h.rows_offset = sizeof h;

@@ -55,16 +55,28 @@ static double area_of(const wrinkle_field *f)
     return area;
 }
 
-/* The material of a mesh on which most surface is compressed; *best is freed by the caller in all cases. */
-static int choose_surface(const model *m, const model_mesh *mesh, wrinkle_field *best)
+static int is_better(wrinkle_field *f, int any, const wrinkle_field *best, double *largest)
 {
+    const double area = area_of(f);
+    if (f->shrinking < SHRINKING_LEAST * area) f->shrinking = 0.0; /* next to nothing is nothing */
+    if (f->shrinking > 0.0 || best->shrinking > 0.0) return f->shrinking > best->shrinking;
+    if (!any || area <= *largest) return 0;
+    *largest = area;
+    return 1;
+}
+
+/* The material of a mesh on which most surface is compressed; *best is freed by the caller in all cases.
+ * any  1: the largest one where none is, for expressions that an artist tied to painted regions */
+static int choose_surface(const model *m, const model_mesh *mesh, int any, wrinkle_field *best)
+{
+    double largest = 0.0;
     memset(best, 0, sizeof *best);
     for (uint32_t i = 0; i < m->material_count && mesh->target_count; i++) {
         wrinkle_field f;
         int failed;
         if (!can_wrinkle(m, i)) continue;
         failed = wrinkle_field_make(mesh, i, &f);
-        if (!failed && f.shrinking > best->shrinking && f.shrinking >= SHRINKING_LEAST * area_of(&f)) {
+        if (!failed && is_better(&f, any, best, &largest)) {
             const wrinkle_field swap = *best;
             *best = f;
             f = swap;
@@ -196,6 +208,63 @@ static int fill(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_s
     return generate_weights(f, r->width / WEIGHTS_SHARE, w) && out_of_memory(error);
 }
 
+/* ---- the table ---- */
+
+/* A target that the recipe has rows of is tied to the regions of these and to no others. */
+static void take_rows(const recipe_text *recipe, const model_mesh *mesh, uint8_t *matrix)
+{
+    for (uint32_t t = 0; t < mesh->target_count && recipe; t++) {
+        uint8_t *regions = matrix + (size_t)t * REGION_COUNT;
+        int seen = 0;
+        for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
+            const wrinkle_row *row = &recipe->wrinkles[i];
+            if (strcmp(row->target, mesh->targets[t].name) != 0) continue;
+            if (!seen) memset(regions, 0, REGION_COUNT);
+            regions[row->region] = (uint8_t)(row->weight * 255.0f + 0.5f);
+            seen = 1;
+        }
+    }
+}
+
+static int has_rows(const recipe_text *recipe, const model_mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->target_count && recipe; t++) {
+        for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
+            if (strcmp(recipe->wrinkles[i].target, mesh->targets[t].name) == 0) return 1;
+        }
+    }
+    return 0;
+}
+
+static int is_tied(const model_mesh *mesh, const uint8_t *matrix, uint32_t region)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (matrix[(size_t)t * REGION_COUNT + region]) return 1;
+    }
+    return 0;
+}
+
+/* Painted regions that no expression shows. */
+static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
+{
+    const size_t texels = (size_t)w->weights_width * w->weights_height;
+    char list[4 * REGION_COUNT] = "";
+    size_t at = 0;
+    uint32_t count = 0;
+    for (uint32_t r = 0; r < REGION_COUNT; r++) {
+        const uint8_t *weight = w->weights[r % REGION_MAP_COUNT] + r / REGION_MAP_COUNT;
+        size_t i = 0;
+        while (i < texels && !weight[4 * i]) i++;
+        if (i == texels || is_tied(mesh, w->matrix, r)) continue;
+        at += (size_t)snprintf(list + at, sizeof list - at, count++ ? ", %u" : "%u", r);
+    }
+    return count && model_warn(m,
+                               "mesh '%s': no target compresses the skin by 1 %% anywhere in region%s %s of the mask, "
+                               "which never show%s: paint it where targets do, or give it rows `wrinkle TARGET REGION` "
+                               "in a recipe (--recipe)",
+                               mesh->name, count == 1 ? "" : "s", list, count == 1 ? "s" : "");
+}
+
 /* ---- into the model ---- */
 
 static int add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
@@ -273,11 +342,7 @@ static void report(const wrinkle_settings *settings, const model *m, const model
 {
     uint32_t used = 0;
     for (uint32_t r = 0; r < REGION_COUNT; r++) {
-        int any = 0;
-        for (uint32_t t = 0; t < mesh->target_count; t++) {
-            any |= w->matrix[t * REGION_COUNT + r];
-        }
-        used += any != 0;
+        used += (uint32_t)is_tied(mesh, w->matrix, r);
     }
     if (settings->report) {
         fprintf(settings->report,
@@ -294,7 +359,8 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     wrinkle_raster r = { 0 };
     wrinkles w = { 0 };
     const char *why;
-    int failed = choose_surface(m, mesh, &f) && out_of_memory(error);
+    int failed = choose_surface(m, mesh, settings->mask && has_rows(settings->recipe, mesh), &f) &&
+                 out_of_memory(error);
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
         failed = choose_size(&f, settings->size, &r) && out_of_memory(error);
@@ -307,6 +373,8 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
         failed = model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) && out_of_memory(error);
     } else if (!failed) {
         failed = fill(&f, &r, settings, &w, error);
+        if (!failed) take_rows(settings->recipe, mesh, w.matrix);
+        failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && out_of_memory(error));
         if (!failed) report(settings, m, mesh, f.material, &w);
         failed = failed || (add_to_model(m, mesh, f.material, settings->models, &w) && out_of_memory(error));
         *made += !failed;
@@ -321,7 +389,10 @@ int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error
 {
     uint32_t made = 0;
     if (!settings->automatic && !settings->map && !settings->mask) {
-        return 0;
+        return settings->recipe && settings->recipe->wrinkle_count &&
+               model_warn(m, "the recipe's rows of wrinkles show nothing: there are none without --wrinkles auto, "
+                             "--wrinkle-map or --region-mask") &&
+               out_of_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         if (make_mesh(m, &m->meshes[i], settings, &made, error)) return 1;

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "convert/base/recipe_read.h"
 #include "convert/model/model.h"
 
 #ifdef __cplusplus
@@ -12,12 +13,13 @@ extern "C" {
 #endif
 
 typedef struct wrinkle_settings {
-    int automatic;    /* generate what is not painted */
-    const char *map;  /* a painted normal map, tangent space, +y up; NULL: generated */
-    const char *mask; /* a painted region mask (region_mask.h); NULL: generated */
-    uint32_t models;  /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
-    uint32_t size;    /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
-    FILE *report;     /* NULL: quiet */
+    int automatic;             /* generate what is not painted */
+    const char *map;           /* a painted normal map, tangent space, +y up; NULL: generated */
+    const char *mask;          /* a painted region mask (region_mask.h); NULL: generated */
+    uint32_t models;           /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
+    uint32_t size;             /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
+    const recipe_text *recipe; /* its rows of wrinkles go before what is measured; NULL: none */
+    FILE *report;              /* NULL: quiet */
 } wrinkle_settings;
 
 /* Add wrinkles to one material of each mesh that targets compress: that with most of it. Meshes that can have none are

@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GROUPS 96         /* of points at first: the two most alike are joined until as many are left as regions */
-#define ROUNDS 12         /* of assigning points to groups and moving the groups */
-#define SMOOTHINGS 3      /* rounds in which borders grow soft, one edge a round */
-#define FADE_FIRST 0.01f  /* compression at which a crease begins to show, */
-#define FADE_LAST 0.035f  /* and at which it shows in full */
-#define MATRIX_LEAST 0.04 /* a target that does less than this to a region leaves it alone */
+#define GROUPS 96        /* of points at first: the two most alike are joined until as many are left as regions */
+#define ROUNDS 12        /* of assigning points to groups and moving the groups */
+#define SMOOTHINGS 3     /* rounds in which borders grow soft, one edge a round */
+#define FADE_FIRST 0.01f /* compression at which a crease begins to show, */
+#define FADE_LAST 0.035f /* and at which it shows in full */
+#define MATRIX_LEAST \
+    0.04             /* a target that does less than this to a region, over what the strongest does, leaves it be */
+#define COVERED 0.1f /* the weight at which a place is a region's */
 
 /* Groups as directions: how much each target compresses their points, unit length. */
 typedef struct clusters {
@@ -284,17 +286,45 @@ region_weights *wrinkle_regions_make(const wrinkle_field *field)
 
 /* ---- the matrix ---- */
 
-/* sums: [target_count][REGION_COUNT] of compression. The target that does most to a region gets 255. */
-static uint8_t *matrix_of(uint32_t targets, double (*sums)[REGION_COUNT])
+/* What targets do to regions: [target_count] each. */
+typedef struct deeds {
+    double (*sum)[REGION_COUNT];    /* of compression */
+    float (*largest)[REGION_COUNT]; /* compression at one place of the region */
+} deeds;
+
+static int deeds_make(uint32_t targets, deeds *d)
+{
+    d->sum = model_zeros(targets, sizeof *d->sum);
+    d->largest = model_zeros(targets, sizeof *d->largest);
+    return !d->sum || !d->largest;
+}
+
+static void deeds_free(deeds *d)
+{
+    free(d->sum);
+    free(d->largest);
+}
+
+/* area: of the place. weight: how much of it is the region's */
+static void add_deed(deeds *d, uint32_t target, uint32_t region, float weight, double area, float shrink)
+{
+    float *largest = &d->largest[target][region];
+    d->sum[target][region] += area * (double)weight * (double)shrink;
+    if (weight >= COVERED && shrink > *largest) *largest = shrink;
+}
+
+/* The target that does most to a region gets 255. A target that shows no crease anywhere in a region is not tied to it,
+ * however little the others do. */
+static uint8_t *matrix_of(uint32_t targets, const deeds *d)
 {
     uint8_t *matrix = model_zeros(targets, REGION_COUNT);
     for (uint32_t r = 0; r < REGION_COUNT && matrix; r++) {
         double most = 0.0;
         for (uint32_t t = 0; t < targets; t++) {
-            most = sums[t][r] > most ? sums[t][r] : most;
+            if (d->largest[t][r] >= FADE_FIRST && d->sum[t][r] > most) most = d->sum[t][r];
         }
         for (uint32_t t = 0; t < targets && most > 0.0; t++) {
-            const double share = sums[t][r] / most;
+            const double share = d->largest[t][r] >= FADE_FIRST ? d->sum[t][r] / most : 0.0;
             matrix[t * REGION_COUNT + r] = (uint8_t)(share < MATRIX_LEAST ? 0.0 : share * 255.0 + 0.5);
         }
     }
@@ -304,36 +334,37 @@ static uint8_t *matrix_of(uint32_t targets, double (*sums)[REGION_COUNT])
 uint8_t *wrinkle_matrix_make(const wrinkle_field *field, region_weights *regions)
 {
     const uint32_t targets = field->mesh->target_count;
-    double(*sums)[REGION_COUNT] = model_zeros(targets, sizeof *sums);
+    deeds d;
+    const int failed = deeds_make(targets, &d);
     uint8_t *matrix = NULL;
-    for (uint32_t v = 0; v < field->mesh->vertex_count && sums; v++) {
+    for (uint32_t v = 0; v < field->mesh->vertex_count && !failed; v++) {
         for (uint32_t i = 0; i < targets * REGION_COUNT && field->point[v] == v; i++) {
             const uint32_t t = i / REGION_COUNT, r = i % REGION_COUNT;
-            sums[t][r] += field->point_area[v] * (double)regions[v][r] *
-                          (double)field->point_shrink[(size_t)v * targets + t];
+            add_deed(&d, t, r, regions[v][r], field->point_area[v], field->point_shrink[(size_t)v * targets + t]);
         }
     }
-    if (sums) matrix = matrix_of(targets, sums);
-    free(sums);
+    if (!failed) matrix = matrix_of(targets, &d);
+    deeds_free(&d);
     return matrix;
 }
 
 uint8_t *wrinkle_matrix_of_mask(const wrinkle_field *field, const wrinkle_raster *raster, uint8_t *const *maps)
 {
     const uint32_t targets = field->mesh->target_count;
-    double(*sums)[REGION_COUNT] = model_zeros(targets, sizeof *sums);
+    deeds d;
+    const int failed = deeds_make(targets, &d);
     uint8_t *matrix = NULL;
-    for (size_t at = 0; at < (size_t)raster->width * raster->height && sums; at++) {
+    for (size_t at = 0; at < (size_t)raster->width * raster->height && !failed; at++) {
         for (uint32_t r = 0; r < REGION_COUNT && raster->triangle[at] != MODEL_NONE; r++) {
             const float *shrink = &field->shrink[(size_t)raster->triangle[at] * targets];
             const uint8_t weight = maps[r % REGION_MAP_COUNT][4 * at + r / REGION_MAP_COUNT];
             for (uint32_t t = 0; t < targets && weight; t++) {
-                sums[t][r] += weight / 255.0 * (double)shrink[t];
+                add_deed(&d, t, r, (float)weight / 255.0f, 1.0, shrink[t]);
             }
         }
     }
-    if (sums) matrix = matrix_of(targets, sums);
-    free(sums);
+    if (!failed) matrix = matrix_of(targets, &d);
+    deeds_free(&d);
     return matrix;
 }
 

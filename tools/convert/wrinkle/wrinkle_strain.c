@@ -6,6 +6,7 @@
 
 #include "convert/model/model_build.h"
 
+#define ROUNDINGS 4.0  /* of a float, that the difference of two corners may be off by */
 #define SHRINK_MAX 0.6 /* a triangle that folds up altogether wrinkles no more than this */
 
 static void edges_of(double corners[3][3], double a[3], double b[3])
@@ -111,6 +112,21 @@ static int is_moved(const wrinkle_field *f, uint32_t triangle, const float *delt
     return 0;
 }
 
+/* Coordinates are floats, and differences of floats where a target came from: a compression up to this is rounding. */
+static double noise_of(double rest[3][3], double now[3][3], double area)
+{
+    double largest = 0.0, longest = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double edge[3];
+        for (int c = 0; c < 3; c++) {
+            largest = fmax(largest, fmax(fabs(rest[k][c]), fabs(now[k][c])));
+            edge[c] = rest[(k + 1) % 3][c] - rest[k][c];
+        }
+        longest = fmax(longest, vec_dot(edge, edge));
+    }
+    return ROUNDINGS * 0x1p-23 * largest * sqrt(longest) / (2.0 * area); /* over the least height */
+}
+
 static void measure_triangle(wrinkle_field *f, uint32_t i)
 {
     const uint32_t targets = f->mesh->target_count;
@@ -123,7 +139,7 @@ static void measure_triangle(wrinkle_field *f, uint32_t i)
         double shrink;
         if (!is_moved(f, i, delta)) continue;
         corners_of(f, i, delta, now);
-        if (!wrinkle_strain_of(rest, now, &strain) || strain.least >= 1.0) continue;
+        if (!wrinkle_strain_of(rest, now, &strain) || 1.0 - strain.least <= noise_of(rest, now, f->area[i])) continue;
         shrink = 1.0 - strain.least < SHRINK_MAX ? 1.0 - strain.least : SHRINK_MAX;
         f->shrink[(size_t)i * targets + t] = (float)shrink;
         f->largest[i] = (float)shrink > f->largest[i] ? (float)shrink : f->largest[i];

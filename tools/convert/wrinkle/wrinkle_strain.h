@@ -26,7 +26,7 @@ typedef struct wrinkle_field {
     uint32_t triangle_count;
     uint32_t *triangles; /* [triangle_count] first index of each in mesh->indices */
     double *area;        /* [triangle_count] at rest */
-    float *shrink;       /* [triangle_count][target_count] */
+    float *shrink;       /* [triangle_count][target_count]; 0 where it may be the rounding of coordinates */
     float *largest;      /* [triangle_count] of them */
     /* [triangle_count] sum over targets of shrink^2 * axis * axis^T: xx, yy, zz, xy, xz, yz. Its largest principal axis
      * is the direction that creases should have */

@@ -81,7 +81,10 @@ const char *const help_formats_text[] = {
     "   range TARGET MIN MAX                        how far the target goes: MIN at most 0, MAX at least 0",
     "   oppose TARGET TARGET                        two that exclude each other: both lose the smaller one's weight",
     "   share TARGET TARGET ...                     those of the group sum up to 1 at most",
-    "The last three are rules for whoever asks for them: --weight-rules of the verbs that show a pack, and games by kind. ",
+    "   wrinkle TARGET REGION [WEIGHT]              how much the target wrinkles a region, 0 to 11 as noh mask numbers them; 0 to",
+    "                                               1 (1). A target with such rows has no other regions; one without has",
+    "                                               those that it compresses (noh build --wrinkles, --region-mask)",
+    "Range, oppose and share are rules for whoever asks for them: --weight-rules of the verbs that show a pack, and games by kind. ",
     "Channels without a row take the first of the built-in recipes that fits the targets' names (ARKit, VRM, facial units), and a mouth "
     "shape without any that of the nearest other one. A row whose target no mesh has is a warning. noh face PACK shows what came out. "
     "A glTF mesh may have the lines in its extras: \"recipe\": an array of lines, or one text with ';' between them. Of targets jaw, grin "
