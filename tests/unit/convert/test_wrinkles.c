@@ -294,6 +294,47 @@ static void targets_that_compress_nothing_are_tied_to_no_region(void **state)
     model_free(m);
 }
 
+/* ---- edges of textures ---- */
+
+/* A vertex at u = 1 reads the right edge of a mask and not the left one, in whichever tile the coordinates are; a part
+ * across several tiles goes on repeating, and so does one whose textures say otherwise. */
+static void masks_end_at_their_edges(void **state)
+{
+    (void)state;
+    static const struct {
+        float u, v;
+        uint32_t base_wrap, wrap_s, wrap_t;
+        float first_u, first_v;
+    } cases[] = { { 0.0f, 0.0f, 10497, 33071, 33071, 0.0f, 0.0f },
+                  { 3.0f, -2.0f, 10497, 33071, 33071, 0.0f, 0.0f },
+                  { 0.5f, 0.0f, 10497, 10497, 33071, 0.5f, 0.0f },
+                  { 1.0f, 0.0f, 33648, 10497, 33071, 1.0f, 0.0f },
+                  { 1e-5f, -1e-5f, 10497, 33071, 33071, 1e-5f, 0.0f } };
+    const sheet_target targets[] = { { "squeeze", squeeze_left } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        model *m = wrinkle_sheet_make(targets, 1);
+        model_error error = { "", "" };
+        const wrinkle_settings settings = { .models = NOH_WRINKLE_BY_REGION, .automatic = 1 };
+        m->textures[0].wrap_s = m->textures[0].wrap_t = cases[i].base_wrap;
+        for (uint32_t v = 0; v < WRINKLE_SHEET_VERTICES; ++v) {
+            m->meshes[0].uv[2 * v] += cases[i].u;
+            m->meshes[0].uv[2 * v + 1] += cases[i].v;
+        }
+        assert_int_equal(wrinkles_make(m, &settings, &error), 0);
+        assert_true(m->meshes[0].uv[0] == cases[i].first_u && m->meshes[0].uv[1] == cases[i].first_v);
+        for (uint32_t k = 0; k < 4; ++k) {
+            const model_material *skin = &m->materials[0];
+            const model_texture *t = &m->textures[k < 3 ? skin->wrinkle_weights[k] : skin->wrinkle_texture];
+            assert_int_equal(t->wrap_s, cases[i].wrap_s);
+            assert_int_equal(t->wrap_t, cases[i].wrap_t);
+        }
+        for (uint32_t v = 0; v < 2 * WRINKLE_SHEET_VERTICES && cases[i].wrap_s == 33071; ++v) {
+            assert_true(m->meshes[0].uv[v] >= 0.0f && m->meshes[0].uv[v] <= 1.0f);
+        }
+        model_free(m);
+    }
+}
+
 /* ---- an artist's table ---- */
 
 static recipe_text *recipe_of(const char *text)
@@ -489,6 +530,7 @@ int main(void)
         cmocka_unit_test(regions_follow_targets),
         cmocka_unit_test(a_painted_mask_gets_its_matrix),
         cmocka_unit_test(targets_that_compress_nothing_are_tied_to_no_region),
+        cmocka_unit_test(masks_end_at_their_edges),
         cmocka_unit_test(rows_of_a_recipe_tie_expressions_to_regions),
         cmocka_unit_test(rows_of_wrinkles_that_are_wrong_are_refused),
         cmocka_unit_test(creases_follow_the_principal_axis),

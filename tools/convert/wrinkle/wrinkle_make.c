@@ -8,6 +8,7 @@
 #include "convert/model/model_build.h"
 #include "wrinkle_creases.h"
 #include "wrinkle_regions.h"
+#include "wrinkle_uv.h"
 
 #define MAP_SIZE_LEAST 256u /* of a generated normal map, */
 #define MAP_SIZE_MOST 512u  /* by how many texels lie from crease to crease; --wrinkle-size goes beyond it */
@@ -268,7 +269,7 @@ static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
 /* ---- into the model ---- */
 
 static int add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
-                       model_texture_use use)
+                       const uint8_t clamped[2], model_texture_use use)
 {
     model_texture *grown = realloc(m->textures, (m->texture_count + 1u) * sizeof *grown);
     const size_t bytes = strlen(mesh) + strlen(what) + 2;
@@ -283,7 +284,8 @@ static int add_texture(model *m, const char *mesh, const char *what, uint8_t **r
     t->width = width;
     t->height = height;
     t->rgba = *rgba;
-    t->wrap_s = t->wrap_t = 10497;
+    t->wrap_s = clamped[0] ? 33071 : 10497;
+    t->wrap_t = clamped[1] ? 33071 : 10497;
     t->use = use;
     *rgba = NULL;
     m->texture_count++;
@@ -316,18 +318,20 @@ static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
     return 0;
 }
 
-static int add_to_model(model *m, model_mesh *mesh, uint32_t material, uint32_t models, wrinkles *w)
+static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, uint32_t models, wrinkles *w)
 {
     static const char *const names[REGION_MAP_COUNT] = { "wrinkle weights 0", "wrinkle weights 1",
                                                          "wrinkle weights 2" };
     const char *name = mesh->name ? mesh->name : "";
-    uint32_t own = material;
-    if (is_shared(m, mesh, material) && own_material(m, mesh, material, &own)) return 1;
-    if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, MODEL_TEXTURE_NORMAL)) return 1;
+    uint32_t own = f->material;
+    if (is_shared(m, mesh, own) && own_material(m, mesh, own, &own)) return 1;
+    if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped, MODEL_TEXTURE_NORMAL))
+        return 1;
     m->materials[own].wrinkle_texture = m->texture_count - 1u;
     m->materials[own].wrinkle_models = models;
     for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
-        if (add_texture(m, name, names[k], &w->weights[k], w->weights_width, w->weights_height, MODEL_TEXTURE_DATA)) {
+        if (add_texture(m, name, names[k], &w->weights[k], w->weights_width, w->weights_height, f->clamped,
+                        MODEL_TEXTURE_DATA)) {
             return 1;
         }
         m->materials[own].wrinkle_weights[k] = m->texture_count - 1u;
@@ -363,7 +367,7 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
                  out_of_memory(error);
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
-        failed = choose_size(&f, settings->size, &r) && out_of_memory(error);
+        failed = (wrinkle_uv_settle(m, mesh, &f) || choose_size(&f, settings->size, &r)) && out_of_memory(error);
         if (!failed && overlaps(&r)) {
             why =
                 "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
@@ -376,7 +380,7 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
         if (!failed) take_rows(settings->recipe, mesh, w.matrix);
         failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && out_of_memory(error));
         if (!failed) report(settings, m, mesh, f.material, &w);
-        failed = failed || (add_to_model(m, mesh, f.material, settings->models, &w) && out_of_memory(error));
+        failed = failed || (add_to_model(m, mesh, &f, settings->models, &w) && out_of_memory(error));
         *made += !failed;
     }
     wrinkles_free(&w);

@@ -85,6 +85,7 @@ int wrinkle_raster_make(const wrinkle_field *field, uint32_t width, uint32_t hei
     const size_t count = (size_t)width * height;
     flat_triangle t;
     *out = (wrinkle_raster){ .width = width, .height = height };
+    memcpy(out->clamped, field->clamped, sizeof out->clamped);
     out->triangle = model_zeros(count, sizeof *out->triangle);
     out->share = model_zeros(count, sizeof *out->share);
     if (!out->triangle || !out->share) {
@@ -112,6 +113,8 @@ static int fill_texel(const wrinkle_raster *r, const uint8_t *filled, const uint
     for (uint32_t i = 0; i < 9; i++) {
         const int64_t nx = (int64_t)x + (int64_t)(i % 3) - 1, ny = (int64_t)y + (int64_t)(i / 3) - 1;
         const size_t at = (size_t)repeat(ny, r->height) * r->width + repeat(nx, r->width);
+        if (r->clamped[0] && (nx < 0 || nx >= (int64_t)r->width)) continue;
+        if (r->clamped[1] && (ny < 0 || ny >= (int64_t)r->height)) continue;
         for (uint32_t c = 0; c < 4 && filled[at]; c++) {
             sum[c] += from[4 * at + c];
         }

@@ -10,6 +10,7 @@ extern "C" {
 
 typedef struct wrinkle_raster {
     uint32_t width, height;
+    uint8_t clamped[2];  /* of the field: whether a side ends where it ends, else its opposite one follows */
     uint32_t *triangle;  /* [height][width] of the field, MODEL_NONE where there is none */
     float (*share)[3];   /* [height][width] barycentric coordinates of the texel's centre */
     uint32_t covered;    /* texels with a triangle */

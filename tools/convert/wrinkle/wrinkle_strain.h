@@ -37,6 +37,7 @@ typedef struct wrinkle_field {
     float *point_largest; /* [vertex_count] of those */
     double (*tensor)[6];  /* [vertex_count] mean demand of those triangles */
     double shrinking;     /* sum of area * largest */
+    uint8_t clamped[2]; /* wrinkle_uv_settle: whether textures of wrinkles end at the edges of u and of v; at first 0 */
 } wrinkle_field;
 
 /* Returns 0, or 1: out of memory. Free in both cases. */
