@@ -7,8 +7,7 @@
 # too long shows nothing. Before that, the same test has to pass on the tree itself. Ends with "N passed, N failed,
 # N skipped"; a test that is skipped here, for want of a model or a driver, skips its mutant.
 #
-#   NOH_BUILD   a build folder inside the tree (build); the tests are built there first. What make was called with
-#               (CC, OPT) is not known here: use a folder that was built with plain `make`
+#   NOH_BUILD   a build folder inside the tree (build); the tests are built there first
 #   NOH_ASSETS  as for tests/run.sh
 #   NOH_TEST    only rows whose mutant, test or code holds one of these words: NOH_TEST='ragdoll hair'
 #   JOBS        copies of the tree that work at a time (as many as there are processors)
@@ -29,7 +28,7 @@ jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
 limit=${NOH_LIMIT_S:-300}
 tree=$PWD work=$PWD/$build/mutants
 tab=$(printf '\t')
-unset MAKEFLAGS MAKELEVEL
+unset MAKEFLAGS MFLAGS MAKELEVEL
 
 # ---- one row ----
 

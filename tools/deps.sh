@@ -48,7 +48,8 @@ libosmesa6:a second GL
 ?espeak-ng-data:noh speak
 ?libsndfile1:noh speak on recordings
 ?libwebp7:WebP textures
-binutils:the check of the archive'"'"'s symbols'
+binutils:the check of the archive'"'"'s symbols
+patch:mutants of the table of techniques'
 packages_fuzz='clang:libFuzzer
 libclang-rt-dev:libFuzzer and the sanitizers'
 
