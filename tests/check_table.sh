@@ -50,7 +50,8 @@ has_mutant() { # NAME CODE
 }
 
 tab=$(printf '\t')
-: >"$work/missing" >"$work/patches"
+: >"$work/missing"
+: >"$work/patches"
 built=0 unbuilt=0
 while IFS="$tab" read -r code test mutant command row; do
     if [ "$code" = 'not yet' ]; then
