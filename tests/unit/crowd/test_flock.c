@@ -318,6 +318,28 @@ static void a_flock_turns_one_way(void **state)
     free(together);
 }
 
+/* How alike their directions are, after three seconds, of whom half want to go one way, half another. */
+static float alike(uint32_t flags)
+{
+    static const float goals[2][2] = { { -1000.0f, 1000.0f }, { 1000.0f, 1000.0f } };
+    noh_crowd *crowd = flock(flags, 0);
+    float nearest, result;
+    for (uint32_t i = 0; i < 80u; i++) noh_crowd_aim(crowd, i, goals[i * 3u / 2u % 2u]);
+    for (int i = 0; i < 30 * 3; i++) noh_crowd_step(crowd, NOH_CROWD_STEP_TICKS);
+    result = polarisation(crowd, &nearest);
+    free(crowd);
+    return result;
+}
+
+static void a_flock_goes_along_where_a_crowd_parts(void **state)
+{
+    (void)state;
+    const float apart = alike(NOH_CROWD_FORCES), together = alike(NOH_CROWD_FLOCK);
+    print_message("two ways at right angles: a flock's are %.3f alike, a crowd's %.3f\n", (double)together,
+                  (double)apart);
+    assert_true(apart < 0.75f && together > 0.8f);
+}
+
 static void flocks_have_the_same_bits_in_any_order(void **state)
 {
     static const uint32_t flags[2] = { NOH_CROWD_FORCES, NOH_CROWD_FLOCK };
@@ -348,6 +370,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(obstacles_push_hardest_when_near),
         cmocka_unit_test(obstacles_push_away),
         cmocka_unit_test(a_flock_turns_one_way),
+        cmocka_unit_test(a_flock_goes_along_where_a_crowd_parts),
         cmocka_unit_test(flocks_have_the_same_bits_in_any_order),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);

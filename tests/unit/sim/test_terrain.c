@@ -10,14 +10,14 @@
 #include "support/pack_walk.h"
 #include "support/support.h"
 
-/* A hill of a model: 5 x 3 vertices, 8 x 4 m, height x^2 / 8 - z. */
+/* A hill of a model: 5 x 3 vertices, 8 x 4 m, height x^2 / 8 - z; and below it a triangle, the last one. */
 static const char hill_gltf[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
     "\"nodes\":[{\"mesh\":0,\"translation\":[1,2,3]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
-    "\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":15,\"type\":\"VEC3\","
-    "\"min\":[-4,-2,-2],\"max\":[4,4,2]},{\"bufferView\":1,\"componentType\":5123,\"count\":48,\"type\":\"SCALAR\"}],"
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":180},{\"buffer\":0,\"byteOffset\":180,\"byteLength\":96}],"
-    "\"buffers\":[{\"uri\":\"hill.bin\",\"byteLength\":276}]}";
+    "\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":18,\"type\":\"VEC3\","
+    "\"min\":[-4,-2,-2],\"max\":[4,4,2]},{\"bufferView\":1,\"componentType\":5123,\"count\":51,\"type\":\"SCALAR\"}],"
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":216},{\"buffer\":0,\"byteOffset\":216,\"byteLength\":102}],"
+    "\"buffers\":[{\"uri\":\"hill.bin\",\"byteLength\":318}]}";
 
 static float hill_at(float x, float z)
 {
@@ -26,7 +26,9 @@ static float hill_at(float x, float z)
 
 static const char *hill(void)
 {
-    uint8_t bytes[276];
+    static const float below[3][3] = { { -4.0f, -2.0f, -2.0f }, { -4.0f, -2.0f, 2.0f }, { 4.0f, -2.0f, 2.0f } };
+    static const uint16_t last[3] = { 15, 16, 17 };
+    uint8_t bytes[318];
     for (uint32_t i = 0; i < 15u; i++) {
         const float x = -4.0f + 2.0f * (float)(i % 5u), z = -2.0f + 2.0f * (float)(i / 5u);
         const float at[3] = { x, hill_at(x, z), z };
@@ -35,8 +37,10 @@ static const char *hill(void)
     for (uint32_t i = 0; i < 8u; i++) {
         const uint16_t a = (uint16_t)(i / 4u * 5u + i % 4u), b = (uint16_t)(a + 1u), c = (uint16_t)(a + 5u);
         const uint16_t six[6] = { a, c, b, b, c, (uint16_t)(c + 1u) };
-        memcpy(bytes + 180u + 12u * i, six, sizeof six);
+        memcpy(bytes + 216u + 12u * i, six, sizeof six);
     }
+    memcpy(bytes + 180, below, sizeof below);
+    memcpy(bytes + 312, last, sizeof last);
     test_write_file(test_path("hill.bin"), bytes, sizeof bytes);
     const char *path = test_path("hill.gltf");
     test_write_file(path, hill_gltf, sizeof hill_gltf - 1u);
