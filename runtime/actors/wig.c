@@ -133,7 +133,7 @@ int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, fl
         for (int r = 0; r < 3; r++) to_joint[4 * r + 3] = -at[r];
     }
     noh_matrix_multiply(joint, to_joint, world);
-    *pixels_per_metre = shown->scale / wig->cut->header->metres * a->place.scale;
+    *pixels_per_metre = shown->scale / wig->cut->header->metres * noh_stage_size(stage, a);
     *views = shown->views;
     return 1;
 }

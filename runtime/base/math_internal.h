@@ -3,6 +3,7 @@
  *   noh_sqrt          correctly rounded
  *   noh_is_finite, noh_is_number
  *   noh_dot3
+ *   noh_stretch       of a matrix
  *   noh_normalize3
  *
  * Everything is +, -, *, / and square roots, each rounded once, with contraction off: the same bits on every machine
@@ -118,6 +119,24 @@ static inline float noh_sqrt(float x)
 static inline float noh_dot3(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The most that a matrix [12], rows of 3 x 4, lengthens a vector: its longest column where the columns are at right
+ * angles, no less than the right figure where they are not (Gershgorin's bound on the eigenvalues of M^T M). */
+static inline float noh_stretch(const float m[12])
+{
+    float products[3], most = 0.0f; /* of the columns 0 and 1, 1 and 2, 2 and 0 */
+    for (int c = 0; c < 3; c++) {
+        const int next = (c + 1) % 3;
+        const float product = m[c] * m[next] + m[4 + c] * m[4 + next] + m[8 + c] * m[8 + next];
+        products[c] = product < 0.0f ? -product : product;
+    }
+    for (int c = 0; c < 3; c++) {
+        const float square = m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c];
+        const float sum = square + (products[c] + products[(c + 2) % 3]);
+        most = sum > most ? sum : most;
+    }
+    return noh_sqrt(most);
 }
 
 /* Bring v to length 1; a vector too short to have a direction becomes `fallback`. */

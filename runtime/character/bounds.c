@@ -18,15 +18,15 @@ static float bone_length(const noh_skeleton *s, uint32_t joint)
     return noh_sqrt(noh_dot3(t, t));
 }
 
-/* The length of the longest column: the most that the matrix stretches a radius. */
-static float longest_axis(const float *m)
+/* The most that a joint's scale stretches what is below it. */
+static float largest_scale(const noh_transform *t)
 {
-    float longest = 0.0f;
-    for (int c = 0; c < 3; c++) {
-        float square = m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c];
-        longest = square > longest ? square : longest;
+    float most = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        const float scale = t->scale[i] < 0.0f ? -t->scale[i] : t->scale[i];
+        most = scale > most ? scale : most;
     }
-    return noh_sqrt(longest);
+    return most;
 }
 
 static ball ball_of(const noh_skeleton *s, const float *model, float radius, uint32_t joint, uint32_t posed_count)
@@ -34,11 +34,11 @@ static ball ball_of(const noh_skeleton *s, const float *model, float radius, uin
     ball b;
     while (joint >= posed_count) {
         NOH_ASSERT(s->parents[joint] != NOH_JOINT_ROOT);
-        radius += bone_length(s, joint);
+        radius = radius * largest_scale(&s->bind_pose[joint]) + bone_length(s, joint);
         joint = s->parents[joint];
     }
     b.matrix = model + 12u * (size_t)joint;
-    b.radius = radius * longest_axis(b.matrix) * ROUNDING;
+    b.radius = radius * noh_stretch(b.matrix) * ROUNDING;
     return b;
 }
 

@@ -1,4 +1,5 @@
 /* bounds.h: where a character is, from its joints: for culling, and for the distance that LOD levels are chosen by.
+ * With the weights that it shows (stage/stage_bounds.c) the radii are those at weight 0, and targets add their boxes.
  *
  *   noh_joint_bounds          a box and a sphere around a posed skeleton
  *   noh_skeleton_radius       a radius that no pose exceeds, for when there is no pose yet
@@ -29,9 +30,8 @@ typedef struct noh_bounds {
 /* Bounds of a pose, in the space of the matrices.
  * shapes  model[joint_count][12] of noh_local_to_model; joint_radius_m[the skeleton's joint_count]
  * ranges  joint_count at most the skeleton's: the joints that were posed, all roots among them. The vertices of any
- *         other joint are bounded around its nearest posed ancestor, in a radius that grows by the lengths of the bind
- *         pose's bones in between. A radius is scaled by the longest axis of its joint's matrix, which must not shear
- */
+ *         other joint are bounded around its nearest posed ancestor, in a radius that grows by the lengths and scales of
+ *         the bind pose's bones in between. A radius is scaled by the most that its joint's matrix stretches */
 void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
                       uint32_t joint_count, noh_bounds *bounds);
 

@@ -199,32 +199,53 @@ void noh_lod_pools_begin(noh_lod_pools *p)
     p->stats.resting = p->stats.waiting = p->stats.left_out = 0;
 }
 
-/* A request as one number that sorts: the priority's bits above, since floats that are not negative have the order of
- * their bits, and below the complement of the instance, so that of equal priorities the lower instance comes first. */
-static uint64_t key_of(float priority, uint32_t instance)
+#define INSTANCE_BITS 16u
+#define DISTANCE_BITS 17u
+#define INSTANCE_LAST ((1u << INSTANCE_BITS) - 1u)
+
+NOH_STATIC_ASSERT(NOH_LOD_POOL_SLOTS_MAX == INSTANCE_LAST + 1u, pool_key);
+
+/* Floats that are not negative have the order of their bits. */
+static uint32_t bits_of(float value)
 {
     union {
         float value;
         uint32_t bits;
     } u;
-    u.value = priority > 0.0f ? priority : 0.0f;
-    return (uint64_t)u.bits << 32 | (UINT32_MAX - instance);
+    u.value = value > 0.0f ? value : 0.0f;
+    return u.bits;
+}
+
+/* A request as one number that sorts: the 31 bits of the priority above; below the complement of the distance's highest
+ * bits, then that of the instance, so that of equal priorities the nearer one comes first, and of equal distances the
+ * lower instance. */
+static uint64_t key_of(float priority, float distance, uint32_t instance)
+{
+    const uint64_t near = (1u << DISTANCE_BITS) - 1u - (bits_of(distance) >> (31u - DISTANCE_BITS));
+    return (uint64_t)bits_of(priority) << (DISTANCE_BITS + INSTANCE_BITS) | near << INSTANCE_BITS |
+           (INSTANCE_LAST - instance);
 }
 
 static uint32_t instance_of(uint64_t key)
 {
-    return UINT32_MAX - (uint32_t)key;
+    return INSTANCE_LAST - ((uint32_t)key & INSTANCE_LAST);
 }
 
 void noh_lod_pools_ask(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority)
+{
+    noh_lod_pools_ask_at(p, instance, level, priority, 0.0f, 0);
+}
+
+void noh_lod_pools_ask_at(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority, float distance,
+                          int afresh)
 {
     place *at = place_of(p, instance);
     int stays;
     NOH_ASSERT(instance < p->instance_count && at->next == NOT_ASKED);
     at->level = (uint8_t)(level < NOH_LOD_LEVELS_MAX ? level : NOH_LOD_LEVELS_MAX - 1u);
     at->next = 0;
-    stays = at->held && p->pools[at->pool].level <= at->level;
-    keys_of(p)[p->stats.asked++] = key_of(stays ? priority * STAYS : priority, instance);
+    stays = !afresh && at->held && p->pools[at->pool].level <= at->level;
+    keys_of(p)[p->stats.asked++] = key_of(stays ? priority * STAYS : priority, distance, instance);
 }
 
 /* ---- sharing ---- */

@@ -16,7 +16,7 @@
  * the next finer one with room, else the next coarser one, and the instance is drawn at that pool's level. Where all
  * slots are taken it rests: it is drawn without targets. An instance keeps its slot while it is given the same pool,
  * and its priority counts a quarter more than a newcomer's, so that two instances at the same distance do not take
- * turns. A level that comes back fades in; an evicted instance switches level at once. `coarser_high_water` tells when
+ * turns (not where it asks afresh: noh_lod_pools_ask_at). A level that comes back fades in; an evicted instance switches level at once. `coarser_high_water` tells when
  * pools are too small to avoid that.
  *
  * A new slot is a tile to be accumulated. noh_lod_pools_share_some bounds how many slots change hands in a frame: by
@@ -85,6 +85,12 @@ void noh_lod_pools_begin(noh_lod_pools *pools);
  * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is 0)
  */
 void noh_lod_pools_ask(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority);
+
+/* The same; of equal priorities the nearer one comes first, to a five-hundredth of its distance.
+ * ranges  distance at least 0, in any unit; afresh 1: it is nearer or farther than by what it was given its slot: keeping
+ *         it counts for nothing */
+void noh_lod_pools_ask_at(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority, float distance,
+                          int afresh);
 
 /* Give a slot to every instance that asked and is not left out, as far as there are slots. Linear in the requests;
  * where a pool is too small for those that want it, they are sorted first: n log n. */

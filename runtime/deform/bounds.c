@@ -35,8 +35,9 @@ void noh_box_unite(const float a[6], const float b[6], float out[6])
 
 /* The box of the sum of weighted differences: interval arithmetic per axis, since each target's difference lies in its
  * box whatever the vertex. A negative weight swaps the ends of an interval. */
-static void delta_box(const noh_mesh *mesh, const float *weights, float box[6])
+void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6])
 {
+    NOH_ASSERT(mesh && box);
     memset(box, 0, 6 * sizeof *box);
     for (uint32_t t = 0; weights && t < mesh->header->target_count; t++) {
         const float *b = mesh->target_boxes + 6u * (size_t)t;
@@ -78,16 +79,22 @@ static void grow(const float box[6], const float deltas[6], float out[6])
     }
 }
 
-void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights, float box[6])
+void noh_mesh_moved_box(const noh_mesh *mesh, const float *world, const float deltas[6], float box[6])
 {
     static const float identity[12] = { 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f };
-    float deltas[6], rest[6];
-    NOH_ASSERT(mesh && box);
+    float rest[6];
+    NOH_ASSERT(mesh && deltas && box);
     memcpy(rest, mesh->header->bounds_min, 3 * sizeof *rest);
     memcpy(rest + 3, mesh->header->bounds_max, 3 * sizeof *rest);
-    delta_box(mesh, weights, deltas);
     grow(rest, deltas, rest);
     move_box(world ? world : identity, rest, box);
+}
+
+void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights, float box[6])
+{
+    float deltas[6];
+    noh_mesh_target_box(mesh, weights, deltas);
+    noh_mesh_moved_box(mesh, world, deltas, box);
 }
 
 /* ---- skins ---- */
@@ -154,7 +161,7 @@ static growth growth_of(const noh_mesh *mesh, const float *matrices, const float
 {
     growth g;
     NOH_ASSERT(matrices || !count);
-    delta_box(mesh, weights, g.deltas);
+    noh_mesh_target_box(mesh, weights, g.deltas);
     g.radius = (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? arc_radius(mesh, matrices, g.deltas, count) : 0.0f;
     return g;
 }

@@ -22,9 +22,15 @@
 extern "C" {
 #endif
 
+/* What the targets add to any vertex, before joints move it; contains 0.
+ * shapes  weights[target_count], of any size and sign; NULL: no morph targets */
+void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6]);
+
 /* A rigid mesh.
  * shapes  world[12], NULL: mesh space; weights[target_count], NULL: no morph targets */
 void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights, float box[6]);
+/* The same with what targets add given as a box (noh_mesh_target_box); box may be deltas. */
+void noh_mesh_moved_box(const noh_mesh *mesh, const float *world, const float deltas[6], float box[6]);
 
 /* A skinned mesh.
  * shapes  matrices[skin's joint_count][12] (noh_skin_matrices); weights as above */

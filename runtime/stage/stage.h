@@ -483,7 +483,9 @@ noh_result noh_actor_joint(const noh_stage *stage, noh_actor actor, uint32_t joi
  * errors  NOT_FOUND the actor is gone */
 noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose *moved, noh_error *error);
 
-/* Centre x, y, z and radius in the world of a sphere that holds every vertex as posed last.
+/* Centre x, y, z and radius in the world of a sphere that holds every vertex as posed last, rigid meshes and targets of
+ * any weight among them; before the first pose, every vertex in any pose of its clips. Vertices that dual quaternions
+ * move may be outside by a little.
  * errors  NOT_FOUND the actor is gone */
 noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
 
@@ -514,7 +516,10 @@ typedef struct noh_actor_detail {
     float pixels_per_metre;   /* of such a unit at its nearest point, in the view that is nearest; 0: no view sees it */
 } noh_actor_detail;
 
-/* Its error on screen is error_m * pixels_per_metre; noh_stage_stats.error_pixels is the largest of all.
+/* The nearest point is that of the sphere of noh_actor_sphere or, where an eye is within that, of the boxes about what
+ * each joint moves, but never nearer than the near plane. Levels are chosen by what the frame before showed; who comes
+ * into view, or is cut, by the bind pose, and again in the next frame.
+ * Its error on screen is error_m * pixels_per_metre; noh_stage_stats.error_pixels is the largest of all.
  * errors  NOT_FOUND the actor is gone, or was not shown in the last frame */
 noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_actor_detail *out, noh_error *error);
 

@@ -230,6 +230,7 @@ noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error)
         return result;
     }
     noh_stage_keep_before(a);
+    a->was_seen = 0;
     noh_character_cut(noh_stage_character(k, noh_stage_index(k, a)));
     return NOH_OK;
 }
@@ -280,6 +281,7 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     a->alive = 1;
     be_at(a, &normal);
     *actor = id_of(stage, (uint32_t)(a - stage->actors));
+    noh_stage_take_floats(&stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a));
     if (stage->kinds[kind].face) {
         noh_stage_begin_face(stage, &stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a), actor->id);
     }

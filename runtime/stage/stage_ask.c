@@ -88,31 +88,28 @@ noh_result noh_actor_root(const noh_stage *stage, noh_actor actor, noh_root_pose
 
 noh_result noh_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
 {
-    const noh_result result = noh_stage_sphere(stage, actor, sphere, error);
+    const noh_result result = noh_stage_actor_sphere(stage, actor, sphere, error);
     for (int i = 0; i < 3 && result == NOH_OK; i++) sphere[i] += stage->origin[i];
     return result;
 }
 
-noh_result noh_stage_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
+noh_result noh_stage_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
-    const noh_character *ch;
-    float world[12], own[4], scale = 0.0f;
+    float world[12], own[4];
     NOH_ASSERT(sphere);
     if (!a) {
         return noh_stage_gone(error, actor);
     }
-    ch = noh_stage_character(k, noh_stage_index(k, a));
-    memcpy(own, k->reach, sizeof own);
-    if (ch->time.posed && k->skeleton.joint_count) noh_character_sphere(ch, own);
-    noh_stage_world(stage, (uint32_t)(a - stage->actors), world);
-    for (int i = 0; i < 3; i++) {
-        const float *r = world + 4 * i;
-        sphere[i] = r[0] * own[0] + r[1] * own[1] + r[2] * own[2] + r[3];
-        scale += world[4 * i] * world[4 * i];
+    noh_stage_sphere(k, noh_stage_index(k, a), own);
+    if (!noh_stage_character(k, noh_stage_index(k, a))->time.posed) {
+        float shown[4];
+        memcpy(shown, own, sizeof shown);
+        noh_stage_reach(k, shown, own);
     }
-    sphere[3] = own[3] * noh_sqrt(scale);
+    noh_stage_world(stage, (uint32_t)(a - stage->actors), world);
+    noh_stage_sphere_in_world(world, own, sphere);
     return NOH_OK;
 }
 
@@ -178,7 +175,6 @@ noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_acto
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     const noh_stage_shown *shown;
     const noh_character *ch;
-    noh_place place;
     uint32_t joints;
     NOH_ASSERT(out);
     if (!a) {
@@ -189,12 +185,11 @@ noh_result noh_actor_detail_of(const noh_stage *stage, noh_actor actor, noh_acto
         return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor was not shown in the last frame", actor.id, 0);
     }
     ch = noh_stage_character(k, noh_stage_index(k, a));
-    noh_stage_shown_place(stage, a, stage->origin, &place);
     take_levels(k, shown, ch, out);
     joints = noh_lod_joint_count(&ch->lod, &k->table);
     out->joint_count = joints && joints < k->skeleton.joint_count ? joints : k->skeleton.joint_count;
     out->influence_count = noh_lod_influence_count(&ch->lod, &k->table);
     out->error_m = ch->lod.error_m + ch->lod.skipped_m;
-    out->pixels_per_metre = shown->views ? shown->scale * place.scale : 0.0f;
+    out->pixels_per_metre = shown->views ? shown->scale * noh_stage_size(stage, a) : 0.0f;
     return NOH_OK;
 }

@@ -121,7 +121,7 @@ void noh_stage_job(noh_stage *stage, uint32_t job)
     NOH_ASSERT(stage && (stage->phase == NOH_STAGE_LOOKING || stage->phase == NOH_STAGE_POSING));
     NOH_ASSERT(job < jobs_for(stage, count));
     if (stage->phase == NOH_STAGE_LOOKING) {
-        noh_stage_look_at(stage, first, end);
+        noh_stage_look_at(stage, job, first, end);
     } else {
         noh_stage_pose_todo(stage, job, first, end);
     }
@@ -139,7 +139,13 @@ static void run_jobs(noh_stage *s)
 static void place_attached(noh_stage *s)
 {
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        if (s->actors[i].parent && s->shown[i].frame == s->frame) noh_stage_world(s, i, s->shown[i].world);
+        const noh_stage_kind *k = noh_stage_kind_of(s, i);
+        float error_pixels;
+        if (!s->actors[i].parent || s->shown[i].frame != s->frame) continue;
+        noh_stage_world(s, i, s->shown[i].world);
+        noh_stage_measure_shown(s, k, i - k->first_actor, s->jobs[0].matrices);
+        error_pixels = noh_stage_error_pixels(s, k, i - k->first_actor);
+        if (error_pixels > s->stats.error_pixels) s->stats.error_pixels = error_pixels;
     }
 }
 

@@ -16,6 +16,7 @@
  *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
  *   stage_ragdoll.c  actors that fall; stage_get_up.c: and get up again
  *   stage_step.c     time, callback keys, root motion
+ *   stage_bounds.c   where an actor may be, and where and how near it is
  *   stage_look.c     phase 1: who is seen, how finely
  *   stage_share.c    between the phases: slots, updates, decoding, order
  *   stage_pose.c     phase 2: poses and floats
@@ -70,7 +71,7 @@ typedef struct noh_stage_actor {
     uint32_t next_free;  /* index + 1; 0: the last */
     uint32_t parent;     /* id; 0: hangs on nothing */
     uint32_t joint;      /* of the parent */
-    uint16_t was_seen;   /* in the last frame */
+    uint16_t was_seen;   /* in how many of the last frames, at most 3 */
     uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
     /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
@@ -251,6 +252,7 @@ typedef struct noh_stage_kind {
     noh_skeleton skeleton;
     noh_stage_layer *layers; /* [layer_count] */
     uint32_t layer_count;
+    uint32_t slot_bytes;
     noh_stage_mesh *meshes; /* [plan->mesh_count] */
     uint32_t float_count;   /* those of the set, then, where the pack has no nodes, one for each target */
     uint32_t weight_count;  /* targets of all meshes */
@@ -268,18 +270,18 @@ typedef struct noh_stage_kind {
     uint32_t load_kind;     /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
     noh_stage_load loading; /* of load_kind */
     const noh_pack *loaded; /* the pack they come from; NULL: none */
-    float *joint_radii;     /* [joint_count]; NULL: rigid */
-    float reach[4];         /* centre and radius in model space: holds the actor in any pose of its clips */
-    float rigid[4]; /* likewise: what no joint moves, at rest, and as far as one target moves it; radius -1: nothing */
+    float *joint_radii;     /* [joint_count] with all weights 0; NULL: rigid */
+    float reach[4];         /* centre and radius in model space: holds the actor in any pose of its clips, with their
+                             * weights, and all of 0..1 */
+    float rest[6];          /* a box: what joints move in the bind pose; its smallest above its largest: nothing */
     uint32_t character_bytes;
     uint32_t graph_count;        /* 0: the rest is not used */
     noh_graph_pack **graphs;     /* [graph_count] */
     noh_clip_entry *graph_clips; /* [set.clip_count] those of the bank, then one for each graph */
     noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
     float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
-    uint32_t slot_bytes;
-    noh_stage_part *parts;  /* [desc.part_count] */
-    noh_stage_part springs; /* of the pack, after these; modify NULL: none */
+    noh_stage_part *parts;       /* [desc.part_count] */
+    noh_stage_part springs;      /* of the pack, after these; modify NULL: none */
     size_t part_bytes;
     noh_stage_face_kind *face;       /* NULL: none */
     noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
@@ -300,7 +302,7 @@ typedef struct noh_stage_kind {
     noh_lod_pools *pools; /* NULL: nothing is drawn */
     uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
     /* a frame's own */
-    float *floats;   /* [actor_count][float_count] as shown */
+    float *floats;   /* [actor_count][float_count] as shown, or as they would be */
     float *weights;  /* [actor_count][weight_count] the same, without targets too small to see */
     uint32_t *order; /* [seen_max] seen actors by run; fading ones last */
     /* where each run begins in `order`. A run has one level and one number of influences; the last one fades */
@@ -312,10 +314,11 @@ typedef struct noh_stage_kind {
 typedef struct noh_stage_shown {
     float world[12];
     float scale;    /* pixels per unit of the world, at its nearest point, in the view that is nearest */
-    uint32_t views; /* a bit for each view that sees it */
+    float distance; /* of its sphere's centre from the eye, in the view in which that is nearest */
+    uint16_t views; /* a bit for each view that sees it */
+    uint16_t place; /* in its kind's order */
     uint32_t frame; /* the number of the last frame in which it was shown: its floats and pose are of then */
     noh_lod_slot slot;
-    uint32_t place;              /* in its kind's order */
     uint8_t due;                 /* noh_due */
     uint8_t updates;             /* 1: is posed in this frame; NOH_STAGE_MOVED: its palettes changed */
     uint8_t level, level_before; /* drawn */
@@ -346,6 +349,9 @@ typedef struct noh_view_planes {
                 [4]; /* left, right, bottom, top: inside where the dot product with (x, y, z, 1) is at least 0; unit */
     float eye_plane[4];   /* w of clip space, its gradient's length in `w_slope` */
     float w_slope, scale; /* scale / w is pixels per unit */
+    float eye[3];         /* of a parallel view the game's */
+    float near_w;         /* w of the near plane, above 0: nothing nearer is drawn */
+    float corner;         /* the cosine of the angle between the middle of the picture and its farthest corner */
     int is_light;
 } noh_view_planes;
 
@@ -535,7 +541,7 @@ void noh_stage_shift_actor(noh_stage_actor *a, const float by[3]);
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
 /* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
 noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);
-noh_result noh_stage_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
+noh_result noh_stage_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
 noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
 noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
@@ -661,7 +667,28 @@ void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, co
 void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
 void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
 
-void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end);
+/* After the radii of joints, floats and meshes are there. */
+void noh_stage_open_bounds(noh_stage_kind *k, noh_character_scratch *scratch);
+/* In model space, of what an actor of the kind shows: its last pose and its floats; before it was posed, at rest. */
+void noh_stage_sphere(const noh_stage_kind *k, uint32_t index, float sphere[4]);
+/* In model space: where it may be, given its sphere. */
+void noh_stage_reach(const noh_stage_kind *k, const float sphere[4], float reach[4]);
+void noh_stage_widen(float reach[4], const float sphere[4]); /* about its centre, until it holds the sphere */
+void noh_stage_sphere_in_world(const float world[12], const float own[4], float out[4]);
+/* Set the scale and the distance of `shown` by its views, its matrix and the actor's sphere.
+ * shapes  matrices as in a job */
+void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t index, const float own[4],
+                       float *matrices);
+/* The same by what this frame shows, for what is told of it: a look goes by the frame before. */
+void noh_stage_measure_shown(const noh_stage *s, const noh_stage_kind *k, uint32_t index, float *matrices);
+/* The error that an actor shows; 0 where no view sees it, or where it is posed for the game. */
+float noh_stage_error_pixels(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
+/* Units of the world in one of the actor's model. */
+float noh_stage_size(const noh_stage *s, const noh_stage_actor *a);
+/* An actor's floats as its last pose, the game, the pack's rules and correctives have them. */
+void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index);
+
+void noh_stage_look_at(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
 uint32_t noh_stage_influence_levels(const noh_stage_kind *k); /* at least 1: a run is a level and one of these */

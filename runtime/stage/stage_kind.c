@@ -2,9 +2,6 @@
 #include <string.h>
 
 #include "base/math_internal.h"
-#include "character/bounds.h"
-#include "deform/bounds.h"
-#include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
 /* ---- clips ---- */
@@ -204,148 +201,6 @@ static noh_result open_lod(const noh_stage *s, noh_stage_kind *k, void *memory, 
     return result;
 }
 
-/* ---- bounds ---- */
-
-static void open_radii(noh_stage_kind *k)
-{
-    for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
-        k->joint_radii[j] = k->plan->mesh_count ? -1.0f : 0.0f;
-    }
-    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-        if (k->meshes[m].skinned) {
-            noh_mesh_add_joint_radii(&k->meshes[m].mesh, NULL, k->joint_radii);
-        }
-    }
-}
-
-#define REACH_SAMPLES 64u /* of each clip */
-
-/* Widen a box by where the roots of the skeleton are at a tick. */
-static void add_roots(noh_stage_kind *k, uint32_t clip, uint32_t tick, uint32_t roots, noh_character_scratch *scratch,
-                      float box[6])
-{
-    noh_root_sample_rest(&k->set, clip, tick, roots, scratch->local, scratch->floats);
-    for (uint32_t j = 0; j < roots; j++) {
-        float at[6];
-        for (int i = 0; i < 6; i++) at[i] = scratch->local[j].translation[i % 3];
-        noh_box_unite(box, at, box);
-    }
-}
-
-static void box_of_roots(noh_stage_kind *k, noh_character_scratch *scratch, float box[6])
-{
-    uint32_t roots = 0;
-    while (roots < k->skeleton.joint_count && k->skeleton.parents[roots] == NOH_JOINT_ROOT) roots++;
-    noh_box_empty(box);
-    for (uint32_t j = 0; j < roots; j++) {
-        float at[6];
-        for (int i = 0; i < 6; i++) at[i] = k->skeleton.bind_pose[j].translation[i % 3];
-        noh_box_unite(box, at, box);
-    }
-    for (uint32_t c = 0; k->bank && c < k->set.clip_count; c++) {
-        const uint32_t duration = k->set.clips[c].duration_ticks;
-        if (k->set.clips[c].flags & NOH_CLIP_FLOATS_ONLY) continue;
-        for (uint32_t i = 0; i <= REACH_SAMPLES; i++) {
-            add_roots(k, c, (uint32_t)((uint64_t)duration * i / REACH_SAMPLES), roots, scratch, box);
-        }
-    }
-}
-
-/* With all targets at 1: what they move is not known yet. The weights of the first actor are free to hold the ones. */
-static void unite_rigid(const noh_stage_kind *k, float box[6])
-{
-    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-        const noh_stage_mesh *mesh = &k->meshes[m];
-        float own[6];
-        if (mesh->skinned) continue;
-        for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) k->weights[t] = 1.0f;
-        noh_mesh_box(&mesh->mesh, mesh->node_world, mesh->mesh.header->target_count ? k->weights : NULL, own);
-        noh_box_unite(box, own, box);
-    }
-}
-
-static float longest_axis(const float m[12])
-{
-    float most = 0.0f;
-    for (int c = 0; c < 3; c++) {
-        const float square = m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c];
-        most = square > most ? square : most;
-    }
-    return noh_sqrt(most);
-}
-
-/* The farthest that a vertex can be from a root, however joints turn: bones keep their lengths and scales, those of the
- * bind pose in model space. (noh_skeleton_radius is for skeletons without scales.) The way to each joint goes where its
- * first matrix element was. */
-static float bones_radius(const noh_stage_kind *k, noh_character_scratch *scratch)
-{
-    float farthest = 0.0f, *model = scratch->model;
-    noh_local_to_model(&k->skeleton, k->skeleton.bind_pose, k->skeleton.joint_count, model);
-    for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
-        float *m = model + 12u * (size_t)j, way = 0.0f, radius = k->joint_radii[j] * longest_axis(m);
-        if (k->skeleton.parents[j] != NOH_JOINT_ROOT) {
-            const float *parent = model + 12u * (size_t)k->skeleton.parents[j];
-            float square = 0.0f;
-            for (int i = 3; i < 12; i += 4) square += (m[i] - parent[i]) * (m[i] - parent[i]);
-            way = parent[0] + noh_sqrt(square);
-        }
-        m[0] = way;
-        if (k->joint_radii[j] >= 0.0f && way + radius > farthest) farthest = way + radius;
-    }
-    return farthest;
-}
-
-static void sphere_of_box(const float box[6], float sphere[4])
-{
-    float square = 0.0f;
-    for (int i = 0; i < 3; i++) {
-        sphere[i] = 0.5f * (box[i] + box[3 + i]);
-        square += (box[3 + i] - sphere[i]) * (box[3 + i] - sphere[i]);
-    }
-    sphere[3] = noh_sqrt(square);
-}
-
-/* All targets at once would make a face several times as large as it ever is: that is for culling, not for detail. */
-static void open_rigid(noh_stage_kind *k)
-{
-    float box[6], most = 0.0f;
-    k->rigid[3] = -1.0f;
-    noh_box_empty(box);
-    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-        const noh_stage_mesh *mesh = &k->meshes[m];
-        const noh_mesh whole = noh_stage_whole_mesh(k->desc, mesh->item.mesh);
-        float own[6];
-        if (mesh->skinned) continue;
-        noh_mesh_box(&whole, mesh->node_world, NULL, own);
-        noh_box_unite(box, own, box);
-        for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-            const float radius = whole.targets[t].radius * (mesh->node_world ? longest_axis(mesh->node_world) : 1.0f);
-            most = radius > most ? radius : most;
-        }
-    }
-    if (box[0] <= box[3]) {
-        sphere_of_box(box, k->rigid);
-        k->rigid[3] += most;
-    }
-}
-
-/* Where the roots may be, and as far as joints may reach from them: any rotation of any joint. */
-static void open_reach(noh_stage_kind *k, noh_character_scratch *scratch)
-{
-    float box[6], radius = 0.0f;
-    noh_box_empty(box);
-    if (k->skeleton.joint_count) {
-        box_of_roots(k, scratch, box);
-        radius = bones_radius(k, scratch);
-        for (int i = 0; i < 3; i++) {
-            box[i] -= radius;
-            box[3 + i] += radius;
-        }
-    }
-    unite_rigid(k, box);
-    sphere_of_box(box, k->reach);
-}
-
 /* ---- all of it ---- */
 
 noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance)
@@ -365,11 +220,7 @@ static noh_result open_bounds(noh_stage *s, noh_stage_kind *k, noh_error *error)
     const noh_character_desc desc = noh_stage_character_desc(k, 0);
     noh_character_scratch scratch;
     const noh_result result = noh_character_scratch_init(s->jobs[0].scratch, s->scratch_bytes, &desc, &scratch, error);
-    if (result == NOH_OK) {
-        open_radii(k);
-        open_reach(k, &scratch);
-        open_rigid(k);
-    }
+    if (result == NOH_OK) noh_stage_open_bounds(k, &scratch);
     return result;
 }
 

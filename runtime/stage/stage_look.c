@@ -3,41 +3,18 @@
 #include <string.h>
 
 #include "base/math_internal.h"
+#include "character/character_internal.h"
+#include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
-static void to_world(const float world[12], float scale, const float own[4], float out[4])
+#define ROUNDING 1.000002f
+
+void noh_stage_sphere_in_world(const float world[12], const float own[4], float out[4])
 {
     for (int i = 0; i < 3; i++) {
         out[i] = world[4 * i] * own[0] + world[4 * i + 1] * own[1] + world[4 * i + 2] * own[2] + world[4 * i + 3];
     }
-    out[3] = own[3] * scale;
-}
-
-/* The sphere that culling takes: where any clip may take the actor, or what was shown last where that sticks out. */
-static void reach_in_world(const noh_stage_kind *k, const noh_character *ch, const float world[12], float scale,
-                           float out[4])
-{
-    float own[4];
-    memcpy(own, k->reach, sizeof own);
-    if (ch->time.posed && k->skeleton.joint_count) { /* without joints no sphere is kept */
-        float shown[4], apart = 0.0f;
-        noh_character_sphere(ch, shown);
-        for (int i = 0; i < 3; i++) apart += (shown[i] - own[i]) * (shown[i] - own[i]);
-        apart = noh_sqrt(apart) + shown[3];
-        own[3] = apart > own[3] ? apart : own[3];
-    }
-    to_world(world, scale, own, out);
-}
-
-/* The sphere that detail is chosen by: how far targets may move a face together says nothing of how near it is. */
-static void shown_in_world(const noh_stage_kind *k, const float world[12], float scale, const float reach[4],
-                           float out[4])
-{
-    if (k->skeleton.joint_count || k->rigid[3] < 0.0f) {
-        memcpy(out, reach, 4 * sizeof *out);
-    } else {
-        to_world(world, scale, k->rigid, out);
-    }
+    out[3] = own[3] * noh_stretch(world) * ROUNDING;
 }
 
 static int is_inside(const noh_view_planes *v, const float sphere[4])
@@ -49,101 +26,128 @@ static int is_inside(const noh_view_planes *v, const float sphere[4])
     return 1;
 }
 
-/* Pixels per unit at the nearest point of a sphere. */
-static float scale_at(const noh_view_planes *v, const float sphere[4])
-{
-    const float *w = v->eye_plane;
-    const float middle = w[0] * sphere[0] + w[1] * sphere[1] + w[2] * sphere[2] + w[3];
-    const float nearest = middle - sphere[3] * v->w_slope;
-    return v->scale / (nearest > 1e-3f ? nearest : 1e-3f);
-}
-
-/* reach: seen or not; shown: how large. */
-static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const float reach[4], const float shown[4],
-                           float *scale)
+static uint32_t find_views(const noh_stage *s, const noh_stage_actor *a, const float reach[4])
 {
     uint32_t views = 0;
     for (uint32_t v = 0; v < s->view_count && !a->look.hidden; v++) {
         const noh_view_planes *planes = &s->planes[v];
-        if (is_inside(planes, reach) && !(planes->is_light && a->look.no_shadow)) {
-            const float here = scale_at(planes, shown);
-            views |= 1u << v;
-            *scale = here > *scale ? here : *scale;
-        }
+        if (is_inside(planes, reach) && !(planes->is_light && a->look.no_shadow)) views |= 1u << v;
     }
     return views;
 }
 
-/* What hangs on another is where that is seen: its own matrix is known only when the other was posed. world: that of
- * the actor itself, or of the other. */
-static uint32_t look_from(const noh_stage *s, uint32_t index, const noh_stage_kind *k, const noh_place *own,
-                          float world[12], float *scale)
+static uint32_t look_at_own(const noh_stage *s, uint32_t index, const noh_stage_kind *k, const float own[4])
 {
-    const noh_stage_actor *a = &s->actors[index], *on = a;
-    const noh_stage_kind *of = k;
-    const noh_character *ch;
-    noh_place place = *own;
-    float reach[4], shown[4];
-    if (a->parent) {
-        on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
-        if (!on || on->look.hidden) return 0;
-        noh_stage_shown_place(s, on, s->origin, &place);
-        of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
-    }
-    ch = noh_stage_character(of, noh_stage_index(of, on));
-    noh_place_matrix(&place, world);
-    reach_in_world(of, ch, world, place.scale, reach);
-    if (a == on) {
-        shown_in_world(of, world, place.scale, reach, shown);
-        return find_views(s, a, reach, shown, scale);
-    }
-    reach[3] += (k->reach[3] +
-                 noh_sqrt(k->reach[0] * k->reach[0] + k->reach[1] * k->reach[1] + k->reach[2] * k->reach[2])) *
-                own->scale * place.scale;
-    return find_views(s, a, reach, reach, scale);
+    float reach[4];
+    noh_stage_reach(k, own, reach);
+    noh_stage_sphere_in_world(s->shown[index].world, reach, reach);
+    return find_views(s, &s->actors[index], reach);
 }
 
-static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index)
+/* What hangs on another is seen where that may take it. Its own matrix is known only when the other was posed: until
+ * then that of the other's last pose stands for it. The other may be looked at in another job: what a look changes of
+ * it is not read. */
+static uint32_t look_at_attached(noh_stage *s, uint32_t index, const noh_stage_kind *k, const float own[4])
+{
+    const noh_stage_actor *a = &s->actors[index], *on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
+    const noh_stage_kind *of;
+    const noh_character *ch;
+    noh_place place;
+    float world[12], reach[4], far[4], shown[4], length, *matrix = s->shown[index].world;
+    if (!on || on->look.hidden) return 0;
+    of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
+    ch = noh_stage_character(of, noh_stage_index(of, on));
+    noh_stage_shown_place(s, on, s->origin, &place);
+    noh_place_matrix(&place, world);
+    noh_stage_shown_place(s, a, s->origin, &place);
+    noh_place_matrix(&place, matrix);
+    noh_stage_reach(k, own, far);
+    noh_stage_sphere_in_world(matrix, far, far);
+    length = noh_sqrt(noh_dot3(far, far)) + far[3];
+    if (ch->time.posed && a->joint < of->skeleton.joint_count) {
+        const float *joint = noh_character_pose_palette(ch, ch->time.to_pose) + 12u * (size_t)a->joint;
+        length *= noh_stretch(joint);
+        noh_matrix_multiply(joint, matrix, matrix);
+    }
+    noh_stage_sphere_in_world(matrix, own, shown);
+    memcpy(reach, of->reach, sizeof reach);
+    reach[3] += length;
+    noh_stage_widen(reach, shown);
+    noh_matrix_multiply(world, matrix, matrix);
+    noh_stage_sphere_in_world(world, reach, reach);
+    return find_views(s, a, reach);
+}
+
+float noh_stage_size(const noh_stage *s, const noh_stage_actor *a)
+{
+    noh_place place;
+    if (a->parent) return noh_stretch(s->shown[a - s->actors].world);
+    noh_stage_shown_place(s, a, s->origin, &place);
+    return place.scale;
+}
+
+/* Who comes into view is chosen for by a pose that may be old, or by none: the next frame, which knows what this one
+ * shows, chooses afresh. */
+static int is_fresh(const noh_stage *s, noh_stage_actor *a)
+{
+    if (a->was_seen < 3u) a->was_seen++;
+    return s->cut || a->was_seen < 3u;
+}
+
+static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
 {
     noh_stage_actor *a = &s->actors[index];
+    const uint32_t i = noh_stage_index(k, a);
     noh_stage_shown *shown = &s->shown[index];
-    noh_character *ch = noh_stage_character(k, noh_stage_index(k, a));
+    noh_character *ch = noh_stage_character(k, i);
+    const float scale = shown->scale * noh_stage_size(s, a);
     noh_lod_settings settings = s->desc.lod;
-    noh_place place;
-    float world[12], scale = 0.0f, asked;
-    noh_stage_shown_place(s, a, s->origin, &place);
-    shown->views = look_from(s, index, k, &place, world, &scale);
-    a->on_its_way = 0;
-    shown->due = NOH_DUE_NOT;
-    shown->updates = 0;
-    shown->scale = scale;
-    if (!shown->views && !a->look.posed) {
-        a->was_seen = 0;
-        return;
-    }
-    if (!a->was_seen || s->cut) {
-        noh_lod_cut(&ch->lod);
-    }
-    a->was_seen = 1;
-    if (!a->parent) memcpy(shown->world, world, sizeof world);
+    float asked;
+    if (is_fresh(s, a)) noh_lod_cut(&ch->lod);
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
-    asked = a->look.posed || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale * place.scale;
-    shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, noh_stage_index(k, a), &settings, asked)
+    asked = a->look.posed || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
+    shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, i, &settings, asked)
                                           : noh_character_look(ch, &k->table, &settings, asked));
     if (noh_stage_is_full(s, a)) {
         const uint32_t level = a->look.level ? a->look.level - 1u : k->plan->finest_level;
-        noh_lod_set_mesh(&ch->lod, &k->table, level, scale * place.scale);
+        noh_lod_set_mesh(&ch->lod, &k->table, level, scale);
         (void)noh_controller_set_lod(noh_character_controller(ch), ch->lod.mesh, 0);
     }
-    if (k->graph_count) noh_stage_follow_lod(k, noh_stage_index(k, a));
+    if (k->graph_count) noh_stage_follow_lod(k, i);
 }
 
-void noh_stage_look_at(noh_stage *s, uint32_t first, uint32_t end)
+static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrices)
+{
+    noh_stage_actor *a = &s->actors[index];
+    noh_stage_shown *shown = &s->shown[index];
+    noh_place place;
+    float own[4];
+    if (k->weight_count) noh_stage_take_floats(k, noh_stage_index(k, a));
+    noh_stage_sphere(k, noh_stage_index(k, a), own);
+    if (a->parent) {
+        shown->views = (uint16_t)look_at_attached(s, index, k, own);
+    } else {
+        noh_stage_shown_place(s, a, s->origin, &place);
+        noh_place_matrix(&place, shown->world);
+        shown->views = (uint16_t)look_at_own(s, index, k, own);
+    }
+    a->on_its_way = 0;
+    shown->due = NOH_DUE_NOT;
+    shown->updates = 0;
+    noh_stage_measure(s, k, noh_stage_index(k, a), own, matrices);
+    if (shown->views || a->look.posed) {
+        choose(s, k, index);
+    } else {
+        a->was_seen = 0;
+    }
+}
+
+void noh_stage_look_at(noh_stage *s, uint32_t job, uint32_t first, uint32_t end)
 {
     for (uint32_t i = first; i < end; i++) {
         if (s->actors[i].alive) {
-            look_at(s, noh_stage_kind_of(s, i), i);
+            look_at(s, noh_stage_kind_of(s, i), i, s->jobs[job].matrices);
         } else {
             s->shown[i].views = 0;
             s->shown[i].updates = 0;

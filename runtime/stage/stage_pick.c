@@ -122,7 +122,7 @@ noh_result noh_stage_pick(noh_stage *stage, const float origin[3], const float d
         if (!stage->actors[i].alive || k->desc->unpickable || stage->actors[i].look.hidden || !stage->shown[i].views ||
             stage->shown[i].frame != stage->frame)
             continue;
-        if (noh_stage_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {
+        if (noh_stage_actor_sphere(stage, noh_stage_actor_at(stage, i), sphere, NULL) == NOH_OK && meets(&r, sphere)) {
             pick_actor(stage, k, i, &r, hit, &found);
         }
     }

@@ -24,6 +24,10 @@ static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind 
 static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
 {
     const uint32_t own = k->bank || (noh_stage_has_parts(k->desc) && k->float_count) ? k->set.float_count : 0;
+    if (!ch->time.posed) {
+        memcpy(floats, k->defaults, k->float_count * sizeof *floats);
+        return;
+    }
     if (own) {
         const float *shown = noh_character_floats(ch, floats);
         if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
@@ -43,6 +47,15 @@ static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
             }
         }
     }
+}
+
+void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
+{
+    float *floats = k->floats + (size_t)index * k->float_count;
+    take_floats(k, noh_stage_character(k, index), floats);
+    hold(k, index, floats); /* the game's word is over clips, faces and parts */
+    noh_weight_rules_keep(k->weight_rules, k->weight_rule_count, floats);
+    if (k->corrective_count) noh_stage_correct(k, index, floats);
 }
 
 /* The weights of all meshes, one after another, without targets whose effect is too small to see. */
@@ -118,20 +131,17 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     noh_character *ch = noh_stage_character(k, i);
     noh_stage_shown *shown = &s->shown[k->first_actor + i];
     noh_stage_actor *a = &s->actors[k->first_actor + i];
-    float *floats = k->floats + (size_t)i * k->float_count;
     float error_pixels;
     if (!ch->time.posed) {
         return; /* over budget: not shown yet */
     }
-    take_floats(k, ch, floats);
-    hold(k, i, floats); /* the game's word is over clips, faces and parts */
-    noh_weight_rules_keep(k->weight_rules, k->weight_rule_count, floats);
-    if (k->corrective_count) noh_stage_correct(k, i, floats);
-    take_weights(s, k, a, ch, floats, k->weights + (size_t)i * k->weight_count);
+    noh_stage_take_floats(k, i);
+    if (!a->parent) noh_stage_measure_shown(s, k, i, job->matrices);
+    take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);
     shown->frame = s->frame;
     if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes */
-    error_pixels = noh_lod_error_pixels(&ch->lod);
-    if (error_pixels > job->error_pixels && !a->look.posed) job->error_pixels = error_pixels;
+    error_pixels = a->parent ? 0.0f : noh_stage_error_pixels(s, k, i);
+    if (error_pixels > job->error_pixels) job->error_pixels = error_pixels;
 }
 
 void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)

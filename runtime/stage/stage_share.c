@@ -16,9 +16,11 @@ static void ask(noh_stage *s, noh_stage_kind *k)
     noh_lod_pools_begin(k->pools);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         const noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        const noh_stage_actor *a = &k->actors[i];
         if (shown->views) {
             const uint32_t level = noh_lod_finest(&noh_stage_character(k, i)->lod), first = k->table.mesh_level_first;
-            noh_lod_pools_ask(k->pools, i, level > first ? level : first, shown->scale);
+            noh_lod_pools_ask_at(k->pools, i, level > first ? level : first, shown->scale * noh_stage_size(s, a),
+                                 shown->distance, s->cut || a->was_seen < 3u);
         }
     }
     noh_lod_pools_share_some(k->pools, s->cut ? UINT32_MAX : s->desc.slot_moves);
@@ -79,7 +81,7 @@ static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t set, uint32_t 
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_shown *shown = &s->shown[k->first_actor + i];
         if (shown->views && k->actors[i].look.texture_set == set) {
-            shown->place = next[run_of(s, k, i)]++;
+            shown->place = (uint16_t)next[run_of(s, k, i)]++;
             k->order[shown->place] = i;
         }
     }

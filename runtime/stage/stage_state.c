@@ -52,7 +52,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
 {
     const char *what;
     if (a->generation == 0 || a->generation > 0xffffu) return "state: bad generation of an actor";
-    if (a->alive > 1u || a->was_seen > 1u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
+    if (a->alive > 1u || a->was_seen > 3u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
     if (a->next_free > k->desc->actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
     what = bad_place(&a->place);

@@ -218,6 +218,57 @@ static float gradient(const float p[4])
     return noh_sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
 }
 
+static double cross_dot(const double a[3], const double b[3], const double c[3])
+{
+    return (a[1] * b[2] - a[2] * b[1]) * c[0] + (a[2] * b[0] - a[0] * b[2]) * c[1] + (a[0] * b[1] - a[1] * b[0]) * c[2];
+}
+
+/* Where x, y and w of clip space are 0 at once, by Cramer's rule; 0: nowhere. */
+static int find_eye(const float m[16], float eye[3])
+{
+    double rows[3][4], columns[4][3], determinant;
+    for (int c = 0; c < 4; c++) {
+        for (int r = 0; r < 3; r++) columns[c][r] = rows[r][c] = (double)m[4 * c + (r < 2 ? r : 3)];
+    }
+    determinant = cross_dot(columns[0], columns[1], columns[2]);
+    if (!(determinant * determinant > 0.0)) return 0;
+    for (int i = 0; i < 3; i++) {
+        eye[i] = (float)(-cross_dot(columns[3], columns[(i + 1) % 3], columns[(i + 2) % 3]) / determinant);
+    }
+    return 1;
+}
+
+/* w of the near plane, whatever the clip space: z is -w there, or 0, or with z reversed w, and of these places it is
+ * the nearest in front of the eye. */
+static float find_near(const float m[16], const noh_view_planes *v)
+{
+    double at_eye = (double)m[14], along = 0.0, nearest = 0.0;
+    for (int i = 0; i < 3; i++) {
+        at_eye += (double)m[4 * i + 2] * (double)v->eye[i];
+        along += (double)m[4 * i + 2] * (double)v->eye_plane[i] / (double)v->w_slope;
+    }
+    for (int clip = -1; clip <= 1; clip++) {
+        const double rest = clip * (double)v->w_slope - along, w = at_eye / rest * (double)v->w_slope;
+        if (rest * rest > 0.0 && w > 0.0 && (nearest <= 0.0 || w < nearest)) nearest = w;
+    }
+    return nearest > 1e-6 ? (float)nearest : 1e-6f;
+}
+
+/* A corner of the picture is where x and y are w, or -w: along the normal of both planes. */
+static float find_corner(const float planes[4][4], const noh_view_planes *v)
+{
+    float least = 1.0f;
+    for (int i = 0; i < 4; i++) {
+        float ray[3], along, length;
+        cross(planes[i & 1], planes[2 + (i >> 1)], ray);
+        along = noh_dot3(ray, v->eye_plane);
+        length = noh_sqrt(noh_dot3(ray, ray)) * v->w_slope;
+        along = along < 0.0f ? -along : along;
+        if (length > 0.0f && along < least * length) least = along / length;
+    }
+    return least;
+}
+
 /* source  G. Gribb and K. Hartmann, "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix"
  *         (2001). The far and near planes are left out: what lies beyond the far one is rare, and cheap. */
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out)
@@ -240,5 +291,12 @@ void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out)
     }
     out->w_slope = gradient(out->eye_plane);
     out->scale = 0.5f * (float)view->height_px * gradient(up);
+    memcpy(out->eye, view->eye, sizeof out->eye);
+    out->near_w = 1e-6f;
+    out->corner = 1.0f;
+    if (out->w_slope > 0.0f && find_eye(m, out->eye)) {
+        out->near_w = find_near(m, out);
+        out->corner = find_corner((const float(*)[4])out->planes, out);
+    }
     out->is_light = view->height_px == 0;
 }

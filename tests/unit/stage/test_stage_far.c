@@ -115,7 +115,7 @@ static void take(float x, uint32_t view_frame, float alpha, shot *out)
         }
     }
     noh_stage_world(c.stage, held.id & 0xffffu, out->held);
-    assert_int_equal(noh_stage_sphere(c.stage, actor, matrix, NULL), NOH_OK);
+    assert_int_equal(noh_stage_actor_sphere(c.stage, actor, matrix, NULL), NOH_OK);
     for (int i = 0; i < 3; i++) {
         out->held[4 * i + 3] -= i == 1 ? -origin[1] : x - origin[i];
         out->sphere[i] = matrix[i] - (i == 1 ? -origin[1] : x - origin[i]);
