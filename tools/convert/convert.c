@@ -56,6 +56,9 @@ static int read_graphs(const convert_options *options, const source *s, graph_fi
         graph_text_bind(*out, s->sets, s->set_count, &failure->line, &failure->error)) {
         return 1;
     }
+    if (graph_text_warn(*out, s->sets, s->set_count, options->clip.check_loops, options->graph, s->m)) {
+        return out_of_memory(&failure->error);
+    }
     failure->file = model_file;
     return 0;
 }

@@ -30,6 +30,69 @@ static void refused(const char *text, uint32_t line, const char *what)
     raw_set_free(set);
 }
 
+/* Text that is read, with a clip "walk" that loops and "run" that ends; the warnings, one a line. */
+static void warns(const char *text, int all_loop, const char *what)
+{
+    const char *path = test_path("warned.graph");
+    raw_set *set = raw_set_new(2, 2);
+    model *m = model_new();
+    graph_file *file = NULL;
+    model_error error = { "", "" };
+    uint32_t at = 0;
+    char all[2048] = "";
+    set->skeleton.joints[0].name = model_string("root");
+    set->skeleton.joints[1].name = model_string("head");
+    set->clips[0].name = model_string("walk");
+    set->clips[1].name = model_string("run");
+    set->clips[0].loop = 1;
+    test_write_file(path, text, strlen(text));
+    if (graph_text_read(path, &file, &at, &error) || graph_text_bind(file, &set, 1, &at, &error)) {
+        fail_msg("%u: %s", (unsigned)at, error.what);
+    }
+    assert_int_equal(graph_text_warn(file, &set, 1, all_loop, "a.graph", m), 0);
+    for (uint32_t i = 0; i < m->warning_count; i++) {
+        strcat(all, m->warnings[i]);
+        strcat(all, "\n");
+    }
+    assert_string_equal(all, what);
+    graph_text_free(file);
+    raw_set_free(set);
+    model_free(m);
+}
+
+static void what_waits_for_the_end_of_a_loop_is_warned_of(void **state)
+{
+    static const char *const by_walk =
+        "a.graph:5: `from walk to run when ending` never comes true: 'walk' loops, so it "
+        "never ends: give the clip loop=once\n";
+    (void)state;
+    warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 0, by_walk);
+    warns("graph a\nclip walk loop=ping-pong\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 0,
+          by_walk);
+    warns("graph a\nclip walk loop=once\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 1, "");
+    warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom run to walk when ending\n", 0, "");
+    warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom run to walk when ending\n", 1,
+          "a.graph:5: `from run to walk when ending` never comes true: 'run' loops, so it never ends: give the clip "
+          "loop=once\n");
+    warns("graph a\nclip walk\nclip run paused=yes\nmachine m walk run\nfrom run to walk when ending\n", 0,
+          "a.graph:5: `from run to walk when ending` never comes true: 'run' is paused, so it never ends: take out "
+          "paused=yes\n");
+    /* from any state: one that ends is enough, but for the one that it leads to */
+    warns("graph a\nclip walk\nclip run\nclip w walk\nmachine m walk run w\nfrom any to w when ending\n", 0, "");
+    warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom any to run when ending\n", 0,
+          "a.graph:5: `from any to run when ending` never comes true: 'walk' loops, so it never ends: give the clip "
+          "loop=once\n");
+    /* a state of several clips ends with its first */
+    warns("graph a\nnumber v 0 1\nclip walk\nclip run\nclip r run\nblend b walk run by=v\nmachine m b r\n"
+          "from b to r when ending\n",
+          0,
+          "a.graph:8: `from b to r when ending` never comes true: 'walk' loops, so it never ends: give the clip "
+          "loop=once\n");
+    warns("graph a\ntrigger t\nclip walk\nclip run paused=yes\none-shot s walk run on=t\n", 0,
+          "a.graph:5: the one-shot 's' never ends: 'run' is paused, so it never ends: take out paused=yes\n");
+    warns("graph a\ntrigger t\nclip run\nclip walk\none-shot s run walk on=t\n", 1, "");
+}
+
 static void bad_lines_are_refused_with_their_number(void **state)
 {
     (void)state;
@@ -194,6 +257,7 @@ static void names_may_have_blanks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_lines_are_refused_with_their_number),
+    cmocka_unit_test(what_waits_for_the_end_of_a_loop_is_warned_of),
     cmocka_unit_test(parameters_are_checked),
     cmocka_unit_test(nodes_are_checked),
     cmocka_unit_test(transitions_are_checked),

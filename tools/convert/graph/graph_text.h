@@ -5,11 +5,13 @@
  * lines their mask. Each node is the child of one other, except the one that gives the pose.
  *
  *   graph_text_read   a file: every graph in it, checked and linked
- *   graph_text_bind   its names against the clips and joints of the inputs */
+ *   graph_text_bind   its names against the clips and joints of the inputs
+ *   graph_text_warn   what waits for an end that never comes */
 #ifndef NOH_CONVERT_GRAPH_GRAPH_TEXT_H
 #define NOH_CONVERT_GRAPH_GRAPH_TEXT_H
 
 #include "convert/clips/raw_clip.h"
+#include "convert/model/model.h"
 #include "pack/format.h"
 
 /* A name that another statement defines. */
@@ -94,5 +96,10 @@ void graph_text_free(graph_file *file);
 /* Whether the sets have the clips and joints that the graphs name. 0, or 1, *error and *line. */
 int graph_text_bind(const graph_file *file, raw_set *const *sets, uint32_t set_count, uint32_t *line,
                     model_error *error);
+
+/* Warn of transitions `when ending` whose states all loop or stand still, and of one-shots that do. After
+ * graph_text_bind. all_loop: every clip is marked as a loop. 0, or 1: out of memory. */
+int graph_text_warn(const graph_file *file, raw_set *const *sets, uint32_t set_count, int all_loop, const char *path,
+                    model *m);
 
 #endif

@@ -54,7 +54,7 @@ const char *const help_formats_text[] = {
     "   one-shot NODE A CHILD on=TRIGGER [in=S] [out=S] [curve=smooth] [mask=MASK]",
     "   machine NODE STATE...                       states are nodes, the first is the initial one; then:",
     "     from STATE|any to STATE when CONDITION [fade=S|inertia=S] [curve=smooth] [enter=keep]",
-    "     CONDITION: PARAM above V, PARAM below V, TRIGGER, or ending (the clip of the state ends within the fade)",
+    "     CONDITION: PARAM above V, PARAM below V, TRIGGER, or ending (the clip of the state, which plays once, ends within the fade)",
     "A clip without CLIP has its node's name. enter=keep goes on where the node was left, else it starts anew. A select takes the value "
     "of an enum, or an integer from 0; a one-shot plays CHILD over A once, whose first clip plays once. Clips of one sync group keep step.",
     "   graph hero",
