@@ -130,6 +130,7 @@
 #include "sim/ragdoll_pose.h" /* between its bodies and a pose */
 #include "sim/ragdoll_rig.h"  /* a ragdoll out of a character */
 #include "sim/reach.h"        /* hands that reach for points that move */
+#include "sim/rigid.h"        /* a free rigid body, forces and torques at points */
 #include "sim/shape.h"        /* boxes, rays */
 #include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
 #include "sim/terrain.h"      /* the height field of a pack */
