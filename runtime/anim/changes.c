@@ -206,7 +206,7 @@ static void settle_full(noh_track *track)
 {
     if (track->full > 0.0f && track->weight >= track->full) {
         track->full = 0.0f;
-        track->full_from = 0;
+        track->flags = (uint8_t)(track->flags & ~NOH_TRACK_RISES);
     }
 }
 

@@ -53,6 +53,7 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
                           set->clips[t->clip].duration_ticks > NOH_SYNC_DURATION_MAX))
         return "track: cannot be synchronised";
     if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight is not in 0..NOH_WEIGHT_MAX";
+    if (t->reference > set->clip_count) return "track: reference is not a clip of the set";
     if (!(t->full >= -1.0f && t->full <= NOH_WEIGHT_MAX)) return "track: full is not in -1..NOH_WEIGHT_MAX";
     if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is past NOH_SPEED_MAX";
     if (!is_within(t->speed_now, t->sync_group ? SYNC_SPEED_NOW_MAX : SPEED_NOW_MAX))

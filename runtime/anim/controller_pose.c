@@ -129,28 +129,35 @@ static int some_shine_through(const view *v)
 {
     for (uint32_t i = 0; i < v->c->track_count; i++) {
         const noh_track *t = noh_controller_track(v->c, i);
-        if (is_low(v, t) && noh_track_cover(t) < 1.0f) return 1;
+        if (t->full != 0.0f && is_low(v, t) && noh_track_cover(t) < 1.0f) return 1;
     }
     return 0;
 }
 
-/* The most that any low track hides of each joint and float. */
+static void cover_more(float *covers, uint32_t count, const uint8_t *mask, float cover, int rises)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (mask && !mask[i]) continue;
+        if (rises) covers[i] += (1.0f - covers[i]) * cover;
+        if (!rises && cover > covers[i]) covers[i] = cover;
+    }
+}
+
+/* The most that any low track hides of each joint and float; then what rising ones hide of the rest. */
 static void find_covers(const view *v, float *joints, float *floats)
 {
     memset(joints, 0, v->c->lod_joint_count * sizeof *joints);
     if (v->set->float_count) memset(floats, 0, v->set->float_count * sizeof *floats);
-    for (uint32_t i = 0; i < v->c->track_count; i++) {
-        const noh_track *t = noh_controller_track(v->c, i);
+    for (uint32_t i = 0; i < 2u * v->c->track_count; i++) {
+        const noh_track *t = noh_controller_track(v->c, i % v->c->track_count);
         const noh_mask_view mask = noh_clip_set_mask(v->set, t->mask);
-        const float cover = noh_track_cover(t);
         const uint32_t flags = v->set->clips[t->clip].flags;
-        if (!is_low(v, t)) continue;
-        for (uint32_t j = 0; j < v->c->lod_joint_count && !(flags & NOH_CLIP_FLOATS_ONLY); j++) {
-            if ((!mask.joints || mask.joints[j]) && cover > joints[j]) joints[j] = cover;
-        }
-        for (uint32_t f = 0; f < v->set->float_count && !(flags & NOH_CLIP_JOINTS_ONLY); f++) {
-            if ((!mask.floats || mask.floats[f]) && cover > floats[f]) floats[f] = cover;
-        }
+        const int rises = (t->flags & NOH_TRACK_RISES) != 0;
+        if (!is_low(v, t) || rises != (i >= v->c->track_count)) continue;
+        if (!(flags & NOH_CLIP_FLOATS_ONLY))
+            cover_more(joints, v->c->lod_joint_count, mask.joints, noh_track_cover(t), rises);
+        if (!(flags & NOH_CLIP_JOINTS_ONLY))
+            cover_more(floats, v->set->float_count, mask.floats, noh_track_cover(t), rises);
     }
 }
 
@@ -202,18 +209,21 @@ static const noh_track *only_track(const view *v)
     return only;
 }
 
-/* The reference pose of an additive track. It goes into the blend's sums, which are free by then. */
-static void reference_pose(const view *v, const noh_track *t, noh_transform *pose, float *floats)
+void noh_reference_pose(const noh_clip_set *set, uint32_t reference, uint32_t joint_count, noh_transform *pose,
+                        float *floats)
 {
-    const noh_clip_set *set = v->set;
-    if (t->flags & NOH_TRACK_REFERENCE_START) {
-        sample_at(v, t->clip, 0, pose, floats);
-        return;
-    }
-    memcpy(pose, set->bind_pose, v->c->lod_joint_count * sizeof *pose);
-    for (uint32_t i = 0; i < set->float_count; i++) {
+    const uint32_t flags = reference ? set->clips[reference - 1u].flags : NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY;
+    if (reference) noh_root_sample_rest(set, reference - 1u, 0, joint_count, pose, floats);
+    if ((flags & NOH_CLIP_FLOATS_ONLY) && joint_count) memcpy(pose, set->bind_pose, joint_count * sizeof *pose);
+    for (uint32_t i = 0; i < set->float_count && (flags & NOH_CLIP_JOINTS_ONLY); i++) {
         floats[i] = set->float_defaults ? set->float_defaults[i] : 0.0f;
     }
+}
+
+/* An additive track's. 0: the bind pose; else 1 + index of a clip. */
+static uint32_t reference_of(const noh_track *t)
+{
+    return t->reference || !(t->flags & NOH_TRACK_REFERENCE_START) ? t->reference : t->clip + 1u;
 }
 
 static void add_track(const view *v, const noh_track *t, noh_transform *pose, float *floats)
@@ -223,7 +233,8 @@ static void add_track(const view *v, const noh_track *t, noh_transform *pose, fl
     uint32_t joints = v->c->lod_joint_count, count = v->set->float_count, flags = v->set->clips[t->clip].flags;
     sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
     if (!(flags & NOH_CLIP_ADDITIVE)) {
-        reference_pose(v, t, s->blend.sum, s->blend.float_sum);
+        /* into the blend's sums, which are free by then */
+        noh_reference_pose(v->set, reference_of(t), joints, s->blend.sum, s->blend.float_sum);
         noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
         for (uint32_t i = 0; i < count; i++) {
             s->float_sample[i] -= s->blend.float_sum[i];
@@ -362,9 +373,9 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 
 /* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the
  * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. `cover` is how far
- * they hide the bind pose, which does not move. */
+ * they hide the bind pose, which does not move; `bare` what rising tracks leave of the rest. */
 typedef struct root_sum {
-    double translation[3], turn, weight, total, cover;
+    double translation[3], turn, weight, total, cover, bare;
 } root_sum;
 
 static void add_root(root_sum *sum, const noh_root_pose *move, double weight, double part)
@@ -388,11 +399,22 @@ static double root_part(const noh_clip_set *set, const noh_track *t)
     return mask.joints ? (double)mask.joints[0] / 255.0 : 1.0;
 }
 
+static void add_cover(root_sum *sum, const noh_track *t)
+{
+    const double cover = (double)noh_track_cover(t);
+    if (t->flags & NOH_TRACK_RISES) {
+        sum->bare *= 1.0 - cover;
+    } else if (cover > sum->cover) {
+        sum->cover = cover;
+    }
+}
+
 static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track_group group,
                            const noh_given_root *given)
 {
     root_sum sum;
     memset(&sum, 0, sizeof sum);
+    sum.bare = 1.0;
     for (uint32_t i = 0; i < c->track_count; i++) {
         noh_track *t = &noh_controller_tracks(c)[i];
         const noh_root_track *root = &set->roots[t->clip];
@@ -409,7 +431,7 @@ static root_sum group_root(noh_controller *c, const noh_clip_set *set, noh_track
                 move = noh_root_between(set, root, t->clip, (noh_loop)t->loop, t->root_position, t->position);
             }
             add_root(&sum, &move, (double)t->weight, part);
-            if ((double)noh_track_cover(t) > sum.cover) sum.cover = (double)noh_track_cover(t);
+            add_cover(&sum, t);
         }
         t->root_position = t->position;
     }
@@ -450,7 +472,7 @@ noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip
     low_sum = group_root(c, set, NOH_GROUP_LOW, given);
     high_sum = group_root(c, set, NOH_GROUP_HIGH, given);
     low = mean_root(&low_sum);
-    if (low_sum.cover < 1.0) scale_root(&low, low_sum.cover);
+    if (low_sum.cover < 1.0) scale_root(&low, 1.0 - (1.0 - low_sum.cover) * low_sum.bare);
     high = mean_root(&high_sum);
     if (high_sum.total < (double)full_weight(c)) high_sum.total = (double)full_weight(c);
     cover = high_sum.weight > 0.0 ? (double)c->priority_blend * high_sum.weight / high_sum.total : 0.0;

@@ -19,6 +19,7 @@ static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
     if (d->mask > set->mask_count) return "mask is above mask_count of the set";
     if (d->lod_levels > 255u) return "lod_levels is above 255";
     if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group is above NOH_SYNC_GROUPS_MAX";
+    if (d->reference > set->clip_count) return "reference is above clip_count of the set";
     if (d->flags & ~NOH_TRACK_FLAGS) return "flags has bits other than NOH_TRACK_FLAGS";
     return NULL;
 }
@@ -60,6 +61,7 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
     track->lod_levels = (uint8_t)desc->lod_levels;
     track->sync_group = (uint8_t)desc->sync_group;
     track->flags = (uint8_t)((desc->flags & (NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)) | turns(track, m));
+    track->reference = (uint16_t)desc->reference;
     noh_track_place(track, m, noh_position_of(desc->position_ticks));
     return NOH_OK;
 }
@@ -116,9 +118,8 @@ int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 float noh_track_cover(const noh_track *track)
 {
     NOH_ASSERT(track);
-    const float from = (float)track->full_from / 255.0f;
     if (track->full < 0.0f) return -track->full;
-    return track->weight < track->full ? from + (1.0f - from) * (track->weight / track->full) : 1.0f;
+    return track->weight < track->full ? track->weight / track->full : 1.0f;
 }
 
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)

@@ -31,6 +31,7 @@ typedef enum noh_track_group { NOH_GROUP_LOW = 0, NOH_GROUP_HIGH } noh_track_gro
 #define NOH_TRACK_ADDITIVE 4u        /* its difference from a reference pose is added after the blend */
 #define NOH_TRACK_REFERENCE_START 8u /* that reference is the clip's own pose at tick 0, not the bind pose */
 #define NOH_TRACK_TURNS 16u          /* of a noh_track alone: plays ping-pong a clip that by itself does not */
+#define NOH_TRACK_RISES 32u          /* likewise: it hides a part of what the other tracks leave of the bind pose */
 #define NOH_TRACK_FLAGS (NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)
 
 /* How a track starts. All zeros play clip 0 from its start. */
@@ -47,6 +48,9 @@ typedef struct noh_track_desc {
     uint32_t sync_group; /* default 0: none; 1..NOH_SYNC_GROUPS_MAX; needs NOH_LOOP_REPEAT and a duration of
                             NOH_SYNC_DURATION_MIN..MAX */
     uint32_t flags;      /* NOH_TRACK_* */
+    uint32_t
+        reference; /* ADDITIVE: 1 + index of the clip whose first frame is the reference pose, so that a clip of one
+                          * pose adds its difference from it; default (0) as the flags say */
 } noh_track_desc;
 
 /* 48 bytes. */
@@ -59,9 +63,8 @@ typedef struct noh_track {
     uint16_t clip;
     uint8_t mask; /* 1 + index, 0: none */
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
-    uint8_t placed;    /* 1: it has not moved since it was started or sought */
-    uint8_t full_from; /* of 255: how far it hides the bind pose at weight 0, where full is above 0 */
-    uint8_t reserved;
+    uint8_t placed;     /* 1: it has not moved since it was started or sought */
+    uint16_t reference; /* ADDITIVE: 1 + index of the clip whose first frame is the reference; 0: as its flags say */
     float
         full; /* how far a track of the low group hides the bind pose (noh_track_cover), -1..NOH_WEIGHT_MAX. 0: wholly,
                  * at any weight, as it starts. Above 0: wholly at this weight, and in proportion below it, so that a
@@ -87,7 +90,7 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
 int noh_track_ended(const noh_track *track, const noh_clip_entry *clip);
 
 /* How far a track of the low group hides the bind pose, 0..1. Of several tracks the one that hides the most counts,
- * joint by joint; what their weights sum to does not matter there. */
+ * joint by joint, and what it leaves those with NOH_TRACK_RISES hide; what their weights sum to does not matter. */
 float noh_track_cover(const noh_track *track);
 
 /* The clip tick to sample, `ago` ticks before now at the present speed. */

@@ -7,7 +7,7 @@
  *   CLIP      a clip: one track of the controller inside, which keeps time, events and sync groups
  *   BLEND     a * (1 - t) + b * t
  *   ADD       a + t * (b as a difference): b's clips are differences already (NOH_CLIP_ADDITIVE), or are taken against
- *             the bind pose
+ *             the bind pose, or against the first frame of a clip
  *   MASK      b over a where the mask allows, by t
  *   SPACE_1D, SPACE_2D   see blend_space.h
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch at once and let the difference decay
@@ -53,7 +53,8 @@ typedef struct noh_graph_node {
     uint16_t first_child, child_count; /* in the graph's children */
     uint16_t param;   /* t, x, SELECT's number or ONE_SHOT's trigger; t and x may be NOH_GRAPH_NONE: `value` */
     uint16_t param_y; /* SPACE_2D */
-    /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions */
+    /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions; ADD: item_count 1: the
+     * clip of the set whose first frame is the reference, 0: the bind pose is */
     uint16_t first_item, item_count;
     uint16_t mask;       /* MASK, ONE_SHOT: 1 + index in the set's masks; ONE_SHOT also 0: everywhere */
     uint16_t index;      /* CLIP: its number among the clips; MACHINE, SELECT, ONE_SHOT: among these, in stored order */

@@ -150,6 +150,10 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
     case NOH_NODE_CLIP: return bad_clip(g, set, n);
     case NOH_NODE_MASK:
         return n->mask == 0 || n->mask > set->mask_count ? "mask is not in 1..mask_count of the set" : NULL;
+    case NOH_NODE_ADD:
+        return n->item_count > 1u || (n->item_count && n->first_item >= set->clip_count)
+                   ? "item of ADD is not a clip of the set"
+                   : NULL;
     case NOH_NODE_SPACE_1D: return bad_space_1d(g, n);
     case NOH_NODE_SPACE_2D: return bad_space_2d(g, n);
     case NOH_NODE_MACHINE: return bad_machine(g, n);

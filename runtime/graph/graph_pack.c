@@ -111,6 +111,24 @@ static void fill_nodes(const noh_pack_graph *g, noh_graph_node *nodes)
     }
 }
 
+/* Reference clips by name. */
+static noh_result fill_references(const noh_pack_graph *g, const noh_clip_set *set, noh_graph_node *nodes,
+                                  noh_error *error)
+{
+    for (uint32_t i = 0; i < g->header->node_count; i++) {
+        uint32_t clip;
+        if (nodes[i].kind != NOH_NODE_ADD || !nodes[i].item_count) continue;
+        clip = noh_clip_set_find(set, g->names[g->nodes[i].first_item].name_hash);
+        if (clip == NOH_NONE) {
+            return noh_fail(error, NOH_ERR_NOT_FOUND,
+                            "the set has no clip of the name that the graph adds relative to: play clips with it", i,
+                            0);
+        }
+        nodes[i].first_item = (uint16_t)clip;
+    }
+    return NOH_OK;
+}
+
 static noh_result fill_clips(const noh_pack_graph *g, const noh_clip_set *set, noh_track_desc *clips, noh_error *error)
 {
     for (uint32_t i = 0; i < g->header->clip_count; i++) {
@@ -342,6 +360,7 @@ noh_result noh_graph_pack_init(void *memory, size_t bytes, const noh_graph_pack_
     fill_spaces(&g, p.spaces);
     join(&g, desc->set, &p);
     result = fill_clips(&g, desc->set, p.clips, error);
+    if (!result) result = fill_references(&g, desc->set, p.nodes, error);
     if (!result) result = fill_masks(&g, desc, p.masks, error);
     if (!result) result = noh_graph_check(&p.made->graph, &p.made->clips, error);
     if (!result) *made = p.made;

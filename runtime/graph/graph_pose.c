@@ -152,17 +152,18 @@ static int is_difference(const evaluation *e, uint32_t node)
     return (e->set->clips[noh_controller_track(e->c, clip->index)->clip].flags & NOH_CLIP_ADDITIVE) != 0;
 }
 
-/* The second child is added as a difference: as it is, or taken from the bind pose first. */
+/* The second child is added as a difference: as it is, or taken from the reference pose first. */
 static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
     noh_transform *over = e->scratch->poses[p->buffers[1]];
     float *float_over = e->scratch->float_poses[p->buffers[1]];
     if (!is_difference(e, e->view.graph->children[node->first_child + 1u])) {
-        noh_pose_difference(joints, e->set->bind_pose, over, over);
-        for (uint32_t i = 0; i < floats && e->set->float_defaults; i++) {
-            float_over[i] -= e->set->float_defaults[i];
-        }
+        noh_transform *pose = e->scratch->pose.sample;
+        float *values = e->scratch->pose.float_sample;
+        noh_reference_pose(e->set, node->item_count ? node->first_item + 1u : 0u, joints, pose, values);
+        noh_pose_difference(joints, pose, over, over);
+        for (uint32_t i = 0; i < floats; i++) float_over[i] -= values[i];
     }
     if (!(e->lacks[p->buffers[1]] & NOH_CLIP_FLOATS_ONLY)) {
         noh_pose_add(joints, over, p->weights[1], NULL, e->scratch->poses[p->buffers[0]]);

@@ -72,7 +72,7 @@ static int is_coordinate(float x)
 static const uint16_t kinds[NOH_PACK_NODE_ONE_SHOT + 1u] = {
     HAS_INDEX,
     HAS_PARAM | HAS_VALUE | PAIR,
-    HAS_PARAM | HAS_VALUE | PAIR,
+    HAS_PARAM | HAS_VALUE | HAS_ITEMS | PAIR,
     HAS_PARAM | HAS_VALUE | HAS_MASK | PAIR,
     HAS_PARAM | HAS_VALUE | HAS_ITEMS,
     HAS_PARAM | HAS_PARAM_Y | HAS_VALUE | HAS_ITEMS,
@@ -228,9 +228,19 @@ static noh_result check_transitions(const graph_view *g, const noh_pack_graph_no
     return result;
 }
 
+static noh_result check_reference(const graph_view *g, const noh_pack_graph_node *n)
+{
+    const noh_check_field rows[] = {
+        NODE(first_item, n->item_count ? n->first_item >= g->h->name_count : n->first_item != 0),
+        NODE(item_count, n->item_count > 1u),
+    };
+    return CHECK(rows, "graph node adds relative to a clip whose name is not in the chunk", n);
+}
+
 static noh_result check_items(const graph_view *g, const noh_pack_graph_node *n)
 {
     switch (n->kind) {
+    case NOH_PACK_NODE_ADD: return check_reference(g, n);
     case NOH_PACK_NODE_SPACE_1D: return check_thresholds(g, n);
     case NOH_PACK_NODE_SPACE_2D: return check_space(g, n);
     case NOH_PACK_NODE_MACHINE: return check_transitions(g, n);

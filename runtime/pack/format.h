@@ -596,7 +596,7 @@ typedef struct noh_pack_graph_header {
     uint32_t triangle_count, triangles_offset;     /* uint8_t[][3], indices of a space's points, counter-clockwise */
     uint32_t param_count, params_offset;           /* noh_pack_graph_param[] */
     uint32_t mask_count, masks_offset;             /* noh_pack_graph_mask[] */
-    uint32_t name_count, names_offset; /* noh_pack_graph_name[]: values of ENUM parameters, joints of masks */
+    uint32_t name_count, names_offset; /* noh_pack_graph_name[]: values of ENUM parameters, joints of masks, clips */
     uint32_t machine_count;            /* MACHINE, SELECT and ONE_SHOT nodes */
     uint32_t reserved[3];
 } noh_pack_graph_header;
@@ -607,7 +607,8 @@ typedef struct noh_pack_graph_node {
     uint16_t kind; /* NOH_PACK_NODE_* */
     uint16_t first_child, child_count;
     uint16_t param, param_y;
-    /* SPACE_1D: points, one per child; SPACE_2D: its space, 1; MACHINE: its transitions */
+    /* SPACE_1D: points, one per child; SPACE_2D: its space, 1; MACHINE: its transitions; ADD: none, or the name of the
+     * clip that it adds relative to, 1 */
     uint16_t first_item, item_count;
     uint16_t mask;  /* MASK, ONE_SHOT: 1 + index; ONE_SHOT also 0 */
     uint16_t index; /* CLIP: its number among the clips; MACHINE, SELECT, ONE_SHOT: among these. In stored order */

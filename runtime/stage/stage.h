@@ -46,7 +46,7 @@ typedef enum noh_layer_mode {
     NOH_LAYER_BASE = 0, /* blended with the other base layers by weight, joint by joint */
     NOH_LAYER_OVER,     /* covers the base layers where its mask lets it, by its weight; layers over the same joints
                          * are blended with each other */
-    NOH_LAYER_ADD       /* adds its difference from the clip's first frame */
+    NOH_LAYER_ADD       /* adds its difference from the clip's first frame, or from another pose (noh_play) */
 } noh_layer_mode;
 
 /* One thing that an actor can do at a time: walk, wave, talk. */
@@ -393,6 +393,7 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
 #define NOH_PLAY_PHASE 2u   /* begin at the phase of what it takes over from: walk into run */
 #define NOH_PLAY_INERTIA 4u /* no cross-fade: the clip plays at once, and the leap decays within fade_ticks */
 #define NOH_PLAY_BESIDE 8u  /* what plays on the layer plays on, blended with this clip by weight; not with INERTIA */
+#define NOH_PLAY_FROM_BIND 16u /* on a layer that adds: the difference from the bind pose and the floats' defaults */
 
 /* All zeros play the clip as it was made, faded in within a fifth of a second. */
 typedef struct noh_play {
@@ -403,12 +404,15 @@ typedef struct noh_play {
     noh_loop loop;       /* default NOH_LOOP_OF_CLIP: the clip's own */
     uint32_t sync_group; /* default (0) none; 1..NOH_SYNC_GROUPS_MAX */
     uint32_t flags;      /* NOH_PLAY_* */
+    /* On a layer that adds: the clip from whose first frame the difference is taken. Default (NULL) this clip itself, so
+     * that a clip of one pose adds nothing: give it a reference, or NOH_PLAY_FROM_BIND */
+    const char *reference;
 } noh_play;
 
 /* Play a clip on a layer; what played there fades out. Where all tracks of the layer are in use, the lightest ends. A
  * base layer that moves joints and on which nothing plays is not faded in: there is nothing to fade from.
  * play    NULL: zeros
- * errors  NOT_FOUND the actor is gone, or the kind has no such clip; ARG layer, a field of play, or NOH_PLAY_INERTIA
+ * errors  NOT_FOUND the actor is gone, or the kind has no such clip or reference; ARG layer, a field of play, or NOH_PLAY_INERTIA
  *         without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so many are wanted), or
  *         NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks) */
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,

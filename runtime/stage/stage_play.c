@@ -15,6 +15,7 @@ typedef struct player {
     noh_stage_actor *a;
     const noh_stage_layer *layer;
     uint32_t layer_index;
+    uint32_t reference; /* 1 + the clip that an additive one is a difference from; 0: as flags of the play say */
     noh_controller *c;
 } player;
 
@@ -30,6 +31,7 @@ static noh_result open_player(noh_stage *s, noh_actor actor, uint32_t layer, pla
     p->s = s;
     p->layer = &p->k->layers[layer];
     p->layer_index = layer;
+    p->reference = 0;
     p->c = noh_character_controller(noh_stage_character(p->k, noh_stage_index(p->k, p->a)));
     return NOH_OK;
 }
@@ -158,12 +160,12 @@ static void let_go(player *p)
         if (p->layer->mode != NOH_LAYER_BASE || !is_heard(t)) continue;
         t->full = t->weight / noh_track_cover(t);
         if (t->full > NOH_WEIGHT_MAX) t->full = NOH_WEIGHT_MAX;
-        t->full_from = 0;
+        t->flags = (uint8_t)(t->flags & ~NOH_TRACK_RISES);
     }
 }
 
 /* Track `next` is about to fade in while the layer's others fade out. What they hide of the bind pose they hide until
- * they end; if that is not all of it, `next` hides as much, and more by and by. */
+ * they end; if that is not all of it, `next` hides the rest by and by. */
 static void take_over(player *p, uint32_t next, float weight)
 {
     float most = 0.0f;
@@ -177,7 +179,7 @@ static void take_over(player *p, uint32_t next, float weight)
     }
     if (most > 0.0f && most < 1.0f) {
         track_at(p, next)->full = weight;
-        track_at(p, next)->full_from = (uint8_t)(255.0f * most);
+        track_at(p, next)->flags |= NOH_TRACK_RISES;
     }
 }
 
@@ -250,7 +252,10 @@ static noh_track_desc track_desc(const player *p, uint32_t clip, const noh_play 
     d.sync_group = play->sync_group;
     d.mask = p->layer->mask;
     d.group = p->layer->mode == NOH_LAYER_OVER ? NOH_GROUP_HIGH : NOH_GROUP_LOW;
-    if (p->layer->mode == NOH_LAYER_ADD) d.flags |= NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START;
+    if (p->layer->mode == NOH_LAYER_ADD) {
+        d.flags |= NOH_TRACK_ADDITIVE | (play->flags & NOH_PLAY_FROM_BIND ? 0u : NOH_TRACK_REFERENCE_START);
+        d.reference = p->reference;
+    }
     if (silent) d.flags |= NOH_TRACK_SILENT;
     return d;
 }
@@ -392,11 +397,25 @@ static int plays(const player *p, uint32_t clip)
     return track->mode != NOH_TRACK_OFF && track->clip == clip && !noh_track_ended(track, &p->k->set.clips[clip]);
 }
 
+static const char *bad_play(const player *p, const noh_play *play)
+{
+    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE | NOH_PLAY_FROM_BIND))
+        return "flags of a play has unknown bits";
+    if ((play->flags & NOH_PLAY_INERTIA) && (play->flags & NOH_PLAY_BESIDE))
+        return "flags of a play: by inertia nothing plays on beside";
+    if ((play->reference || (play->flags & NOH_PLAY_FROM_BIND)) && p->layer->mode != NOH_LAYER_ADD)
+        return "a play has a reference, but its layer does not add: play it on one of NOH_LAYER_ADD";
+    if (play->reference && (play->flags & NOH_PLAY_FROM_BIND))
+        return "a play has a reference and NOH_PLAY_FROM_BIND: leave one out";
+    return NULL;
+}
+
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error)
 {
     static const noh_play plain;
     const noh_play *how = play ? play : &plain;
+    const char *what;
     uint32_t index;
     player p;
     const noh_result result = open_player(stage, actor, layer, &p, error);
@@ -409,11 +428,15 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
                         noh_stage_clip_count(p.k));
     }
-    if (how->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE)) {
-        return noh_fail(error, NOH_ERR_ARG, "flags of a play has unknown bits", how->flags, 0);
-    }
-    if ((how->flags & NOH_PLAY_INERTIA) && (how->flags & NOH_PLAY_BESIDE)) {
-        return noh_fail(error, NOH_ERR_ARG, "flags of a play: by inertia nothing plays on beside", how->flags, 0);
+    what = bad_play(&p, how);
+    if (what) return noh_fail(error, NOH_ERR_ARG, what, how->flags, 0);
+    if (how->reference) {
+        const uint32_t reference = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_CLIP, how->reference);
+        if (reference == NOH_NONE) {
+            return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of the name of the reference",
+                            (uint64_t)(p.k - stage->kinds), noh_stage_clip_count(p.k));
+        }
+        p.reference = reference + 1u;
     }
     if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
         return NOH_OK;
@@ -427,7 +450,7 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
 static const char *bad_graph_play(const player *p, const noh_play *play)
 {
     if (p->layer->mode == NOH_LAYER_ADD) return "a graph plays on a base or an over layer";
-    if (play->speed || play->start_ticks || play->loop || play->sync_group)
+    if (play->speed || play->start_ticks || play->loop || play->sync_group || play->reference)
         return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
     if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
     if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc->inertia) return "the kind has no room for inertia";

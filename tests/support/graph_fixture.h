@@ -13,7 +13,7 @@
     "clip walk clip0 sync=feet\nclip run clip1 speed=1.5 sync=feet\nspace go walk 0 run 2 by=speed\n"            \
     "clip a clip0\nclip b clip1 start=0.1\nclip c clip2 loop=ping-pong\nspace aim a -1 -1 b 1 -1 c 0 1 by=x,y\n" \
     "clip d clip2 speed=-1\nclip e clip0 paused=yes\nblend mixed d e by=0.25\n"                                  \
-    "clip f clip1\nclip g clip2\nadd added f g by=speed\n"                                                       \
+    "clip f clip1\nclip g clip2\nadd added f g by=speed reference=clip0\n"                                       \
     "machine states go aim mixed\n  from go to aim when x above 0.5 fade=0.2 curve=smooth\n"                     \
     "  from aim to go when x below 0.5 inertia=0.1 enter=keep\n  from any to mixed when leap fade=0.1\n"         \
     "  from mixed to go when ending\n"                                                                           \

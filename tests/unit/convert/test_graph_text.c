@@ -150,6 +150,8 @@ static void nodes_are_checked(void **state)
     refused(TWO "blend b walk run by=w\n", 8, "there is no parameter 'w'; did you mean 'v'?");
     refused(TWO "blend b walk run by=t\n", 8, "'t' has to be a number here");
     refused(TWO "layer b walk run by=v\n", 8, "mask=MASK is missing");
+    refused(TWO "add b walk run by=v reference=wlak\n", 8, "no input has a clip 'wlak'; did you mean 'walk'?");
+    refused(TWO "blend b walk run by=v reference=walk\n", 8, "no option 'reference'");
     refused(TWO "layer b walk run by=v mask=n\n", 8, "there is no mask 'n'");
     refused(TWO "space b walk 0 run by=v\n", 8, "the place of a node is missing");
     refused(TWO "space b walk 1 run 1 by=v\n", 8, "'run' is not above 'walk'");

@@ -243,6 +243,44 @@ static void a_missing_clip_is_named(void **state)
     free(memory);
 }
 
+/* A pose added relative to the pose that it is added to is itself, whatever the bind pose; without a reference it is
+ * not. A text of both comes back from its pack as it was. */
+static void poses_are_added_relative_to_a_clip(void **state)
+{
+    static const char *const texts[] = {
+        "clip b clip1 paused=yes start=0.1\n",
+        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\n"
+        "add c a b by=1 reference=clip0\n",
+        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\nadd c a b by=1\n"
+    };
+    const set_fixture kept = fixture;
+    noh_transform poses[3][5];
+    float floats[3][8], off[3] = { 0.0f, 0.0f, 0.0f };
+    (void)state;
+    memset(poses, 0, sizeof poses);
+    memset(floats, 0, sizeof floats);
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        player p;
+        snprintf(text, sizeof text, "graph all\n%s", texts[i]);
+        fixture = graph_fixture_pack(text);
+        p = play();
+        step(&p, 0);
+        memcpy(poses[i], p.pose, sizeof poses[i]);
+        memcpy(floats[i], p.floats, p.made->clips.float_count * sizeof(float));
+        for (uint32_t j = 0; j < p.made->clips.joint_count; j++) {
+            off[i] += 1.0f - fabsf(noh_quat_dot(poses[0][j].rotation, poses[i][j].rotation));
+            for (int k = 0; k < 3; k++) off[i] += fabsf(poses[0][j].translation[k] - poses[i][j].translation[k]);
+        }
+        for (uint32_t f = 0; f < p.made->clips.float_count; f++) off[i] += fabsf(floats[0][f] - floats[i][f]);
+        stop(&p);
+        free(fixture.bytes);
+    }
+    fixture = kept;
+    assert_true(off[1] < 1e-4f);
+    assert_true(off[2] > 1e-2f);
+}
+
 static void a_missing_joint_is_named(void **state)
 {
     static const uint32_t frames[] = { 31, 25, 40 };
@@ -460,6 +498,9 @@ static noh_pack_graph_node *kind(forged *f, uint32_t which)
     X(f.nodes[0].index = 1, "not numbered in their order")                                                \
     X(kind(&f, NOH_PACK_NODE_BLEND)->value = NAN, "value that is not finite")                             \
     X(kind(&f, NOH_PACK_NODE_ADD)->param = 90, "parameter or mask that is not there")                     \
+    X(kind(&f, NOH_PACK_NODE_ADD)->first_item = 90, "adds relative to a clip")                            \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 2, "adds relative to a clip")                             \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 0, "adds relative to a clip")                             \
     X(kind(&f, NOH_PACK_NODE_SPACE_2D)->param_y = 90, "parameter or mask that is not there")              \
     X(kind(&f, NOH_PACK_NODE_SELECT)->param = NOH_PACK_GRAPH_NONE, "parameter or mask that is not there") \
     X(kind(&f, NOH_PACK_NODE_MASK)->mask = 0, "parameter or mask that is not there")                      \
@@ -541,6 +582,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_and_nodes_are_those_of_the_text),
     cmocka_unit_test(masks_are_made_of_joint_names),
     cmocka_unit_test(a_missing_clip_is_named),
+    cmocka_unit_test(poses_are_added_relative_to_a_clip),
     cmocka_unit_test(a_missing_joint_is_named),
     cmocka_unit_test(impossible_descs_are_refused),
     cmocka_unit_test(a_graph_without_masks_needs_no_skeleton),

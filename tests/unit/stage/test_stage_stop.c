@@ -1,4 +1,4 @@
-/* Stopping what plays: every kind of layer fades to what lies below it, a base layer to the bind pose, its root motion
+/* Layers: what additive ones add; stopping what plays: every kind of layer fades to what lies below it, a base layer to the bind pose, its root motion
  * and its graph with it; nothing leaps, whatever is stopped, played or stopped again meanwhile. */
 #include "support/stage_fixture.h"
 
@@ -312,6 +312,53 @@ static void a_fade_that_is_posed_seldom(void **state)
     close_stage(&c);
 }
 
+/* ---- what additive layers add ---- */
+
+static void add(const cast *c, noh_actor actor, const noh_play *play)
+{
+    if (noh_actor_play(c->stage, actor, ADD, "bow", play, &said) != NOH_OK) fail_msg("%s", said.what);
+}
+
+/* Relative to what plays below, or to the bind pose where nothing does, a clip is itself; relative to its own first
+ * frame, which it stands on, it is nothing. */
+static void a_pose_is_added_relative_to_another(void **state)
+{
+    const noh_play still = { .fade_ticks = 1, .speed = 1 };
+    const noh_play own = { .fade_ticks = 1, .speed = 1, .start_ticks = 0 };
+    const noh_play from_clip = { .fade_ticks = 1, .speed = 1, .start_ticks = 48000, .reference = "walk" };
+    const noh_play from_bind = { .fade_ticks = 1, .speed = 1, .start_ticks = 48000, .flags = NOH_PLAY_FROM_BIND };
+    const noh_play alone = { .fade_ticks = 1, .speed = 1, .start_ticks = 48000 };
+    noh_play bad = from_clip;
+    noh_actor actors[3];
+    shape shapes[3], rest;
+    cast c;
+    (void)state;
+    open_stage(&c);
+    for (int i = 0; i < 3; i++) actors[i] = enter(&c);
+    frame(&c);
+    rest = shape_of(&c, actors[0]);
+    add(&c, actors[0], &own);
+    frame(&c);
+    shapes[0] = shape_of(&c, actors[0]);
+    assert_true(apart(&shapes[0], &rest) < 1e-3f);
+    assert_int_equal(noh_actor_play(c.stage, actors[0], BODY, "walk", &still, NULL), NOH_OK);
+    add(&c, actors[0], &from_clip);
+    add(&c, actors[1], &from_bind);
+    assert_int_equal(noh_actor_play(c.stage, actors[2], BODY, "bow", &alone, NULL), NOH_OK);
+    frame(&c);
+    for (int i = 0; i < 3; i++) shapes[i] = shape_of(&c, actors[i]);
+    assert_true(apart(&shapes[2], &rest) > 0.1f);
+    for (int i = 0; i < 2; i++) {
+        if (apart(&shapes[i], &shapes[2]) > 1e-3f) fail_msg("%d: off by %g", i, apart(&shapes[i], &shapes[2]));
+    }
+    assert_int_equal(noh_actor_play(c.stage, actors[0], BODY, "bow", &from_clip, &said), NOH_ERR_ARG);
+    bad.flags = NOH_PLAY_FROM_BIND;
+    assert_int_equal(noh_actor_play(c.stage, actors[0], ADD, "bow", &bad, &said), NOH_ERR_ARG);
+    bad.flags = 0, bad.reference = "none";
+    assert_int_equal(noh_actor_play(c.stage, actors[0], ADD, "bow", &bad, &said), NOH_ERR_NOT_FOUND);
+    close_stage(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -323,6 +370,7 @@ int main(void)
         cmocka_unit_test(root_motion_fades_too),
         cmocka_unit_test(a_graph_fades),
         cmocka_unit_test(a_fade_that_is_posed_seldom),
+        cmocka_unit_test(a_pose_is_added_relative_to_another),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,10 @@ static int bind_graph(graph_reader *r, const graph_def *g, const name_list *clip
 {
     for (uint32_t i = 0; i < g->node_count; ++i)
         if (g->nodes[i].clip && find_name(r, clips, "clip", g->nodes[i].clip, g->nodes[i].line)) return 1;
+    for (uint32_t i = 0; i < g->node_count; ++i) {
+        const graph_name *name = g->nodes[i].reference ? &g->names[g->nodes[i].reference - 1u] : NULL;
+        if (name && find_name(r, clips, "clip", name->name, name->line)) return 1;
+    }
     for (uint32_t m = 0; m < g->mask_count; ++m) {
         for (uint32_t i = 0; i < g->masks[m].joint_count; ++i) {
             const graph_name *joint = &g->names[g->masks[m].first_joint + i];

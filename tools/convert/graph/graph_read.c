@@ -90,7 +90,8 @@ static int read_number(graph_reader *r, uint32_t kind)
 static int new_name(graph_reader *r, graph_word word, graph_name **out)
 {
     graph_name *n = &r->g->names[r->g->name_count];
-    if (r->g->name_count == NOH_GRAPH_NAMES_MAX) return fail_full(r, NOH_GRAPH_NAMES_MAX, "values and joints");
+    if (r->g->name_count == NOH_GRAPH_NAMES_MAX)
+        return fail_full(r, NOH_GRAPH_NAMES_MAX, "values, joints and reference clips");
     ++r->g->name_count;
     n->name = word.text;
     n->line = word.line;
@@ -287,13 +288,19 @@ static int read_clip(graph_reader *r)
 static int read_pair(graph_reader *r, uint32_t kind)
 {
     graph_node *n;
-    const char *mask;
+    const char *mask, *reference;
     if (new_node(r, kind, &n) || take_pair(r, n) || take_amount(r, n)) return 1;
     mask = kind == NOH_PACK_NODE_MASK ? graph_option(r, "mask") : NULL;
     if (kind == NOH_PACK_NODE_MASK && !mask)
         return graph_fail(r, n->line, "mask=MASK is missing: where '%.60s' lies over the other", n->name);
     n->mask = (graph_ref){ mask, NOH_NONE, n->line };
-    return graph_done(r, kind == NOH_PACK_NODE_MASK ? "by mask" : "by");
+    reference = kind == NOH_PACK_NODE_ADD ? graph_option(r, "reference") : NULL;
+    if (reference) {
+        graph_name *name;
+        n->reference = r->g->name_count + 1u;
+        if (new_name(r, (graph_word){ reference, NULL, n->line }, &name)) return 1;
+    }
+    return graph_done(r, kind == NOH_PACK_NODE_MASK ? "by mask" : kind == NOH_PACK_NODE_ADD ? "by reference" : "by");
 }
 
 static int read_space(graph_reader *r)

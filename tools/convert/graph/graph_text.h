@@ -34,6 +34,7 @@ typedef struct graph_node {
     graph_ref by[2]; /* parameters; none: `value` */
     float value;
     graph_ref mask;
+    uint32_t reference; /* ADD: 1 + index in names of the clip that it adds relative to; 0: the bind pose */
     uint32_t curve, flags, fade_ticks, fade_out_ticks;
     uint32_t first_transition, transition_count;
     const char *clip, *sync;

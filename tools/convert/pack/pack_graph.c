@@ -12,6 +12,7 @@ typedef struct packer {
     size_t base;
     uint32_t place[NOH_GRAPH_NODES_MAX]; /* of each node of the text in the chunk's order */
     noh_pack_graph_header h;
+    uint32_t next_reference; /* among the names, behind values and joints */
 } packer;
 
 /* Append one record after the name that it begins with. */
@@ -45,6 +46,10 @@ static uint16_t param_of(const graph_ref *ref)
 static void set_items(packer *p, const graph_node *from, noh_pack_graph_node *to)
 {
     switch (from->kind) {
+    case NOH_PACK_NODE_ADD:
+        to->first_item = (uint16_t)(from->reference ? p->next_reference++ : 0u);
+        to->item_count = from->reference != 0;
+        break;
     case NOH_PACK_NODE_SPACE_1D:
         to->first_item = (uint16_t)p->h.point_count;
         to->item_count = (uint16_t)from->child_count;
@@ -261,6 +266,12 @@ static void append_tables(packer *p)
     p->h.names_offset = begin(p);
     for (uint32_t i = 0; i < g->param_count; i++) append_names(p, g->params[i].first_value, g->params[i].value_count);
     for (uint32_t i = 0; i < g->mask_count; i++) append_names(p, g->masks[i].first_joint, g->masks[i].joint_count);
+    for (uint32_t i = 0; i < g->node_count; i++) {
+        const uint32_t reference = node_at(p, i)->reference;
+        if (!reference) continue;
+        append_names(p, reference - 1u, 1);
+        p->h.name_count++;
+    }
 }
 
 void pack_graph(const graph_def *g, string_table *strings, byte_buffer *out)
@@ -275,6 +286,8 @@ void pack_graph(const graph_def *g, string_table *strings, byte_buffer *out)
     for (uint32_t i = 0; i < g->node_count; i++) {
         p.place[g->order[i]] = i;
     }
+    for (uint32_t i = 0; i < g->param_count; i++) p.next_reference += g->params[i].value_count;
+    for (uint32_t i = 0; i < g->mask_count; i++) p.next_reference += g->masks[i].joint_count;
     buffer_append(out, &p.h, sizeof p.h);
     append_tree(&p);
     append_tables(&p);

@@ -143,6 +143,9 @@ static void put_node(byte_buffer *out, const noh_pack_graph *g, const noh_pack_g
     if (n->kind == NOH_PACK_NODE_CLIP) put_clip(out, g, &g->clips[n->index]);
     if (n->kind >= NOH_PACK_NODE_BLEND && n->kind <= NOH_PACK_NODE_SPACE_2D) put_amount(out, g, n);
     if (n->kind == NOH_PACK_NODE_MASK) put_mask_of(out, g, n);
+    if (n->kind == NOH_PACK_NODE_ADD && n->item_count) {
+        buffer_print(out, " reference=%s", noh_pack_string(g->pack, g->names[n->first_item].name));
+    }
     if (n->kind == NOH_PACK_NODE_SELECT) {
         put_amount(out, g, n);
         put_change(out, n->fade_ticks, n->curve, n->flags);

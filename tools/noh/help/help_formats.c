@@ -47,7 +47,7 @@ const char *const help_formats_text[] = {
     "Nodes. Each is the child of one other, except the one that gives the pose:",
     "   clip NODE [CLIP] [speed=V] [loop=once|repeat|ping-pong] [sync=GROUP] [start=S] [paused=yes]",
     "   blend NODE A B by=PARAM|V                   A at 0, B at 1",
-    "   add NODE A B by=PARAM|V                     B added to A",
+    "   add NODE A B by=PARAM|V [reference=CLIP]    B added to A: its difference from the bind pose, or from a clip's first frame",
     "   layer NODE A B mask=MASK by=PARAM|V         B over A where the mask allows",
     "   space NODE CHILD X CHILD X... by=PARAM      a blend space; CHILD X Y ... by=PARAM,PARAM: of two dimensions",
     "   select NODE CHILD... by=PARAM [fade=S|inertia=S] [curve=smooth] [enter=keep]",

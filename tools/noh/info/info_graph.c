@@ -37,6 +37,9 @@ static void print_inputs(const noh_pack_graph *g, const noh_pack_graph_node *n)
     }
     if (n->param_y != NOH_PACK_GRAPH_NONE) printf(" and '%s'", text_of(g, g->params[n->param_y].name));
     if (n->mask) printf(", mask '%s'", text_of(g, g->masks[n->mask - 1u].name));
+    if (n->kind == NOH_PACK_NODE_ADD && n->item_count) {
+        printf(", relative to '%s'", text_of(g, g->names[n->first_item].name));
+    }
     if (n->kind == NOH_PACK_NODE_MACHINE) printf(", %u transition%s", n->item_count, plural(n->item_count));
     if (n->kind == NOH_PACK_NODE_CLIP) {
         const noh_pack_graph_clip *c = &g->clips[n->index];
