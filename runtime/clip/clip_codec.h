@@ -80,8 +80,9 @@ void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
 /* Group `index`, below group_count. */
 noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index);
 
-/* The frame at or before a time and the fraction 0 <= f < 1 to the next. Times before the first frame give the first,
- * those after the last one the last. Exact, because it is computed in integers. */
+/* The frame at or before a time and the fraction 0 <= f < 1 to the next. Where the time is the nearest tick to a frame,
+ * that frame and 0. Times before the first frame give the first, those after the last one the last. Exact, because it
+ * is computed in integers. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction);
 
 #ifdef __cplusplus

@@ -482,17 +482,22 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index)
 }
 
 /* ticks / 48,000 Hz * sample rate, as a quotient and a remainder of integers: no time is rounded before it is split
- * into frame and fraction. */
+ * into frame and fraction. Frames seldom lie at whole ticks (90 Hz: every third); a frame is shown at the ticks nearest
+ * to it, so that a player at the clip's own frame times gets the frames, within the bound, and not what lies beside. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction)
 {
     const uint64_t unit = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;
     const uint32_t last = clip->info.frame_count - 1u;
-    uint64_t position;
+    const uint64_t tick = clip->info.sample_rate_uhz; /* where a frame is `unit` */
+    uint64_t position, rest;
     *fraction = 0.0f;
     if (ticks <= 0) return 0;
-    if ((uint64_t)ticks > clip->info.duration_ticks) return last; /* so that the product fits */
-    position = (uint64_t)ticks * clip->info.sample_rate_uhz;
+    if ((uint64_t)ticks >= clip->info.duration_ticks) return last; /* so that the product fits */
+    position = (uint64_t)ticks * tick;
+    rest = position % unit;
     if (position / unit >= last) return last;
-    *fraction = (float)(position % unit) / (float)unit;
+    if (2u * rest <= tick) return (uint32_t)(position / unit);
+    if (2u * (unit - rest) <= tick) return (uint32_t)(position / unit) + 1u;
+    *fraction = (float)rest / (float)unit;
     return (uint32_t)(position / unit);
 }

@@ -795,8 +795,40 @@ static void odd_rates_are_exact(void **state)
             const double ticks = ceil((double)f * 48000.0 / rates[i] - 1e-6);
             assert_int_equal(noh_clip_frame_at(x.clip, (int64_t)ticks, &fraction), f);
             assert_true(fraction >= 0.0f && fraction < 0.01f);
+            assert_int_equal(noh_clip_frame_at(x.clip, (int64_t)ticks + 300, &fraction), f); /* no frame is near */
+            assert_true(fraction > 0.0f && fraction < 0.8f);
         }
         fixture_free(&x);
+    }
+}
+
+/* The frames are what was certified, and a player at their times, rounded to ticks, gets them, though ticks do not
+ * divide the rate. The same frames at 30 Hz, which they do divide, say what is right. */
+static void frames_are_shown_at_their_times(void **state)
+{
+    static const double rates[] = { 37.5, 37.4987, 90.0, 23.976023976, 29.97002997, 7.0, 99.9, 0.7, 239.76 };
+    static const clip_options alike = { .segment_frames = 24, .split_hz = 1e6 };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(rates); i++) {
+        fixture x, at_30;
+        noh_clip_info info;
+        raw_set *set = fixture_swing(5, 121, 1, 15.0f, 0.9, 0.5);
+        assert_null(fixture_build(&at_30, fixture_swing(5, 121, 1, 15.0f, 0.9, 0.5), &alike, 2));
+        set->clips[0].sample_rate_hz = rates[i];
+        assert_null(fixture_build(&x, set, &alike, 2));
+        noh_clip_info_of(x.clip, &info);
+        for (uint32_t f = 0; f < 121u; f++) {
+            noh_transform got[5], want[5];
+            const int64_t tick = (int64_t)floor(f * 48000.0 / rates[i] + 0.5);
+            noh_clip_sample(at_30.cache, 0, (int64_t)f * 1600, 5, want, NULL);
+            noh_clip_sample(x.cache, 0, f < 120u ? tick : (int64_t)info.duration_ticks, 5, got, NULL);
+            for (size_t k = 0; k < 5u * sizeof *got / sizeof got->scale[0]; k++) {
+                const float off = fabsf(((const float *)got)[k] - ((const float *)want)[k]);
+                if (!(off < 4e-6f)) fail_msg("frame %u at %g Hz: off by %g", (unsigned)f, rates[i], (double)off);
+            }
+        }
+        fixture_free(&x);
+        fixture_free(&at_30);
     }
 }
 
@@ -958,6 +990,7 @@ int main(void)
         cmocka_unit_test(other_skeletons_and_versions_are_refused),
         cmocka_unit_test(the_certificate_is_what_was_measured),
         cmocka_unit_test(odd_rates_are_exact),
+        cmocka_unit_test(frames_are_shown_at_their_times),
         cmocka_unit_test(every_bit_may_flip),
         cmocka_unit_test(clips_may_be_cut_anywhere),
         cmocka_unit_test(real_clips_hold_their_bounds),

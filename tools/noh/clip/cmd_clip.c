@@ -1,4 +1,5 @@
 /* cmd_clip.c: the compressed clips of a pack: bytes, certified errors, decoded frames. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,8 +159,8 @@ static int fill_frames(raw_clip *to, const opened *o)
         return 1;
     }
     for (uint32_t f = 0; f < to->frame_count; f++) {
-        int64_t ticks = to->frame_count > 1 ? (int64_t)(o->info.duration_ticks * f / (to->frame_count - 1)) : 0;
-        noh_clip_sample(o->cache, 0, ticks, joints, pose, NULL);
+        const double tick = floor(f * NOH_TICKS_PER_SECOND / to->sample_rate_hz + 0.5); /* there the frame shows */
+        noh_clip_sample(o->cache, 0, (int64_t)tick, joints, pose, NULL);
         for (uint32_t j = 0; j < joints; j++) {
             size_t at = (size_t)f * joints + j;
             memcpy(to->rotations + 4 * at, pose[j].rotation, 16);
