@@ -5,7 +5,8 @@
  *   NOH_NORMAL_MAP    defined: the material has a normal map, and the mesh tangents
  *   NOH_SURFACE_MAP   defined: it has a map of occlusion, roughness, metallic
  *   NOH_EMISSIVE      defined: it shines
- *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions */
+ *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
+ *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
 #ifndef NOH_DEPTH_ONLY
 uniform vec3 noh_f0;       /* reflectance of what is no metal, seen straight on */
 #if defined(NOH_NORMAL_MAP) || defined(NOH_SURFACE_MAP)
@@ -80,7 +81,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     mapped = noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x);
 #endif
 #ifdef NOH_WRINKLES
-    s.wrinkles = noh_wrinkle_by_model();
+    s.wrinkles = noh_wrinkle_by_model(uv);
     mapped = noh_wrinkled(mapped, texture(noh_wrinkle_texture, uv).rgb, s.wrinkles);
 #endif
     s.normal = noh_map_normal(mapped, s.geometric, tangent);

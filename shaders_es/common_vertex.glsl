@@ -43,13 +43,17 @@ layout(location = 11) in ivec2 noh_a_rest_normal;
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
 uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
 uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
+out vec3 noh_v_rest;
+out vec3 noh_v_moved;
+#ifndef NOH_WRINKLE_PIXEL
 uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k, channel c of map k; not in crowds */
 uniform mediump sampler2D noh_wrinkle_weights_0;
 uniform mediump sampler2D noh_wrinkle_weights_1;
 uniform mediump sampler2D noh_wrinkle_weights_2;
-out vec3 noh_v_rest;
-out vec3 noh_v_moved;
 out vec2 noh_v_wrinkles; /* 0..1 by regions and by channels */
+#elif defined(NOH_CROWD)
+flat out highp ivec4 noh_v_regions; /* three regions of 8 bits in each component */
+#endif
 #endif
 
 /* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
@@ -66,12 +70,27 @@ struct noh_vertex {
 };
 
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-/* The weights of regions of one map; in a crowd's rows three regions of 8 bits are in each component. */
+#ifdef NOH_CROWD
+/* In a crowd's rows three regions of 8 bits are in each component. */
+ivec4 noh_region_bits()
+{
+    return (noh_wrinkle_models.x & 8) != 0 ? ivec4(noh_crowd_row(4)) : ivec4(0);
+}
+#endif
+
+#ifdef NOH_WRINKLE_PIXEL
+void noh_wrinkle_vertex(vec2 uv)
+{
+#ifdef NOH_CROWD
+    noh_v_regions = noh_region_bits();
+#endif
+}
+#else
+/* The weights of regions of one map. */
 vec4 noh_regions_of(int map)
 {
 #ifdef NOH_CROWD
-    ivec4 bits = (noh_wrinkle_models.x & 8) != 0 ? ivec4(noh_crowd_row(4)) : ivec4(0);
-    return vec4(bits >> 8 * map & 255) / 255.0;
+    return vec4(noh_region_bits() >> 8 * map & 255) / 255.0;
 #else
     return noh_wrinkle_regions[map];
 #endif
@@ -93,6 +112,7 @@ void noh_wrinkle_vertex(vec2 uv)
         }
     }
 }
+#endif
 #endif
 
 vec4 noh_world_row(int i)

@@ -5,7 +5,8 @@
  *   1  area: how far the surface has shrunk in the pose, by derivatives
  *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
  *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6
- * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. */
+ * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. With NOH_WRINKLE_PIXEL
+ * each pixel reads a mask of codes instead, one texture, texel by texel. */
 #if (defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)) && !defined(NOH_DEPTH_ONLY)
 /* The vector of a normal map's texel. Bytes have no value for 0; 128 stands for it. A map of two channels has no blue:
  * z is what x and y leave of 1. */
@@ -23,7 +24,40 @@ uniform mediump sampler2D noh_wrinkle_texture;
 
 in vec3 noh_v_rest;     /* about the middle of the mesh, before targets and joints */
 in vec3 noh_v_moved;    /* what targets add to it */
+#ifndef NOH_WRINKLE_PIXEL
 in vec2 noh_v_wrinkles; /* 0..1 by regions and by channels */
+#else
+uniform highp sampler2D noh_wrinkle_weights_0; /* codes */
+#ifdef NOH_CROWD
+flat in highp ivec4 noh_v_regions;
+#else
+uniform vec4 noh_wrinkle_regions[3]; /* component c of the k-th: region 3 * c + k */
+#endif
+
+/* The weights of the k-th regions of the channels. */
+vec4 noh_regions_of(int k)
+{
+#ifdef NOH_CROWD
+    return vec4(noh_v_regions >> 8 * k & 255) / 255.0;
+#else
+    return noh_wrinkle_regions[k];
+#endif
+}
+
+/* By regions and by channels. Of a channel's code, code / 90 is k of its region and the rest how much of it; a rest above
+ * 75 is none ("character wrinkle", computeWeight, with the rest that its listing lacks). */
+vec2 noh_wrinkles_at(vec2 uv)
+{
+    ivec4 code = ivec4(textureLod(noh_wrinkle_weights_0, uv, 0.0) * 255.0 + 0.5), k = code / 90, rest = code - 90 * k;
+    vec4 weight = min(vec4(rest) * 0.014, 1.0) * vec4(lessThanEqual(rest, ivec4(75)));
+    vec4 first = noh_regions_of(0), region = mix(first, noh_regions_of(1), vec4(equal(k, ivec4(1))));
+    vec4 all = weight * mix(region, noh_regions_of(2), vec4(equal(k, ivec4(2))));
+    vec2 by = vec2(max(max(all.x, all.y), max(all.z, all.w)), 0.0);
+    weight *= vec4(equal(k, ivec4(0)));
+    by.y = min(dot(weight.rgb, vec3(1.0, first.yz)), 1.0);
+    return by * vec2(notEqual(noh_wrinkle_models.xx & ivec2(2, 4), ivec2(0)));
+}
+#endif
 
 /* Area in the pose over area at rest: of the triangle, in bind space, whatever the camera and the joints do. Both areas
  * are spanned by the same two pixels, so their ratio is exact for a plane triangle. */
@@ -43,15 +77,26 @@ float noh_wrinkle_by_area(float ratio)
     return clamp(((noh_wrinkle_models.x & 6) == 0 ? 0.3 : 0.0) + (shrunk < 0.0 ? 0.005 * shrunk : shrunk), 0.0, 1.0);
 }
 
-/* One value by each model: area, regions, channels. */
-vec3 noh_wrinkle_by_model()
+/* One value by each model: area, regions, channels. uv: for masks that pixels read */
+vec3 noh_wrinkle_by_model(vec2 uv)
 {
+#ifdef NOH_WRINKLE_PIXEL
+    vec3 by = vec3(0.0, noh_wrinkles_at(uv));
+#else
     vec3 by = vec3(0.0, noh_v_wrinkles);
+#endif
     if ((noh_wrinkle_models.x & 1) != 0) {
         by.x = noh_wrinkle_by_area(noh_area_ratio());
     }
     return by * (float(noh_wrinkle_models.y) / 255.0);
 }
+
+#ifndef NOH_WRINKLE_PIXEL
+vec3 noh_wrinkle_by_model()
+{
+    return noh_wrinkle_by_model(vec2(0.0));
+}
+#endif
 
 /* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail turned as the base turns
  * its plane, so that neither flattens the other. Both unit, tangent space. */

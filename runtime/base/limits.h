@@ -166,6 +166,7 @@
 #define NOH_GL_VARIANTS_MAX 192u
 #define NOH_MORPH_STREAMS_MAX 4u    /* targets that the path streams adds to a draw */
 #define NOH_GL_FETCHES_MAX 8u       /* texture fetches of a pixel, whatever its material has */
+#define NOH_MATERIAL_MAPS_MAX 5u    /* of them, maps beside the base colour, the environment and the shadow */
 #define NOH_GL_OWN_INPUTS_MAX 8u    /* attributes of a game's own that its shaders read */
 #define NOH_GL_OWN_SAMPLERS_MAX 13u /* of a game's shaders: ES 3.0 promises 16, of which such a shader has 3 */
 #define NOH_GL_LABEL_BYTES 96u      /* of an object's name; longer ones are cut. GL takes at least 256 */

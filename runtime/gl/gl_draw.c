@@ -204,7 +204,7 @@ static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 {
     const GLint models = (GLint)(r->wrinkle_models ? r->wrinkle_models : m->wrinkle_models);
     bind_picture(r, NOH_UNIT_WRINKLE, m->wrinkle_texture, pictures);
-    for (uint32_t k = 0; k < 3u; k++) {
+    for (uint32_t k = 0; k < (v->key.features & NOH_FEATURE_WRINKLE_PIXEL ? 1u : 3u); k++) {
         bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->wrinkle_weights[k], pictures);
     }
     if (!v->key.crowd) r->gl->Uniform4fv(v->u_wrinkle_regions, 3, r->wrinkles);
@@ -276,7 +276,7 @@ static int is_in_depth(draw_part part)
 }
 
 /* NULL if the renderer's desc did not ask for this variant. */
-static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint8_t features)
+static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint16_t features)
 {
     noh_gl_variant_key key = noh_gl_variant_key_of(&j->mesh->mesh, j->skin, !j->world, j->r->layers_uint, j->r->view);
     key.fade = j->lod->from > 0.0f || j->lod->to < 1.0f;
@@ -379,7 +379,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
     for (uint32_t i = 0; i < level.header->submesh_count; i++) {
         const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
-        const uint8_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
+        const uint16_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
         if (draws_nothing(j, s) || !is_in_part(m, part)) {
             continue;
         }

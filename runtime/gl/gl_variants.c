@@ -43,7 +43,7 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     return key;
 }
 
-uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
+uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
 {
     unsigned features = 0;
     NOH_ASSERT(mesh && mesh->header && m);
@@ -52,7 +52,10 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     }
     if (mesh->header->flags & NOH_MESH_TANGENTS) {
         if (m->normal_texture != NOH_NONE) features |= NOH_FEATURE_NORMAL_MAP;
-        if (m->wrinkle_texture != NOH_NONE) features |= NOH_FEATURE_WRINKLES;
+        if (m->wrinkle_texture != NOH_NONE) {
+            features |= NOH_FEATURE_WRINKLES;
+            if (m->flags & NOH_MATERIAL_WRINKLE_CODES) features |= NOH_FEATURE_WRINKLE_PIXEL;
+        }
     }
     if (m->surface_texture != NOH_NONE) features |= NOH_FEATURE_SURFACE_MAP;
     if (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) features |= NOH_FEATURE_EMISSIVE;
@@ -60,13 +63,14 @@ uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
     if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
     if (m->surface == NOH_SURFACE_TOON) features |= NOH_FEATURE_TOON;
-    return (uint8_t)features;
+    return (uint16_t)features;
 }
 
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
 {
     key.view = NOH_VIEW_LIT;
-    key.encode_srgb = key.two_layers = key.features = key.lit = key.transfer = 0;
+    key.encode_srgb = key.two_layers = key.lit = key.transfer = 0;
+    key.features = 0;
     key.depth = 1;
     key.cut = cut != 0;
     key.uv_targets = key.uv_targets && cut;
@@ -97,7 +101,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP, NOH_FEATURE_EMISSIVE,
-                                     NOH_FEATURE_WRINKLES };
+                                     NOH_FEATURE_WRINKLES, NOH_FEATURE_WRINKLE_PIXEL };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
     return left < 4u ? left : 4u;
@@ -132,6 +136,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
                   { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
+                  { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);

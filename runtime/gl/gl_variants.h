@@ -48,8 +48,8 @@ typedef struct noh_gl_variant_key {
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
     uint8_t depth;           /* 1: depth alone (NOH_DRAW_DEPTH): positions, and what alpha needs if cut */
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
+    uint16_t features;       /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: every colour variant cuts */
-    uint8_t features;        /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t lit;             /* 1: light is that of gl_light.h; with depth 0 */
     uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
     uint8_t uv_targets;      /* 1: the mesh has NOH_MESH_UV_TARGETS; in depth with cut alone */
@@ -61,9 +61,10 @@ typedef struct noh_gl_variant_key {
 #define NOH_FEATURE_EMISSIVE 4u
 #define NOH_FEATURE_SKIN 8u
 #define NOH_FEATURE_EYE 16u
-#define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps */
+#define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps, which vertices read */
 #define NOH_FEATURE_TEETH 64u
 #define NOH_FEATURE_TOON 128u
+#define NOH_FEATURE_WRINKLE_PIXEL 256u /* with wrinkles: pixels read a mask of regions in place of the weight maps */
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
@@ -88,7 +89,7 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_USER 12u /* the first of those that are left to a game's shaders */
 
 /* NOH_FEATURE_* of a material on a mesh: a normal map wants tangents, and what is unlit has none. */
-uint8_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
+uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
 
 /* The key of a mesh with these bindings; `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features` are 0, for
  * you to set.

@@ -124,6 +124,22 @@ static noh_result check_material_textures(const noh_check *check, const noh_mate
     return result;
 }
 
+/* A mask of codes is read texel by texel. */
+static noh_result check_wrinkle_codes(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const noh_texture_header *h;
+    const uint64_t where = at + offsetof(noh_material, wrinkle_weights);
+    if (!(m->flags & NOH_MATERIAL_WRINKLE_CODES)) return NOH_OK;
+    if (m->wrinkle_weights[0] == NOH_NONE || m->wrinkle_weights[1] != NOH_NONE || m->wrinkle_weights[2] != NOH_NONE) {
+        return noh_check_fail(check, "material with a mask of wrinkle regions has none, or weight maps too", where);
+    }
+    h = (const void *)(check->pack->bytes +
+                       check->pack->chunks[check->pack->first_texture + m->wrinkle_weights[0]].offset);
+    return h->nearest && h->format == NOH_TEXTURE_RGBA8
+               ? NOH_OK
+               : noh_check_fail(check, "mask of wrinkle regions is filtered or compressed", where);
+}
+
 static noh_result check_material(const noh_check *check, const noh_material *m, uint64_t at)
 {
     noh_result result = noh_check_name(check, m->name, m->name_hash, at);
@@ -131,7 +147,8 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
-    if (!result && m->flags & ~31u) {
+    if (!result) result = check_wrinkle_codes(check, m, at);
+    if (!result && m->flags & ~63u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
     if (!result && m->surface > NOH_SURFACE_TOON) {

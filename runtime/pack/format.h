@@ -290,6 +290,9 @@ typedef struct noh_node {
 #define NOH_MATERIAL_DOUBLE_SIDED 4u
 #define NOH_MATERIAL_UNLIT 8u
 #define NOH_MATERIAL_UNTINTED 16u /* an instance's tint leaves its colour alone; the tint's alpha counts as ever */
+/* wrinkle_weights[0] is a mask of codes, NOH_TEXTURE_RGBA8 and `nearest`, and the others are NOH_NONE: of a byte of
+ * channel c, byte / 90 is k of region 3 * c + k; the remainder times 0.014, at most 1, its weight, and 0 above 75 */
+#define NOH_MATERIAL_WRINKLE_CODES 32u
 
 /* What the surface is made of: decides how it is lit. noh_material.surface_values and surface_more then are, of
  *   skin   x millimetres in a unit of the world, by which light scatters; 0: 1000. Then the inside of a mouth, in the
@@ -332,7 +335,8 @@ typedef struct noh_material {
     uint32_t surface_texture;    /* r occlusion, g times roughness, b times metallic */
     uint32_t emissive_texture;   /* rgb colour, times `emissive` */
     uint32_t wrinkle_texture;    /* a second normal map, that of wrinkles */
-    uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel */
+    uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel, read at vertices;
+                                  * or a mask that is read at pixels: NOH_MATERIAL_WRINKLE_CODES */
     uint32_t surface;            /* NOH_SURFACE_* */
     float surface_values[4];     /* of that surface, above */
     uint32_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */

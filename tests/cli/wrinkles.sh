@@ -47,6 +47,39 @@ expect 1 'a model without targets'
 says 'no mesh can have wrinkles'
 check 'writes nothing' test ! -e "$work/no.noh"
 
+noh mask "$build/mask.glb" --export "$work/regions.png"
+expect 0 'mask --export of a model'
+check 'no code of it is illegal' grep -q ' 0 illegal codes' "$work/out"
+noh build "$build/mask.glb" -o "$work/again.noh" --wrinkles auto --region-mask "$work/regions.png" --only mesh --quiet
+check 'read back, it gives the same regions' cmp "$work/auto.noh" "$work/again.noh"
+noh mask "$work/auto.noh" --export "$work/of_pack.png" --quiet
+expect 0 'mask --export of a pack'
+check 'the same mask' cmp "$work/regions.png" "$work/of_pack.png"
+noh mask "$build/mask.glb" --export "$work/large.png" --size 200 --quiet
+check 'of a size that is asked for' png_is "$work/large.png" 200 200
+noh mask "$build/mask_levels.noh" --export "$work/no.png"
+expect 1 'mask --export of a pack without regions'
+noh mask "$work/auto.noh"
+expect 2 'a pack without --export'
+
+noh build "$build/mask.glb" -o "$work/pixel.noh" --wrinkles auto --region-mask "$work/regions.png" --wrinkle-lookup pixel --whole-textures --only mesh --quiet
+expect 0 'build --wrinkle-lookup pixel'
+noh mask "$work/pixel.noh" --export "$work/of_pack.png" --quiet
+check 'the pack has the painted texels' cmp "$work/regions.png" "$work/of_pack.png"
+noh info "$work/pixel.noh"
+check 'one mask in place of three maps' grep -q "wrinkle regions by pixel 'mask wrinkle regions'" "$work/out"
+noh verify "$work/pixel.noh"
+expect 0 'verify'
+noh render "$work/pixel.noh" -o "$work/shown.png" --size 64x64 --weight anger=1
+expect 0 'render'
+noh build "$build/mask.glb" -o "$work/no.noh" --wrinkles auto --wrinkle-lookup texel
+expect 2 'an unknown lookup'
+printf 'wrinkle anger 4 0.5\nwrinkle nobody 1\n' >"$work/rows.recipe"
+noh build "$build/mask.glb" -o "$work/rows.noh" --wrinkles auto --recipe "$work/rows.recipe" --only mesh
+expect 0 'rows of wrinkles in a recipe'
+check 'warns of a target that is not there' grep -q "rows.recipe:2: no mesh has the target 'nobody'" "$work/out"
+check 'they change the table' test "$(cmp -l "$work/auto.noh" "$work/rows.noh" | wc -l)" -gt 2
+
 noh render "$build/mask.noh" -o "$work/map.png" --size 64x64
 noh build "$build/mask.glb" -o "$work/painted.noh" --wrinkle-map "$work/map.png" --region-mask "$work/map.png" --only mesh
 expect 0 'painted files'

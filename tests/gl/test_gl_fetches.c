@@ -287,7 +287,7 @@ static char *whole_text(noh_gl_variant_key key)
 static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t transfer)
 {
     noh_gl_variant_key key = { 0 };
-    key.features = (uint8_t)features;
+    key.features = (uint16_t)features;
     key.lit = lit || transfer;
     key.transfer = (uint8_t)transfer;
     key.crowd = key.texture = crowd != 0;

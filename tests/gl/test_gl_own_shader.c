@@ -318,7 +318,7 @@ static void other_names_have_no_text(void **state)
 static void a_short_prefix_is_not_written(void **state)
 {
     static const GLenum stages[] = { GL_VERTEX_SHADER, GL_FRAGMENT_SHADER };
-    const noh_gl_variant_key key = { 8, 4, 1, 1, 1, 1, 1, NOH_VIEW_LOD, 1, 1, 0, 1, 0, 63, 1, 4, 1 };
+    const noh_gl_variant_key key = { 8, 4, 1, 1, 1, 1, 1, NOH_VIEW_LOD, 1, 1, 0, 1, 63, 0, 1, 4, 1 };
     (void)state;
     for (int i = 0; i < 2; i++) {
         const size_t bytes = noh_gl_shader_prefix(key, stages[i], NULL, 0);

@@ -3,6 +3,7 @@
 #include "support/stage_fixture.h"
 
 #include "convert/model/model.h"
+#include "convert/wrinkle/region_mask.h"
 #include "mesh/wrinkles.h"
 #include "support/gl_fixture.h"
 
@@ -29,7 +30,7 @@ typedef struct program {
     char text[4096];
 } program;
 
-static void program_open(program *p, const char *vertex, const char *fragment)
+static void program_open_with(program *p, uint16_t features, const char *vertex, const char *fragment)
 {
     static const noh_gl_input added[] = { { 8, GL_FLOAT_VEC3 }, { 9, GL_FLOAT } }; /* area_vertex */
     static char log[8192];
@@ -39,7 +40,7 @@ static void program_open(program *p, const char *vertex, const char *fragment)
     memset(p, 0, sizeof *p);
     memset(&own, 0, sizeof own);
     p->gl = &g->gl;
-    key.features = NOH_FEATURE_WRINKLES;
+    key.features = features;
     snprintf(p->text, sizeof p->text, "%s%s", fragment_head, fragment);
     own.vertex = vertex;
     own.fragment = p->text;
@@ -49,6 +50,11 @@ static void program_open(program *p, const char *vertex, const char *fragment)
     if (noh_gl_variant_create(&device, key, &own, NULL, 0, &p->variant, &said)) fail_msg("%s\n%s", said.what, log);
     p->gl->UseProgram(p->variant.program);
     p->gl->Disable(GL_DITHER);
+}
+
+static void program_open(program *p, const char *vertex, const char *fragment)
+{
+    program_open_with(p, NOH_FEATURE_WRINKLES, vertex, fragment);
 }
 
 static void program_close(program *p)
@@ -204,6 +210,65 @@ static void channels_add_up_to_one(void **state)
     }
     print_message("wrinkles by channel: off the closed form by at most %.2g\n", off);
     assert_true(off < 5e-4); /* an eighth of a step of a byte: filters of textures are that coarse */
+    program_close(&p);
+    fixture_frame_close(&frame);
+}
+
+/* ---- masks that pixels read ---- */
+
+static const char mask_fragment[] = "void main() {\n"
+                                    "    vec3 by = noh_wrinkle_by_model(gl_FragCoord.xy / 64.0);\n"
+                                    "    show(test_pick == 0 ? by.y : by.z);\n"
+                                    "}\n";
+
+static void mask_texture(const program *p, noh_gl_texture *t, noh_gl_ledger *ledger, const uint8_t *codes)
+{
+    const noh_gl_texture_desc desc = { GL_RGBA8, SIDE, SIDE, 0, 1, 0, 0 };
+    assert_int_equal(noh_gl_texture_create(p->gl, ledger, &desc, t, &said), NOH_OK);
+    p->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_WRINKLE_WEIGHTS);
+    p->gl->BindTexture(GL_TEXTURE_2D, t->name);
+    p->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    p->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    p->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)SIDE, (GLsizei)SIDE, GL_RGBA, GL_UNSIGNED_BYTE, codes);
+}
+
+/* Every code in every channel, beside others: the source's formula, to the rounding of floats. */
+static void pixels_read_masks_as_the_source_does(void **state)
+{
+    static uint8_t codes[SIDE * SIDE * 4];
+    program p;
+    fixture_frame frame;
+    noh_gl_ledger ledger;
+    noh_gl_texture mask;
+    float regions[NOH_WRINKLE_REGIONS], rows[NOH_WRINKLE_REGIONS];
+    double off = 0.0;
+    (void)state;
+    test_random r = test_random_from(12);
+    memset(&ledger, 0, sizeof ledger);
+    for (uint32_t i = 0; i < SIDE * SIDE * 4; i++) codes[i] = (uint8_t)(i < 1024 ? i / 4 : test_random_below(&r, 256));
+    for (uint32_t i = 0; i < NOH_WRINKLE_REGIONS; i++) {
+        regions[i] = (float)(30 + 20 * i) / 255.0f;
+        rows[4 * (i % 3) + i / 3] = regions[i];
+    }
+    fixture_frame_open(&frame, SIDE);
+    program_open_with(&p, NOH_FEATURE_WRINKLES | NOH_FEATURE_WRINKLE_PIXEL, cover_vertex, mask_fragment);
+    mask_texture(&p, &mask, &ledger, codes);
+    p.gl->Uniform4fv(p.variant.u_wrinkle_regions, 3, rows);
+    p.gl->Uniform2i(p.variant.u_wrinkle_models, NOH_WRINKLE_BY_REGION | NOH_WRINKLE_BY_CHANNEL, 255);
+    uint8_t *by_region = cover(&p, &frame, 0), *by_channel = cover(&p, &frame, 1);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        const uint8_t *c = codes + 4 * i;
+        const float first[3] = { c[0] < 90 ? region_weight(c[0]) : 0.0f, c[1] < 90 ? region_weight(c[1]) : 0.0f,
+                                 c[2] < 90 ? region_weight(c[2]) : 0.0f };
+        const float sum = first[0] + regions[3] * first[1] + regions[6] * first[2];
+        off = fmax(off, fabs((double)float_at(by_region, i) - (double)region_texel_weight(c, regions)));
+        off = fmax(off, fabs((double)float_at(by_channel, i) - fmin((double)sum, 1.0)));
+    }
+    free(by_region);
+    free(by_channel);
+    print_message("masks by pixel: off the CPU's weights by at most %.2g\n", off);
+    assert_true(off < 1e-5);
+    noh_gl_texture_delete(p.gl, &ledger, &mask);
     program_close(&p);
     fixture_frame_close(&frame);
 }
@@ -653,6 +718,7 @@ static void looks_smooth_wrinkles_out(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normals_are_those_of_the_cpu),
     cmocka_unit_test(channels_add_up_to_one),
+    cmocka_unit_test(pixels_read_masks_as_the_source_does),
     cmocka_unit_test(each_region_has_its_own_weight),
     cmocka_unit_test(what_has_no_wrinkles_is_drawn),
     cmocka_unit_test(texels_become_normals_before_they_mix),

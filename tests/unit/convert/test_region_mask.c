@@ -30,6 +30,32 @@ static void all_codes_decode_exactly(void **state)
     assert_true(region_weight(71) < 1.0f && region_weight(72) == 1.0f && region_weight(75) == 1.0f);
 }
 
+/* Maps of one region a channel become a mask, and the mask the same maps, to half a step; a mask that was decoded comes
+ * back but for codes that mean the same. */
+static void maps_become_masks_and_back(void **state)
+{
+    (void)state;
+    static uint8_t codes[256 * 4], *maps[REGION_MAP_COUNT], *again[REGION_MAP_COUNT];
+    const region_mask painted = { 16, 16, codes };
+    region_mask made;
+    for (int i = 0; i < 256; ++i) {
+        for (int c = 0; c < 4; ++c) codes[4 * i + c] = (uint8_t)(i + 67 * c);
+    }
+    assert_int_equal(region_maps_make(&painted, maps), 0);
+    assert_int_equal(region_mask_make(maps, 16, 16, &made), 0);
+    assert_int_equal(region_maps_make(&made, again), 0);
+    for (int i = 0; i < 1024; ++i) {
+        const int is_none = codes[i] % 90 == 0 || codes[i] % 90 > 75;
+        assert_int_equal(made.rgba[i], is_none ? 0 : codes[i] % 90 >= 72 ? codes[i] / 90 * 90 + 75 : codes[i]);
+        for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) assert_int_equal(again[k][i], maps[k][i]);
+    }
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) {
+        free(maps[k]);
+        free(again[k]);
+    }
+    region_mask_free(&made);
+}
+
 /* "offset = value % 90" reads a name that is not there. Taken from another channel, or as the code itself, the weight
  * is another one. */
 static void the_remainder_is_of_the_same_channel(void **state)
@@ -371,12 +397,19 @@ static void small_masks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_codes_decode_exactly),       cmocka_unit_test(the_remainder_is_of_the_same_channel),
-        cmocka_unit_test(codes_are_rounded_not_cut),      cmocka_unit_test(maps_equal_codes_on_every_texel),
-        cmocka_unit_test(the_largest_channel_counts),     cmocka_unit_test(clean_masks_are_clean),
-        cmocka_unit_test(anti_aliasing_is_found),         cmocka_unit_test(gamma_is_found),
-        cmocka_unit_test(block_compression_is_found),     cmocka_unit_test(codes_damaged_by_blocks_are_found),
-        cmocka_unit_test(weights_are_filtered_not_codes), cmocka_unit_test(small_masks),
+        cmocka_unit_test(maps_become_masks_and_back),
+        cmocka_unit_test(all_codes_decode_exactly),
+        cmocka_unit_test(the_remainder_is_of_the_same_channel),
+        cmocka_unit_test(codes_are_rounded_not_cut),
+        cmocka_unit_test(maps_equal_codes_on_every_texel),
+        cmocka_unit_test(the_largest_channel_counts),
+        cmocka_unit_test(clean_masks_are_clean),
+        cmocka_unit_test(anti_aliasing_is_found),
+        cmocka_unit_test(gamma_is_found),
+        cmocka_unit_test(block_compression_is_found),
+        cmocka_unit_test(codes_damaged_by_blocks_are_found),
+        cmocka_unit_test(weights_are_filtered_not_codes),
+        cmocka_unit_test(small_masks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -154,7 +154,13 @@ static void regions_follow_targets(void **state)
     assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
     region_weights *regions = wrinkle_regions_make(&f);
     assert_non_null(regions);
-    uint8_t *matrix = wrinkle_matrix_make(&f, regions);
+    wrinkle_raster raster;
+    region_maps maps = { .width = 64, .height = 64 };
+    assert_int_equal(wrinkle_raster_make(&f, 64, 64, &raster), 0);
+    assert_int_equal(wrinkle_maps_make(&f, regions, &raster, maps.map), 0);
+    wrinkle_raster_free(&raster);
+    uint8_t *matrix = wrinkle_matrix_make(&f, &maps);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) free(maps.map[k]);
     assert_non_null(matrix);
     for (uint32_t r = 0; r < REGION_COUNT; ++r) {
         float covered[3] = { 0 };
@@ -185,8 +191,7 @@ static void a_painted_mask_gets_its_matrix(void **state)
     static sheet s;
     static uint8_t codes[64 * 64 * 4];
     wrinkle_field f;
-    wrinkle_raster r;
-    uint8_t *maps[REGION_MAP_COUNT];
+    region_maps maps = { .width = 64, .height = 64 };
     const region_mask mask = { 64, 64, codes };
     sheet_make(&s);
     for (int i = 0; i < 64 * 64; ++i) {
@@ -194,9 +199,8 @@ static void a_painted_mask_gets_its_matrix(void **state)
         codes[4 * i + 3] = 255;                                  /* region 11 everywhere */
     }
     assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
-    assert_int_equal(wrinkle_raster_make(&f, 64, 64, &r), 0);
-    assert_int_equal(region_maps_make(&mask, maps), 0);
-    uint8_t *matrix = wrinkle_matrix_of_mask(&f, &r, maps);
+    assert_int_equal(region_maps_make(&mask, maps.map), 0);
+    uint8_t *matrix = wrinkle_matrix_make(&f, &maps);
     assert_non_null(matrix);
     assert_int_equal(matrix[0], 255);
     assert_int_equal(matrix[REGION_COUNT], 0);
@@ -205,8 +209,7 @@ static void a_painted_mask_gets_its_matrix(void **state)
     assert_true(matrix[11] > 100 && matrix[REGION_COUNT + 11] > 100);
     assert_int_equal(matrix[5], 0); /* an empty region */
     free(matrix);
-    for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) free(maps[k]);
-    wrinkle_raster_free(&r);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; ++k) free(maps.map[k]);
     wrinkle_field_free(&f);
 }
 

@@ -17,7 +17,12 @@ extern "C" {
 #define MODEL_NONE 0xffffffffu
 
 /* What the texels are, which decides how mip levels are made and how they are read. */
-typedef enum model_texture_use { MODEL_TEXTURE_COLOR, MODEL_TEXTURE_DATA, MODEL_TEXTURE_NORMAL } model_texture_use;
+typedef enum model_texture_use {
+    MODEL_TEXTURE_COLOR,
+    MODEL_TEXTURE_DATA,
+    MODEL_TEXTURE_NORMAL,
+    MODEL_TEXTURE_CODES /* bytes that have no mean: read texel by texel, and halved by leaving texels out */
+} model_texture_use;
 
 typedef struct model_texture {
     char *name;
@@ -55,6 +60,7 @@ typedef struct model_material {
     /* as noh_material has them: indices into textures or MODEL_NONE */
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
+    uint8_t wrinkle_codes;   /* 1: wrinkle_weights[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
     uint32_t surface;        /* NOH_SURFACE_* of pack/format.h */
     float surface_values[4], surface_more[6];
 } model_material;

@@ -83,7 +83,7 @@ static uint32_t material_flags(const model_material *m)
     return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) |
            (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
            (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u) |
-           (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED);
+           (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED) | (m->wrinkle_codes ? NOH_MATERIAL_WRINKLE_CODES : 0u);
 }
 
 static void write_maps(const model_material *from, noh_material *to)

@@ -139,7 +139,14 @@ static void halve_texel(const image *from, const cover *x, const cover *y, int w
     out[3] = mean(plain[3], weight);
 }
 
-static int halve(image *level, int with_alpha)
+/* One of the texels that a texel of the next level covers: bytes that stand for something have no mean. */
+static void pick_texel(const image *from, const cover *x, const cover *y, int32_t *out)
+{
+    const uint32_t column = x->first + x->count / 2u, row = y->first + y->count / 2u;
+    memcpy(out, from->texels + ((size_t)row * from->width + column) * 4, 4 * sizeof *out);
+}
+
+static int halve(const model_texture *t, image *level)
 {
     image next = { level->width > 1 ? level->width / 2 : 1, level->height > 1 ? level->height / 2 : 1, NULL };
     next.texels = malloc((size_t)next.width * next.height * 4 * sizeof *next.texels);
@@ -148,7 +155,12 @@ static int halve(image *level, int with_alpha)
         const cover y = cover_of(level->height, next.height, j);
         for (uint32_t i = 0; i < next.width; i++) {
             const cover x = cover_of(level->width, next.width, i);
-            halve_texel(level, &x, &y, with_alpha, next.texels + ((size_t)j * next.width + i) * 4);
+            int32_t *texel = next.texels + ((size_t)j * next.width + i) * 4;
+            if (t->use == MODEL_TEXTURE_CODES) {
+                pick_texel(level, &x, &y, texel);
+            } else {
+                halve_texel(level, &x, &y, t->with_alpha, texel);
+            }
         }
     }
     free(level->texels);
@@ -287,7 +299,7 @@ static int make_first(const model_texture *t, const int32_t light[256], image *l
     const int is_source = level->width <= size_max(t) && level->height <= size_max(t);
     uint32_t sides[2] = { t->width, t->height };
     while (level->width > size_max(t) || level->height > size_max(t)) {
-        if (halve(level, t->with_alpha)) return 1;
+        if (halve(t, level)) return 1;
     }
     h->trim = texture_trim_word(t);
     if (h->trim) {
@@ -328,7 +340,7 @@ int texture_levels_write(const model_texture *t, noh_texture_header *h, byte_buf
         failed = append_level(t, h, &level, bytes, out);
         h->level_count++;
         more = !h->nearest && (level.width > 1 || level.height > 1);
-        failed = failed || (more && halve(&level, t->with_alpha));
+        failed = failed || (more && halve(t, &level));
     }
     free(level.texels);
     free(bytes);

@@ -157,7 +157,7 @@ static void measure_map(trim *t, uint32_t texture)
     uint32_t side[2];
     stored_sides(map, side);
     for (int axis = 0; axis < 2; axis++) {
-        const int is_of_blocks = side[axis] % 4u == 0 && map->mag_filter != 9728;
+        const int is_of_blocks = side[axis] % 4u == 0 && (map->mag_filter != 9728 || map->use == MODEL_TEXTURE_CODES);
         g->cells[axis] = is_of_blocks ? common_divisor(side[axis] / 4u, g->cells[axis]) : 1;
         g->side[axis] = side[axis] < g->side[axis] ? side[axis] : g->side[axis];
         if (wrap[axis] == 33071 || wrap[axis] == 33648) g->bounded[axis] = 1;

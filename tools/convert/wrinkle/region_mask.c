@@ -55,6 +55,24 @@ int region_maps_make(const region_mask *mask, uint8_t *maps[REGION_MAP_COUNT])
     return 1;
 }
 
+/* 0 has one code in each channel, that of no region. */
+static uint8_t code_of(uint32_t map, uint8_t weight)
+{
+    const uint32_t offset = weight == 255u ? REGION_LAST : (uint32_t)((float)weight / (255.0f * WEIGHT_STEP) + 0.5f);
+    return (uint8_t)(offset ? map * REGION_STEP + offset : 0u);
+}
+
+int region_mask_make(uint8_t *const maps[REGION_MAP_COUNT], uint32_t width, uint32_t height, region_mask *mask)
+{
+    *mask = (region_mask){ width, height, model_zeros((size_t)width * height, 4) };
+    for (size_t i = 0; i < (size_t)width * height * 4 && mask->rgba; i++) {
+        uint32_t map = 0;
+        for (uint32_t k = 1; k < REGION_MAP_COUNT; k++) map = maps[k][i] > maps[map][i] ? k : map;
+        mask->rgba[i] = code_of(map, maps[map][i]);
+    }
+    return !mask->rgba;
+}
+
 float region_maps_weight(const uint8_t *const texels[REGION_MAP_COUNT], const float *weights)
 {
     float largest = 0.0f;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/limits.h"
 #include "convert/base/image_file.h"
 #include "convert/model/model_build.h"
 #include "wrinkle_creases.h"
@@ -13,22 +14,25 @@
 #define MAP_SIZE_LEAST 256u /* of a generated normal map, */
 #define MAP_SIZE_MOST 512u  /* by how many texels lie from crease to crease; --wrinkle-size goes beyond it */
 #define WAVE_TEXELS 5.0     /* fewer widen them: WAVE_LEAST of wrinkle_creases.c */
-#define WEIGHTS_SHARE 4u    /* of the side of a normal map is the side of generated weight maps: they are smooth */
-#define OVERLAP_MOST 0.25   /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
+#define WEIGHTS_SHARE 4u /* of the side of a normal map is the side of weight maps that are filtered: they are smooth */
+#define OVERLAP_MOST 0.25 /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
 #define SHRINKING_LEAST 0.002 /* mean compression of a material's area by all of a mesh's targets together */
 
 /* The textures and the matrix of one mesh, before the model has them. */
 typedef struct wrinkles {
-    uint8_t *map, *weights[REGION_MAP_COUNT], *matrix;
-    uint32_t map_width, map_height, weights_width, weights_height;
+    uint8_t *map, *matrix;
+    uint32_t map_width, map_height;
+    region_mask mask;
+    region_maps weights; /* of the mask */
 } wrinkles;
 
 static void wrinkles_free(wrinkles *w)
 {
     free(w->map);
     free(w->matrix);
+    region_mask_free(&w->mask);
     for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
-        free(w->weights[k]);
+        free(w->weights.map[k]);
     }
     memset(w, 0, sizeof *w);
 }
@@ -148,29 +152,6 @@ static int read_map(const char *path, wrinkles *w, model_error *error)
     return 0;
 }
 
-static int read_mask(const char *path, wrinkles *w, model_error *error)
-{
-    region_mask mask;
-    int failed;
-    if (region_mask_read(path, &mask, error)) {
-        return blame(path, error);
-    }
-    w->weights_width = mask.width;
-    w->weights_height = mask.height;
-    failed = region_maps_make(&mask, w->weights);
-    region_mask_free(&mask);
-    return failed ? out_of_memory(error) : 0;
-}
-
-static int matrix_of_mask(const wrinkle_field *f, wrinkles *w)
-{
-    wrinkle_raster r;
-    const int failed = wrinkle_raster_make(f, w->weights_width, w->weights_height, &r);
-    if (!failed) w->matrix = wrinkle_matrix_of_mask(f, &r, w->weights);
-    wrinkle_raster_free(&r);
-    return !w->matrix;
-}
-
 /* ---- generated ---- */
 
 static int generate_map(const wrinkle_field *f, const wrinkle_raster *r, wrinkles *w)
@@ -181,19 +162,33 @@ static int generate_map(const wrinkle_field *f, const wrinkle_raster *r, wrinkle
     return !w->map;
 }
 
-static int generate_weights(const wrinkle_field *f, uint32_t size, wrinkles *w)
+/* As a mask that could have been painted. */
+static int generate_mask(const wrinkle_field *f, uint32_t size, region_mask *mask)
 {
     region_weights *regions = wrinkle_regions_make(f);
+    uint8_t *maps[REGION_MAP_COUNT] = { NULL };
     wrinkle_raster r;
-    int failed = wrinkle_raster_make(f, size, size, &r) || !regions;
-    w->weights_width = w->weights_height = size;
-    if (!failed) {
-        w->matrix = wrinkle_matrix_make(f, regions);
-        failed = wrinkle_maps_make(f, regions, &r, w->weights) || !w->matrix;
-    }
+    const int failed = wrinkle_raster_make(f, size, size, &r) || !regions || wrinkle_maps_make(f, regions, &r, maps) ||
+                       region_mask_make(maps, size, size, mask);
+    for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) free(maps[k]);
     wrinkle_raster_free(&r);
     free(regions);
     return failed;
+}
+
+static uint32_t mask_size(const wrinkle_settings *settings, uint32_t map_size)
+{
+    if (settings->mask_size) return settings->mask_size;
+    return settings->by_pixel ? map_size : map_size / WEIGHTS_SHARE;
+}
+
+static int decode_mask(const wrinkle_field *f, wrinkles *w)
+{
+    w->weights.width = w->mask.width;
+    w->weights.height = w->mask.height;
+    if (region_maps_make(&w->mask, w->weights.map)) return 1;
+    w->matrix = wrinkle_matrix_make(f, &w->weights);
+    return !w->matrix;
 }
 
 /* Paint what there is a file for, generate the rest. */
@@ -204,9 +199,11 @@ static int fill(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_s
         return 1;
     }
     if (settings->mask) {
-        return read_mask(settings->mask, w, error) || (matrix_of_mask(f, w) && out_of_memory(error));
+        if (region_mask_read(settings->mask, &w->mask, error)) return blame(settings->mask, error);
+    } else if (generate_mask(f, mask_size(settings, r->width), &w->mask)) {
+        return out_of_memory(error);
     }
-    return generate_weights(f, r->width / WEIGHTS_SHARE, w) && out_of_memory(error);
+    return decode_mask(f, w) && out_of_memory(error);
 }
 
 /* ---- the table ---- */
@@ -248,12 +245,12 @@ static int is_tied(const model_mesh *mesh, const uint8_t *matrix, uint32_t regio
 /* Painted regions that no expression shows. */
 static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
 {
-    const size_t texels = (size_t)w->weights_width * w->weights_height;
+    const size_t texels = (size_t)w->weights.width * w->weights.height;
     char list[4 * REGION_COUNT] = "";
     size_t at = 0;
     uint32_t count = 0;
     for (uint32_t r = 0; r < REGION_COUNT; r++) {
-        const uint8_t *weight = w->weights[r % REGION_MAP_COUNT] + r / REGION_MAP_COUNT;
+        const uint8_t *weight = w->weights.map[r % REGION_MAP_COUNT] + r / REGION_MAP_COUNT;
         size_t i = 0;
         while (i < texels && !weight[4 * i]) i++;
         if (i == texels || is_tied(mesh, w->matrix, r)) continue;
@@ -287,6 +284,7 @@ static int add_texture(model *m, const char *mesh, const char *what, uint8_t **r
     t->wrap_s = clamped[0] ? 33071 : 10497;
     t->wrap_t = clamped[1] ? 33071 : 10497;
     t->use = use;
+    if (use == MODEL_TEXTURE_CODES) t->mag_filter = t->min_filter = 9728;
     *rgba = NULL;
     m->texture_count++;
     return 0;
@@ -318,24 +316,52 @@ static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
     return 0;
 }
 
-static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, uint32_t models, wrinkles *w)
+/* Whether a pixel may read the wrinkle map and a mask as well. */
+static int has_room(const model_material *of)
+{
+    const int maps = (of->normal_texture != MODEL_NONE) + (of->surface_texture != MODEL_NONE) +
+                     (of->emissive[0] > 0.0f || of->emissive[1] > 0.0f || of->emissive[2] > 0.0f);
+    return maps + 2 <= (int)NOH_MATERIAL_MAPS_MAX;
+}
+
+static int add_weights(model *m, const char *mesh, const wrinkle_field *f, int by_pixel, uint32_t own, wrinkles *w)
 {
     static const char *const names[REGION_MAP_COUNT] = { "wrinkle weights 0", "wrinkle weights 1",
                                                          "wrinkle weights 2" };
+    for (uint32_t k = 0; k < REGION_MAP_COUNT && !by_pixel; k++) {
+        if (add_texture(m, mesh, names[k], &w->weights.map[k], w->weights.width, w->weights.height, f->clamped,
+                        MODEL_TEXTURE_DATA))
+            return 1;
+        m->materials[own].wrinkle_weights[k] = m->texture_count - 1u;
+    }
+    if (!by_pixel) return 0;
+    if (add_texture(m, mesh, "wrinkle regions", &w->mask.rgba, w->mask.width, w->mask.height, f->clamped,
+                    MODEL_TEXTURE_CODES))
+        return 1;
+    m->materials[own].wrinkle_weights[0] = m->texture_count - 1u;
+    m->materials[own].wrinkle_codes = 1;
+    return 0;
+}
+
+static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, const wrinkle_settings *settings,
+                        wrinkles *w)
+{
     const char *name = mesh->name ? mesh->name : "";
     uint32_t own = f->material;
+    int by_pixel = settings->by_pixel;
     if (is_shared(m, mesh, own) && own_material(m, mesh, own, &own)) return 1;
     if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped, MODEL_TEXTURE_NORMAL))
         return 1;
     m->materials[own].wrinkle_texture = m->texture_count - 1u;
-    m->materials[own].wrinkle_models = models;
-    for (uint32_t k = 0; k < REGION_MAP_COUNT; k++) {
-        if (add_texture(m, name, names[k], &w->weights[k], w->weights_width, w->weights_height, f->clamped,
-                        MODEL_TEXTURE_DATA)) {
+    m->materials[own].wrinkle_models = settings->models;
+    if (by_pixel && !has_room(&m->materials[own])) {
+        by_pixel = 0;
+        if (model_warn(m,
+                       "material '%s': its wrinkle regions are read at vertices, since a pixel reads %u maps at most",
+                       m->materials[own].name, NOH_MATERIAL_MAPS_MAX))
             return 1;
-        }
-        m->materials[own].wrinkle_weights[k] = m->texture_count - 1u;
     }
+    if (add_weights(m, name, f, by_pixel, own, w)) return 1;
     mesh->wrinkles = w->matrix;
     w->matrix = NULL;
     return 0;
@@ -352,8 +378,18 @@ static void report(const wrinkle_settings *settings, const model *m, const model
         fprintf(settings->report,
                 "wrinkles of mesh '%s', material '%s': normals %u x %u%s, weights %u x %u%s, %u region%s\n", mesh->name,
                 m->materials[material].name, w->map_width, w->map_height, settings->map ? " painted" : "",
-                w->weights_width, w->weights_height, settings->mask ? " painted" : "", used, used == 1 ? "" : "s");
+                w->weights.width, w->weights.height, settings->mask ? " painted" : "", used, used == 1 ? "" : "s");
     }
+}
+
+/* The mask of the first mesh that has one goes to the caller. */
+static int keep_mask(const wrinkle_settings *settings, const wrinkles *w)
+{
+    const size_t bytes = (size_t)w->mask.width * w->mask.height * 4u;
+    if (!settings->kept || settings->kept->rgba) return 0;
+    *settings->kept = (region_mask){ w->mask.width, w->mask.height, malloc(bytes) };
+    if (settings->kept->rgba) memcpy(settings->kept->rgba, w->mask.rgba, bytes);
+    return !settings->kept->rgba;
 }
 
 /* One mesh; *made counts those that have wrinkles now. */
@@ -368,7 +404,7 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
         failed = (wrinkle_uv_settle(m, mesh, &f) || choose_size(&f, settings->size, &r)) && out_of_memory(error);
-        if (!failed && overlaps(&r)) {
+        if (!failed && overlaps(&r) && !(settings->map && settings->mask)) { /* painted ones are meant for it */
             why =
                 "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
         }
@@ -377,10 +413,11 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
         failed = model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) && out_of_memory(error);
     } else if (!failed) {
         failed = fill(&f, &r, settings, &w, error);
+        failed = failed || (keep_mask(settings, &w) && out_of_memory(error));
         if (!failed) take_rows(settings->recipe, mesh, w.matrix);
         failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && out_of_memory(error));
         if (!failed) report(settings, m, mesh, f.material, &w);
-        failed = failed || (add_to_model(m, mesh, &f, settings->models, &w) && out_of_memory(error));
+        failed = failed || (add_to_model(m, mesh, &f, settings, &w) && out_of_memory(error));
         *made += !failed;
     }
     wrinkles_free(&w);

@@ -7,17 +7,21 @@
 
 #include "convert/base/recipe_read.h"
 #include "convert/model/model.h"
+#include "region_mask.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct wrinkle_settings {
-    int automatic;             /* generate what is not painted */
-    const char *map;           /* a painted normal map, tangent space, +y up; NULL: generated */
-    const char *mask;          /* a painted region mask (region_mask.h); NULL: generated */
-    uint32_t models;           /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
-    uint32_t size;             /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
+    int automatic;      /* generate what is not painted */
+    const char *map;    /* a painted normal map, tangent space, +y up; NULL: generated */
+    const char *mask;   /* a painted region mask (region_mask.h); NULL: generated */
+    uint32_t models;    /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
+    int by_pixel;       /* 1: pixels read a mask of codes, texel by texel; else vertices read its weights, filtered */
+    uint32_t size;      /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
+    uint32_t mask_size; /* side of a generated mask; 0: as it is read */
+    region_mask *kept;  /* of no texels; takes the mask of the first mesh that gets wrinkles. NULL: nowhere */
     const recipe_text *recipe; /* its rows of wrinkles go before what is measured; NULL: none */
     FILE *report;              /* NULL: quiet */
 } wrinkle_settings;

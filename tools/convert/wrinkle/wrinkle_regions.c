@@ -10,8 +10,9 @@
 #define FADE_FIRST 0.01f /* compression at which a crease begins to show, */
 #define FADE_LAST 0.035f /* and at which it shows in full */
 #define MATRIX_LEAST \
-    0.04             /* a target that does less than this to a region, over what the strongest does, leaves it be */
-#define COVERED 0.1f /* the weight at which a place is a region's */
+    0.04                /* a target that does less than this to a region, over what the strongest does, leaves it be */
+#define SAMPLES_MAX 64u /* of a mask, along a side of a triangle */
+#define COVERED 0.1f    /* the weight at which a place is a region's */
 
 /* Groups as directions: how much each target compresses their points, unit length. */
 typedef struct clusters {
@@ -254,6 +255,72 @@ static int weigh(const clusters *c, region_weights *weights)
     return failed;
 }
 
+/* ---- which channel ---- */
+
+/* How much of two regions' area a mask loses where both have the same channel. */
+static double meeting(const wrinkle_field *f, region_weights *weights, uint32_t a, uint32_t b)
+{
+    double sum = 0.0;
+    for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
+        const float less = weights[v][a] < weights[v][b] ? weights[v][a] : weights[v][b];
+        sum += f->point[v] == v ? f->point_area[v] * (double)less : 0.0;
+    }
+    return sum;
+}
+
+/* What region `of` loses in the channel of place `place`, beside those that are there but for place `but`. */
+static double loss_at(double (*meets)[REGION_COUNT], const uint32_t *at, uint32_t of, uint32_t place, uint32_t but)
+{
+    double sum = 0.0;
+    for (uint32_t i = place / 3u * 3u; i < place / 3u * 3u + 3u; i++) {
+        sum += i != but && i != place && at[i] != of ? meets[of][at[i]] : 0.0;
+    }
+    return sum;
+}
+
+/* Exchange two regions of different channels as long as that makes less of regions of one channel meet. */
+static void part_neighbours(double (*meets)[REGION_COUNT], uint32_t *at)
+{
+    double all = 0.0;
+    for (uint32_t i = 0; i < REGION_COUNT * REGION_COUNT; i++) all += meets[i / REGION_COUNT][i % REGION_COUNT];
+    for (;;) {
+        uint32_t best_a = 0, best_b = 0;
+        double best = 1e-6 * all;
+        for (uint32_t i = 0; i < REGION_COUNT * REGION_COUNT; i++) {
+            const uint32_t a = i / REGION_COUNT, b = i % REGION_COUNT;
+            if (a >= b || a / 3u == b / 3u) continue;
+            const double before = loss_at(meets, at, at[a], a, a) + loss_at(meets, at, at[b], b, b);
+            const double after = loss_at(meets, at, at[a], b, b) + loss_at(meets, at, at[b], a, a);
+            if (before - after > best) {
+                best = before - after;
+                best_a = a;
+                best_b = b;
+            }
+        }
+        if (best_a == best_b) return;
+        const uint32_t region = at[best_a];
+        at[best_a] = at[best_b];
+        at[best_b] = region;
+    }
+}
+
+/* Number the regions so that those that meet are in different channels: a mask holds one of each channel's at a texel. */
+static void order(const wrinkle_field *f, region_weights *weights)
+{
+    double meets[REGION_COUNT][REGION_COUNT] = { { 0.0 } };
+    uint32_t at[REGION_COUNT];
+    for (uint32_t a = 0; a < REGION_COUNT; a++) {
+        at[a] = a;
+        for (uint32_t b = 0; b < a; b++) meets[a][b] = meets[b][a] = meeting(f, weights, a, b);
+    }
+    part_neighbours(meets, at);
+    for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
+        region_weights before;
+        memcpy(before, weights[v], sizeof before);
+        for (uint32_t r = 0; r < REGION_COUNT; r++) weights[v][r] = before[at[r]];
+    }
+}
+
 region_weights *wrinkle_regions_make(const wrinkle_field *field)
 {
     const model_mesh *mesh = field->mesh;
@@ -273,6 +340,7 @@ region_weights *wrinkle_regions_make(const wrinkle_field *field)
         settle(&c);
         assign(&c);
         failed = weigh(&c, weights);
+        if (!failed) order(field, weights);
     }
     free(c.direction);
     free(c.region);
@@ -331,35 +399,59 @@ static uint8_t *matrix_of(uint32_t targets, const deeds *d)
     return matrix;
 }
 
-uint8_t *wrinkle_matrix_make(const wrinkle_field *field, region_weights *regions)
+/* A mask's texel at texture coordinates, of map 0. */
+static size_t texel_at(const wrinkle_field *f, const region_maps *maps, const double uv[2])
 {
-    const uint32_t targets = field->mesh->target_count;
-    deeds d;
-    const int failed = deeds_make(targets, &d);
-    uint8_t *matrix = NULL;
-    for (uint32_t v = 0; v < field->mesh->vertex_count && !failed; v++) {
-        for (uint32_t i = 0; i < targets * REGION_COUNT && field->point[v] == v; i++) {
-            const uint32_t t = i / REGION_COUNT, r = i % REGION_COUNT;
-            add_deed(&d, t, r, regions[v][r], field->point_area[v], field->point_shrink[(size_t)v * targets + t]);
-        }
+    const uint32_t side[2] = { maps->width, maps->height };
+    uint32_t at[2];
+    for (int axis = 0; axis < 2; axis++) {
+        const double in = f->clamped[axis] ? uv[axis] : uv[axis] - floor(uv[axis]), texel = floor(in * side[axis]);
+        at[axis] = !(texel > 0.0) ? 0 : texel < side[axis] ? (uint32_t)texel : side[axis] - 1u;
     }
-    if (!failed) matrix = matrix_of(targets, &d);
-    deeds_free(&d);
-    return matrix;
+    return 4u * ((size_t)at[1] * maps->width + at[0]);
 }
 
-uint8_t *wrinkle_matrix_of_mask(const wrinkle_field *field, const wrinkle_raster *raster, uint8_t *const *maps)
+/* The mean of a mask over a triangle, by samples that are a texel apart at most. */
+static void mean_weights(const wrinkle_field *f, const region_maps *maps, uint32_t triangle, float *weights)
+{
+    double corner[3][2], longest = 0.0, sum[REGION_COUNT] = { 0.0 };
+    for (uint32_t k = 0; k < 3; k++) {
+        const float *uv = f->mesh->uv + 2 * (size_t)wrinkle_corner(f, triangle, k);
+        for (int axis = 0; axis < 2; axis++) corner[k][axis] = (double)uv[axis];
+    }
+    for (int k = 0; k < 3; k++) {
+        longest = fmax(longest, fabs(corner[(k + 1) % 3][0] - corner[k][0]) * maps->width);
+        longest = fmax(longest, fabs(corner[(k + 1) % 3][1] - corner[k][1]) * maps->height);
+    }
+    const uint32_t n = longest < 1.0 ? 1u : longest < SAMPLES_MAX ? (uint32_t)ceil(longest) : SAMPLES_MAX;
+    for (uint32_t i = 0; i < n * n; i++) { /* the middles of the n * n triangles that it is divided into */
+        const uint32_t a = i / n, b = i % n, over = a + b >= n;
+        const double s = (over ? n - a - 1.0 / 3.0 : a + 1.0 / 3.0) / n,
+                     t = (over ? n - b - 1.0 / 3.0 : b + 1.0 / 3.0) / n;
+        double uv[2];
+        for (int axis = 0; axis < 2; axis++) {
+            uv[axis] = corner[0][axis] + s * (corner[1][axis] - corner[0][axis]) +
+                       t * (corner[2][axis] - corner[0][axis]);
+        }
+        const size_t at = texel_at(f, maps, uv);
+        for (uint32_t r = 0; r < REGION_COUNT; r++)
+            sum[r] += maps->map[r % REGION_MAP_COUNT][at + r / REGION_MAP_COUNT];
+    }
+    for (uint32_t r = 0; r < REGION_COUNT; r++) weights[r] = (float)(sum[r] / (255.0 * n * n));
+}
+
+uint8_t *wrinkle_matrix_make(const wrinkle_field *field, const region_maps *maps)
 {
     const uint32_t targets = field->mesh->target_count;
     deeds d;
     const int failed = deeds_make(targets, &d);
     uint8_t *matrix = NULL;
-    for (size_t at = 0; at < (size_t)raster->width * raster->height && !failed; at++) {
-        for (uint32_t r = 0; r < REGION_COUNT && raster->triangle[at] != MODEL_NONE; r++) {
-            const float *shrink = &field->shrink[(size_t)raster->triangle[at] * targets];
-            const uint8_t weight = maps[r % REGION_MAP_COUNT][4 * at + r / REGION_MAP_COUNT];
-            for (uint32_t t = 0; t < targets && weight; t++) {
-                add_deed(&d, t, r, (float)weight / 255.0f, 1.0, shrink[t]);
+    for (uint32_t i = 0; i < field->triangle_count && !failed; i++) {
+        float weights[REGION_COUNT];
+        if (field->largest[i] > 0.0f) mean_weights(field, maps, i, weights);
+        for (uint32_t r = 0; r < REGION_COUNT && field->largest[i] > 0.0f; r++) {
+            for (uint32_t t = 0; t < targets && weights[r] > 0.0f; t++) {
+                add_deed(&d, t, r, weights[r], field->area[i], field->shrink[(size_t)i * targets + t]);
             }
         }
     }

@@ -21,7 +21,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
-        *terrain, *textures, *bound, *rename, *seam, *clean;
+        *wrinkle_lookup, *terrain, *textures, *bound, *rename, *seam, *clean;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
     double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
         lod_own, wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
@@ -203,6 +203,10 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     o->wrinkles.size = a->wrinkle_size >= 64.0 && a->wrinkle_size <= 2048.0 ? (uint32_t)a->wrinkle_size : 0;
     if (a->wrinkle_size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
         return tool_usage("--wrinkle-size wants a power of two from 64 to 2048, or 0 to choose it");
+    }
+    o->wrinkles.by_pixel = strcmp(a->wrinkle_lookup, "pixel") == 0;
+    if (!o->wrinkles.by_pixel && strcmp(a->wrinkle_lookup, "vertex") != 0) {
+        return tool_usage("--wrinkle-lookup wants vertex or pixel, not '%s'", a->wrinkle_lookup);
     }
     o->wrinkles.automatic = a->wrinkles != NULL;
     o->wrinkles.map = a->wrinkle_map;
@@ -442,6 +446,15 @@ static const option options[] = {
       .what =
           "what shows the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
       .example = "area",
+      .excludes = "--only=anim" },
+    { .name = "--wrinkle-lookup",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, wrinkle_lookup),
+      .value = "vertex|pixel",
+      .initial = "vertex",
+      .what =
+          "where wrinkle regions are read: at vertices, which costs a pixel nothing and smooths the mask to the mesh, or at pixels, exact by texel, which is one fetch more",
+      .example = "pixel",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-size",
       .kind = OPTION_NUMBER,

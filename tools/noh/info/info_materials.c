@@ -22,7 +22,9 @@ static void list_maps(const noh_material *m, material_map maps[MAPS])
                                      { "wrinkle weights 1-4", "wrinkle_weights_0", m->wrinkle_weights[0] },
                                      { "wrinkle weights 5-8", "wrinkle_weights_1", m->wrinkle_weights[1] },
                                      { "wrinkle weights 9-12", "wrinkle_weights_2", m->wrinkle_weights[2] } };
+    const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->wrinkle_weights[0] };
     for (uint32_t i = 0; i < MAPS; i++) maps[i] = all[i];
+    if (m->flags & NOH_MATERIAL_WRINKLE_CODES) maps[5] = codes;
 }
 
 static const char *alpha_of(const noh_material *m)
@@ -55,7 +57,7 @@ void info_print_materials(const noh_pack *pack)
 }
 
 /* A pixel reads the base colour, a white texel where there is none, and a map for each feature; weights of wrinkles are
- * read at vertices. Lit, it reads the environment and up to four texels of the shadow map, too. */
+ * read at vertices, a mask of their regions at pixels. Lit, it reads the environment and up to four texels of the shadow map, too. */
 typedef struct material_cost {
     uint32_t textures, fetches, lit;
     uint64_t bytes;
@@ -72,7 +74,8 @@ static material_cost cost_of(const noh_pack *pack, const noh_material *m)
         (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
         cost.bytes += noh_gl_picture_bytes(&t, 1);
         cost.textures++;
-        cost.fetches += k >= 1 && k <= 4 && !(m->flags & NOH_MATERIAL_UNLIT);
+        cost.fetches += k >= 1 && k <= (m->flags & NOH_MATERIAL_WRINKLE_CODES ? 5u : 4u) &&
+                        !(m->flags & NOH_MATERIAL_UNLIT);
     }
     cost.lit = cost.fetches + 5u < NOH_GL_FETCHES_MAX ? cost.fetches + 5u : NOH_GL_FETCHES_MAX;
     if (m->flags & NOH_MATERIAL_UNLIT) cost.lit = cost.fetches;

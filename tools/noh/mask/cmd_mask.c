@@ -10,9 +10,11 @@
 #include "cli/verbs.h"
 #include "convert/wrinkle/mask_clinic.h"
 #include "file/png_file.h"
+#include "mask/mask_export.h"
 
 typedef struct mask_args {
-    const char *file, *output, *show;
+    const char *file, *output, *show, *exported;
+    double size;
     int as_json, quiet;
 } mask_args;
 
@@ -190,7 +192,18 @@ static int run(void *args)
     if (a->as_json && a->output && report_stream(a->output) != stdout) {
         return tool_usage("--json and -o both write to stdout");
     }
-    if (region_mask_read(a->file, &mask, &error)) {
+    if (mask_is_exported(a->file) && !a->exported) {
+        return tool_usage("noh mask looks a PNG over; --export FILE.png takes one out of a pack or a model");
+    }
+    if (a->size != (double)(uint32_t)a->size || (a->size > 0.0 && a->size < 16.0) || a->size > 4096.0) {
+        return tool_usage("--size wants a whole number of texels from 16 to 4096, or 0");
+    }
+    if (a->exported) {
+        status = mask_export(a->file, (uint32_t)a->size, &mask);
+        if (!status) status = tool_write_png(a->exported, mask.width, mask.height, mask.rgba);
+        if (status) region_mask_free(&mask);
+        if (status) return status;
+    } else if (region_mask_read(a->file, &mask, &error)) {
         return tool_fail(a->file, "%s", error.what);
     }
     status = look_over(a, &mask);
@@ -213,6 +226,23 @@ static const option options[] = {
       .value = "OUT.png",
       .what = "a picture of the damage: illegal codes red, seams yellow",
       .example = "damage.png" },
+    { .name = "--export",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(mask_args, exported),
+      .value = "OUT.png",
+      .what =
+          "FILE is a pack, or a model with targets: write its regions, or those that noh build --wrinkles auto would give it, as a mask to paint on. noh build --region-mask reads the same regions from it",
+      .example = "regions.png",
+      .excludes = "-o" },
+    { .name = "--size",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(mask_args, size),
+      .value = "N",
+      .initial = "0",
+      .what =
+          "the side of the mask of a model, in texels; 0: as noh build would make it, a quarter of the normal map's",
+      .example = "512",
+      .needs = "--export" },
     { .name = "--quiet",
       .kind = OPTION_FLAG,
       .at = offsetof(mask_args, quiet),
@@ -223,11 +253,12 @@ static const option options[] = {
 
 const verb verb_mask = {
     .name = "mask",
-    .files = "FILE.png",
-    .what = "look over a painted mask of wrinkle regions: illegal codes, their cause, a repair",
+    .files = "FILE",
+    .what =
+        "look over a painted mask of wrinkle regions: illegal codes, their cause, a repair; or write one to paint on",
     .more =
         "Each channel of a mask has three regions, by its value: 0 to 75, 90 to 165, 180 to 255. The values between are illegal; anti-aliasing, colour management and block compression put them there, and turn regions into others.",
-    .example = "regions.png\nregions.png -o repaired.png --show damage.png",
+    .example = "regions.png\nregions.png -o repaired.png --show damage.png\nhead.glb --export regions.png",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,
