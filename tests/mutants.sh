@@ -132,6 +132,17 @@ copy() { # FOLDER
         tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
 }
 
+# What is left of mutants in a copy would make the tests of others fail: outputs and sources are those of the tree.
+is_clean() { # NUMBER
+    {
+        diff -rq "$work/$1/$build" "$tree/$build" | grep ' differ$'
+        for file in $(for patch in tests/mutants/*.patch; do edited "$patch"; done | sort -u); do
+            cmp "$work/$1/$file" "$tree/$file" 2>&1
+        done
+    } >"$work/log/left.$1"
+    [ ! -s "$work/log/left.$1" ]
+}
+
 worker() { # NUMBER
     trap 'kill $child 2>/dev/null; exit 1' TERM INT HUP
     trap - EXIT
@@ -140,6 +151,7 @@ worker() { # NUMBER
     while IFS="$tab" read -r name program function; do
         one "$1" "$name" "$program" "$function"
     done <"$work/$1.rows"
+    is_clean "$1" || { echo 'not ok - every edit is taken back' && sed 's/^/#   /' "$work/log/left.$1"; }
 }
 
 # ---- all ----
