@@ -125,18 +125,13 @@ static inline float noh_dot3(const float a[3], const float b[3])
  * angles, no less than the right figure where they are not (Gershgorin's bound on the eigenvalues of M^T M). */
 static inline float noh_stretch(const float m[12])
 {
-    float products[3], most = 0.0f; /* of the columns 0 and 1, 1 and 2, 2 and 0 */
-    for (int c = 0; c < 3; c++) {
-        const int next = (c + 1) % 3;
-        const float product = m[c] * m[next] + m[4 + c] * m[4 + next] + m[8 + c] * m[8 + next];
-        products[c] = product < 0.0f ? -product : product;
-    }
-    for (int c = 0; c < 3; c++) {
-        const float square = m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c];
-        const float sum = square + (products[c] + products[(c + 2) % 3]);
-        most = sum > most ? sum : most;
-    }
-    return noh_sqrt(most);
+    const float xx = m[0] * m[0] + m[4] * m[4] + m[8] * m[8], xy = m[0] * m[1] + m[4] * m[5] + m[8] * m[9];
+    const float yy = m[1] * m[1] + m[5] * m[5] + m[9] * m[9], yz = m[1] * m[2] + m[5] * m[6] + m[9] * m[10];
+    const float zz = m[2] * m[2] + m[6] * m[6] + m[10] * m[10], zx = m[2] * m[0] + m[6] * m[4] + m[10] * m[8];
+    const float a = xy < 0.0f ? -xy : xy, b = yz < 0.0f ? -yz : yz, c = zx < 0.0f ? -zx : zx;
+    const float x = xx + (c + a), y = yy + (a + b), z = zz + (b + c);
+    const float most = x > y ? x : y;
+    return noh_sqrt(most > z ? most : z);
 }
 
 /* Bring v to length 1; a vector too short to have a direction becomes `fallback`. */

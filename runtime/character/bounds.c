@@ -9,7 +9,7 @@
  * between away, whatever their rotations. */
 typedef struct ball {
     const float *matrix; /* of the joint at the centre */
-    float radius;
+    float radius, stretch;
 } ball;
 
 static float bone_length(const noh_skeleton *s, uint32_t joint)
@@ -18,15 +18,17 @@ static float bone_length(const noh_skeleton *s, uint32_t joint)
     return noh_sqrt(noh_dot3(t, t));
 }
 
+static float magnitude(float v)
+{
+    return v < 0.0f ? -v : v;
+}
+
 /* The most that a joint's scale stretches what is below it. */
 static float largest_scale(const noh_transform *t)
 {
-    float most = 0.0f;
-    for (int i = 0; i < 3; i++) {
-        const float scale = t->scale[i] < 0.0f ? -t->scale[i] : t->scale[i];
-        most = scale > most ? scale : most;
-    }
-    return most;
+    const float x = magnitude(t->scale[0]), y = magnitude(t->scale[1]), z = magnitude(t->scale[2]);
+    const float most = x > y ? x : y;
+    return most > z ? most : z;
 }
 
 static ball ball_of(const noh_skeleton *s, const float *model, float radius, uint32_t joint, uint32_t posed_count)
@@ -38,12 +40,14 @@ static ball ball_of(const noh_skeleton *s, const float *model, float radius, uin
         joint = s->parents[joint];
     }
     b.matrix = model + 12u * (size_t)joint;
-    b.radius = radius * noh_stretch(b.matrix) * ROUNDING;
+    b.stretch = noh_stretch(b.matrix) * ROUNDING;
+    b.radius = radius * b.stretch;
     return b;
 }
 
 static void add_to_box(noh_bounds *bounds, ball b)
 {
+    bounds->stretch = b.stretch > bounds->stretch ? b.stretch : bounds->stretch;
     for (int i = 0; i < 3; i++) {
         float low = b.matrix[4 * i + 3] - b.radius, high = b.matrix[4 * i + 3] + b.radius;
         bounds->low[i] = low < bounds->low[i] ? low : bounds->low[i];
@@ -61,23 +65,29 @@ static float radius_around(const float *centre, ball b)
     return noh_sqrt(noh_dot3(d, d)) * ROUNDING + b.radius;
 }
 
+#define KEPT 64u /* balls that the second pass need not make again */
+
 /* The box is that of all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
  * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
 void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
                       uint32_t joint_count, noh_bounds *bounds)
 {
     const float far_away = 3e38f;
+    ball balls[KEPT];
+    uint32_t kept = 0, next = 0;
     NOH_ASSERT(skeleton && model && joint_radius_m && bounds && joint_count <= skeleton->joint_count);
     for (int i = 0; i < 3; i++) {
         bounds->low[i] = far_away;
         bounds->high[i] = -far_away;
         bounds->centre[i] = 0.0f;
     }
-    bounds->radius = 0.0f;
+    bounds->radius = bounds->stretch = 0.0f;
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        if (joint_radius_m[j] >= 0.0f) {
-            add_to_box(bounds, ball_of(skeleton, model, joint_radius_m[j], j, joint_count));
-        }
+        ball b;
+        if (!(joint_radius_m[j] >= 0.0f)) continue;
+        b = ball_of(skeleton, model, joint_radius_m[j], j, joint_count);
+        add_to_box(bounds, b);
+        if (kept < KEPT) balls[kept++] = b;
     }
     if (bounds->low[0] > bounds->high[0]) {
         return;
@@ -86,9 +96,11 @@ void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const fl
         bounds->centre[i] = 0.5f * bounds->low[i] + 0.5f * bounds->high[i];
     }
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
-        float radius = joint_radius_m[j] >= 0.0f
-                           ? radius_around(bounds->centre, ball_of(skeleton, model, joint_radius_m[j], j, joint_count))
-                           : 0.0f;
+        float radius;
+        if (!(joint_radius_m[j] >= 0.0f)) continue;
+        radius = radius_around(bounds->centre,
+                               next < kept ? balls[next] : ball_of(skeleton, model, joint_radius_m[j], j, joint_count));
+        next++;
         bounds->radius = radius > bounds->radius ? radius : bounds->radius;
     }
 }

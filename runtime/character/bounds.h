@@ -25,6 +25,7 @@ extern "C" {
 typedef struct noh_bounds {
     float low[3], high[3];   /* the box; low above high: empty */
     float centre[3], radius; /* the sphere */
+    float stretch;           /* the most that a joint's matrix stretches a length; 0: empty */
 } noh_bounds;
 
 /* Bounds of a pose, in the space of the matrices.

@@ -56,7 +56,7 @@ static void fill_head(noh_character *ch, const noh_character_desc *d, const layo
     ch->controller_offset = (uint32_t)l->controller;
     for (int i = 0; i < 2; i++) {
         ch->palette_offsets[i] = (uint32_t)l->palettes[i];
-        ch->float_offsets[i] = (uint32_t)l->floats[i];
+        NOH_ASSERT(l->floats[i] == l->palettes[i] + 12u * sizeof(float) * (size_t)ch->joint_count);
     }
     noh_time_lod_init(&ch->time, d->instance);
     ch->time.clock = d->start_clock;
@@ -175,12 +175,17 @@ static float *palette_of(noh_character *ch, uint32_t pose)
 
 static float *floats_of(noh_character *ch, uint32_t pose)
 {
-    return (float *)(void *)((uint8_t *)ch + ch->float_offsets[pose]);
+    return palette_of(ch, pose) + 12u * (size_t)ch->joint_count;
 }
 
 static const float *at(const noh_character *ch, uint32_t offset)
 {
     return (const float *)(const void *)((const uint8_t *)ch + offset);
+}
+
+static const float *pose_floats(const noh_character *ch, uint32_t pose)
+{
+    return noh_character_pose_palette(ch, pose) + 12u * (size_t)ch->joint_count;
 }
 
 const float *noh_character_pose_palette(const noh_character *ch, uint32_t pose)
@@ -271,6 +276,7 @@ static void keep_shown(noh_character *ch, uint32_t from, float part)
     noh_mix_fours(palette_of(ch, from), palette_of(ch, to), part, 3u * (size_t)ch->joint_count, palette_of(ch, from));
     mix_floats(floats_of(ch, from), floats_of(ch, to), part, ch->float_count, floats_of(ch, from));
     mix_floats(ch->spheres[from], ch->spheres[to], part, 4, ch->spheres[from]);
+    mix_floats(&ch->stretches[from], &ch->stretches[to], part, 1, &ch->stretches[from]);
 }
 
 int64_t noh_character_pose_clock(const noh_character *ch)
@@ -335,6 +341,7 @@ void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, c
         noh_joint_bounds(skeleton, scratch->model, joint_radius_m, scratch->joint_count, &bounds);
         memcpy(ch->spheres[pose], bounds.centre, sizeof bounds.centre);
         ch->spheres[pose][3] = bounds.radius;
+        ch->stretches[pose] = bounds.stretch;
     }
 }
 
@@ -362,14 +369,14 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
 const float *noh_character_floats(const noh_character *ch, float *mixed)
 {
     uint32_t to = ch->time.to_pose;
-    const float *last = at(ch, ch->float_offsets[to]);
+    const float *last = pose_floats(ch, to);
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(mixed || part >= 1.0f || !ch->float_count);
     NOH_ASSERT(ch->time.posed);
     if (part >= 1.0f) {
         return last;
     }
-    mix_floats(at(ch, ch->float_offsets[to ^ 1u]), last, part, ch->float_count, mixed);
+    mix_floats(pose_floats(ch, to ^ 1u), last, part, ch->float_count, mixed);
     return mixed;
 }
 
@@ -380,6 +387,15 @@ void noh_character_sphere(const noh_character *ch, float sphere[4])
     NOH_ASSERT(sphere);
     NOH_ASSERT(ch->time.posed);
     mix_floats(ch->spheres[to ^ 1u], ch->spheres[to], part, 4, sphere);
+}
+
+float noh_character_stretch(const noh_character *ch)
+{
+    uint32_t to = ch->time.to_pose;
+    float part = noh_time_lod_fraction(&ch->time), stretch;
+    NOH_ASSERT(ch->time.posed);
+    mix_floats(&ch->stretches[to ^ 1u], &ch->stretches[to], part, 1, &stretch);
+    return stretch;
 }
 
 void noh_character_wake(noh_character *ch)

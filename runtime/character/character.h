@@ -46,9 +46,10 @@ typedef struct noh_character {
     uint32_t bytes; /* of the whole block */
     uint32_t joint_count, float_count;
     uint32_t controller_offset;
-    uint32_t palette_offsets[2], float_offsets[2];
-    uint32_t updates;    /* since init */
-    uint32_t multiplied; /* a bit for each palette: set if it was multiplied by inverse bind matrices */
+    uint32_t palette_offsets[2]; /* the floats of a pose follow its palette */
+    float stretches[2];          /* noh_bounds.stretch of each of the two poses */
+    uint32_t updates;            /* since init */
+    uint32_t multiplied;         /* a bit for each palette: set if it was multiplied by inverse bind matrices */
     noh_lod lod;
     noh_time_lod time;
     float spheres[2][4]; /* centre and radius around each of the two poses */

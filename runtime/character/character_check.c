@@ -37,9 +37,9 @@ static const char *bad_head(const noh_character *ch, size_t bytes, const noh_cli
     for (int i = 0; i < 2; i++) {
         if (ch->palette_offsets[i] != at) return "character: bad offset of a part";
         at += 48u * (uint64_t)set->joint_count;
-        if (ch->float_offsets[i] != at) return "character: bad offset of a part";
         at = (at + 4u * (uint64_t)set->float_count + 15u) & ~(uint64_t)15;
     }
+    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f)) return "character: a negative stretch of a pose";
     if (ch->multiplied > 3u) return "character: bad flags of its palettes";
     return ch->bytes != at ? "character: its bytes do not suit its counts" : NULL;
 }

@@ -41,7 +41,7 @@ void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6
     memset(box, 0, 6 * sizeof *box);
     for (uint32_t t = 0; weights && t < mesh->header->target_count; t++) {
         const float *b = mesh->target_boxes + 6u * (size_t)t;
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3 && !(weights[t] >= 0.0f && weights[t] <= 0.0f); i++) {
             float low = weights[t] * b[i], high = weights[t] * b[i + 3];
             box[i] += low < high ? low : high;
             box[i + 3] += low < high ? high : low;

@@ -61,22 +61,6 @@ static void unite(float sphere[4], const float other[4])
 
 /* ---- what is shown ---- */
 
-/* The most that joints stretch what targets add to a skinned mesh. */
-static float stretch_of(const noh_character *ch, const noh_stage_mesh *mesh)
-{
-    const int both = noh_time_lod_fraction(&ch->time) < 1.0f;
-    float most = 0.0f;
-    for (uint32_t j = 0; j < mesh->skin.header->joint_count; j++) {
-        const size_t at = 12u * (size_t)mesh->skin.joints[j];
-        float stretch = noh_stretch(noh_character_pose_palette(ch, ch->time.to_pose) + at);
-        if (both) {
-            stretch = larger(stretch, noh_stretch(noh_character_pose_palette(ch, ch->time.to_pose ^ 1u) + at));
-        }
-        most = larger(most, stretch * noh_stretch(mesh->skin.inverse_bind + 12u * (size_t)j));
-    }
-    return most * ROUNDING;
-}
-
 static int is_empty(const noh_stage_kind *k)
 {
     return k->rest[0] > k->rest[3];
@@ -98,18 +82,18 @@ void noh_stage_sphere(const noh_stage_kind *k, uint32_t index, float sphere[4])
         } else if (weights) {
             noh_mesh_target_box(&mesh->mesh, weights, own);
             moved = farthest_corner(own);
-            if (moved > 0.0f && ch->time.posed) moved *= stretch_of(ch, mesh);
-            growth = larger(growth, moved);
+            growth = larger(growth, moved * mesh->bind_stretch);
         }
     }
     if (is_empty(k)) {
         memset(sphere, 0, 4 * sizeof *sphere);
     } else if (ch->time.posed) {
         noh_character_sphere(ch, sphere);
+        growth *= noh_character_stretch(ch);
     } else {
         sphere_of_box(k->rest, sphere);
     }
-    sphere[3] += growth;
+    sphere[3] += growth * ROUNDING;
     if (noh_box_is_empty(box)) return;
     sphere_of_box(box, rigid);
     if (is_empty(k)) {
@@ -255,7 +239,14 @@ static void open_radii(noh_stage_kind *k)
         k->joint_radii[j] = k->plan->mesh_count ? -1.0f : 0.0f;
     }
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
-        if (k->meshes[m].skinned) noh_mesh_add_joint_radii(&k->meshes[m].mesh, k->weights, k->joint_radii);
+        noh_stage_mesh *mesh = &k->meshes[m];
+        mesh->bind_stretch = 0.0f;
+        if (!mesh->skinned) continue;
+        noh_mesh_add_joint_radii(&mesh->mesh, k->weights, k->joint_radii);
+        for (uint32_t j = 0; j < mesh->skin.header->joint_count; j++) {
+            if (noh_box_is_empty(mesh->mesh.joint_boxes + 6u * (size_t)j)) continue;
+            mesh->bind_stretch = larger(mesh->bind_stretch, noh_stretch(mesh->skin.inverse_bind + 12u * (size_t)j));
+        }
     }
 }
 

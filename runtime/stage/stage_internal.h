@@ -179,6 +179,7 @@ typedef struct noh_stage_mesh {
     noh_mesh mesh; /* the full one */
     noh_skin skin; /* where `skinned` */
     noh_stage_item item;
+    float bind_stretch;      /* where `skinned`: the most that an inverse bind matrix stretches what a target adds */
     uint32_t finer_hash;     /* of the levels of noh_kind_desc.finer that the plan has: see noh_stage_hash_levels */
     const float *node_world; /* [12] of a rigid mesh */
     const float *defaults;   /* [target_count] weights */

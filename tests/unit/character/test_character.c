@@ -656,7 +656,7 @@ static void damaged_characters_do_no_harm(void **state)
         if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
         if (g.ch->time.posed) take_palette(g.ch, shown);
     }
-    assert_true(refused > 8u * 40u && accepted > 0);
+    assert_true(refused > 8u * 32u && accepted > 0);
     free(good);
     stage_close(&g);
 }
