@@ -84,7 +84,7 @@
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */
-#define NOH_SPRING_STEPS_MAX 15u     /* of 1/60 s in one call; what is left of a longer time is dropped */
+#define NOH_SPRING_STEPS_MAX 60u     /* of 1/60 s in one call: of a longer time the last second is run */
 #define NOH_HAIRS_MAX 256u           /* control hairs of one head */
 #define NOH_HAIR_POINTS_MAX 32u      /* of a control hair */
 #define NOH_HAIR_SPHERES_MAX 8u      /* that stand for the head */
@@ -92,7 +92,7 @@
 #define NOH_HAIR_STRIPS_MAX 16384u   /* of one haircut */
 #define NOH_HAIR_SEGMENTS_MAX 64u    /* of a strip */
 #define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind whose hair moves at once (actors/wigs.h) */
-#define NOH_HAIR_STEPS_MAX 15u       /* of 1/60 s in one call; what is left of a longer time is dropped */
+#define NOH_HAIR_STEPS_MAX 60u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- crowds ---- */
 

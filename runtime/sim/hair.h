@@ -75,9 +75,9 @@ noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, 
 /* At rest where the head is now: after a leap. Gusts go on. */
 void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier);
 
-/* Time moves on, in any pieces; in one call by NOH_HAIR_STEPS_MAX steps, a quarter of a second.
+/* Time moves on, in any pieces; in one call by NOH_HAIR_STEPS_MAX steps, one second.
  * carrier  at the end of this time; in between it is interpolated
- * returns  ticks that were dropped, 0 up to a quarter of a second */
+ * returns  ticks that were dropped, 0 up to a second */
 uint32_t noh_hair_step(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
 
 /* shapes  points[hair_count][point_count][3], head space; lengths are those at rest, and spheres are kept out of */

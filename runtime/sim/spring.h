@@ -93,11 +93,12 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
 /* At rest where it is carried now: after a leap, or it would be torn along. */
 void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier);
 
-/* Time moves on, in any pieces; in one call by NOH_SPRING_STEPS_MAX steps, a quarter of a second.
+/* Time moves on, in any pieces: frames may be as seldom as one in a second (NOH_SPRING_STEPS_MAX). Of a longer time the
+ * last second is run, from rest at the place where it is carried then.
  * moves    [count], no spring twice; `rotations` is not used
  * scratch  [NOH_SPRING_SCRATCH_FLOATS] of the most colliders that one of them has; NULL if none has any; undefined
  *          before and after
- * returns  ticks that were dropped, 0 up to a quarter of a second: the most of any */
+ * returns  ticks that were dropped, 0 up to a second: the most of any */
 uint32_t noh_spring_step(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch);
 
 /* The local rotations to be put into a pose in place of those at rest. `carrier` and `colliders` are not used.

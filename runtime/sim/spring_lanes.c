@@ -311,14 +311,25 @@ typedef struct span {
     uint32_t steps, kept, dropped;
 } span;
 
-/* How many steps a spring has to take in so many ticks. */
-static span span_of(const noh_spring *s, uint32_t ticks)
+/* How many steps a spring has to take in so many ticks. Of more than the limit it takes the last ones, at the speed at
+ * which it is carried, from rest where it is carried then. */
+static span begin(const noh_spring_move *move, uint32_t ticks)
 {
-    const uint64_t whole = ((uint64_t)s->left + ticks) / NOH_SPRING_STEP_TICKS;
-    span r;
-    r.steps = whole < NOH_SPRING_STEPS_MAX ? (uint32_t)whole : NOH_SPRING_STEPS_MAX;
-    r.dropped = (uint32_t)(whole - r.steps) * NOH_SPRING_STEP_TICKS;
-    r.kept = ticks - r.dropped;
+    noh_spring *s = move->spring;
+    const uint64_t time = (uint64_t)s->left + ticks, whole = time / NOH_SPRING_STEP_TICKS;
+    span r = { (uint32_t)whole, ticks, 0 };
+    if (whole > NOH_SPRING_STEPS_MAX) {
+        noh_spring_carrier at;
+        r.steps = NOH_SPRING_STEPS_MAX;
+        r.kept = NOH_SPRING_STEPS_MAX * NOH_SPRING_STEP_TICKS + (uint32_t)(time % NOH_SPRING_STEP_TICKS);
+        r.dropped = (uint32_t)(time - r.kept);
+        const float t = (float)(ticks - r.kept) / (float)ticks;
+        for (int k = 0; k < 3; k++) {
+            at.position[k] = s->last.position[k] + t * (move->carrier->position[k] - s->last.position[k]);
+        }
+        noh_quat_nlerp(s->last.rotation, move->carrier->rotation, t, at.rotation);
+        noh_spring_reset(s, move->desc, &at);
+    }
     return r;
 }
 
@@ -339,7 +350,7 @@ static uint32_t step_group(const group *g, uint32_t ticks, obstacle *obstacles)
     span times[NOH_LANES];
     uint32_t steps = 0, dropped = 0;
     for (uint32_t lane = 0; lane < g->used; lane++) {
-        times[lane] = span_of(g->moves[lane]->spring, ticks);
+        times[lane] = begin(g->moves[lane], ticks);
         if (times[lane].steps > steps) steps = times[lane].steps;
         if (times[lane].dropped > dropped) dropped = times[lane].dropped;
     }

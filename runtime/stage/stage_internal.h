@@ -320,12 +320,13 @@ typedef struct noh_stage_shown {
     uint16_t place; /* in its kind's order */
     uint32_t frame; /* the number of the last frame in which it was shown: its floats and pose are of then */
     noh_lod_slot slot;
-    uint8_t due;                 /* noh_due */
+    uint8_t due;                 /* noh_due, or NOH_STAGE_DUE_LONG */
     uint8_t updates;             /* 1: is posed in this frame; NOH_STAGE_MOVED: its palettes changed */
     uint8_t level, level_before; /* drawn */
 } noh_stage_shown;
 
 #define NOH_STAGE_MOVED 2u
+#define NOH_STAGE_DUE_LONG 3u /* at once, as the frame was long; it was in view in the one before, so parts go on */
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */

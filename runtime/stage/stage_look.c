@@ -102,6 +102,7 @@ static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_character *ch = noh_stage_character(k, i);
     const float scale = shown->scale * noh_stage_size(s, a);
     noh_lod_settings settings = s->desc.lod;
+    const int was_seen = a->was_seen;
     float asked;
     if (is_fresh(s, a)) noh_lod_cut(&ch->lod);
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
@@ -109,6 +110,7 @@ static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
     asked = a->look.posed || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
     shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, i, &settings, asked)
                                           : noh_character_look(ch, &k->table, &settings, asked));
+    if (shown->due == NOH_DUE_AT_ONCE && was_seen && ch->time.posed) shown->due = NOH_STAGE_DUE_LONG;
     if (noh_stage_is_full(s, a)) {
         const uint32_t level = a->look.level ? a->look.level - 1u : k->plan->finest_level;
         noh_lod_set_mesh(&ch->lod, &k->table, level, scale);

@@ -117,7 +117,7 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
         return;
     }
     cost = noh_cost_ns(&costs, noh_character_joint_work(ch) + noh_stage_graph_work(k, i), 0, 0);
-    if (shown->due == NOH_DUE_AT_ONCE) {
+    if (shown->due >= NOH_DUE_AT_ONCE) {
         noh_schedule_spend(&s->schedule, cost);
         shown->updates = 1;
     } else {

@@ -464,10 +464,45 @@ static void a_fork_goes_on(void **state)
     for (int k = 0; k < 2; k++) close_swingers(&c[k]);
 }
 
+/* At any rate of frames sleeves are where they are at 60 Hz, but for the arms' way between two poses. Frames longer than
+ * an eighth of a second once began all of them anew. */
+static void seldom_frames_swing_alike(void **state)
+{
+    static const uint32_t rates[] = { 60, 12, 7, 5, 3, 2 };
+    static float at_60[6][3];
+    (void)state;
+    for (size_t r = 0; r < TEST_COUNT(rates); r++) {
+        float from[3], to[3], worst = 0.0f;
+        sleeves s;
+        cast c;
+        open_dancers(&c, &s, 1, 1, 0);
+        const noh_actor actor = noh_stage_actor_at(c.stage, 0);
+        for (uint32_t f = 1; f <= 6 * rates[r]; f++) {
+            const noh_stage_view view = cast_view(0, 5.0f);
+            const uint32_t ticks = (uint32_t)(NOH_TICKS_PER_SECOND * f / rates[r]) -
+                                   (uint32_t)(NOH_TICKS_PER_SECOND * (f - 1u) / rates[r]);
+            assert_int_equal(noh_stage_frame(c.stage, ticks, &view, NULL, NULL, NULL), NOH_OK);
+            if (f % rates[r]) continue;
+            float *was = at_60[f / rates[r] - 1u], square = 0.0f;
+            bone_of(&c, &s, actor, 0, from, to);
+            for (int k = 0; k < 3; k++) {
+                const float along = to[k] - from[k];
+                if (!r) was[k] = along;
+                square += (along - was[k]) * (along - was[k]);
+            }
+            worst = square > worst ? square : worst;
+        }
+        print_message("%u Hz: off 60 Hz by %.1f mm\n", (unsigned)rates[r], 1000.0 * sqrt((double)worst));
+        assert_true(worst < 0.01f * 0.01f);
+        close_dancers(&c, &s);
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sleeves_swing_in_a_dance),
+        cmocka_unit_test(seldom_frames_swing_alike),
         cmocka_unit_test(sleeves_stay_out_of_colliders),
         cmocka_unit_test(swinging_states_are_put_back),
         cmocka_unit_test(bad_descs_are_refused),
