@@ -221,3 +221,16 @@ int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float headin
     memcpy(heading, r->heading, sizeof r->heading);
     return 1;
 }
+
+void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3])
+{
+    NOH_ASSERT(walkers && by);
+    for (uint32_t i = 0; i < walkers->walker_max; i++) {
+        walker *r = noh_walker_at(walkers, i);
+        r->height -= by[1];
+        for (int k = 0; k < 2; k++) {
+            r->at[k] -= by[2 * k];
+            r->body[k] -= by[2 * k];
+        }
+    }
+}

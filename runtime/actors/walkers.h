@@ -91,6 +91,9 @@ void noh_walkers_face(noh_walkers *walkers, uint32_t index, const float directio
  * returns  0 if there is no such walker */
 int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float heading[2]);
 
+/* Move the origin of the world, with noh_crowd_shift_origin and noh_stage_shift_origin: walkers are less by `by` then. */
+void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3]);
+
 /* Move actors and their clips after their agents. Call it before noh_stage_step, with the same ticks. An actor that is
  * gone is untied; one that falls (stage/stage_ragdoll.h) is left alone until it stands again.
  * ground  what they stand on; NULL: the plane y = 0

@@ -40,16 +40,11 @@ static void mix(noh_transform *to, const noh_transform *from, float part)
 
 static void put_on_ground(noh_part_work *w, const noh_kind_feet *f, near_feet *n, float seconds)
 {
-    noh_feet_place place;
     noh_transform before[KEPT];
     uint32_t joints[KEPT];
     const uint32_t count = joints_of(&f->rig, joints);
     for (uint32_t i = 0; i < count; i++) before[i] = w->local[joints[i]];
-    memcpy(place.position, w->place.position, sizeof place.position);
-    memcpy(place.rotation, w->place.rotation, sizeof place.rotation);
-    place.scale = w->place.scale;
-    noh_feet_step(&n->feet, &f->rig, w->skeleton, w->local, &place, &f->ground, seconds,
-                  w->cut || !n->runs || w->ticks > SKIP_TICKS);
+    noh_part_feet(w, &n->feet, f, seconds, w->cut || !n->runs || w->ticks > SKIP_TICKS);
     n->runs = 1;
     for (uint32_t i = 0; i < count && n->part < 1.0f; i++) mix(&w->local[joints[i]], &before[i], n->part);
 }

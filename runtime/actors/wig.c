@@ -5,6 +5,7 @@
 #include "base/name_internal.h"
 #include "clip/pack_clip.h"
 #include "pose/local_to_model.h"
+#include "sim/hair_internal.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
@@ -52,7 +53,7 @@ static noh_hair_carrier carrier_of(const noh_part_work *w, const noh_wig *wig)
         noh_sub3(at, bind_at, at);
     }
     noh_quat_rotate(w->place.rotation, at, at);
-    noh_madd3(at, 1.0f / w->place.scale, w->place.position, at);
+    noh_madd3(at, 1.0f / w->place.scale, w->near_place, at);
     noh_quat_mul(w->place.rotation, c.rotation, c.rotation);
     noh_quat_normalize(c.rotation);
     noh_madd3(c.position, metres, at, c.position);
@@ -67,6 +68,11 @@ static void modify(noh_part_work *w)
     wig_state *state = w->state;
     noh_hair *hair = (noh_hair *)(void *)(state + 1);
     const noh_hair_carrier carrier = carrier_of(w, wig);
+    if (state->begun && noh_part_home_moved(w)) {
+        float by[3];
+        for (int i = 0; i < 3; i++) by[i] = w->home_moved[i] * wig->cut->header->metres / w->place.scale;
+        noh_hair_shift(hair, by);
+    }
     if (!state->begun) {
         state->begun = noh_hair_init(hair, noh_hair_size(desc), desc, &carrier, &hair, NULL) == NOH_OK;
     } else if (w->cut) {

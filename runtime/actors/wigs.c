@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "base/assert.h"
 #include "deform/dual_quaternion.h"
+#include "sim/hair_internal.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
@@ -19,6 +20,7 @@ typedef struct wig_slot {
     noh_hair *hair;
     float position[3];
     uint32_t is_wanted;
+    double origin[3]; /* of the stage, which that counts from; in the world as it was before the stage shifted it */
 } wig_slot;
 
 /* Beside each body. */
@@ -142,13 +144,20 @@ static uint32_t choose(noh_wigs *w)
     return count;
 }
 
+/* Of a unit of the world, as the hair counts. */
+static float metres_of(const noh_wigs_body *b)
+{
+    const float *w = b->world, scale = noh_sqrt(w[0] * w[0] + w[4] * w[4] + w[8] * w[8]);
+    return scale > 0.0f ? 1.0f / scale : 0.0f;
+}
+
 static noh_hair_carrier carrier_of(const noh_wig *wig, const noh_wigs_body *b)
 {
     noh_dual_quaternion turned;
     noh_hair_carrier c;
     float m[12];
     const float *w = b->world;
-    const float scale = noh_sqrt(w[0] * w[0] + w[4] * w[4] + w[8] * w[8]), units = scale > 0.0f ? 1.0f / scale : 0.0f;
+    const float units = metres_of(b);
     for (int i = 0; i < 12; i++) m[i] = w[i] * units;
     noh_dual_quaternion_from_matrix(m, &turned);
     memcpy(c.rotation, turned.real, sizeof c.rotation);
@@ -165,12 +174,28 @@ static int leaps(const wig_slot *s, const noh_hair_carrier *c, uint32_t ticks)
     return noh_dot3(moved, moved) > most * most;
 }
 
-static void move(noh_wigs *w, uint32_t body, uint32_t ticks)
+/* Where the head was, as the stage's origin is now; metres: of a unit. */
+static void follow_origin(wig_slot *s, const noh_stage *stage, float metres)
+{
+    float by[3];
+    for (int i = 0; i < 3; i++) {
+        const double origin = (double)stage->origin[i] + stage->shifted[i];
+        by[i] = (float)(origin - s->origin[i]) * metres;
+        s->origin[i] = origin;
+    }
+    if (s->actor && (by[0] != 0.0f || by[1] != 0.0f || by[2] != 0.0f)) {
+        noh_hair_shift(s->hair, by);
+        noh_sub3(s->position, by, s->position);
+    }
+}
+
+static void move(noh_wigs *w, uint32_t body, const noh_stage *stage, uint32_t ticks)
 {
     const noh_hair_desc *desc = &w->desc.wig->cut->desc;
     noh_wigs_body *b = &w->bodies[body];
     wig_slot *s = &w->slots[b->slot];
     const noh_hair_carrier carrier = carrier_of(w->desc.wig, b);
+    follow_origin(s, stage, metres_of(b));
     if (s->actor != w->ranks[body].actor) {
         s->actor = noh_hair_init(s->hair, noh_hair_size(desc), desc, &carrier, &s->hair, NULL) == NOH_OK
                        ? w->ranks[body].actor
@@ -201,7 +226,7 @@ void noh_wigs_frame(noh_wigs *wigs, noh_stage *stage, uint32_t ticks)
         while (b->slot == NOH_NONE && wigs->slots[free_slot].is_wanted) free_slot++;
         if (b->slot == NOH_NONE) b->slot = free_slot;
         wigs->slots[b->slot].is_wanted = 1;
-        move(wigs, wigs->chosen[i], ticks);
+        move(wigs, wigs->chosen[i], stage, ticks);
     }
     for (uint32_t i = 0; i < wigs->desc.near_max; i++) {
         if (!wigs->slots[i].is_wanted) wigs->slots[i].actor = 0;

@@ -37,7 +37,7 @@ typedef struct noh_wigs_desc {
 
 /* A visible actor. */
 typedef struct noh_wigs_body {
-    float world[12];        /* from head space (metres) */
+    float world[12];        /* from head space (metres), less noh_stage_origin */
     float pixels_per_metre; /* of head space */
     float moves;            /* 0 (at rest) to 1 (in full motion) */
     uint32_t views;         /* a bit for each view that sees it */

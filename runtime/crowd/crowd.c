@@ -230,6 +230,38 @@ void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(0.0f, 0.0f);
 }
 
+void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
+{
+    NOH_ASSERT(crowd && by && !crowd->to_do);
+    const vec2 way = v2(by[0], by[1]);
+    crowd_wish *wish = CROWD_ARRAY(crowd_wish, crowd, wish);
+    vec2 *position = CROWD_ARRAY(vec2, crowd, position);
+    noh_crowd_obstacle *obstacle = CROWD_ARRAY(noh_crowd_obstacle, crowd, obstacle);
+    crowd_flow *flow = CROWD_ARRAY(crowd_flow, crowd, flow);
+    for (uint32_t i = 0; i < crowd->agent_max; i++) {
+        position[i] = v2_sub(position[i], way);
+        wish[i].goal = v2_sub(wish[i].goal, way);
+    }
+    for (uint32_t i = 0; i < 2u * crowd->obstacle_count; i++) {
+        float *end = i % 2u ? obstacle[i / 2u].to : obstacle[i / 2u].from;
+        end[0] -= by[0];
+        end[1] -= by[1];
+    }
+    crowd->cells.origin = v2_sub(crowd->cells.origin, way);
+    if (crowd->ground) {
+        crowd_ground *ground = CROWD_ARRAY(crowd_ground, crowd, ground);
+        ground->cells.origin = v2_sub(ground->cells.origin, way);
+    }
+    if (!crowd->flow) return;
+    flow->cells.origin = v2_sub(flow->cells.origin, way);
+    flow->goal = v2_sub(flow->goal, way);
+    for (uint32_t i = 0; i < flow->field_count; i++) {
+        crowd_field *f = CROWD_ARRAY(crowd_field, flow, field) + i;
+        f->goal = v2_sub(f->goal, way);
+        f->asked = v2_sub(f->asked, way);
+    }
+}
+
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);

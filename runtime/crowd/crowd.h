@@ -116,6 +116,11 @@ void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
 /* speed 0..15 radii per second: what is outside is clamped */
 void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed);
 
+/* Move the origin of the crowd's world, with noh_stage_shift_origin: agents, goals, obstacles and grids are less by `by`
+ * then. A crowd reckons in floats: let its world begin near where it is. Not while a step is under way.
+ * by[2] x, z, finite */
+void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2]);
+
 /* ---- goals that many share ---- */
 
 /* A flow field is to lead to a goal, or to the place nearest to it where an agent can stand. Fields are built one after

@@ -444,6 +444,19 @@ static void bend_leg(const step *s, const noh_foot *f, leg_now *n, float by)
 
 /* ---- all ---- */
 
+void noh_feet_shift(noh_feet *feet, const float by[3])
+{
+    NOH_ASSERT(feet && by);
+    for (uint32_t l = 0; l < NOH_FEET_LEGS_MAX; l++) {
+        noh_foot *f = &feet->feet[l];
+        f->height -= by[1];
+        for (int k = 0; k < 9; k++) f->was[k / 3][k % 3] -= by[k % 3];
+        f->held[0] -= by[0];
+        f->held[1] -= by[2];
+    }
+    feet->pelvis -= by[1];
+}
+
 void noh_feet_init(noh_feet *feet)
 {
     NOH_ASSERT(feet);

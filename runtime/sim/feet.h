@@ -97,6 +97,9 @@ typedef struct noh_feet {
 
 void noh_feet_init(noh_feet *feet);
 
+/* The origin of the world moves by `by`: so much less is where feet and pelvis are. */
+void noh_feet_shift(noh_feet *feet, const float by[3]);
+
 /* What is wrong with a state that comes from outside, a constant text; NULL: it is good. */
 const char *noh_feet_check(const noh_feet *feet);
 

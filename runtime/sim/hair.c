@@ -81,6 +81,12 @@ noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, 
 
 /* ---- rest ---- */
 
+void noh_hair_shift(noh_hair *hair, const float by[3])
+{
+    noh_sub3(hair->last.position, by, hair->last.position);
+    noh_sub3(hair->stepped.position, by, hair->stepped.position);
+}
+
 void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier)
 {
     NOH_ASSERT(hair && desc && carrier && desc->hair_count == hair->hair_count &&

@@ -43,6 +43,9 @@ static inline const noh_hair_point *noh_hair_const_points_of(const noh_hair *h)
     return (const noh_hair_point *)(const void *)(h + 1);
 }
 
+/* The origin of its world moves by `by`, metres: so much less is where the head was. */
+void noh_hair_shift(noh_hair *hair, const float by[3]);
+
 /* Where the head is at a share `t` of a call's time, and what a step to there knows of it. */
 void noh_hair_carry(const noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, float t,
                     noh_hair_carrier *at, noh_hair_motion *motion);

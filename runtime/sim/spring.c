@@ -61,6 +61,17 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
     return NOH_OK;
 }
 
+void noh_spring_shift(noh_spring *spring, const float by[3])
+{
+    noh_sub3(spring->last.position, by, spring->last.position);
+    noh_sub3(spring->stepped.position, by, spring->stepped.position);
+    for (uint32_t i = 0; i < spring->collider_count; i++) {
+        noh_spring_collider *c = &noh_spring_colliders(spring)[i];
+        noh_sub3(c->from, by, c->from);
+        noh_sub3(c->to, by, c->to);
+    }
+}
+
 void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier)
 {
     float rotation[4], at[3] = { 0.0f, 0.0f, 0.0f };

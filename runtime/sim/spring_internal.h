@@ -25,6 +25,9 @@ struct noh_spring {
 NOH_STATIC_ASSERT(sizeof(noh_spring) == 104, spring);
 NOH_STATIC_ASSERT(sizeof(noh_spring_point) == 28, spring_point);
 
+/* The origin of its world moves by `by`: so much less is where all is. */
+void noh_spring_shift(noh_spring *spring, const float by[3]);
+
 static inline noh_spring_point *noh_spring_points(noh_spring *s)
 {
     return (noh_spring_point *)(void *)(s + 1);

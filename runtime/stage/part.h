@@ -54,6 +54,9 @@ typedef struct noh_part_work {
     const void *user;
     const void *kind; /* private, as are all below */
     float *floats, *model;
+    double home[3]; /* a point near the actor, and its place from there, which is exact far from the origin */
+    float near_place[3];
+    float home_moved[3]; /* since the pose before: states count from `home`, and are less by so much */
 } noh_part_work;
 
 /* Model-space matrices of all joints, as the local pose stands now: made anew by each call, and valid until the next

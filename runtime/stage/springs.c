@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "base/assert.h"
 #include "clip/pack_clip.h"
+#include "sim/spring_internal.h"
 #include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
@@ -346,10 +347,20 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
 /* ---- in a job ---- */
 
 /* From model space to where they swing. */
-static void to_world(const noh_place *place, const float model[3], float out[3])
+static void to_world(const noh_part_work *w, const float model[3], float out[3])
 {
-    noh_quat_rotate(place->rotation, model, out);
-    noh_madd3(out, 1.0f / place->scale, place->position, out);
+    noh_quat_rotate(w->place.rotation, model, out);
+    noh_madd3(out, 1.0f / w->place.scale, w->near_place, out);
+}
+
+static void follow_home(const noh_part_work *w, const noh_springs *s)
+{
+    const uint32_t *begun = w->state;
+    float by[3];
+    for (int i = 0; i < 3; i++) by[i] = w->home_moved[i] / w->place.scale;
+    for (uint32_t i = 0; i < s->chain_count; i++) {
+        if (begun[i]) noh_spring_shift((noh_spring *)(void *)((uint8_t *)w->state + s->swings[i].state), by);
+    }
 }
 
 static void pose_capsule(const noh_part_work *w, const noh_spring_capsule *c, noh_spring_collider *out)
@@ -360,8 +371,8 @@ static void pose_capsule(const noh_part_work *w, const noh_spring_capsule *c, no
     noh_quat_rotate(rotation, c->to, out->to);
     noh_madd3(out->from, 1.0f, at, out->from);
     noh_madd3(out->to, 1.0f, at, out->to);
-    to_world(&w->place, out->from, out->from);
-    to_world(&w->place, out->to, out->to);
+    to_world(w, out->from, out->from);
+    to_world(w, out->to, out->to);
     out->radius = c->radius;
 }
 
@@ -375,7 +386,7 @@ static noh_spring_carrier carrier_of(const noh_part_work *w, uint32_t joint)
     noh_quat_mul(c.rotation, own, c.rotation);
     noh_quat_mul(w->place.rotation, c.rotation, c.rotation);
     noh_quat_normalize(c.rotation);
-    to_world(&w->place, at, c.position);
+    to_world(w, at, c.position);
     return c;
 }
 
@@ -468,6 +479,7 @@ static void modify(noh_part_work *w)
     if (noh_arena_open(&arena, w->scratch, s->scratch_bytes, s->scratch_bytes, NULL)) return;
     (void)carve_workspace(&arena, s->collider_count, s->longest, &space);
     space.chains->count = 0;
+    if (noh_part_home_moved(w)) follow_home(w, s);
     for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &space.all[i]);
     for (uint32_t i = 0; i < s->chain_count; i++) {
         if (space.chains->count == TOGETHER || s->swings[i].after > first) {

@@ -573,6 +573,14 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
 /* The keys of the last step: actor by actor, each in order of time. Valid until the next step. */
 const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count);
 
+/* Move the world's origin to what is `by` now: every place becomes less by it, and nothing else changes. Moved are
+ * actors, where they were before the last step, ragdolls, springs, feet and hair, points that faces, gazes and hands were
+ * told, joints and spheres of the last frame. The game moves what is its own: cameras, lights, the world of ragdolls,
+ * the ground, states of its own parts (noh_actor_part); crowds and walkers have calls of their own
+ * (noh_crowd_shift_origin, noh_walkers_shift_origin). Multiples of 16 lose nothing.
+ * errors  ARG not finite or beyond NOH_NUMBER_MAX; within a step or a frame */
+noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error *error);
+
 /* A camera or a light. noh_view_orbit and others of stage/view.h make one. */
 typedef struct noh_stage_view {
     float view_projection[16]; /* column-major, clip space of GL; perspective or parallel */

@@ -5,6 +5,7 @@
 #include "base/math_internal.h"
 #include "base/quat.h"
 #include "pose/local_to_model.h"
+#include "sim/ragdoll_internal.h"
 #include "stage/stage_internal.h"
 
 /* ---- ids ---- */
@@ -299,6 +300,37 @@ void noh_stage_shift_actor(noh_stage_actor *a, const float by[3])
 {
     shift(&a->place, a->rest, by);
     shift(&a->before, a->rest_before, by);
+}
+
+noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error *error)
+{
+    const float back[3] = { -by[0], -by[1], -by[2] };
+    NOH_ASSERT(stage && by);
+    if (stage->phase != NOH_STAGE_IDLE || !noh_is_number(by[0]) || !noh_is_number(by[1]) || !noh_is_number(by[2])) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        stage->phase != NOH_STAGE_IDLE ? "the origin of a stage is moved outside of steps and frames"
+                                                       : "the way of an origin is not a number, or larger than 10^12",
+                        0, 0);
+    }
+    for (uint32_t i = 0; i < stage->actor_count; i++) {
+        noh_stage_actor *a = &stage->actors[i];
+        noh_stage_kind *k = noh_stage_kind_of(stage, i);
+        if (!a->alive) continue;
+        if (!a->parent) noh_stage_shift_actor(a, back);
+        for (int n = 0; n < 3; n++) a->home[n] -= (double)by[n];
+        noh_stage_shift_parts(k, noh_stage_index(k, a), by);
+    }
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        const noh_stage_kind *k = &stage->kinds[i];
+        if (!k->ragdoll) continue;
+        noh_ragdolls_shift(k->dolls, (const float[3]){ by[0] * k->ragdoll->metres, by[1] * k->ragdoll->metres,
+                                                       by[2] * k->ragdoll->metres });
+    }
+    for (int n = 0; n < 3; n++) {
+        stage->origin[n] -= by[n];
+        stage->shifted[n] += (double)by[n];
+    }
+    return NOH_OK;
 }
 
 /* What hung on it stays where it was shown. */

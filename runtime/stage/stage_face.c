@@ -20,38 +20,36 @@
 
 /* ---- where it looks ---- */
 
-/* A point of the world, in the actor's model space. */
-static void to_model(const noh_place *place, const float point[3], float out[3])
+/* A point, counted from the actor's home, in its model space. */
+static void to_model(const noh_part_work *w, const float point[3], float out[3])
 {
     float back[4];
-    for (int i = 0; i < 3; i++) out[i] = point[i] - place->position[i];
-    noh_quat_conjugate(place->rotation, back);
+    for (int i = 0; i < 3; i++) out[i] = point[i] - w->near_place[i];
+    noh_quat_conjugate(w->place.rotation, back);
     noh_quat_rotate(back, out, out);
-    for (int i = 0; i < 3; i++) out[i] /= place->scale;
+    for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
 }
 
-/* Where another actor is looked at, in the world. */
-static void eyes_of(const noh_stage_kind *k, const noh_place *place, float out[3])
+/* Where another actor is looked at, or what hangs on it, counted from `home`. */
+static void eyes_of(const noh_stage_kind *k, const noh_stage_actor *on, const double home[3], float out[3])
 {
     const float *rest = k->face ? k->face->middle : k->reach;
-    for (int i = 0; i < 3; i++) out[i] = rest[i] * place->scale;
-    noh_quat_rotate(place->rotation, out, out);
-    for (int i = 0; i < 3; i++) out[i] += place->position[i];
+    for (int i = 0; i < 3; i++) out[i] = rest[i] * on->place.scale;
+    noh_quat_rotate(on->place.rotation, out, out);
+    for (int i = 0; i < 3; i++) out[i] += (float)((double)on->place.position[i] - home[i] + (double)on->rest[i]);
 }
 
-/* 0: it looks at nothing, but ahead. */
-static int target_of(const noh_stage *s, const noh_stage_face *f, float point[3])
+/* Counted from `home`. 0: it looks at nothing, but ahead. */
+static int target_of(const noh_stage *s, const noh_stage_face *f, const double home[3], float point[3])
 {
     noh_stage_kind *of;
     const noh_stage_actor *other;
-    memcpy(point, f->point, 3 * sizeof *point);
+    for (int i = 0; i < 3; i++) point[i] = (float)((double)f->point[i] - home[i]);
     if (f->looks != NOH_LOOKS_AT_ACTOR) return f->looks == NOH_LOOKS_AT_POINT;
     other = noh_stage_actor_of(s, (noh_actor){ f->target }, &of);
     if (other) {
-        noh_place place = other->place;
         const noh_stage_actor *on = other->parent ? noh_stage_actor_of(s, (noh_actor){ other->parent }, NULL) : NULL;
-        if (on) place = on->place;
-        eyes_of(of, &place, point);
+        eyes_of(of, on ? on : other, home, point);
     }
     return other != NULL;
 }
@@ -220,13 +218,13 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
                  const neck_space *n)
 {
     float point[3], back[4];
-    if (!target_of(s, f, point)) {
+    if (!target_of(s, f, w->home, point)) {
         if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &k->face->desc, NULL, NULL);
         f->looks = NOH_LOOKS_AHEAD; /* whom it looked at may be gone */
         f->fresh = 0;
         return;
     }
-    to_model(&w->place, point, point);
+    to_model(w, point, point);
     for (int i = 0; i < 3; i++) point[i] -= n->origin[i];
     noh_quat_conjugate(n->rotation, back);
     noh_quat_rotate(back, point, point);

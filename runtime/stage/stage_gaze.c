@@ -5,6 +5,7 @@
 
 #include "base/assert.h"
 #include "base/quat.h"
+#include "sim/vector_internal.h"
 #include "stage/stage_internal.h"
 
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
@@ -13,7 +14,7 @@
 static void to_model(const noh_part_work *w, const float point[3], float out[3])
 {
     float back[4];
-    for (int i = 0; i < 3; i++) out[i] = point[i] - w->place.position[i];
+    for (int i = 0; i < 3; i++) out[i] = (float)((double)point[i] - w->home[i]) - w->near_place[i];
     noh_quat_conjugate(w->place.rotation, back);
     noh_quat_rotate(back, out, out);
     for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
@@ -86,4 +87,14 @@ noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig)
     part.user = rig;
     part.state_bytes = sizeof(noh_reach);
     return part;
+}
+
+void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3])
+{
+    if (part->modify == look) {
+        noh_sub3(((noh_gaze *)state)->point, by, ((noh_gaze *)state)->point);
+    } else if (part->modify == reach_out) {
+        noh_reach_hand *hands = ((noh_reach *)state)->hands;
+        for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) noh_sub3(hands[i].point, by, hands[i].point);
+    }
 }

@@ -76,6 +76,7 @@ typedef struct noh_stage_actor {
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
     /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
     float rest[3], rest_before[3], rotation_rest[4];
+    double home[3]; /* near it: what its parts keep of the world counts from there */
 } noh_stage_actor;
 
 /* [4] as it is drawn; NULL: white. */
@@ -157,7 +158,7 @@ typedef struct noh_stage_head {
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 32, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 200, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 224, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
@@ -384,6 +385,7 @@ struct noh_stage {
     void *on_key_user;
     noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
     float origin[3];                           /* of the last frame: noh_view_origin */
+    double shifted[3];                         /* by all noh_stage_shift_origin so far */
     noh_view_planes planes[NOH_STAGE_VIEWS_MAX];
     uint32_t view_count;
     int cut;
@@ -664,6 +666,14 @@ const char *noh_stage_check_face(const noh_stage_face *face);
 void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
 /* What parts are given, between the halves of an update of a character for a tick of the stage's clock; then the kind's
  * own parts, and the springs of its pack. */
+/* Points of the world that parts of stage_gaze.h have been told. */
+void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3]);
+void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3]);
+struct noh_kind_feet;
+struct noh_feet;
+/* A pose is put on the ground: noh_feet_step, from the actor's home. */
+void noh_part_feet(noh_part_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds, int cut);
+int noh_part_home_moved(const noh_part_work *w);
 void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
                            int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
 void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
@@ -699,6 +709,8 @@ uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in 
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
 /* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix is
  * what noh_lighting_shadow takes too. */
+#define NOH_STAGE_NEAR 512.0f     /* along each axis: a float there is exact to 0.03 mm, in metres */
+float noh_stage_on_grid(float x); /* 0 where it is near, else a coarse number near it: differences to it are exact */
 void noh_view_origin(const noh_stage_view *view, float origin[3]);
 void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out);
 void noh_projection_less(float view_projection[16], const float origin[3], const float rest[4]);

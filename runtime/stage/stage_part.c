@@ -116,6 +116,27 @@ noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index)
     return (noh_stage_body *)(void *)(states_of(k, index) + body_offset(k));
 }
 
+/* The origin of the world moves by `by`. What counts from the actor's home stays. */
+void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3])
+{
+    uint8_t *states = states_of(k, index) + state_offset(k, 0);
+    for (uint32_t i = 0; i < k->desc->part_count; i++) {
+        noh_stage_shift_points(&k->parts[i], states, by);
+        states += aligned(k->parts[i].state_bytes);
+    }
+    if (k->face) {
+        float *point = noh_stage_face_of(k, index)->point;
+        for (int i = 0; i < 3; i++) point[i] -= by[i];
+    }
+    if (k->ragdoll) {
+        noh_stage_body *b = noh_stage_body_of(k, index);
+        for (uint32_t i = 0; i < 2u * NOH_RAGDOLL_BODIES_MAX; i++) {
+            float *at = b->bodies[i / NOH_RAGDOLL_BODIES_MAX][i % NOH_RAGDOLL_BODIES_MAX].position;
+            for (int n = 0; n < 3; n++) at[n] -= by[n] * k->ragdoll->metres;
+        }
+    }
+}
+
 /* ---- what a part may ask ---- */
 
 const float *noh_part_model(noh_part_work *work)
@@ -166,11 +187,27 @@ static void set_time(noh_part_work *w, noh_stage_part_head *head, int64_t clock,
     head->was_posed = 1;
 }
 
-/* That of whom it hangs on, where it does. */
-static noh_place place_in_world(const noh_stage *s, const noh_stage_actor *a)
+/* The place of whom it hangs on, where it does. The home stays while the actor is near it. */
+static void set_place(const noh_stage *s, noh_stage_actor *a, noh_part_work *w)
 {
     const noh_stage_actor *on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL) : NULL;
-    return on ? on->place : a->place;
+    if (!on) on = a;
+    w->place = on->place;
+    for (int i = 0; i < 3; i++) {
+        const double at = (double)on->place.position[i] + (double)on->rest[i], from = at - a->home[i];
+        if (w->cut || from > (double)NOH_STAGE_NEAR || from < -(double)NOH_STAGE_NEAR) {
+            const double home = (double)noh_stage_on_grid(on->place.position[i]);
+            w->home_moved[i] = (float)(home - a->home[i]);
+            a->home[i] = home;
+        }
+        w->home[i] = a->home[i];
+        w->near_place[i] = (float)(at - a->home[i]);
+    }
+}
+
+int noh_part_home_moved(const noh_part_work *w)
+{
+    return w->home_moved[0] != 0.0f || w->home_moved[1] != 0.0f || w->home_moved[2] != 0.0f;
 }
 
 void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
@@ -186,13 +223,13 @@ void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, co
     w->pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
                               ? NOH_PART_FULL_DETAIL
                               : ch->lod.pixels_per_metre;
-    w->place = place_in_world(s, &k->actors[index]);
     w->kind = k;
     w->floats = scratch->floats;
     w->model = scratch->model;
     w->scratch = job->part_scratch;
     set_time(w, (noh_stage_part_head *)(void *)states_of(k, index), clock,
              s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
+    set_place(s, &k->actors[index], w);
 }
 
 void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *w)

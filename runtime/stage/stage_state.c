@@ -58,7 +58,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     for (int i = 0; i < 3 && !what; i++) {
-        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]))
+        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !noh_is_number((float)a->home[i]))
             what = "state: an actor's place is not a number";
     }
     for (int i = 0; i < 4 && !what; i++) {

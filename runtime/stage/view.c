@@ -21,12 +21,11 @@ static void multiply(const float a[16], const float b[16], float out[16])
 
 /* ---- far from the origin ---- */
 
-#define NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
 #define GRID 16.0f /* a multiple of it is an exact float up to 2^28, and so is its difference to what is near it */
 
-static float on_grid(float x)
+float noh_stage_on_grid(float x)
 {
-    if (!(x > NEAR_ORIGIN || x < -NEAR_ORIGIN) || !noh_is_number(x)) return 0.0f;
+    if (!(x > NOH_STAGE_NEAR || x < -NOH_STAGE_NEAR) || !noh_is_number(x)) return 0.0f;
     if (x >= 134217728.0f || x <= -134217728.0f) return x;
     return (float)(int32_t)(x / GRID + (x < 0.0f ? -0.5f : 0.5f)) * GRID;
 }
@@ -190,7 +189,7 @@ void noh_view_origin(const noh_stage_view *view, float origin[3])
     if (e[0] == 0.0f && e[1] == 0.0f && e[2] == 0.0f && !unproject(view, 0.0f, 0.0f, 0.0f, at)) {
         memset(at, 0, sizeof at); /* a view without an eye: what is in its middle */
     }
-    for (int i = 0; i < 3; i++) origin[i] = on_grid(at[i]);
+    for (int i = 0; i < 3; i++) origin[i] = noh_stage_on_grid(at[i]);
 }
 
 int noh_view_ray(const noh_stage_view *view, float x, float y, uint32_t width, uint32_t height, float origin[3],

@@ -393,9 +393,57 @@ static void removed_agents_are_gone(void **state)
     free(crowd);
 }
 
+/* A crowd whose origin moves, there and back, goes on as one whose origin stays: agents, what they aim at, walls, grids
+ * and flow fields. */
+static void the_origin_may_move(void **state)
+{
+    static const noh_crowd_obstacle wall = { { -1.0f, 0.0f }, { 4.0f, 0.0f }, 0.1f };
+    const float goal[2] = { 3.0f, 4.0f };
+    noh_crowd_desc desc = field_of(8, 20.0f);
+    noh_crowd *still, *moved;
+    float worst = 0.0f, by[2] = { 0.0f, 0.0f };
+    (void)state;
+    desc.obstacles = &wall;
+    desc.obstacle_count = 1;
+    desc.field_count = 1;
+    desc.field_radius = 0.3f;
+    still = made(&desc);
+    moved = made(&desc);
+    for (uint32_t i = 0; i < 2; i++) {
+        noh_crowd *c = i ? moved : still;
+        put(c, 0, 0.5f, -3.0f, 0.5f, -3.0f);
+        put(c, 1, -4.0f, 3.0f, 4.0f, 2.5f);
+        noh_crowd_field_aim(c, 0, goal);
+        while (noh_crowd_field_build(c, 100000)) {}
+        noh_crowd_follow(c, 0, 0);
+    }
+    for (int i = 0; i < 300; i++) {
+        if (i % 60 == 20) {
+            const float way[2] = { i % 120 == 20 ? 64.0f : -64.0f, i % 120 == 20 ? -32.0f : 32.0f };
+            noh_crowd_shift_origin(moved, way);
+            by[0] += way[0], by[1] += way[1];
+        }
+        noh_crowd_step(still, NOH_CROWD_STEP_TICKS);
+        noh_crowd_step(moved, NOH_CROWD_STEP_TICKS);
+        for (uint32_t k = 0; k < 2; k++) {
+            noh_crowd_agent a = stepped(still, k), b = stepped(moved, k);
+            b.position[0] += by[0], b.position[1] += by[1], b.goal[0] += by[0], b.goal[1] += by[1];
+            worst = fmaxf(worst, fmaxf(apart(a.position, b.position), apart(a.goal, b.goal)));
+        }
+    }
+    assert_true(worst < 0.05f); /* a cell may be entered one step earlier */
+    {
+        const noh_crowd_agent a = stepped(still, 0);
+        assert_true(apart(a.position, goal) < 0.5f); /* it came around the wall */
+    }
+    free(still);
+    free(moved);
+}
+
 int main(int argument_count, char **arguments)
 {
     static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_origin_may_move),
         cmocka_unit_test(one_walks_straight_and_stops),
         cmocka_unit_test(two_who_meet_pass_on_the_right),
         cmocka_unit_test(one_that_holds_its_place_is_walked_around),

@@ -8,6 +8,9 @@
 
 #include "anim/root_internal.h"
 #include "stage/stage_internal.h"
+#include "stage/stage_feet.h"
+#include "stage/stage_gaze.h"
+#include "stage/stage_ragdoll.h"
 #include "stage/view.h"
 #include "support/stage_fixture.h"
 
@@ -188,13 +191,135 @@ static void cameras_without_rests_are_taken(void **state)
     assert_true(fabsf(origin[0] - middle[0]) < 64.0f && fabsf(origin[2] - middle[2]) < 64.0f);
 }
 
+/* ---- a world that moves ---- */
+
+/* The plane of the ground, as it is seen from where the origin was moved to. */
+static float ground_below(const void *user, const float from[3], float depth, float normal[3])
+{
+    const float *moved = user;
+    const float distance = from[1] - (0.1f * sinf(2.0f * (from[0] + moved[0])) - moved[1]);
+    normal[0] = normal[2] = 0.0f;
+    normal[1] = 1.0f;
+    return distance >= 0.0f && distance <= depth ? distance : -1.0f;
+}
+
+typedef struct world {
+    float moved[3];
+    noh_kind_feet feet;
+    noh_kind_gaze gaze;
+    noh_stage_part parts[2];
+    noh_kind_ragdoll ragdoll;
+    noh_actor walks, falls, held;
+    cast c;
+} world;
+
+static void world_open(world *w)
+{
+    const noh_place grip = { .position = { 0.1f, 0.0f, 0.05f }, .scale = 0.1f }, aside = { .position = { 2, 0, 1 } };
+    noh_kind_desc *k;
+    noh_ragdoll_source source;
+    memset(w, 0, sizeof *w);
+    cast_open(&w->c);
+    k = &w->c.kinds[PUPPETS];
+    memset(&source, 0, sizeof source);
+    source.pack = k->mesh;
+    assert_int_equal(noh_pack_skeleton_at(k->mesh, 0, &source.joints, NULL, NULL), NOH_OK);
+    source.metres = 1.0f;
+    assert_int_equal(noh_feet_rig_make(&source, &w->feet.rig, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(&source, &w->gaze.rig, NULL), NOH_OK);
+    w->feet.ground.below = ground_below;
+    w->feet.ground.user = w->moved;
+    w->parts[0] = noh_stage_gaze_part(&w->gaze);
+    w->parts[1] = noh_stage_feet_part(&w->feet);
+    w->ragdoll.count = 1;
+    k->parts = w->parts;
+    k->part_count = 2;
+    k->ragdoll = &w->ragdoll;
+    cast_make(&w->c, NULL);
+    w->walks = walker_at(&w->c, 1.0f, 2.0f);
+    assert_int_equal(noh_stage_spawn(w->c.stage, PUPPETS, &aside, &w->falls, NULL), NOH_OK);
+    assert_int_equal(noh_stage_spawn(w->c.stage, TUBES, &grip, &w->held, NULL), NOH_OK);
+    assert_int_equal(noh_actor_attach(w->c.stage, w->held, w->walks, 5, NULL), NOH_OK);
+    noh_gaze *g = noh_actor_part(w->c.stage, w->walks, 0);
+    g->point[0] = 3.0f, g->point[1] = 1.0f, g->point[2] = 7.0f, g->looks = 1;
+}
+
+/* What shows, in the world as it was at first. */
+static void world_shows(world *w, int frame, int falls, float *joints)
+{
+    const float middle[3] = { 1.0f - w->moved[0], 1.0f - w->moved[1], 2.0f - w->moved[2] };
+    const noh_actor actors[2] = { w->walks, w->falls };
+    noh_stage_view view;
+    float matrix[12], origin[3];
+    noh_view_orbit(&view, middle, 0.1f, 0.2f, 6.0f, 640, 480);
+    if (frame == 10 && falls) assert_int_equal(noh_actor_fall(w->c.stage, w->falls, NULL), NOH_OK);
+    assert_int_equal(noh_stage_step(w->c.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_between(w->c.stage, &view, 1, 0.5f, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_end(w->c.stage, NULL), NOH_OK);
+    noh_stage_origin(w->c.stage, origin);
+    for (uint32_t n = 0; n < 13; n++) {
+        if (n < 12) {
+            assert_int_equal(noh_stage_joint(w->c.stage, actors[n / 6u], 3u * (n % 6u), matrix, NULL), NOH_OK);
+        } else {
+            noh_stage_world(w->c.stage, w->held.id & 0xffffu, matrix);
+        }
+        for (int i = 0; i < 3; i++) joints[3u * n + (uint32_t)i] = matrix[4 * i + 3] + (origin[i] + w->moved[i]);
+    }
+}
+
+/* The origin moves there and back again, time after time, under one of two worlds. Returns how far joints of walkers and
+ * what they hold are apart, at most; *fallen: those of one who falls. */
+static float shifts(const float by[3], int falls, float *fallen)
+{
+    const noh_actor nobody = { 0 };
+    float a[39], b[39], worst = 0.0f;
+    world here, moves;
+    world_open(&here);
+    world_open(&moves);
+    *fallen = 0.0f;
+    for (int frame = 0; frame < 90; frame++) {
+        if (frame % 20 == 15) {
+            const float sign = frame % 40 == 15 ? 1.0f : -1.0f;
+            const float way[3] = { sign * by[0], sign * by[1], sign * by[2] };
+            assert_int_equal(noh_stage_shift_origin(moves.c.stage, way, NULL), NOH_OK);
+            for (int i = 0; i < 3; i++) moves.moved[i] += way[i];
+        }
+        if (frame == 60) {
+            assert_int_equal(noh_actor_attach(here.c.stage, here.held, nobody, 0, NULL), NOH_OK);
+            assert_int_equal(noh_actor_attach(moves.c.stage, moves.held, nobody, 0, NULL), NOH_OK);
+        }
+        world_shows(&here, frame, falls, a);
+        world_shows(&moves, frame, falls, b);
+        worst = fmaxf(worst, fmaxf(farthest(a, b, 18), farthest(a + 36, b + 36, 3)));
+        *fallen = fmaxf(*fallen, farthest(a + 18, b + 18, 18));
+    }
+    assert_int_equal(noh_stage_shift_origin(here.c.stage, (const float[3]){ NAN, 0.0f, 0.0f }, NULL), NOH_ERR_ARG);
+    cast_close(&here.c);
+    cast_close(&moves.c);
+    return worst;
+}
+
+/* Nobody sees that the origin moved, whoever walks, looks, stands on uneven ground, falls, or is held; nor what hung on
+ * another and was let go. Joints are compared as floats of the old world, which are within ten metres of its origin. */
+static void a_shift_is_not_seen(void **state)
+{
+    static const float far_off[3] = { 100000.0f, 16.0f, -64000.0f }, near_by[3] = { 64.0f, 16.0f, -32.0f };
+    float fallen, worst;
+    (void)state;
+    worst = shifts(far_off, 0, &fallen);
+    print_message("100 km and back: %.3g m, standing %.3g m\n", (double)worst, (double)fallen);
+    assert_true(worst < 1e-3f && fallen < 1e-3f); /* the ground is asked for by floats of the world: 4 mm beside */
+    worst = shifts(near_by, 1, &fallen);          /* limbs that fall make much of what floats lose */
+    print_message("64 m and back: %.3g m, falling %.3g m\n", (double)worst, (double)fallen);
+    assert_true(worst < 1e-4f && fallen < 0.05f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(root_motion_goes_all_the_way),
-        cmocka_unit_test(a_day_of_turns_adds_nothing),
-        cmocka_unit_test(frames_are_the_same_anywhere),
-        cmocka_unit_test(cameras_without_rests_are_taken),
+        cmocka_unit_test(root_motion_goes_all_the_way), cmocka_unit_test(a_day_of_turns_adds_nothing),
+        cmocka_unit_test(frames_are_the_same_anywhere), cmocka_unit_test(cameras_without_rests_are_taken),
+        cmocka_unit_test(a_shift_is_not_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
