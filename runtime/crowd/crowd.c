@@ -121,6 +121,7 @@ static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
     c->state = take(&bytes, sizeof(uint32_t), n);
     c->start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
     if (c->obstacle_count) {
+        c->round = take(&bytes, sizeof(crowd_round), n);
         c->obstacle = take(&bytes, sizeof(noh_crowd_obstacle), c->obstacle_count);
         c->near_start = take(&bytes, sizeof(uint32_t), cell_count + 1u);
         c->near = take(&bytes, sizeof(uint16_t), noh_crowd_near(&c->cells, desc, NULL, NULL));
@@ -188,6 +189,12 @@ static uint32_t given_flags(uint32_t state)
     return state & CROWD_FLOCK ? NOH_CROWD_FLOCK : state & CROWD_FORCES ? NOH_CROWD_FORCES : 0;
 }
 
+/* What it knows of walls on its way does not hold any more. */
+static void begin_anew(noh_crowd *crowd, uint32_t index)
+{
+    if (crowd->obstacle_count) memset(CROWD_ARRAY(crowd_round, crowd, round) + index, 0, sizeof(crowd_round));
+}
+
 noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error)
 {
     NOH_ASSERT(crowd && agent && index < crowd->agent_max);
@@ -207,6 +214,7 @@ noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(agent->velocity[0], agent->velocity[1]);
     CROWD_ARRAY(uint32_t, crowd, id)[index] = agent->id;
     CROWD_ARRAY(uint32_t, crowd, state)[index] = flags_of(agent->flags);
+    begin_anew(crowd, index);
     return NOH_OK;
 }
 
@@ -228,6 +236,7 @@ void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
     const vec2 to = v2(within(position[0], -FAR, FAR), within(position[1], -FAR, FAR));
     *at = noh_crowd_keep_out(crowd, *at, to, CROWD_CONST(crowd_wish, crowd, wish)[index].radius);
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(0.0f, 0.0f);
+    begin_anew(crowd, index);
 }
 
 void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
@@ -265,7 +274,12 @@ void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);
-    CROWD_ARRAY(crowd_wish, crowd, wish)[index].goal = v2(within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR));
+    crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
+    const vec2 to = v2(within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR)), by = v2_sub(to, w->goal);
+    const float way = v2_length(by);
+    w->goal = to;
+    if (way > w->radius) begin_anew(crowd, index); /* a goal that wanders is walked round to, too */
+    if (crowd->obstacle_count && way > 0.0f) CROWD_ARRAY(crowd_round, crowd, round)[index].nearest += way;
 }
 
 void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed)

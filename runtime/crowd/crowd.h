@@ -14,10 +14,14 @@
  * meet a neighbour, and apart, by how much they would overlap after the step. Both of a pair yield half of that; an
  * agent whose speed is 0 holds its place, and others make way. What an agent reads was written in the step or iteration
  * before, so that neither the order of agents nor the number of threads changes a bit. Obstacles are walls and posts
- * that do not move; a wish that leads into one is turned past its nearer end, and no agent is ever pushed through.
- * Behind a maze of walls a goal is not found this way, but by a flow field: for each cell of a grid the direction of
- * the shortest way to a goal, in one byte. Steps build it in slices of bounded work; any number of agents may follow
- * it.
+ * that do not move, and no agent is ever pushed through. A wish that leads into one is turned past an end within reach.
+ * Where none helps, the agent walks along what blocks it until it is nearer to its goal and can go on: whatever the
+ * shape, it arrives where there is a way that it fits through by 4 cm. The way is not always the shortest. A goal that
+ * it is too wide to stand on is the place beside it; where no way leads to its goal, it walks round what shuts that in
+ * for as long as it is asked to. Against each other in a door, those of one side make way for those of the other.
+ *
+ * Shortest ways are found by a flow field: for each cell of a grid the direction of the shortest way to a goal, in one
+ * byte. Steps build it in slices of bounded work; any number of agents may follow it.
  *
  * Where the ground is a height field agents are slowed by its slopes, do not walk up what is too steep, and are led
  * around it by flow fields. Their height is the field's (noh_field_height).
@@ -27,7 +31,9 @@
  *          MiG 2017 (contacts, predicted contacts, averaged Jacobi iterations); van den Berg, Guy, Lin, Manocha:
  *          Reciprocal n-Body Collision Avoidance, ISRR 2009 (NOH_CROWD_ORCA); Zhao: A fast sweeping method for Eikonal
  *          equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi: Some improvements for the fast sweeping
- *          method, SIAM Journal on Scientific Computing 2010 (only cells whose neighbours have changed)
+ *          method, SIAM Journal on Scientific Computing 2010 (only cells whose neighbours have changed); Lumelsky,
+ *          Stepanov: Path-planning strategies for a point mobile automaton moving amidst unknown obstacles of arbitrary
+ *          shape, Algorithmica 1987 (along what blocks the way)
  *          Tobler: Three presentations on geographical analysis and modeling, 1993 (speed by slope)
  * Threads: a crowd belongs to one thread at a time; noh_crowd_job alone may be called from several at once. */
 #ifndef NOH_CROWD_CROWD_H
@@ -92,8 +98,8 @@ typedef struct noh_crowd_agent {
 
 typedef struct noh_crowd noh_crowd;
 
-/* The exact bytes of a crowd: 132, 88 an agent, 4 a cell of the grid; with obstacles 4 a cell more, 20 an obstacle and
- * 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
+/* The exact bytes of a crowd: 136, 88 an agent, 4 a cell of the grid; with obstacles 16 an agent and 4 a cell more, 20
+ * an obstacle and 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
  * many as agents, and one. With ground 28 and 2 a cell of flow fields. With flow fields 2,136, 24 a field, and for each
  * of their cells 5 and one a field. 0 for an impossible desc. */
 size_t noh_crowd_size(const noh_crowd_desc *desc);

@@ -140,6 +140,10 @@ void noh_crowd_finish(noh_crowd *c, uint32_t rank)
         waited -= waited < RECOVERY ? waited : RECOVERY;
     }
     *state = waited | (*state & ~CROWD_WAITED);
+    if (c->obstacle_count) {
+        const uint32_t yields = CROWD_CONST(crowd_round, c, round)[item].yields;
+        *state = (*state & ~(0xffu << CROWD_YIELDS_SHIFT)) | yields << CROWD_YIELDS_SHIFT;
+    }
     CROWD_ARRAY(vec2, c, velocity)[item] = velocity;
     CROWD_ARRAY(vec2, c, position)[item] = to;
 }

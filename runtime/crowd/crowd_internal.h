@@ -21,6 +21,7 @@
 #define CROWD_FLAGS 0x70000000u   /* of the state, too: NOH_CROWD_* */
 #define CROWD_WAITED 0xffu        /* of the state: steps */
 #define CROWD_FOLLOWS_SHIFT 8u    /* of the state: 1 and the flow field, of 8 bits */
+#define CROWD_YIELDS_SHIFT 16u    /* of the state: steps, of 8 bits */
 #define CROWD_ITEMS 0x0fffffffu   /* the rest */
 #define CROWD_FAST 1.5f           /* times the speed that an agent likes: the most that it is pushed to */
 
@@ -42,6 +43,16 @@ typedef struct crowd_body {
     uint32_t item; /* the agent's index, CROWD_HOLDS */
 } crowd_body;
 
+/* How it gets round what is in its way (crowd_round.c); of a crowd with obstacles. */
+typedef struct crowd_round {
+    vec2 heading;  /* along the wall */
+    float nearest; /* to its goal, as it began to walk along it; before: as it ever was. 0: not known */
+    uint8_t idle;  /* steps without coming nearer */
+    uint8_t mode;  /* 0: goes by itself; 1, 2: keeps the wall to its left, right */
+    uint8_t has_gone_round;
+    uint8_t yields; /* steps for which it makes way; the state has what it was before this step */
+} crowd_round;
+
 typedef struct crowd_cells {
     vec2 origin;
     float edge, per_edge;
@@ -62,10 +73,11 @@ struct noh_crowd {
     uint32_t obstacle, near_start, near; /* obstacles; by cell: its first in near; indices of obstacles */
     uint32_t bytes;
     uint32_t corrected; /* agents of the step whose plans are corrected */
+    uint32_t round;     /* by agent; of a crowd with obstacles */
     uint32_t flow;      /* a crowd_flow; 0: there are no flow fields */
     uint32_t ground;    /* a crowd_ground; 0: it is level */
 };
-NOH_STATIC_ASSERT(sizeof(noh_crowd) == 128, crowd);
+NOH_STATIC_ASSERT(sizeof(noh_crowd) == 132 && sizeof(crowd_round) == 16, crowd);
 
 /* Behind it: int8_t[cell][2], the rise along x and along z. */
 typedef struct crowd_ground {
@@ -193,8 +205,21 @@ vec2 noh_crowd_away_from(const noh_crowd_obstacle *o, vec2 at);
 int noh_crowd_sees(const noh_crowd *c, vec2 from, vec2 to);
 /* The unit direction in which to walk towards what lies `distance` away in a unit direction. */
 vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance);
+/* The nearest obstacle within reach, of those in the way in a unit direction (NULL: of all); NULL: none. inward: unit,
+ * to its nearest point */
+const noh_crowd_obstacle *noh_crowd_nearest(const noh_crowd *c, vec2 at, float radius, const vec2 *direction,
+                                            float distance, vec2 *inward);
+/* Whether the way in a unit direction is free, with a hair's breadth of tolerance. */
+int noh_crowd_is_free(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance);
 /* Where a step from `from` to `to` ends: outside of everything. */
 vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
+
+/* ---- crowd_round.c ---- */
+
+/* The direction in which to walk to a goal, and how far that is as the crow flies, or on the way round something may be
+ * walked so. returns 0 where it is there */
+int noh_crowd_round(noh_crowd *c, const crowd_body *b, vec2 now, vec2 goal, float speed, vec2 *direction,
+                    float *distance);
 
 /* ---- crowd_flow.c, crowd_follow.c ---- */
 

@@ -3,6 +3,8 @@
 
 #define WALLS 16u /* that a detour looks at: the first of a cell's */
 
+#define HAIR 0.96f /* of the radius: what is kept free where a wall is walked along */
+
 /* An obstacle as an agent's centre meets it. */
 typedef struct wall {
     vec2 from, along; /* along: to the other end */
@@ -84,8 +86,8 @@ static vec2 tangent(vec2 to_end, float radius, float side)
     return v2((to_end.x * cosine - to_end.z * sine) * per, (to_end.x * sine + to_end.z * cosine) * per);
 }
 
-/* Of the ways past ends of walls that are free as far as that end, the one that turns least. */
-static vec2 way_past(const wall *walls, uint32_t count, vec2 at, vec2 direction, float distance)
+/* Of the ways past ends of walls within reach that are free as far as that end, the one that turns least. */
+static vec2 way_past(const wall *walls, uint32_t count, vec2 at, vec2 direction, float distance, float reach)
 {
     vec2 way = direction;
     float best = -2.0f;
@@ -94,7 +96,7 @@ static vec2 way_past(const wall *walls, uint32_t count, vec2 at, vec2 direction,
         const vec2 to = v2_sub(i & 1u ? v2(w->from.x + w->along.x, w->from.z + w->along.z) : w->from, at);
         const vec2 try = tangent(to, w->radius * 1.1f, i & 2u ? 1.0f : -1.0f);
         const float along = v2_dot(try, direction), far = v2_length(to);
-        if (along > best && is_free(walls, count, at, try, far < distance ? far : distance)) {
+        if (far <= reach && along > best && is_free(walls, count, at, try, far < distance ? far : distance)) {
             best = along;
             way = try;
         }
@@ -143,7 +145,41 @@ vec2 noh_crowd_detour(const noh_crowd *c, vec2 at, float radius, vec2 direction,
     if (count > WALLS) count = WALLS;
     for (uint32_t k = 0; k < count; k++) walls[k] = wall_of(&obstacles[near[k]], radius);
     if (distance > c->reach) distance = c->reach;
-    return is_free(walls, count, at, direction, distance) ? direction : way_past(walls, count, at, direction, distance);
+    return is_free(walls, count, at, direction, distance) ? direction
+                                                          : way_past(walls, count, at, direction, distance, c->reach);
+}
+
+const noh_crowd_obstacle *noh_crowd_nearest(const noh_crowd *c, vec2 at, float radius, const vec2 *direction,
+                                            float distance, vec2 *inward)
+{
+    const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle), *found = NULL;
+    const uint16_t *near = NULL;
+    const uint32_t count = noh_crowd_near_of(c, at, &near);
+    float least = 0.0f;
+    for (uint32_t k = 0; k < count; k++) {
+        const wall w = wall_of(&obstacles[near[k]], radius);
+        const vec2 away = away_from(&w, at);
+        const float length = v2_length(away), space = length - w.radius;
+        if ((found && space >= least) || !(length > 1e-6f)) continue;
+        if (direction && !blocks(&w, at, *direction, distance)) continue;
+        found = &obstacles[near[k]];
+        least = space;
+        if (inward) *inward = v2_scale(away, -1.0f / length);
+    }
+    return found;
+}
+
+int noh_crowd_is_free(const noh_crowd *c, vec2 at, float radius, vec2 direction, float distance)
+{
+    const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);
+    const uint16_t *near = NULL;
+    const uint32_t count = noh_crowd_near_of(c, at, &near);
+    if (distance > c->reach) distance = c->reach;
+    for (uint32_t k = 0; k < count; k++) {
+        const wall w = wall_of(&obstacles[near[k]], HAIR * radius);
+        if (blocks(&w, at, direction, distance)) return 0;
+    }
+    return 1;
 }
 
 /* Who was on one side of a wall stays there, however far it was pushed. */

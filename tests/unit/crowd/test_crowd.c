@@ -191,10 +191,13 @@ static void none_gets_through_a_wall(void **state)
         assert_int_equal(noh_crowd_put(crowd, i, &a, NULL), NOH_OK);
     }
     for (int step = 0; step < 300; step++) {
+        float before[200];
+        for (uint32_t i = 0; i < 200u; i++) before[i] = stepped(crowd, i).position[0];
         noh_crowd_step(crowd, NOH_CROWD_STEP_TICKS);
-        for (uint32_t i = 0; i < 200u; i++) {
+        for (uint32_t i = 0; i < 200u; i++) { /* past its ends they may get */
             const noh_crowd_agent a = stepped(crowd, i);
-            if (fabsf(a.position[1]) < 19.0f) assert_true(a.position[0] < -0.249f);
+            if (fabsf(a.position[1]) > 19.0f) continue;
+            assert_true(fabsf(a.position[0]) > 0.249f && (a.position[0] > 0.0f) == (before[i] > 0.0f));
         }
     }
     free(crowd);
@@ -266,7 +269,7 @@ static void bits_depend_on_neither_order_nor_jobs(void **state)
 static void bits_are_those_of_every_processor(void **state)
 {
     (void)state;
-    assert_int_equal(hash_after(mixed(1, 0), 30.0f), 0xdcd98c9du);
+    assert_int_equal(hash_after(mixed(1, 0), 30.0f), 0x24a04879u);
 }
 
 static void a_copy_goes_on(void **state)
