@@ -307,6 +307,20 @@ static int rename_clip(raw_clip *clip, const char *path, model_error *error)
     return 0;
 }
 
+/* Files of one name, such as a/walk.bvh and b/walk.bvh: the next free number goes behind the clip's name. */
+static int number_clip(source *base, const raw_set *to, raw_clip *clip, model_error *error)
+{
+    const size_t bytes = strlen(clip->name) + 16u;
+    char *wanted = clip->name, *name = malloc(bytes);
+    int failed;
+    if (!name) return out_of_memory(error);
+    for (uint32_t n = 2; n == 2 || has_clip(to, name); n++) snprintf(name, bytes, "%s_%u", wanted, (unsigned)n);
+    clip->name = name;
+    failed = model_warn(base->m, "two clips are named '%.80s': the second is clip '%.80s'", wanted, name);
+    free(wanted);
+    return failed ? out_of_memory(error) : 0;
+}
+
 static void scale_translations(raw_clip *clip, double scale)
 {
     for (size_t i = 0; i < (size_t)clip->frame_count * clip->joint_count * 3u; i++) {
@@ -337,10 +351,7 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
     if (bind_weights(base, base_path, clip, error) || (has_clip(to, clip->name) && rename_clip(clip, path, error))) {
         return 1;
     }
-    if (has_clip(to, clip->name)) {
-        return model_fail(error, "", "two clips would be called '%.150s': build them from files of different names",
-                          clip->name);
-    }
+    if (has_clip(to, clip->name) && number_clip(base, to, clip, error)) return 1;
     if (clip->joint_count == 0 && clip->float_count == 0) {
         return 0; /* nothing of it was kept */
     }

@@ -1398,6 +1398,27 @@ static void animations_without_names(void **state)
     model_free(m);
 }
 
+/* Three of one name, and one that has the number already. */
+static void animations_of_one_name_are_numbered(void **state)
+{
+    (void)state;
+    static const char *const names[4] = { "a_2", "a", "a", "b" }, *const expected[5] = { "a", "a_2", "a_3", "a_4",
+                                                                                         "b" };
+    scene *s = animated(two_times, two_values, sizeof two_values, "", F32, 2, "", WEIGHTS_OF_N);
+    s->rest[strlen(s->rest) - 1] = 0;
+    for (int i = 0; i < 4; ++i)
+        APPEND(s->rest,
+               ",{\"name\":\"%s\",\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N
+               "}}],\"samplers\":[{\"input\":2,\"output\":3}]}",
+               names[i]);
+    APPEND(s->rest, "]");
+    model *m = load(s);
+    assert_int_equal(m->clip_count, 5);
+    for (int i = 0; i < 5; ++i) assert_string_equal(m->clips[i].name, expected[i]);
+    assert_true(has_warning(m, "two animations are named 'a': the second is clip 'a_3'"));
+    model_free(m);
+}
+
 static void an_animated_matrix_is_told(void **state)
 {
     (void)state;
@@ -2153,6 +2174,7 @@ int main(void)
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),
         cmocka_unit_test(animations_without_names),
+        cmocka_unit_test(animations_of_one_name_are_numbered),
         cmocka_unit_test(an_animated_matrix_is_told),
         cmocka_unit_test(animation_without_a_target_is_skipped),
         cmocka_unit_test(animation_without_meshes),

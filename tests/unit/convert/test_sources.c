@@ -88,16 +88,21 @@ static void a_name_that_is_taken_gets_that_of_the_file(void **state)
     source_free(&other);
 }
 
-/* Twice the same file: the second name is taken too. */
-static void a_name_that_is_taken_twice_is_refused(void **state)
+/* Files of one name: the second name is taken too. */
+static void a_name_that_is_taken_twice_is_numbered(void **state)
 {
-    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES)),
-           third = source_of(clip_bvh("walk", "abc", FRAMES));
+    static const char *const expected[4] = { "walk", "other/walk", "other/walk_2", "other/walk_3" };
+    source base = source_of(clip_bvh("walk", "abc", FRAMES));
     model_error error;
     (void)state;
-    assert_int_equal(source_join(&base, "walk.bvh", &other, "other.bvh", &by_name, &error), 0);
-    source_free(&other);
-    expect_refused(&base, &third, "two clips would be called 'other/walk'");
+    for (int i = 1; i < 4; i++) {
+        source other = source_of(clip_bvh("walk", "abc", FRAMES));
+        assert_int_equal(source_join(&base, "walk.bvh", &other, "other.bvh", &by_name, &error), 0);
+        source_free(&other);
+    }
+    for (int i = 0; i < 4; i++) assert_string_equal(base.sets[0]->clips[i].name, expected[i]);
+    assert_true(has_warning(base.m, "two clips are named 'other/walk': the second is clip 'other/walk_2'"));
+    source_free(&base);
 }
 
 static void the_first_difference_is_told(void **state)
@@ -389,7 +394,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_of_one_skeleton_are_joined),
     cmocka_unit_test(warnings_of_joined_files_are_kept),
     cmocka_unit_test(a_name_that_is_taken_gets_that_of_the_file),
-    cmocka_unit_test(a_name_that_is_taken_twice_is_refused),
+    cmocka_unit_test(a_name_that_is_taken_twice_is_numbered),
     cmocka_unit_test(the_first_difference_is_told),
     cmocka_unit_test(translations_come_to_the_unit_of_the_base),
     cmocka_unit_test(weights_go_to_nodes_of_the_same_name),

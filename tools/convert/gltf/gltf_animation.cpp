@@ -169,6 +169,28 @@ static std::string clip_name(const file &f, size_t index)
     return unnamed ? stem + "_" + std::to_string(unnamed) : name_or(stem, "animation", index);
 }
 
+static bool has_clip(const file &f, uint32_t count, const std::string &name)
+{
+    for (uint32_t c = 0; c < count; ++c)
+        if (name == f.out->clips[c].name) return true;
+    return false;
+}
+
+/* Clips are found by their names: of two alike, only the first would be. */
+static void number_clip(file &f, model_clip &clip)
+{
+    const uint32_t before = f.out->clip_count - 1;
+    const std::string wanted = clip.name;
+    std::string name = wanted;
+    for (size_t n = 2; has_clip(f, before, name); ++n) name = wanted + "_" + std::to_string(n);
+    if (name == wanted) return;
+    warn(f, "two animations are named '%s': the second is clip '%s'", printable(wanted).c_str(),
+         printable(name).c_str());
+    free(clip.name);
+    clip.name = nullptr;
+    clip.name = copy_string(name);
+}
+
 static void read_clip(file &f, size_t index)
 {
     const tinygltf::Animation &a = f.json.animations[index];
@@ -177,6 +199,7 @@ static void read_clip(file &f, size_t index)
     clip.name = copy_string(name);
     read_channels(f, a, where, clip);
     if (clip.channel_count > 0) {
+        number_clip(f, clip);
         read_extras(f, a, where, clip);
         return;
     }
