@@ -53,6 +53,101 @@ static int has_warning(const model *m, const char *text)
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
+/* The areas of a polygon's triangles, seen along z: added up with their signs, and without. */
+static void areas_of(const char *text, double *sum, double *sizes)
+{
+    model *m = load(text);
+    const model_mesh *mesh = m->meshes;
+    *sum = *sizes = 0.0;
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        const float *a = mesh->position + 3 * mesh->indices[i], *b = mesh->position + 3 * mesh->indices[i + 1],
+                    *c = mesh->position + 3 * mesh->indices[i + 2];
+        const double area = 0.5 * ((double)(b[0] - a[0]) * (double)(c[1] - a[1]) -
+                                   (double)(b[1] - a[1]) * (double)(c[0] - a[0]));
+        *sum += area;
+        *sizes += fabs(area);
+    }
+    model_free(m);
+}
+
+/* A polygon's text: its corners in a plane, first corner `from`, backwards or not, tilted. */
+static void write_polygon(const double (*at)[2], uint32_t count, uint32_t from, int backwards, char *text, size_t room)
+{
+    size_t used = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        used += (size_t)snprintf(text + used, room - used, "v %.9g %.9g %.9g\n", at[i][0], at[i][1],
+                                 0.7 * at[i][0] - 0.4 * at[i][1]);
+    }
+    used += (size_t)snprintf(text + used, room - used, "f");
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t k = (from + (backwards ? count - i : i)) % count;
+        used += (size_t)snprintf(text + used, room - used, " %u", (unsigned)k + 1u);
+    }
+    snprintf(text + used, room - used, "\n");
+}
+
+static void expect_cut(const double (*at)[2], uint32_t count)
+{
+    double area = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double *a = at[i], *b = at[(i + 1) % count];
+        area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    }
+    for (uint32_t from = 0; from < 2 * count; from++) {
+        static char text[65536];
+        double sum, sizes;
+        write_polygon(at, count, from % count, from >= count, text, sizeof text);
+        areas_of(text, &sum, &sizes);
+        if (!(fabs(sum - (from >= count ? -area : area)) < 1e-4 * area && sizes < area * 1.0001))
+            fail_msg("first corner %u: %g and %g, not %g", (unsigned)from, sum, sizes, area);
+    }
+}
+
+/* Their triangles cover them once, whichever corner comes first. */
+static void concave_polygons_are_cut(void **state)
+{
+    static const double arrow[4][2] = { { 0, 0 }, { 2, 1 }, { 0, 2 }, { 0.5, 1 } };
+    static const double comb[11][2] = { { 0, 0 }, { 5, 0 }, { 5, 2 }, { 4, 2 }, { 4, 1 }, { 3, 1 },
+                                        { 3, 2 }, { 2, 2 }, { 2, 1 }, { 1, 1 }, { 0, 2 } };
+    static const double ring[10][2] = { { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 }, { 0, 0 },
+                                        { 1, 1 }, { 1, 3 }, { 3, 3 }, { 3, 1 }, { 1, 1 } };
+    double spiral[120][2], star[40][2];
+    (void)state;
+    for (int i = 0; i < 60; i++) {
+        const double angle = 0.3 * i, radius = 1.0 + 0.1 * i;
+        for (int side = 0; side < 2; side++) {
+            double *p = spiral[side ? 119 - i : i];
+            p[0] = (radius + (side ? 0.0 : 0.8)) * cos(angle);
+            p[1] = (radius + (side ? 0.0 : 0.8)) * sin(angle);
+        }
+    }
+    for (int i = 0; i < 40; i++) {
+        star[i][0] = (i % 2 ? 1.0 : 4.0) * cos(0.157079632679 * i);
+        star[i][1] = (i % 2 ? 1.0 : 4.0) * sin(0.157079632679 * i);
+    }
+    expect_cut(arrow, 4);
+    expect_cut(comb, 11);
+    expect_cut(ring, 10);
+    expect_cut((const double(*)[2])spiral, 120);
+    expect_cut((const double(*)[2])star, 40);
+}
+
+/* What crosses itself, or has no area, has as many triangles as any other. */
+static void broken_polygons_are_cut_somehow(void **state)
+{
+    static const char *const faces[] = { "f 1 3 2 4", "f 1 1 1 1 1", "f 1 2 1 2 3", "f 1 3 5 2 4", "f 4 3 2 1 1 2 3" };
+    static const uint32_t triangles[] = { 2, 3, 3, 3, 5 };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(faces); i++) {
+        char text[256];
+        model *m;
+        snprintf(text, sizeof text, SQUARE "v 0.5 1.6 0\n%s\n", faces[i]);
+        m = load(text);
+        assert_int_equal(m->meshes[0].index_count, 3 * triangles[i]);
+        model_free(m);
+    }
+}
+
 static void polygons_are_fans(void **state)
 {
     (void)state;
@@ -277,6 +372,8 @@ static void mutations_never_crash(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(polygons_are_fans),
+    cmocka_unit_test(concave_polygons_are_cut),
+    cmocka_unit_test(broken_polygons_are_cut_somehow),
     cmocka_unit_test(corners_become_vertices),
     cmocka_unit_test(materials_are_submeshes),
     cmocka_unit_test(missing_materials_are_told),

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/base/input_file.h"
+#include "obj_polygon.h"
 
 /* The state of reading. */
 typedef struct reader {
@@ -13,6 +14,7 @@ typedef struct reader {
     obj_part *part; /* that faces go to; NULL: none yet */
     char *material; /* for the next part; NULL: none */
     int positions_only;
+    byte_buffer face, points, triangles; /* of one polygon: obj_corner, float [3], uint32_t [3] */
 } reader;
 
 uint32_t obj_position_count(const obj_text *o)
@@ -181,21 +183,46 @@ static int find_part(reader *r)
     return r->material && !r->part->material ? out_of_memory(r) : 0;
 }
 
-/* A polygon as a fan of triangles. */
+static int add_triangles(reader *r, uint32_t count, uint32_t line)
+{
+    const obj_corner *corners = (const obj_corner *)(const void *)r->face.bytes;
+    const size_t words = 3u * ((size_t)count - 2u);
+    const uint32_t *place;
+    int failed;
+    r->triangles.count = 0;
+    if (!buffer_append(&r->triangles, NULL, words * sizeof *place)) return out_of_memory(r);
+    failed = obj_polygon_cut((const float *)(const void *)r->points.bytes, count,
+                             (uint32_t *)(void *)r->triangles.bytes);
+    if (failed == 2) {
+        return text_fail(&r->scan, line,
+                         "a face that is not convex has %u corners, and %u are possible: triangulate it", count,
+                         OBJ_CONCAVE_MAX);
+    }
+    place = (const uint32_t *)(const void *)r->triangles.bytes;
+    for (size_t i = 0; i < words && !failed; i++) {
+        failed = !buffer_append(&r->part->corners, &corners[place[i]], sizeof *corners);
+    }
+    return failed ? out_of_memory(r) : 0;
+}
+
 static int read_face(reader *r)
 {
-    obj_corner fan[3];
     uint32_t count = 0;
     const uint32_t line = r->scan.line;
     if (!r->part && find_part(r)) return 1;
+    r->face.count = r->points.count = 0;
     for (;; count++) {
         const text_word word = text_next_on_line(&r->scan);
+        obj_corner corner;
         if (word.size == 0) break;
-        if (count > 2) fan[1] = fan[2];
-        if (read_corner(r, word, &fan[count < 2 ? count : 2])) return 1;
-        if (count >= 2 && !buffer_append(&r->part->corners, fan, sizeof fan)) return out_of_memory(r);
+        if (read_corner(r, word, &corner)) return 1;
+        if (!buffer_append(&r->face, &corner, sizeof corner) ||
+            !buffer_append(&r->points, r->out->positions.bytes + 12 * (size_t)corner.position, 12)) {
+            return out_of_memory(r);
+        }
     }
-    return count >= 3 ? 0 : text_fail(&r->scan, line, "a face wants three corners, and this one has %u", count);
+    return count >= 3 ? add_triangles(r, count, line)
+                      : text_fail(&r->scan, line, "a face wants three corners, and this one has %u", count);
 }
 
 /* ---- lines ---- */
@@ -295,6 +322,9 @@ int obj_text_read(const char *path, int positions_only, obj_text *out, model_err
         failed = model_fail(error, "", "there is no face ('f A B C') in it: there is nothing to convert");
     }
     free(r.material);
+    buffer_free(&r.face);
+    buffer_free(&r.points);
+    buffer_free(&r.triangles);
     free(text);
     return failed;
 }
