@@ -197,10 +197,38 @@ static void targets_say_how_far_they_move(void **state)
     model_free(m);
 }
 
+/* Deltas that halves cannot add up have no bound, which is a number all the same. */
+static void models_of_any_size_open(void **state)
+{
+    static const float sizes[] = { 1e-30f, 1e-4f, 1.0f, 1e5f, 1e6f, 1e11f };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(sizes); i++) {
+        const test_model_desc desc = { .targets = 2, .flags = TEST_TANGENTS | TEST_UVS };
+        model *m = test_model(&desc);
+        model_mesh *mesh = m->meshes;
+        uint8_t *bytes;
+        size_t count;
+        noh_pack pack;
+        for (size_t k = 0; k < 3u * (size_t)mesh->vertex_count; k++) {
+            mesh->position[k] *= sizes[i];
+            for (uint32_t t = 0; t < mesh->target_count; t++) mesh->targets[t].position[k] *= sizes[i];
+        }
+        bytes = test_pack_of(m, &count, NULL);
+        pack = test_open(bytes, count);
+        assert_true((test_mesh(&pack, 0).header->f16_position_bound >= NOH_NUMBER_MAX) == (sizes[i] > 1e5f));
+        free(bytes);
+        model_free(m);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_same_model_gives_the_same_bytes),   cmocka_unit_test(limits_are_told),
-    cmocka_unit_test(long_names_are_cut_between_characters), cmocka_unit_test(large_pictures_are_halved_until_they_fit),
-    cmocka_unit_test(wrap_modes_and_filters_are_kept),       cmocka_unit_test(the_scene_is_kept),
+    cmocka_unit_test(models_of_any_size_open),
+    cmocka_unit_test(the_same_model_gives_the_same_bytes),
+    cmocka_unit_test(limits_are_told),
+    cmocka_unit_test(long_names_are_cut_between_characters),
+    cmocka_unit_test(large_pictures_are_halved_until_they_fit),
+    cmocka_unit_test(wrap_modes_and_filters_are_kept),
+    cmocka_unit_test(the_scene_is_kept),
     cmocka_unit_test(targets_say_how_far_they_move),
 };
 

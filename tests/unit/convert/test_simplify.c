@@ -600,7 +600,7 @@ static void bad_input_is_refused(void **state)
     s.mesh.position[7] = NAN;
     refuse(&s.mesh, &o, "vertex 2 is not a finite");
     s.mesh.position[7] = -1e9f;
-    refuse(&s.mesh, &o, "vertex 2 is -1e+09: LOD levels are made of meshes within 100000");
+    refuse(&s.mesh, &o, "vertex 2 is -1e+09: LOD levels are made of meshes within 1e+06");
     s.mesh.position[7] = 0.0f;
     s.mesh.targets[0].position[3] = INFINITY;
     refuse(&s.mesh, &o, "target");

@@ -88,9 +88,9 @@ typedef struct lod {
 } lod;
 
 /* Simplify. The same input and options give the same result on every machine.
- * ranges  positions, deltas and poses within 1e5; targets' positions not NULL; indices within vertex_count
+ * ranges  positions, deltas and poses within 1e6; targets' positions not NULL; indices within vertex_count
  * memory  about vertices x poses x 12 bytes, plus 88 bytes for each pair of a vertex and a pose that moves it
- * errors  1 and *error: out of memory, NaN, larger than 1e5, bad ratios, indices out of range. If a mesh cannot be
+ * errors  1 and *error: out of memory, NaN, larger than 1e6, bad ratios, indices out of range. If a mesh cannot be
  * simplified that far (locked borders, folds) the level has more triangles; that is not an error. */
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
 void lod_free(lod *l);

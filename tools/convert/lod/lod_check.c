@@ -5,7 +5,7 @@
 
 #include "convert/model/model_build.h"
 
-#define LARGEST 1e5f /* products of much larger lengths would overflow */
+#define LARGEST 1e6f /* products of much larger lengths would overflow */
 
 static const float standard_ratios[] = { 1.0f, 0.5f, 0.25f, 0.1f };
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/limits.h"
+
 #define WEIGHT_MAX 2.0
 #define HALF_MAX 65504.0
 
@@ -53,7 +55,7 @@ void f16_bound(const morph_encoding *e, float *position, float *direction)
     size_t texels = (size_t)e->height << e->width_log2;
     bound *bounds = calloc(texels * 9 + 1, sizeof *bounds);
     double worst_position = 0.0, worst_direction = 0.0, largest = 0.0;
-    *position = *direction = 1e30f;
+    *position = *direction = NOH_NUMBER_MAX;
     if (!bounds) {
         return;
     }

@@ -118,10 +118,14 @@ static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)
                h->target_count, h->pair_count, h->rect_count, h->texel_count,
                h->pair_count ? (double)h->texel_count / h->pair_count : 0.0, (unsigned long long)target_bytes(h),
                h->pair_count ? (double)target_bytes(h) / h->pair_count : 0.0);
-        printf(
-            "  %u vertices touched, in %u x %u texels; f16 accumulation within %.0f um (weights 0..1; %.0f: -2..2)\n",
-            h->touched_count, 1u << h->morph_width_log2, h->morph_height, half_bound_um(m),
-            1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+        printf("  %u vertices touched, in %u x %u texels; ", h->touched_count, 1u << h->morph_width_log2,
+               h->morph_height);
+        if (h->f16_position_bound < NOH_NUMBER_MAX) {
+            printf("f16 accumulation within %.0f um (weights 0..1; %.0f: -2..2)\n", half_bound_um(m),
+                   1e6 * (double)h->world_scale * (double)h->f16_position_bound);
+        } else {
+            printf("no f16 accumulation: sums are beyond 65504\n");
+        }
     }
     if (h->flags & NOH_MESH_UV_TARGETS) {
         printf("  texture coordinates of %u vertices move, each by a texel of its own\n", count_sliding(m));
