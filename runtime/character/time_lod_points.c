@@ -8,6 +8,9 @@
 typedef struct work {
     const noh_time_lod_points *points;
     float *off; /* [joint_count][12] the error of each joint's matrix: shown minus true */
+    float *
+        reach; /* [joint_count] how far the points are that a joint holds, times the largest sum of a point's weights */
+    float weight; /* the latter */
     noh_rate_work rates;
 } work;
 
@@ -15,6 +18,7 @@ static void carve(noh_arena *arena, const noh_clip_set *set, work *w)
 {
     noh_rate_carve(arena, set, &w->rates);
     w->off = (float *)noh_arena_carve(arena, 12u * sizeof(float) * (size_t)set->joint_count, 4);
+    w->reach = (float *)noh_arena_carve(arena, sizeof(float) * (size_t)set->joint_count, 4);
 }
 
 size_t noh_time_lod_points_size(const noh_time_probe *probe)
@@ -44,21 +48,61 @@ static float point_off(const noh_time_hold *holds, uint32_t count, const float *
     return noh_dot3(error, error);
 }
 
+/* No point is off by more: by the largest that any joint's matrix alone would move a point as far away as its own, in the
+ * Frobenius norm. It costs as much as a point for each joint, and of most poses of most clips it is all that is needed:
+ * where they move little or evenly, mixes are right. */
+static float most_off(const work *w, uint32_t joint_count)
+{
+    float most = 0.0f;
+    for (size_t j = 0; j < joint_count; j++) {
+        const float *off = w->off + 12u * j;
+        float linear = 0.0f, shift = 0.0f, bound;
+        for (size_t r = 0; r < 12; r += 4) {
+            linear += noh_dot3(off + r, off + r);
+            shift += off[r + 3u] * off[r + 3u];
+        }
+        if (w->reach[j] < 0.0f) continue;
+        bound = noh_sqrt(linear) * w->reach[j] + noh_sqrt(shift) * w->weight;
+        most = bound > most ? bound : most;
+    }
+    return most * 1.001f; /* more than is lost by rounding */
+}
+
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
 {
     const work *own = (const work *)user;
     const noh_time_lod_points *points = own->points;
-    float worst = 0.0f;
+    float worst = 0.0f, floats_off;
     for (size_t i = 0; i < 12u * (size_t)p->set->joint_count; i++) {
         const float from = w->from.model[i];
         own->off[i] = from + (w->to.model[i] - from) * part - w->right.model[i];
     }
+    floats_off = noh_rate_floats_off(p, w, part);
+    if (most_off(own, p->set->joint_count) + floats_off < least) return least;
     for (size_t i = 0; i < points->point_count; i++) {
         const float off = point_off(points->holds + i * points->holds_per_point, points->holds_per_point, own->off);
         worst = off > worst ? off : worst;
     }
-    worst = noh_sqrt(worst) + noh_rate_floats_off(p, w, part);
+    worst = noh_sqrt(worst) + floats_off;
     return worst > least ? worst : least;
+}
+
+static void measure_reach(const noh_time_lod_points *points, uint32_t joint_count, work *w)
+{
+    w->weight = 0.0f;
+    for (uint32_t j = 0; j < joint_count; j++) w->reach[j] = -1.0f;
+    for (size_t i = 0; i < points->point_count; i++) {
+        const noh_time_hold *holds = points->holds + i * points->holds_per_point;
+        float sum = 0.0f;
+        for (uint32_t k = 0; k < points->holds_per_point; k++) {
+            const float away = noh_sqrt(noh_dot3(holds[k].place, holds[k].place));
+            if (!(holds[k].weight > 0.0f)) continue;
+            sum += holds[k].weight;
+            if (!(away <= w->reach[holds[k].joint])) w->reach[holds[k].joint] = away;
+        }
+        w->weight = sum > w->weight ? sum : w->weight;
+    }
+    for (uint32_t j = 0; j < joint_count; j++) w->reach[j] *= w->weight;
 }
 
 static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_points *points, uint32_t clip,
@@ -96,6 +140,7 @@ noh_result noh_time_lod_points_measure(void *memory, size_t bytes, const noh_tim
     }
     carve(&arena, probe->set, &w);
     w.points = points;
+    measure_reach(points, probe->set->joint_count, &w);
     noh_rate_measure(probe, clip, pose_off, &w, &w.rates, error_m);
     return NOH_OK;
 }
