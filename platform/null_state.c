@@ -25,6 +25,9 @@ STATE1(DepthMask, GLboolean)
 STATE1(CullFace, GLenum)
 STATE1(FrontFace, GLenum)
 STATE2(BlendFunc, GLenum)
+STATE2(BlendEquationSeparate, GLenum)
+STATE2(DepthRangef, GLfloat)
+STATE2(BindSampler, GLuint)
 STATE2(PolygonOffset, GLfloat)
 
 static void GL_APIENTRY null_BlendFuncSeparate(GLenum a, GLenum b, GLenum c, GLenum d)
@@ -114,6 +117,39 @@ static const GLubyte *GL_APIENTRY null_GetStringi(GLenum what, GLuint index)
     return NULL;
 }
 
+/* State is as in a new context, whatever was set. */
+static GLboolean GL_APIENTRY null_IsEnabled(GLenum what)
+{
+    (void)what;
+    noh_null_count(NULL_IsEnabled);
+    return GL_FALSE;
+}
+
+static void GL_APIENTRY null_GetFloatv(GLenum what, GLfloat *value)
+{
+    noh_null_count(NULL_GetFloatv);
+    if (what != GL_DEPTH_RANGE) {
+        noh_null_wrong(NULL_GetFloatv, "the null platform does not know 0x%x", (unsigned)what);
+        return;
+    }
+    value[0] = 0.0f;
+    value[1] = 1.0f;
+}
+
+static void GL_APIENTRY null_GetIntegeri_v(GLenum what, GLuint index, GLint *value)
+{
+    (void)what, (void)index;
+    noh_null_count(NULL_GetIntegeri_v);
+    *value = 0;
+}
+
+static int is_vector(GLenum what, GLint *value)
+{
+    if (what != GL_COLOR_WRITEMASK && what != GL_SCISSOR_BOX) return 0;
+    for (int i = 0; i < 4; i++) value[i] = what == GL_COLOR_WRITEMASK;
+    return 1;
+}
+
 /* The minimum limits of ES 3.0; 2,048 where they are more than the tests need. */
 static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
 {
@@ -131,8 +167,32 @@ static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
                     { GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 16 },
                     { GL_MAX_VERTEX_ATTRIBS, NULL_ATTRIBUTES },
                     { GL_MAX_UNIFORM_BLOCK_SIZE, 16384 },
-                    { GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 256 } };
+                    { GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 256 },
+                    { GL_DEPTH_FUNC, GL_LESS },
+                    { GL_FRONT_FACE, GL_CCW },
+                    { GL_DEPTH_WRITEMASK, 1 },
+                    { GL_BLEND_SRC_RGB, GL_ONE },
+                    { GL_BLEND_SRC_ALPHA, GL_ONE },
+                    { GL_BLEND_DST_RGB, GL_ZERO },
+                    { GL_BLEND_DST_ALPHA, GL_ZERO },
+                    { GL_BLEND_EQUATION_RGB, GL_FUNC_ADD },
+                    { GL_BLEND_EQUATION_ALPHA, GL_FUNC_ADD },
+                    { GL_UNPACK_ALIGNMENT, 4 },
+                    { GL_UNPACK_ROW_LENGTH, 0 },
+                    { GL_UNPACK_SKIP_ROWS, 0 },
+                    { GL_UNPACK_SKIP_PIXELS, 0 },
+                    { GL_UNPACK_IMAGE_HEIGHT, 0 },
+                    { GL_UNPACK_SKIP_IMAGES, 0 },
+                    { GL_PACK_ALIGNMENT, 4 },
+                    { GL_PACK_ROW_LENGTH, 0 },
+                    { GL_PACK_SKIP_ROWS, 0 },
+                    { GL_PACK_SKIP_PIXELS, 0 },
+                    { GL_PIXEL_UNPACK_BUFFER_BINDING, 0 },
+                    { GL_PIXEL_PACK_BUFFER_BINDING, 0 },
+                    { GL_DRAW_FRAMEBUFFER_BINDING, 0 },
+                    { GL_READ_FRAMEBUFFER_BINDING, 0 } };
     const noh_platform_context *c = noh_null_count(NULL_GetIntegerv);
+    if (is_vector(what, value)) return;
     if (what == GL_VIEWPORT) {
         memcpy(value, c->viewport, sizeof c->viewport);
         return;
@@ -186,6 +246,12 @@ const null_entry noh_null_state_functions[] = { NULL_ENTRY(Enable),
                                                 NULL_ENTRY(CullFace),
                                                 NULL_ENTRY(FrontFace),
                                                 NULL_ENTRY(BlendFunc),
+                                                NULL_ENTRY(BlendEquationSeparate),
+                                                NULL_ENTRY(DepthRangef),
+                                                NULL_ENTRY(BindSampler),
+                                                NULL_ENTRY(IsEnabled),
+                                                NULL_ENTRY(GetFloatv),
+                                                NULL_ENTRY(GetIntegeri_v),
                                                 NULL_ENTRY(PolygonOffset),
                                                 NULL_ENTRY(BlendFuncSeparate),
                                                 NULL_ENTRY(ColorMask),

@@ -20,7 +20,7 @@
  * Errors. When the driver refuses a call, the create or init that made it fails with NOH_ERR_GL, or with NOH_ERR_MEMORY
  * where the GPU is out of memory. `where` is then the GL error code, and no object is left behind.
  *
- * State. noh changes GL state and does not put it back. The comment of a function says what it leaves bound.
+ * State. Render state is yours: noh reads it and puts it back. Bindings are left empty. gl_state.h has the table.
  *
  * Threads. All calls on the thread of the context that the objects were made in, unless a header says otherwise.
  *
@@ -47,6 +47,7 @@
 #include "gl/gl_skin.h"             /* joint palettes of many instances on the GPU */
 #include "gl/gl_light.h"            /* light for it: an environment, a shadow map */
 #include "gl/gl_draw.h"             /* meshes on the GPU, and a plain renderer */
+#include "gl/gl_state.h"            /* what calls ask of GL's state and leave */
 #include "gl/gl_shader_text.h"      /* the library's GLSL, for your own shaders */
 
 /* ---- when a context is lost, a frame is slow, or a driver is odd ---- */

@@ -8,6 +8,7 @@ out vec4 v_color;
 out highp vec3 v_rest;
 out vec3 v_rest_normal;
 flat out highp int v_corner; /* the last of a triangle's */
+uniform highp vec4 u_towards; /* x: what brings depths nearer to the eye */
 
 void main()
 {
@@ -25,5 +26,5 @@ void main()
     v_rest_normal = noh_direction_of_pair(noh_a_rest_normal);
 #endif
     gl_Position = noh_view_projection * vec4(v.position, 1.0);
-    gl_Position.z -= 2e-5 * gl_Position.w; /* in front of the surface that it lies on */
+    gl_Position.z += u_towards.x * gl_Position.w; /* in front of the surface that it lies on */
 }

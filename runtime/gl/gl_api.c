@@ -9,7 +9,14 @@
 
 #include <string.h>
 
-enum { NOH_GL_GROUP_MAP, NOH_GL_GROUP_GEOMETRY, NOH_GL_GROUP_DEBUG, NOH_GL_GROUP_TIMER, NOH_GL_GROUP_COUNT };
+enum {
+    NOH_GL_GROUP_MAP,
+    NOH_GL_GROUP_GEOMETRY,
+    NOH_GL_GROUP_CLIP,
+    NOH_GL_GROUP_DEBUG,
+    NOH_GL_GROUP_TIMER,
+    NOH_GL_GROUP_COUNT
+};
 
 #define PROC_NAME_BYTES 48
 
@@ -130,6 +137,10 @@ static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COU
     } else if (api->is_es && noh_gl_has_extension(api, "GL_OES_geometry_shader")) {
         suffix[NOH_GL_GROUP_GEOMETRY] = "OES";
         api->geometry_ext = 2;
+    }
+    if (api->is_es ? noh_gl_has_extension(api, "GL_EXT_clip_control")
+                   : api->version >= 450 || noh_gl_has_extension(api, "GL_ARB_clip_control")) {
+        suffix[NOH_GL_GROUP_CLIP] = api->is_es ? "EXT" : "";
     }
     if (api->version >= (api->is_es ? 320 : 430)) {
         suffix[NOH_GL_GROUP_DEBUG] = "";

@@ -50,12 +50,14 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(BlendFunc, void, (unsigned, unsigned))                                                                \
     X(BlendFuncSeparate, void, (unsigned, unsigned, unsigned, unsigned))                                    \
     X(BlendEquation, void, (unsigned))                                                                      \
+    X(BlendEquationSeparate, void, (unsigned, unsigned))                                                    \
     X(Viewport, void, (int, int, int, int))                                                                 \
     X(Scissor, void, (int, int, int, int))                                                                  \
     X(DepthFunc, void, (unsigned))                                                                          \
     X(DepthMask, void, (unsigned char))                                                                     \
     X(ColorMask, void, (unsigned char, unsigned char, unsigned char, unsigned char))                        \
     X(FrontFace, void, (unsigned))                                                                          \
+    X(DepthRangef, void, (float, float))                                                                    \
     X(ClearBufferfv, void, (unsigned, int, const float *))                                                  \
     X(Flush, void, (void))                                                                                  \
     /* questions */                                                                                         \
@@ -63,6 +65,9 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(GetString, const unsigned char *, (unsigned))                                                         \
     X(GetStringi, const unsigned char *, (unsigned, unsigned))                                              \
     X(GetIntegerv, void, (unsigned, int *))                                                                 \
+    X(GetIntegeri_v, void, (unsigned, unsigned, int *))                                                     \
+    X(GetFloatv, void, (unsigned, float *))                                                                 \
+    X(IsEnabled, unsigned char, (unsigned))                                                                 \
     /* shaders and programs */                                                                              \
     X(CreateShader, unsigned, (unsigned))                                                                   \
     X(ShaderSource, void, (unsigned, int, const char *const *, const int *))                                \
@@ -115,6 +120,7 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(DeleteTextures, void, (int, const unsigned *))                                                        \
     X(ActiveTexture, void, (unsigned))                                                                      \
     X(BindTexture, void, (unsigned, unsigned))                                                              \
+    X(BindSampler, void, (unsigned, unsigned))                                                              \
     X(TexStorage2D, void, (unsigned, int, unsigned, int, int))                                              \
     X(TexStorage3D, void, (unsigned, int, unsigned, int, int, int))                                         \
     X(TexSubImage2D, void, (unsigned, int, int, int, int, int, unsigned, unsigned, const void *))           \
@@ -146,7 +152,6 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
 /* More of ES 3.0, for renderers: NULL where the lookup does not know a function. The library never calls these. */
 #define NOH_GL_EXTRA(X)                                                                     \
     /* state */                                                                             \
-    X(IsEnabled, unsigned char, (unsigned))                                                 \
     X(PolygonOffset, void, (float, float))                                                  \
     X(CullFace, void, (unsigned))                                                           \
     X(ClearColor, void, (float, float, float, float))                                       \
@@ -158,7 +163,6 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(Finish, void, (void))                                                                 \
     /* questions */                                                                         \
     X(GetInteger64v, void, (unsigned, int64_t *))                                           \
-    X(GetFloatv, void, (unsigned, float *))                                                 \
     /* shaders and programs */                                                              \
     X(DetachShader, void, (unsigned, unsigned))                                             \
     X(BindAttribLocation, void, (unsigned, unsigned, const char *))                         \
@@ -183,7 +187,6 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(CopyTexSubImage3D, void, (unsigned, int, int, int, int, int, int, int, int))          \
     X(GenSamplers, void, (int, unsigned *))                                                 \
     X(DeleteSamplers, void, (int, const unsigned *))                                        \
-    X(BindSampler, void, (unsigned, unsigned))                                              \
     X(SamplerParameteri, void, (unsigned, unsigned, int))                                   \
     /* framebuffers */                                                                      \
     X(FramebufferRenderbuffer, void, (unsigned, unsigned, unsigned, unsigned))              \
@@ -214,6 +217,7 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(ClientWaitSync, unsigned, (struct __GLsync *, unsigned, uint64_t), "glClientWaitSync", NOH_GL_GROUP_MAP)         \
     X(DeleteSync, void, (struct __GLsync *), "glDeleteSync", NOH_GL_GROUP_MAP)                                         \
     X(FramebufferTexture, void, (unsigned, unsigned, unsigned, int), "glFramebufferTexture", NOH_GL_GROUP_GEOMETRY)    \
+    X(ClipControl, void, (unsigned, unsigned), "glClipControl", NOH_GL_GROUP_CLIP)                                     \
     X(ObjectLabel, void, (unsigned, unsigned, int, const char *), "glObjectLabel", NOH_GL_GROUP_DEBUG)                 \
     X(PushDebugGroup, void, (unsigned, unsigned, int, const char *), "glPushDebugGroup", NOH_GL_GROUP_DEBUG)           \
     X(PopDebugGroup, void, (void), "glPopDebugGroup", NOH_GL_GROUP_DEBUG)                                              \

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "gl/gl_debug.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "gl/gl_quirks.h"
 #include "shaders.gen.h"
@@ -341,7 +341,6 @@ static void draw_points(const probe *p, GLuint program, uint8_t pixels[4 * 16 * 
     gl->DrawArraysInstanced(GL_POINTS, 0, 8, 1);
     if (!gl->is_es) gl->Disable(NOH_GL_PROGRAM_POINT_SIZE);
     gl->Disable(GL_BLEND);
-    gl->BlendFunc(GL_ONE, GL_ZERO);
     gl->ReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
@@ -502,15 +501,13 @@ static noh_result start(probe *p, noh_error *error)
     return NOH_OK;
 }
 
-static void finish(probe *p, const GLint viewport[4])
+static void finish(probe *p)
 {
     const noh_gl_api *gl = p->api;
     gl->UseProgram(0);
     gl->BindVertexArray(0);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D, 0);
-    gl->Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     gl->DeleteTextures(1, &p->values);
     gl->DeleteFramebuffers(1, &p->framebuffer);
     gl->DeleteVertexArrays(1, &p->vertex_array);
@@ -547,16 +544,21 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
     if (!out) return noh_fail(error, NOH_ERR_ARG, "the struct for the capabilities is NULL", 0, 0);
     noh_gl_caps caps;
     probe p;
-    GLint viewport[4] = { 0, 0, 0, 0 };
+    noh_gl_offscreen kept;
+    noh_gl_pixels pixels;
     memset(&caps, 0, sizeof caps);
     memset(&p, 0, sizeof p);
     p.api = api;
-    api->GetIntegerv(GL_VIEWPORT, viewport);
     read_limits(api, &caps);
     noh_gl_group_begin(api, "noh probe", NULL);
+    noh_gl_offscreen_begin(api, &kept);
+    noh_gl_pack_begin(api, &pixels);
+    noh_gl_samplers_none(api, 0, 1);
     noh_result result = start(&p, error);
     if (result == NOH_OK) run_probes(&p, &caps);
-    finish(&p, viewport);
+    finish(&p);
+    noh_gl_pack_end(api, &pixels);
+    noh_gl_offscreen_end(api, &kept);
     noh_gl_group_end(api);
     if (result == NOH_OK) *out = caps;
     return result;

@@ -56,9 +56,7 @@ typedef struct noh_gl_caps {
 } noh_gl_caps;
 
 /* Fill `out` for the current context. A missing ability is a 0 in its field, not an error.
- * state   Before: as in a new context; nothing bound to GL_PIXEL_PACK_BUFFER or GL_PIXEL_UNPACK_BUFFER, default pixel
- *         store, no scissor, depth or stencil test, no rasteriser discard. After: framebuffer, program, vertex array
- *         and the textures of unit 0 are 0, blending is off with ONE, ZERO, the viewport is as before
+ * state   gl_state.h
  * memory  none; about 5 KiB of stack. All GL objects that it made are deleted
  * errors  ARG api or out is NULL; GL the driver cannot run the probe's programs */
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error);

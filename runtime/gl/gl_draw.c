@@ -14,16 +14,14 @@
 #include "gl/gl_material_internal.h"
 #include "gl/gl_names_internal.h"
 #include "gl/gl_skin_internal.h"
+#include "gl/gl_state_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
 {
     NOH_ASSERT(r && r->gl && camera);
     noh_gl_group_begin(r->gl, "noh meshes", NULL);
-    r->gl->Enable(GL_DEPTH_TEST);
-    r->gl->DepthFunc(GL_LEQUAL);
-    r->gl->DepthMask(GL_TRUE);
-    r->gl->BlendEquation(GL_FUNC_ADD);
-    r->gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    noh_gl_tests_begin(r->gl, &r->raster);
+    noh_gl_samplers_none(r->gl, 0, NOH_UNIT_USER);
     r->camera = *camera;
     noh_gl_draw_tint(r, NULL);
     noh_gl_draw_wrinkles(r, NULL);
@@ -131,13 +129,24 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
 }
 
+/* What the caller calls the front of a triangle, or, of a mirrored instance, the other side. */
+static void set_front(noh_gl_renderer *r, int mirrored)
+{
+    const GLenum kept = r->raster.front_face;
+    if (!mirrored && !(r->raster.kept & NOH_KEEP_FACE)) return;
+    if (!(r->raster.kept & NOH_KEEP_FACE)) {
+        noh_gl_raster_keep(r->gl, &r->raster, NOH_KEEP_FACE);
+    }
+    r->gl->FrontFace(mirrored ? (GLenum)(GL_CW + GL_CCW) - r->raster.front_face : kept);
+}
+
 /* What is set for one instance. Those of a crowd have it in rows of their own instead. */
-static void set_instance(const noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
+static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
     float rows[12], determinant = noh_gl_normal_rows(world, rows);
     uint32_t tint[3];
-    r->gl->FrontFace(determinant < 0.0f ? GL_CW : GL_CCW);
+    set_front(r, determinant < 0.0f);
     r->gl->Uniform4fv(v->u_world, 3, world);
     r->gl->Uniform4fv(v->u_normal, 3, rows);
     noh_gl_tint_bits(r->tint, tint);
@@ -348,7 +357,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     if (j->world) {
         set_instance(j->r, v, j->world, j->morph);
     } else {
-        j->r->gl->FrontFace(GL_CCW);
+        set_front(j->r, 0);
     }
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
@@ -404,7 +413,6 @@ static void draw_part_of(const draw_job *j, draw_part part)
 
 static void draw_pass(const draw_job *j, int pass)
 {
-    const noh_gl_api *gl = j->r->gl;
     NOH_ASSERT(j->mesh->vertex_array && pass >= NOH_DRAW_OPAQUE && pass <= NOH_DRAW_DEPTH);
     NOH_ASSERT(!j->morph || j->morph->is_uint == j->r->layers_uint);
     NOH_ASSERT(!j->morph || pass == NOH_DRAW_DEPTH || (j->morph->layer_count == 2) == j->r->without_tangents);
@@ -412,16 +420,14 @@ static void draw_pass(const draw_job *j, int pass)
         return;
     }
     if (pass == NOH_DRAW_DEPTH) {
-        gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        noh_gl_depth_only_begin(j->r->gl, &j->r->raster);
         draw_part_of(j, PART_SOLID_DEPTH);
         draw_part_of(j, PART_CUT_DEPTH);
-        gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        noh_gl_depth_only_end(j->r->gl, &j->r->raster);
     } else if (pass == NOH_DRAW_BLENDED) {
-        gl->Enable(GL_BLEND);
-        gl->DepthMask(GL_FALSE);
+        noh_gl_blend_begin(j->r->gl, &j->r->raster);
         draw_part_of(j, PART_BLENDED);
-        gl->Disable(GL_BLEND);
-        gl->DepthMask(GL_TRUE);
+        noh_gl_blend_end(j->r->gl, &j->r->raster);
     } else {
         draw_part_of(j, PART_OPAQUE);
     }
@@ -473,8 +479,6 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
     r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
-    r->gl->Disable(GL_DEPTH_TEST);
-    r->gl->Disable(GL_CULL_FACE);
-    r->gl->FrontFace(GL_CCW);
+    noh_gl_raster_put_back(r->gl, &r->raster);
     noh_gl_group_end(r->gl);
 }

@@ -27,6 +27,7 @@
 #include "gl/gl_light.h"
 #include "gl/gl_morph.h"
 #include "gl/gl_skin.h"
+#include "gl/gl_state.h"
 #include "gl/gl_variants.h"
 
 #ifdef __cplusplus
@@ -168,6 +169,7 @@ typedef struct noh_gl_renderer {
     float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
     uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
     const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
+    noh_gl_raster raster;                /* what noh_gl_draw_end puts back */
     uint32_t variant_count;
     noh_gl_variant *variants; /* [variant_count] in the memory that create was given */
 } noh_gl_renderer;
@@ -202,8 +204,9 @@ const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, n
 /* Light what a renderer with `lit` draws from the next noh_gl_draw_begin on. Both are borrowed, and read at draws. */
 void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting);
 
-/* Turn the depth test on, set up blending, and open a debug group that noh_gl_draw_end closes. Bind your framebuffer
- * and set your viewport before. The camera is copied; each variant is given it when it is first drawn with. */
+/* Begin to draw with render state of yours (gl_state.h), and open a debug group that noh_gl_draw_end closes. Bind your
+ * framebuffer, and set your viewport and depth function before. The camera is copied; each variant is given it when it
+ * is first drawn with. */
 void noh_gl_draw_begin(noh_gl_renderer *renderer, const noh_gl_camera *camera);
 
 #define NOH_DRAW_OPAQUE 0
@@ -262,8 +265,8 @@ void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass);
 
-/* End what noh_gl_draw_begin began: unbind program, vertex array, textures and uniform buffer. Depth test, culling and
- * blending are then off. */
+/* End what noh_gl_draw_begin began: unbind program, vertex array, textures and uniform buffer, and put render state back
+ * (gl_state.h). */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
 
 #ifdef __cplusplus

@@ -4,7 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "light/sh_internal.h"
 
 /* ---- what shaders are told ---- */
@@ -94,15 +94,17 @@ noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error)
 {
     const noh_gl_light *l = light;
     const noh_reflection *r = l->desc.reflection;
+    noh_gl_pixels kept;
     NOH_ASSERT(l->gl && r && l->cube.name);
     l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, l->cube.name);
-    l->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(l->gl, &kept);
     for (uint32_t i = 0; i < 6u * NOH_REFLECTION_LEVELS; i++) {
         const uint32_t level = i / 6u, face = i % 6u, n = r->side >> level;
         l->gl->TexSubImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, (GLint)level, 0, 0, (GLsizei)n, (GLsizei)n, GL_RGB,
                              GL_UNSIGNED_INT_5_9_9_9_REV,
                              r->texels + noh_reflection_first(r->side, level) + (size_t)face * n * n);
     }
+    noh_gl_unpack_end(l->gl, &kept);
     l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     return noh_gl_error_check(l->gl, "the driver refuses a reflection's texels", l->cube.bytes, error);
 }
@@ -123,6 +125,7 @@ static noh_result create_shadow(noh_gl_light *l, noh_error *error)
 {
     const noh_gl_texture_desc desc = shadow_desc(&l->desc);
     const GLenum none = GL_NONE;
+    int kept[2];
     noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->shadow, error);
     if (result != NOH_OK) {
         return result;
@@ -137,13 +140,14 @@ static noh_result create_shadow(noh_gl_light *l, noh_error *error)
         if (result != NOH_OK) {
             return result;
         }
+        noh_gl_framebuffers_keep(l->gl, kept);
         l->gl->BindFramebuffer(GL_FRAMEBUFFER, l->framebuffer);
         l->gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, l->shadow.name, 0);
         l->gl->DrawBuffers(1, &none);
         if (l->gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
             result = noh_fail(error, NOH_ERR_GL, "the driver cannot draw to the shadow map", 0, 0);
         }
-        l->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+        noh_gl_framebuffers_put_back(l->gl, kept);
     }
     return result == NOH_OK ? noh_gl_error_check(l->gl, "the driver refuses a shadow map", l->shadow.bytes, error)
                             : result;
@@ -197,20 +201,27 @@ noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error)
 
 /* ---- the shadow map ---- */
 
+void noh_gl_light_bind_shadow(const noh_gl_light *light)
+{
+    noh_gl_offscreen *kept = (noh_gl_offscreen *)(uintptr_t)&light->kept; /* of a light that is drawn with */
+    noh_gl_offscreen_begin(light->gl, kept);
+    light->gl->BindFramebuffer(GL_FRAMEBUFFER, light->framebuffer);
+    light->gl->Viewport(0, 0, (GLsizei)light->desc.shadow_px, (GLsizei)light->desc.shadow_px);
+    light->gl->DepthFunc(GL_LEQUAL);
+}
+
 void noh_gl_light_begin_shadow(const noh_gl_light *light)
 {
     static const float far_away = 1.0f;
     NOH_ASSERT(light && light->framebuffer);
     noh_gl_group_begin(light->gl, "noh shadow map", NULL);
-    light->gl->BindFramebuffer(GL_FRAMEBUFFER, light->framebuffer);
-    light->gl->Viewport(0, 0, (GLsizei)light->desc.shadow_px, (GLsizei)light->desc.shadow_px);
-    light->gl->DepthMask(GL_TRUE);
+    noh_gl_light_bind_shadow(light);
     light->gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
 }
 
 void noh_gl_light_end_shadow(const noh_gl_light *light)
 {
     NOH_ASSERT(light && light->framebuffer);
-    light->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    noh_gl_offscreen_end(light->gl, &light->kept);
     noh_gl_group_end(light->gl);
 }

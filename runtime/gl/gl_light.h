@@ -19,6 +19,7 @@
 #define NOH_GL_GL_LIGHT_H
 
 #include "gl/gl_memory.h"
+#include "gl/gl_state.h"
 #include "light/reflection.h"
 
 #ifdef __cplusplus
@@ -76,6 +77,7 @@ typedef struct noh_gl_light {
     noh_gl_light_desc desc;
     noh_gl_texture cube, shadow; /* GL_RGB9_E5; GL_DEPTH_COMPONENT16, compared, one texel without shadows */
     unsigned framebuffer;        /* 0 without shadows */
+    noh_gl_offscreen kept;       /* what noh_gl_light_end_shadow puts back */
 } noh_gl_light;
 
 uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc);
@@ -98,7 +100,7 @@ noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error);
 noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error);
 
 /* Bind the shadow map's framebuffer, set its viewport, clear it. Draw what casts shadows, depth alone, from the light;
- * then end, which binds framebuffer 0. The viewport stays. Not without shadows. */
+ * then end, which puts render state, framebuffers and viewport back. Not without shadows. */
 void noh_gl_light_begin_shadow(const noh_gl_light *light);
 void noh_gl_light_end_shadow(const noh_gl_light *light);
 

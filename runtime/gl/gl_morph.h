@@ -255,9 +255,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate the instances whose weights or level changed. stats may be NULL.
- * state   Afterwards framebuffer, vertex array, program, array buffer and the textures of units 0 to 2 are 0; blending,
- *         scissor test, depth test and culling are off; the viewport is that of the atlas. Set your own before you
- *         draw. No state is changed if no instance changed
+ * state   gl_state.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 

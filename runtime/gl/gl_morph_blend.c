@@ -24,7 +24,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 
@@ -319,11 +319,12 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
     const int passes = m->plan.path == NOH_MORPH_PER_LAYER ? (int)m->plan.layer_count : 1;
     const int point_size = m->plan.points && !m->gl->is_es; /* OpenGL ES always takes it from the shader */
     const uint32_t records = put_records(m, stats);
+    noh_gl_offscreen kept;
     batch b = { m, (uint32_t(*)[3])m->staging, 0, m->batch.entries, 0, 0 };
     if (records) noh_gl_table_upload(m->gl, &m->record_table, 0, records, m->records);
     put_targets(&b);
     send(&b);
-    noh_gl_morph_begin(m);
+    noh_gl_morph_begin(m, &kept);
     if (point_size) m->gl->Enable(NOH_GL_PROGRAM_POINT_SIZE);
     m->gl->BlendEquation(GL_FUNC_ADD);
     m->gl->BlendFunc(GL_ONE, GL_ONE);
@@ -338,6 +339,5 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
         noh_gl_group_end(m->gl);
     }
     stats->draws += b.draws;
-    if (point_size) m->gl->Disable(NOH_GL_PROGRAM_POINT_SIZE);
-    noh_gl_morph_end(m);
+    noh_gl_morph_end(m, &kept);
 }

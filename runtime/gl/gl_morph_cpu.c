@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "light/transfer.h"
 
 /* Floats to halves in place. Half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
@@ -66,15 +66,16 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, noh_gl_morph_sta
 
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
+    noh_gl_pixels kept;
     m->gl->ActiveTexture(GL_TEXTURE0);
     m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, m->layers.name);
-    m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    noh_gl_unpack_begin(m->gl, &kept);
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         if (m->dirty[i] && noh_gl_morph_view(m, i).header->morph_height) {
             update_instance(m, i, stats);
         }
     }
-    m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_end(m->gl, &kept);
     m->gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-    noh_gl_morph_end(m);
+    noh_gl_morph_end(m, NULL);
 }

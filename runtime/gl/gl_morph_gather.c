@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 
@@ -75,16 +75,17 @@ static lists lists_of(const noh_gl_morph *m)
 
 static void draw_lists(noh_gl_morph *m, lists *l, noh_gl_morph_stats *stats)
 {
+    noh_gl_offscreen kept;
     if (!l->tile_count) return;
     noh_gl_table_upload(m->gl, &m->record_table, 0, l->entry_count, l->entries);
     noh_gl_table_upload(m->gl, &m->starts, 0, l->start_count, l->starts);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, m->stream.name);
     m->gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(16u * (size_t)l->tile_count), l->tiles);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    noh_gl_morph_begin(m);
+    noh_gl_morph_begin(m, &kept);
     m->gl->BindFramebuffer(GL_FRAMEBUFFER, m->framebuffers[0]);
     m->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)l->tile_count);
-    noh_gl_morph_end(m);
+    noh_gl_morph_end(m, &kept);
     stats->draws += 1;
     l->entry_count = l->start_count = l->tile_count = 0;
 }

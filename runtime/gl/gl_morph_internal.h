@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "deform/morph_finish.h"
 #include "gl/gl_morph.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_table_internal.h"
 
 #define NOH_TILE_CHUNK 64u       /* tiles of delta texels that are sent at once at load: at most 16 KiB */
@@ -157,9 +157,10 @@ noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error);
 int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at,
                             uint32_t *bytes);
 
-/* Bind what a draw reads; leave the state that noh_gl_morph_update promises. */
-void noh_gl_morph_begin(const noh_gl_morph *m);
-void noh_gl_morph_end(const noh_gl_morph *m);
+/* Bind what a draw reads; leave the state that noh_gl_morph_update promises.
+ * kept  NULL at the end: nothing was drawn */
+void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept);
+void noh_gl_morph_end(const noh_gl_morph *m, const noh_gl_offscreen *kept);
 
 /* The paths: make their GL objects, and do one update. */
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);

@@ -4,7 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_morph_internal.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 
 /* ---- where things are ---- */
 
@@ -70,9 +70,11 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     static const GLenum attachments[3] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
     noh_result result = noh_gl_framebuffer_create(m->gl, m->ledger, framebuffer, error);
     GLenum status;
+    int kept[2];
     if (result) {
         return result;
     }
+    noh_gl_framebuffers_keep(m->gl, kept);
     m->gl->BindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
     if (which == NOH_LAYERS_LAYERED) {
         m->gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, m->layers.name, 0);
@@ -86,7 +88,7 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     }
     noh_gl_label(m->gl, GL_FRAMEBUFFER, *framebuffer, "morph target of", noh_morph_path_name(m->plan.path));
     status = m->gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    noh_gl_framebuffers_put_back(m->gl, kept);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
         noh_gl_error_take(m->gl);
         return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
@@ -119,36 +121,28 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
 
 /* ---- the state around a draw ---- */
 
-static void plain_state(const noh_gl_morph *m)
-{
-    static const GLenum off[] = { GL_BLEND, GL_SCISSOR_TEST, GL_DEPTH_TEST, GL_CULL_FACE };
-    for (unsigned i = 0; i < sizeof off / sizeof off[0]; i++) {
-        m->gl->Disable(off[i]);
-    }
-    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
-}
-
-void noh_gl_morph_begin(const noh_gl_morph *m)
+void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept)
 {
     const GLuint names[3] = { m->tiles.name, m->record_table.texture.name, m->starts.texture.name };
     for (unsigned i = 3; i-- > 0;) { /* downwards, so that unit 0 is the active one at the end */
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
     }
-    plain_state(m);
+    noh_gl_samplers_none(m->gl, 0, 3);
+    noh_gl_offscreen_begin(m->gl, kept);
+    m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
     m->gl->UseProgram(m->program);
     m->gl->BindVertexArray(m->vertex_array);
 }
 
-void noh_gl_morph_end(const noh_gl_morph *m)
+void noh_gl_morph_end(const noh_gl_morph *m, const noh_gl_offscreen *kept)
 {
     for (unsigned i = 3; i-- > 0;) {
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, 0);
     }
-    plain_state(m);
     m->gl->UseProgram(0);
     m->gl->BindVertexArray(0);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    m->gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (kept) noh_gl_offscreen_end(m->gl, kept);
 }

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "gl/gl_morph_internal.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "light/transfer_internal.h"
 
 /* ---- counting ---- */
@@ -218,12 +218,14 @@ static void find_rows(tile_chunk *c, const noh_mesh_header *h, const uint32_t *e
 static void upload_chunk(const noh_gl_morph *m, const tile_chunk *c, uint32_t tile)
 {
     const uint32_t across_log2 = m->tiles_across_log2;
+    noh_gl_pixels kept;
     m->gl->ActiveTexture(GL_TEXTURE0);
     m->gl->BindTexture(GL_TEXTURE_2D, m->tiles.name);
-    m->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(m->gl, &kept);
     m->gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)((tile & ((1u << across_log2) - 1u)) * 4u),
                          (GLint)((tile >> across_log2) * 4u), (GLsizei)(4u * c->count), 4,
                          c->words == 4u ? GL_RGBA_INTEGER : GL_RGB_INTEGER, GL_UNSIGNED_INT, c->texels);
+    noh_gl_unpack_end(m->gl, &kept);
 }
 
 int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at,

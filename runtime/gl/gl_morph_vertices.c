@@ -307,7 +307,7 @@ void noh_gl_morph_update_vertices(noh_gl_morph *m, noh_gl_morph_stats *stats)
         if (m->dirty[i] && noh_gl_morph_view(m, i).header->touched_count) update_instance(m, i, may_map, stats);
     }
     m->update_count += 1u;
-    noh_gl_morph_end(m);
+    noh_gl_morph_end(m, NULL);
 }
 
 void noh_gl_morph_set_vertices(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding)

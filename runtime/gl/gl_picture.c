@@ -6,7 +6,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 
 #define STRIP_BLOCKS 16u
 
@@ -94,6 +94,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
                                  noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture picture;
+    noh_gl_pixels kept;
     noh_result result;
     NOH_ASSERT(api && ledger && texture && texture->header && out);
     if (texture->header->format && !api->etc2 && !api->decode) {
@@ -108,8 +109,9 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     }
     api->BindTexture(GL_TEXTURE_2D, picture.name);
     noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
-    api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(api, &kept);
     for (uint32_t i = 0; i < desc.levels; i++) send_level(api, texture, i);
+    noh_gl_unpack_end(api, &kept);
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);

@@ -9,16 +9,20 @@
 #include "gl/gl_material_internal.h"
 #include "gl/gl_names_internal.h"
 #include "gl/gl_renderer_internal.h"
+#include "gl/gl_state_internal.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {
     static const uint8_t texel[4] = { 255, 255, 255, 255 };
     noh_gl_texture_desc desc = { GL_RGBA8, 1, 1, 0, 0, 0, 0 };
+    noh_gl_pixels kept;
     noh_result result = noh_gl_texture_create(r->gl, r->ledger, &desc, &r->white, error);
     if (!result) {
         r->gl->BindTexture(GL_TEXTURE_2D, r->white.name);
         noh_gl_label(r->gl, GL_TEXTURE, r->white.name, "renderer white", NULL);
+        noh_gl_unpack_begin(r->gl, &kept);
         r->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+        noh_gl_unpack_end(r->gl, &kept);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
         result = noh_gl_error_check(r->gl, "the driver refuses the renderer's white texel", r->white.bytes, error);
     }

@@ -10,7 +10,7 @@
 #include "deform/dual_quaternion.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_skin_internal.h"
 
 static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
@@ -406,11 +406,13 @@ void noh_gl_skin_update(noh_gl_skin *skin)
         gl->BindBuffer(GL_UNIFORM_BUFFER, 0);
     } else {
         uint32_t y = first >> skin->width_log2, height = ((end - 1u) >> skin->width_log2) + 1u - y;
+        noh_gl_pixels kept;
         gl->ActiveTexture(GL_TEXTURE0);
         gl->BindTexture(GL_TEXTURE_2D, skin->texture.name);
-        gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        noh_gl_unpack_begin(gl, &kept);
         gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, (GLsizei)skin->plan.width, (GLsizei)height, GL_RGBA, GL_FLOAT,
                           skin->rows + ((size_t)y << skin->width_log2) * 4u);
+        noh_gl_unpack_end(gl, &kept);
         gl->BindTexture(GL_TEXTURE_2D, 0);
     }
     skin->dirty_first = UINT32_MAX;

@@ -136,7 +136,7 @@ noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint
 noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error);
 
 /* Upload the span of rows that changed since the last update, in one call.
- * state   Afterwards the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
+ * state   gl_state.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
  * errors  none: init checked everything */
 void noh_gl_skin_update(noh_gl_skin *skin);
 

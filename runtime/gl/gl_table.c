@@ -1,5 +1,5 @@
 /* gl_table.c: tables of texels in 2-D textures (gl_table_internal.h). */
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_table_internal.h"
 
 #define WIDTH_LOG2_MIN 8u
@@ -77,15 +77,17 @@ void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint3
     uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that was begun */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
+    noh_gl_pixels kept;
     NOH_ASSERT(table->texture.name && (data || !count));
     NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, table->texture.name);
-    api->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(api, &kept);
     upload_block(api, table, x, y, head, 1, bytes);
     bytes += (size_t)head * table->texel_bytes;
     y += head ? 1u : 0u;
     upload_block(api, table, 0, y, width, rows, bytes);
     bytes += ((size_t)rows << table->width_log2) * table->texel_bytes;
     upload_block(api, table, 0, y + rows, count - head - (rows << table->width_log2), 1, bytes);
+    noh_gl_unpack_end(api, &kept);
 }

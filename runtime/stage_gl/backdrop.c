@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 #include "stage_gl/lit_source_internal.h"
@@ -92,6 +92,7 @@ void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, con
     const noh_gl_api *gl = backdrop->gl;
     const GLuint program = backdrop->program;
     float rows[NOH_LIGHTING_ROWS][4], rays[3][4], ends[2][4];
+    noh_gl_raster raster;
     NOH_ASSERT(backdrop && light && lighting && view);
     noh_lighting_pack(lighting, 0, rows);
     corner_rays(view, rays);
@@ -104,12 +105,12 @@ void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, con
                   0.0f);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_CUBE_MAP, light->cube.name);
-    gl->Disable(GL_DEPTH_TEST);
-    gl->Disable(GL_BLEND);
-    gl->Disable(GL_CULL_FACE);
+    noh_gl_samplers_none(gl, 0, 1);
+    noh_gl_behind_begin(gl, &raster);
     gl->BindVertexArray(backdrop->vertex_array);
     gl->DrawArraysInstanced(GL_TRIANGLES, 0, 3, 1);
     gl->BindVertexArray(0);
+    noh_gl_raster_put_back(gl, &raster);
     gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     gl->UseProgram(0);
 }

@@ -37,7 +37,7 @@ noh_result noh_backdrop_restore(noh_backdrop *backdrop, char *log, size_t log_by
 
 /* Fill the framebuffer and viewport that are set with what `view` looks into, as `lighting` exposes and turns it.
  * light  of the stage: noh_stage_light_of
- * state  program 0, no vertex array; depth test, blending and culling are off, depth is not written */
+ * state  gl_state.h; depth is not written */
 void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, const noh_gl_light *light,
                        const noh_lighting *lighting, const noh_stage_view *view);
 

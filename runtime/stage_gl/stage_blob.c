@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 #include "stage/stage_internal.h"
@@ -58,19 +58,14 @@ noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_by
     return create_objects(blob, log, log_bytes, error);
 }
 
-static void begin(const noh_stage_blob *b, const noh_stage_view *view, const float origin[3])
+static void begin(const noh_stage_blob *b, const noh_stage_view *view, const float origin[3], noh_gl_raster *raster)
 {
     const noh_gl_api *gl = b->gl;
     noh_stage_view near_by;
     noh_view_less(view, origin, &near_by);
     gl->UseProgram(b->program);
     gl->UniformMatrix4fv(b->camera, 1, GL_FALSE, near_by.view_projection);
-    gl->Enable(GL_DEPTH_TEST);
-    gl->DepthFunc(GL_LEQUAL);
-    gl->DepthMask(GL_FALSE);
-    gl->Disable(GL_CULL_FACE);
-    gl->Enable(GL_BLEND);
-    gl->BlendEquation(GL_FUNC_ADD);
+    noh_gl_multiply_begin(gl, raster);
     gl->BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     gl->BindVertexArray(b->vertex_array);
 }
@@ -93,16 +88,16 @@ static void draw_some(noh_stage_blob *b, const noh_blob *blobs, uint32_t count, 
 
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count)
 {
+    noh_gl_raster raster;
     float origin[3];
     NOH_ASSERT(blob && blob->gl && view && (blobs || !count));
     if (!count) return;
     noh_view_origin(view, origin);
-    begin(blob, view, origin);
+    begin(blob, view, origin, &raster);
     for (uint32_t first = 0; first < count; first += NOH_BLOBS_DRAWN) {
         draw_some(blob, blobs + first, count - first < NOH_BLOBS_DRAWN ? count - first : NOH_BLOBS_DRAWN, origin);
     }
     blob->gl->BindVertexArray(0);
-    blob->gl->Disable(GL_BLEND);
-    blob->gl->DepthMask(GL_TRUE);
+    noh_gl_raster_put_back(blob->gl, &raster);
     blob->gl->UseProgram(0);
 }

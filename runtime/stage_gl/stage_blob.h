@@ -37,8 +37,7 @@ noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_by
 
 /* Into the framebuffer and viewport that are set; NOH_BLOBS_DRAWN to a draw.
  * shapes  blobs[count]
- * state   program 0, no vertex array; depth is tested (less or equal) and written again, blending and culling are off
- */
+ * state   gl_state.h */
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count);
 
 #ifdef __cplusplus

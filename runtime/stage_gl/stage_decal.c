@@ -3,12 +3,13 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "shaders.gen.h"
 #include "stage_gl/stage_patch_internal.h"
 
 #define ROW_TEXELS 4u
 #define ROWS_SENT 16u /* at once: what fits on the stack */
+#define NUDGE 2e-5f   /* of depth, towards the eye */
 
 /* ---- what there is ---- */
 
@@ -19,6 +20,7 @@ static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_ma
     api->Uniform3f(api->GetUniformLocation(program, "u_marks"), (float)d->count,
                    d->picture.texture ? (float)d->picture.columns : 0.0f,
                    d->picture.texture ? (float)d->picture.rows : 0.0f);
+    api->Uniform4f(api->GetUniformLocation(program, "u_towards"), d->reversed ? NUDGE : -NUDGE, 0.0f, 0.0f, 0.0f);
     api->Uniform1i(api->GetUniformLocation(program, "u_corner_row"), d->corners ? (GLint)d->corner_row : -1);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 2u);
     api->BindTexture(GL_TEXTURE_2D, d->corners);
@@ -109,7 +111,10 @@ static void set_row(const noh_decals *ring, uint32_t index, float row[ROW_TEXELS
 
 static void send_rows(const noh_stage_decals *d, float rows[ROWS_SENT][ROW_TEXELS][4], uint32_t first, uint32_t count)
 {
+    noh_gl_pixels kept;
+    noh_gl_unpack_begin(d->gl, &kept);
     d->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)first, ROW_TEXELS, (GLsizei)count, GL_RGBA, GL_FLOAT, rows);
+    noh_gl_unpack_end(d->gl, &kept);
 }
 
 uint32_t noh_gl_decals_of(const noh_decals *ring, uint32_t mesh, uint8_t marks[NOH_DECALS_MAX])
@@ -127,6 +132,7 @@ static void upload_rows(noh_stage_decals *d, const noh_decals *ring, uint32_t me
     float rows[ROWS_SENT][ROW_TEXELS][4];
     uint8_t marks[NOH_DECALS_MAX];
     d->count = noh_gl_decals_of(ring, mesh, marks);
+    noh_gl_samplers_none(d->gl, NOH_UNIT_USER, 3);
     d->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
     d->gl->BindTexture(GL_TEXTURE_2D, d->rows.name);
     for (uint32_t first = 0; first < d->count; first += ROWS_SENT) {
@@ -179,17 +185,17 @@ noh_result noh_gl_decals_draw(noh_stage_decals *decals, noh_stage_patches *patch
                               const noh_decals *ring, noh_error *error)
 {
     noh_gl_alone alone;
+    noh_gl_raster *raster;
     noh_result result;
     NOH_ASSERT(decals && decals->shader && ring && !noh_decals_check(ring));
     result = noh_gl_begin_alone(decals->stage, &decals->shader->renderer, view, actor, &alone, error);
     if (result) return result;
-    decals->gl->Enable(GL_BLEND);
-    decals->gl->DepthMask(GL_FALSE);
+    raster = &decals->shader->renderer.raster;
+    decals->reversed = noh_gl_is_reversed(raster);
+    noh_gl_blend_begin(decals->gl, raster);
     if (patches) noh_gl_patches_begin(patches, &alone);
     for (uint32_t m = 0; m < alone.mesh_count; m++) draw_mesh(decals, patches, &alone, m, ring);
     unbind(decals);
-    decals->gl->DepthMask(GL_TRUE);
-    decals->gl->Disable(GL_BLEND);
     noh_gl_draw_end(&decals->shader->renderer);
     return NOH_OK;
 }

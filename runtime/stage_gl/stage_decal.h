@@ -39,6 +39,7 @@ typedef struct noh_stage_decals {
     uint32_t count;   /* of the draw that is under way */
     unsigned corners; /* of stage_patch.h, likewise; 0: marks are looked up alone */
     uint32_t corner_row;
+    int reversed;   /* likewise: depths fall with the distance */
     uint32_t draws; /* of all meshes so far */
 } noh_stage_decals;
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "shaders.gen.h"
 #include "stage_gl/lit_source_internal.h"
@@ -58,28 +58,23 @@ noh_result noh_stage_floor_restore(noh_stage_floor *level, char *log, size_t log
     return create_objects(level, log, log_bytes, error);
 }
 
-static void begin(const noh_stage_floor *f, const noh_gl_light *light)
+static void begin(const noh_stage_floor *f, const noh_gl_light *light, noh_gl_raster *raster)
 {
     const noh_gl_api *gl = f->gl;
     gl->ActiveTexture(GL_TEXTURE1);
     gl->BindTexture(GL_TEXTURE_2D, light->shadow.name);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_CUBE_MAP, light->cube.name);
-    gl->Enable(GL_DEPTH_TEST);
-    gl->DepthFunc(GL_LEQUAL);
-    gl->DepthMask(GL_FALSE);
-    gl->Disable(GL_CULL_FACE);
-    gl->Enable(GL_BLEND);
-    gl->BlendEquation(GL_FUNC_ADD);
+    noh_gl_samplers_none(gl, 0, 2);
+    noh_gl_multiply_begin(gl, raster);
     gl->BlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
     gl->BindVertexArray(f->vertex_array);
 }
 
-static void end(const noh_gl_api *gl)
+static void end(const noh_gl_api *gl, const noh_gl_raster *raster)
 {
     gl->BindVertexArray(0);
-    gl->Disable(GL_BLEND);
-    gl->DepthMask(GL_TRUE);
+    noh_gl_raster_put_back(gl, raster);
     gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
     gl->ActiveTexture(GL_TEXTURE1);
     gl->BindTexture(GL_TEXTURE_2D, 0);
@@ -91,6 +86,7 @@ void noh_stage_floor_draw(const noh_stage_floor *level, const noh_gl_light *ligh
                           const noh_stage_view *view, const float disc[4])
 {
     const noh_gl_api *gl;
+    noh_gl_raster raster;
     noh_lighting near_light;
     noh_stage_view near_by;
     float rows[NOH_LIGHTING_ROWS][4], origin[3];
@@ -108,7 +104,7 @@ void noh_stage_floor_draw(const noh_stage_floor *level, const noh_gl_light *ligh
     gl->Uniform4fv(gl->GetUniformLocation(level->program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
     gl->Uniform3f(gl->GetUniformLocation(level->program, "noh_key"), lighting->key_direction[0],
                   lighting->key_direction[1], lighting->key_direction[2]);
-    begin(level, light);
+    begin(level, light, &raster);
     gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, 1);
-    end(gl);
+    end(gl, &raster);
 }

@@ -38,7 +38,7 @@ noh_result noh_stage_floor_restore(noh_stage_floor *level, char *log, size_t log
  * light   of the stage: noh_stage_light_of
  * shapes  disc[4]: centre in the world, radius; the shadow fades over the outer half. Twice the radius that
  *         noh_lighting_shadow was told holds the shadow of a light that stands at 45 degrees or higher
- * state   program 0, no vertex array; depth is tested (less or equal) and written again, blending and culling are off */
+ * state   gl_state.h */
 void noh_stage_floor_draw(const noh_stage_floor *level, const noh_gl_light *light, const noh_lighting *lighting,
                           const noh_stage_view *view, const float disc[4]);
 

@@ -39,7 +39,7 @@ typedef struct noh_stage_shader noh_stage_shader;
 /* Draw what the view-th view of the last frame sees, into the framebuffer and viewport that are set. In a view without
  * height_px actors with no_shadow are left out.
  * shader  NULL: the library's
- * state   afterwards as noh_gl_draw_end leaves it
+ * state   gl_state.h: depth function, front face and blending are yours
  * errors  ARG the stage is lit and no lighting was set; the last frame had no such view, or a frame has begun and not
  * ended; or the desc is without_shader or without_depth, and this draw needs it */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
@@ -52,7 +52,7 @@ void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting);
 const noh_gl_light *noh_stage_light_of(const noh_stage *stage);
 
 /* Draw what a view sees into the stage's shadow map: one without height_px, as noh_view_shadow makes it.
- * state   afterwards as noh_gl_draw_end leaves it, framebuffer 0 bound, the viewport as large as the map
+ * state   gl_state.h
  * errors  ARG as noh_stage_draw of NOH_PASS_DEPTH; the desc has no light with a shadow map */
 noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error);
 

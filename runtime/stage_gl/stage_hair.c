@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "gl/gl_shader_text.h"
 #include "shaders.gen.h"
@@ -98,6 +98,8 @@ static void upload_patches(const noh_stage_hair *h)
     const noh_hair_layout l = noh_hair_layout_of(cut, h->sets, h->bodies);
     const uint32_t all = 2u * cut->header->patch_count;
     float piece[3u * PIECE_TEXELS];
+    noh_gl_pixels kept;
+    noh_gl_unpack_begin(h->gl, &kept);
     for (uint32_t at = 0; at < all;) {
         const uint32_t x = at % l.width, in_row = l.width - x, left = all - at;
         uint32_t count = in_row < left ? in_row : left;
@@ -112,6 +114,7 @@ static void upload_patches(const noh_stage_hair *h)
                              GL_FLOAT, piece);
         at += count;
     }
+    noh_gl_unpack_end(h->gl, &kept);
 }
 
 void noh_hair_upload(const noh_stage_hair *h, uint32_t set)
@@ -119,9 +122,10 @@ void noh_hair_upload(const noh_stage_hair *h, uint32_t set)
     const noh_pack_hair_header *head = h->wig->cut->header;
     const noh_hair_layout l = noh_hair_layout_of(h->wig->cut, h->sets, h->bodies);
     const uint32_t first = set * head->hair_count;
+    noh_gl_pixels kept;
     h->gl->ActiveTexture(GL_TEXTURE0);
     h->gl->BindTexture(GL_TEXTURE_2D, h->texture.name);
-    h->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(h->gl, &kept);
     for (uint32_t at = 0; at < head->hair_count;) {
         const uint32_t x = (first + at) % l.in_row, left = head->hair_count - at, room = l.in_row - x;
         const uint32_t rows = x || left < room ? 1u : left / l.in_row;
@@ -131,6 +135,7 @@ void noh_hair_upload(const noh_stage_hair *h, uint32_t set)
                              h->points + 3u * (size_t)at * head->point_count);
         at += hairs * rows;
     }
+    noh_gl_unpack_end(h->gl, &kept);
 }
 
 noh_result noh_hair_create_objects(noh_stage_hair *h, char *log, size_t log_bytes, noh_error *error)
@@ -243,6 +248,7 @@ void noh_hair_bind(const noh_stage_hair *h, const noh_stage *s, GLuint program, 
     const noh_stage_gl *gl = s->gpu;
     const noh_gl_api *api = h->gl;
     api->UseProgram(program);
+    noh_gl_samplers_none(api, 0, 3);
     set_shape(h, program, strips);
     api->UniformMatrix4fv(named(h, program, "u_view_projection"), 1, GL_FALSE, v->view_projection);
     api->Uniform4f(named(h, program, "u_eye"), v->eye[0], v->eye[1], v->eye[2], v->height_px ? 1.0f : 0.0f);
@@ -276,9 +282,6 @@ void noh_hair_unbind(const noh_stage_hair *h)
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, 0);
     api->UseProgram(0);
-    api->Disable(GL_DEPTH_TEST);
-    api->Disable(GL_BLEND);
-    api->DepthMask(GL_TRUE);
 }
 
 void noh_hair_draw_strips(noh_stage_hair *h, GLuint program, uint32_t strips, float low, float high)
@@ -294,23 +297,17 @@ void noh_hair_draw_pass(noh_stage_hair *h, const noh_stage *s, uint32_t view, no
 {
     const noh_gl_api *gl = h->gl;
     const GLuint program = pass == NOH_PASS_DEPTH ? h->depth : h->color;
+    noh_gl_raster raster;
     noh_hair_bind(h, s, program, &s->views[view], strips);
-    gl->Enable(GL_DEPTH_TEST);
+    noh_gl_tests_begin(gl, &raster);
     gl->Disable(GL_CULL_FACE);
-    if (pass != NOH_PASS_BLENDED) {
-        const GLboolean colors = pass == NOH_PASS_DEPTH ? GL_FALSE : GL_TRUE;
-        gl->Disable(GL_BLEND);
-        gl->ColorMask(colors, colors, colors, colors);
-        fn(user, program, 0.9f, 2.0f);
-        gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    }
+    if (pass == NOH_PASS_DEPTH) noh_gl_depth_only_begin(gl, &raster);
+    if (pass != NOH_PASS_BLENDED) fn(user, program, 0.9f, 2.0f);
     if (pass != NOH_PASS_OPAQUE && pass != NOH_PASS_DEPTH) {
-        gl->Enable(GL_BLEND);
-        gl->BlendEquation(GL_FUNC_ADD);
-        gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        gl->DepthMask(GL_FALSE);
+        noh_gl_blend_begin(gl, &raster);
         fn(user, program, 0.01f, 0.9f);
     }
+    noh_gl_raster_put_back(gl, &raster);
     noh_hair_unbind(h);
 }
 
@@ -336,8 +333,7 @@ int noh_hair_begin_shadow(const noh_stage_hair *h, const noh_stage *stage)
     NOH_ASSERT(gl);
     if (!gl->light || !gl->light->framebuffer) return 0;
     noh_gl_group_begin(h->gl, "noh hair's shadow", NULL);
-    h->gl->BindFramebuffer(GL_FRAMEBUFFER, gl->light->framebuffer);
-    h->gl->Viewport(0, 0, (GLsizei)gl->light->desc.shadow_px, (GLsizei)gl->light->desc.shadow_px);
+    noh_gl_light_bind_shadow(gl->light);
     return 1;
 }
 

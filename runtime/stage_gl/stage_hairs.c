@@ -6,7 +6,7 @@
 #include "base/arena.h"
 #include "gl/gl_light.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "stage_gl/stage_gl_internal.h"
 #include "stage_gl/stage_hair_internal.h"
 
@@ -151,6 +151,7 @@ void noh_stage_hairs_update(noh_stage_hairs *hairs)
     const noh_wigs_desc *d = noh_wigs_desc_of(hairs->wigs);
     const noh_hair_layout l = noh_hair_layout_of(d->wig->cut, hairs->hair.sets, hairs->hair.bodies);
     const noh_gl_api *gl = hairs->hair.gl;
+    noh_gl_pixels kept;
     uint32_t count;
     const noh_wigs_body *bodies = noh_wigs_bodies(hairs->wigs, &count);
     fill_table(hairs);
@@ -162,10 +163,11 @@ void noh_stage_hairs_update(noh_stage_hairs *hairs)
     }
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D, hairs->hair.texture.name);
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_begin(gl, &kept);
     gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)l.bodies, (GLsizei)l.width,
                       (GLsizei)((NOH_HAIR_BODY_TEXELS * count + l.width - 1u) / l.width), GL_RGB, GL_FLOAT,
                       hairs->table);
+    noh_gl_unpack_end(gl, &kept);
     gl->BindTexture(GL_TEXTURE_2D, 0);
 }
 

@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "stage_gl/stage_patch_internal.h"
 
 #define TRIANGLES_SENT 64u /* at once: what fits on the stack */
@@ -237,8 +237,11 @@ static void send_row(const table *t)
     const noh_stage_patches *p = t->g->p;
     const uint32_t level = (uint32_t)(t->g->to - p->levels);
     const uint32_t y = level * NOH_PATCH_ROWS(p->capacity, p->triangle_room) + (t->at - 1u) / NOH_PATCH_WIDTH;
+    noh_gl_pixels kept;
+    noh_gl_unpack_begin(p->decals->gl, &kept);
     p->decals->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, NOH_PATCH_WIDTH, 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
                                  t->row);
+    noh_gl_unpack_end(p->decals->gl, &kept);
 }
 
 static void put(table *t, uint32_t value)

@@ -4,7 +4,7 @@
 
 #include "gl/gl_debug.h"
 #include "gl/gl_lost.h"
-#include "gl/gl_names_internal.h"
+#include "gl/gl_state_internal.h"
 #include "gl/gl_program.h"
 #include "gl/gl_shader_text.h"
 #include "shaders.gen.h"
@@ -68,12 +68,13 @@ static noh_result create_program(const noh_stage_terrain *t, int depth, GLuint *
 static void upload(const noh_stage_terrain *t)
 {
     const noh_field *f = &t->lod.field;
+    noh_gl_pixels kept;
     t->gl->ActiveTexture(GL_TEXTURE0);
     t->gl->BindTexture(GL_TEXTURE_2D, t->heights.name);
-    t->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    noh_gl_unpack_begin(t->gl, &kept);
     t->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)f->width, (GLsizei)f->depth, GL_RED_INTEGER,
                          GL_UNSIGNED_SHORT, f->heights);
-    t->gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    noh_gl_unpack_end(t->gl, &kept);
     t->gl->BindTexture(GL_TEXTURE_2D, 0);
 }
 
@@ -172,7 +173,7 @@ static void bind_light(const noh_stage_terrain *t, const noh_stage *s, const noh
     api->BindTexture(GL_TEXTURE_2D, gl->light->shadow.name);
 }
 
-static void bind(const noh_stage_terrain *t, GLuint program, const noh_stage_view *v)
+static void bind(const noh_stage_terrain *t, GLuint program, const noh_stage_view *v, noh_gl_raster *raster)
 {
     const noh_gl_api *api = t->gl;
     const noh_field *f = &t->lod.field;
@@ -192,8 +193,8 @@ static void bind(const noh_stage_terrain *t, GLuint program, const noh_stage_vie
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, t->heights.name);
     api->BindVertexArray(t->vertex_array);
-    api->Enable(GL_DEPTH_TEST);
-    api->Disable(GL_BLEND);
+    noh_gl_samplers_none(api, 0, 3);
+    noh_gl_tests_begin(api, raster);
     api->Disable(GL_CULL_FACE);
 }
 
@@ -208,7 +209,6 @@ static void unbind(const noh_stage_terrain *t)
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, 0);
     api->UseProgram(0);
-    api->Disable(GL_DEPTH_TEST);
 }
 
 static void draw_blocks(noh_stage_terrain *t, GLuint program, int all)
@@ -228,11 +228,13 @@ static void draw_blocks(noh_stage_terrain *t, GLuint program, int all)
 
 void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view)
 {
+    noh_gl_raster raster;
     NOH_ASSERT(terrain && view);
     noh_gl_group_begin(terrain->gl, "noh terrain", NULL);
-    bind(terrain, terrain->color, view);
+    bind(terrain, terrain->color, view, &raster);
     if (terrain->desc.lit && stage) bind_light(terrain, stage, view);
     draw_blocks(terrain, terrain->color, 0);
+    noh_gl_raster_put_back(terrain->gl, &raster);
     unbind(terrain);
     noh_gl_group_end(terrain->gl);
 }
@@ -240,15 +242,15 @@ void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, 
 void noh_stage_terrain_draw_shadow(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view)
 {
     const noh_stage_gl *gl = stage->gpu;
+    noh_gl_raster raster;
     NOH_ASSERT(terrain && gl && view);
     if (!gl->light || !gl->light->framebuffer) return;
     noh_gl_group_begin(terrain->gl, "noh terrain's shadow", NULL);
-    terrain->gl->BindFramebuffer(GL_FRAMEBUFFER, gl->light->framebuffer);
-    terrain->gl->Viewport(0, 0, (GLsizei)gl->light->desc.shadow_px, (GLsizei)gl->light->desc.shadow_px);
-    bind(terrain, terrain->depth, view);
-    terrain->gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    noh_gl_light_bind_shadow(gl->light);
+    bind(terrain, terrain->depth, view, &raster);
+    noh_gl_depth_only_begin(terrain->gl, &raster);
     draw_blocks(terrain, terrain->depth, 1);
-    terrain->gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    noh_gl_raster_put_back(terrain->gl, &raster);
     unbind(terrain);
     noh_gl_light_end_shadow(gl->light);
 }

@@ -60,10 +60,10 @@ void noh_stage_terrain_choose(noh_stage_terrain *terrain, const noh_stage_view *
 
 /* Draw it into the framebuffer and viewport that are set, before or after the stage's opaque pass.
  * stage    its light is the ground's; NULL where that has none
- * state    program 0, no vertex array, depth test, blending and culling off */
+ * state    gl_state.h */
 void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view);
 
-/* Add all of it to the stage's shadow map, after noh_stage_draw_shadow. Framebuffer 0 is bound afterwards. */
+/* Add all of it to the stage's shadow map, after noh_stage_draw_shadow. */
 void noh_stage_terrain_draw_shadow(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view);
 
 #ifdef __cplusplus

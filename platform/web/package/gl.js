@@ -2,18 +2,18 @@
 // objects, and addresses where WebGL has views of memory. Nothing is allocated in a frame: views are given with offsets.
 
 // Without objects or addresses: the same function by the same name.
-const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEquation', 'Viewport', 'Scissor', 'DepthFunc', 'DepthMask', 'ColorMask',
-    'FrontFace', 'GetError', 'EnableVertexAttribArray', 'VertexAttribPointer', 'VertexAttribIPointer', 'VertexAttribDivisor', 'VertexAttrib4f',
+const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEquation', 'BlendEquationSeparate', 'Viewport', 'Scissor', 'DepthFunc', 'DepthMask', 'ColorMask',
+    'FrontFace', 'IsEnabled', 'GetError', 'EnableVertexAttribArray', 'VertexAttribPointer', 'VertexAttribIPointer', 'VertexAttribDivisor', 'VertexAttrib4f',
     'VertexAttribI4i', 'ActiveTexture', 'TexStorage2D', 'TexStorage3D', 'TexParameteri', 'PixelStorei', 'CheckFramebufferStatus', 'ReadBuffer',
     'RenderbufferStorageMultisample', 'DrawElements', 'DrawElementsInstanced', 'DrawArraysInstanced', 'Flush'];
 
-// By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r: a buffer, a vertex
-// array, a texture, a framebuffer, a renderbuffer; n: a number.
+// By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r, m: a buffer, a vertex
+// array, a texture, a framebuffer, a renderbuffer, a sampler; n: a number.
 const mapped = {
     AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform2i: 'unn',
     Uniform3i: 'unnn', Uniform4i: 'unnnn', Uniform2f: 'unn', Uniform3f: 'unnn', Uniform4f: 'unnnn', BindBuffer: 'nb', BindBufferBase: 'nnb',
     BindBufferRange: 'nnbnn', BindVertexArray: 'v', BindTexture: 'nt', BindFramebuffer: 'nf', FramebufferTexture2D: 'nnntn',
-    FramebufferTextureLayer: 'nntnn', BindRenderbuffer: 'nr',
+    FramebufferTextureLayer: 'nntnn', BindRenderbuffer: 'nr', BindSampler: 'nm',
 };
 
 const COMPRESSED_ETC = 'WEBGL_compressed_texture_etc';
@@ -74,7 +74,7 @@ function writeText(heap, text, at, room) {
 
 // gl.bindBuffer('buffer', number) and so on, by the letters of `mapped`.
 function addMapped(out, gl, kinds) {
-    const by = { s: kinds.shaders, p: kinds.programs, u: kinds.uniforms, b: kinds.buffers, v: kinds.arrays, t: kinds.textures, f: kinds.framebuffers, r: kinds.renderbuffers };
+    const by = { s: kinds.shaders, p: kinds.programs, u: kinds.uniforms, b: kinds.buffers, v: kinds.arrays, t: kinds.textures, f: kinds.framebuffers, r: kinds.renderbuffers, m: kinds.samplers };
     for (const [name, letters] of Object.entries(mapped)) {
         const call = gl[name[0].toLowerCase() + name.slice(1)].bind(gl);
         const [a, b, c, d] = [...letters].map((l) => (by[l] ? by[l].objects : null));
@@ -158,13 +158,27 @@ function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     };
 }
 
-function addData(out, gl, heap) {
+// The number of an object that is bound; one that others made gets a number, so that it can be bound again.
+function nameOf(object, kinds) {
+    const names = object instanceof WebGLFramebuffer ? kinds.framebuffers : object instanceof WebGLBuffer ? kinds.buffers
+        : object instanceof WebGLTexture ? kinds.textures : object instanceof WebGLProgram ? kinds.programs
+            : object instanceof WebGLVertexArrayObject ? kinds.arrays : object instanceof WebGLSampler ? kinds.samplers
+                : object instanceof WebGLRenderbuffer ? kinds.renderbuffers : null;
+    if (!names) return Number(object) || 0;
+    const at = names.objects.indexOf(object);
+    return at > 0 ? at : names.add(object);
+}
+
+function addData(out, gl, heap, kinds) {
     out.glClearBufferfv = (buffer, index, at) => gl.clearBufferfv(buffer, index, heap.F32, at >> 2);
     out.glGetIntegerv = (what, at) => {
         const value = what === 0x821D ? gl.getSupportedExtensions().length : what === 0x821B ? 3 : what === 0x821C ? 0 : gl.getParameter(what);
-        const all = value && value.length !== undefined ? value : [Number(value) || 0];
-        for (let i = 0; i < all.length; i++) heap.I32[(at >> 2) + i] = all[i];
+        if (value && value.length !== undefined) for (let i = 0; i < value.length; i++) heap.I32[(at >> 2) + i] = value[i];
+        else heap.I32[at >> 2] = nameOf(value, kinds);
     };
+    out.glGetFloatv = (what, at) => heap.F32.set(gl.getParameter(what), at >> 2);
+    out.glGetIntegeri_v = (what, index, at) => { heap.I32[at >> 2] = nameOf(gl.getIndexedParameter(what, index), kinds); };
+    out.glDepthRangef = (near, far) => gl.depthRange(near, far);
     out.glBufferData = (target, bytes, at, usage) => (at ? gl.bufferData(target, heap.U8, usage, at, bytes) : gl.bufferData(target, bytes, usage));
     out.glBufferSubData = (target, offset, bytes, at) => gl.bufferSubData(target, offset, heap.U8, at, bytes);
     out.glTexSubImage2D = (target, level, x, y, width, height, format, type, at) => {
@@ -208,7 +222,7 @@ function addOthers(gl, heap) {
 // heap: { U8, I8, U16, I16, U32, I32, F32 }, whose views may be replaced. Returns { imports, textures, buffers }: what the
 // program imports, and the objects by their numbers.
 export function importsOf(gl, heap) {
-    const kinds = Object.fromEntries(['shaders', 'programs', 'uniforms', 'buffers', 'arrays', 'textures', 'framebuffers', 'renderbuffers'].map((kind) => [kind, new Names()]));
+    const kinds = Object.fromEntries(['shaders', 'programs', 'uniforms', 'buffers', 'arrays', 'textures', 'framebuffers', 'renderbuffers', 'samplers'].map((kind) => [kind, new Names()]));
     const out = {};
     for (const name of plain) out[`gl${name}`] = gl[name[0].toLowerCase() + name.slice(1)].bind(gl);
     addMapped(out, gl, kinds);
@@ -218,6 +232,6 @@ export function importsOf(gl, heap) {
     addNamed(out, gl, heap, 'Framebuffers', kinds.framebuffers, gl.createFramebuffer, gl.deleteFramebuffer);
     addNamed(out, gl, heap, 'Renderbuffers', kinds.renderbuffers, gl.createRenderbuffer, gl.deleteRenderbuffer);
     addShaders(out, gl, heap, kinds);
-    addData(out, gl, heap);
+    addData(out, gl, heap, kinds);
     return { imports: { env: out, noh: addOthers(gl, heap) }, textures: kinds.textures.objects, buffers: kinds.buffers.objects };
 }
