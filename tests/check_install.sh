@@ -187,6 +187,8 @@ make --no-print-directory -B -n BUILD="$work/flags" DEPS=0 V=1 lib CFLAGS=-Os CX
     grep ' -c runtime/' >"$work/commands"
 check 'CFLAGS=-Os is appended' sh -c 'grep -q . "$1" && ! grep -v -- "-std=c99.*-ffp-contract=off.* -DX -Os" "$1"' - "$work/commands"
 check 'and OPT is replaced' sh -c '! grep -e "-O2" "$1"' - "$work/commands"
+env -u WERROR -u MAKEFLAGS make --no-print-directory -B -n BUILD="$work/flags" DEPS=0 V=1 lib CFLAGS= CPPFLAGS= 2>/dev/null | grep ' -c runtime/' >"$work/commands"
+check 'warnings are no errors in a user'"'"'s build' sh -c 'test -s "$1" && ! grep -e "-Werror" "$1"' - "$work/commands"
 check 'a BUILD with a space is refused' sh -c '! make -n BUILD="a b" DEPS=0 lib 2>"$1" && grep -q "without spaces" "$1"' - "$work/refused"
 
 # ---- another processor ----
@@ -194,6 +196,8 @@ check 'a BUILD with a space is refused' sh -c '! make -n BUILD="a b" DEPS=0 lib 
 if has arm-linux-gnueabihf-gcc && has arm-linux-gnueabihf-ar; then
     check 'a cross target builds and installs' make --no-print-directory BUILD="$work/arm" DEPS=0 OPT=-O0 CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
         CXX=false PREFIX=/usr DESTDIR="$work/armhf" install-lib
+    check 'and with -Os' make --no-print-directory BUILD="$work/arm-os" DEPS=0 OPT=-Os WERROR=-Werror CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
+        CXX=false PREFIX=/usr DESTDIR="$work/armhf-os" install-lib
     check 'for that processor' sh -c 'readelf -h "$1" | grep -q "Machine:.*ARM"' - "$work/armhf/usr/lib/libnoh.a"
 else
     skip 'a cross target builds and installs' 'no arm-linux-gnueabihf-gcc here'

@@ -1,6 +1,7 @@
 #!/bin/sh
-# cross.sh: builds the library for other processors and runs its CPU tests there: aarch64 (NEON) and armv7 (scalar)
-# under qemu-user, wasm (scalar) under node. A target whose tools are missing is skipped and says why. Closes with
+# cross.sh: builds the library for other processors, at -O0, -Os, -O2 and -O3 without a warning, and runs its CPU tests
+# there: aarch64 (NEON) and armv7 (scalar) under qemu-user, wasm (scalar) under node. x86 of 64 and of 32 bits is built
+# alone. A target whose tools are missing is skipped and says why. Closes with
 # "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -39,6 +40,24 @@ is_left_out() { # TARGET TEST
     case " $(echo $left_out_on_armv7) " in *" ${2#unit/} "*) ;; *) return 1 ;; esac
 }
 
+# TARGET CC AR OPT...: the library without a warning; other flags find other ones.
+at_levels() {
+    at_name=$1 at_cc=$2 at_ar=$3
+    shift 3
+    for opt in "$@"; do
+        at=$build/$at_name-lib$opt
+        if make --no-print-directory -j"${JOBS:-2}" BUILD="$at" CC="$at_cc" AR="$at_ar" OPT="$opt" WERROR=-Werror LDFLAGS= CFLAGS= CPPFLAGS= \
+            DEPS=0 lib >"$at.log" 2>&1; then
+            passed=$((passed + 1))
+        else
+            failed=$((failed + 1))
+            echo "    $at_name $opt: it does not build:"
+            tail -n 20 "$at.log" | sed 's/^/    | /'
+        fi
+        rm -rf "$at"
+    done
+}
+
 # TARGET CC AR LDFLAGS RUNNER...: builds the library and its tests, prints its size, runs each test.
 target() {
     name=$1 cc=$2 ar=$3 flags=$4
@@ -50,7 +69,7 @@ target() {
         skipped=$((skipped + 1))
         return
     fi
-    if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$folder" CC="$cc" AR="$ar" LDFLAGS="$flags" CFLAGS= CXXFLAGS= CPPFLAGS= CROSS=1 DEPS=0 \
+    if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$folder" CC="$cc" AR="$ar" LDFLAGS="$flags" CFLAGS= CXXFLAGS= CPPFLAGS= CROSS=1 WERROR=-Werror DEPS=0 \
         lib cross-tests >"$folder.log" 2>&1; then
         failed=$((failed + 1))
         echo "    it does not build:"
@@ -58,6 +77,7 @@ target() {
         return
     fi
     passed=$((passed + 1))
+    at_levels "$name" "$cc" "$ar" -O0 -Os -O3 # the tests' is -O2
     before=$passed
     # The clip codec's takes as long as all others together under an emulator, so it begins.
     tests=$(find tests/unit -name 'test_*.c' | sort | sed '/\/test_clip_codec\.c$/!s/^/ /' | sort -r | sed 's/^ //' | while read -r source; do
@@ -84,6 +104,14 @@ target() {
 }
 
 mkdir -p "$build"
+echo '== x86'
+at_levels x86_64 gcc ar -O0 -Os -O3 # make check's is -O2
+if echo '#include <stdint.h>' | gcc -m32 -E - >/dev/null 2>&1; then
+    at_levels i386 'gcc -m32 -msse2 -mfpmath=sse' ar -O0 -Os -O2 -O3
+else
+    echo '    skipped: no headers of 32 bits here (gcc-multilib)'
+    skipped=$((skipped + 1))
+fi
 target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar -static qemu-aarch64-static
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar -static qemu-arm-static
 # node's fetch does not read files, and emscripten's older loader asks it to

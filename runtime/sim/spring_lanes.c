@@ -349,6 +349,7 @@ static uint32_t step_group(const group *g, uint32_t ticks, obstacle *obstacles)
 {
     span times[NOH_LANES];
     uint32_t steps = 0, dropped = 0;
+    memset(times, 0, sizeof times); /* lanes beyond `used` take no step */
     for (uint32_t lane = 0; lane < g->used; lane++) {
         times[lane] = begin(g->moves[lane], ticks);
         if (times[lane].steps > steps) steps = times[lane].steps;
