@@ -139,8 +139,9 @@ vec3 noh_light(noh_surface s)
 #endif
     float roughness = clamp(s.roughness, 0.08, 1.0), nv = clamp(dot(mirror, s.view), 1e-3, 1.0);
     vec3 f0 = mix(s.f0, s.albedo, s.metallic), h = normalize(noh_key + s.view);
+    float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
-    vec3 gloss = f0 * (part.x - part.y) + part.y; /* reflected of an even light, once */
+    vec3 gloss = f0 * (part.x - part.y) + f90 * part.y; /* reflected of an even light, once */
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and by further bounces between the facets */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
     vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
@@ -149,7 +150,7 @@ vec3 noh_light(noh_surface s)
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
         float away = clamp(1.0 - dot(h, s.view), 0.0, 1.0), away2 = away * away;
-        vec3 fresnel = f0 + (1.0 - f0) * (away2 * away2 * away);
+        vec3 fresnel = f0 + (f90 - f0) * (away2 * away2 * away);
 #if NOH_TRANSFER > 0 && (defined(NOH_SKIN) || defined(NOH_TEETH))
         shadow *= noh_v_open;
 #endif
@@ -224,6 +225,7 @@ vec3 noh_light(noh_surface s)
 #endif
     float roughness = max(s.roughness, 0.08);
     vec3 f0 = mix(s.f0, s.albedo, s.metallic);
+    float f90 = mix(s.f90, 1.0, s.metallic);
     vec3 diffuse = s.albedo * (1.0 - s.metallic);
 #ifdef NOH_EYE
     vec3 h = normalize(noh_key - 0.35 * normalize(noh_v_up) + s.view); /* low enough to be seen below the lid */
@@ -231,7 +233,7 @@ vec3 noh_light(noh_surface s)
     vec3 h = normalize(noh_key + s.view);
 #endif
     float nv = max(dot(mirror, s.view), 1e-3);
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - clamp(dot(h, s.view), 0.0, 1.0), 5.0);
+    vec3 fresnel = f0 + (f90 - f0) * pow(1.0 - clamp(dot(h, s.view), 0.0, 1.0), 5.0);
     vec3 sky = s.occlusion * noh_sky(s.normal.y);
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
     color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;

@@ -5,10 +5,13 @@
  *   NOH_NORMAL_MAP    defined: the material has a normal map, and the mesh tangents
  *   NOH_SURFACE_MAP   defined: it has a map of occlusion, roughness, metallic
  *   NOH_EMISSIVE      defined: it shines
+ *   NOH_SPECULAR_MAP  defined: it has a map of what reflects straight on, which has its weight in alpha, or with
+ *                     NOH_SPECULAR_ROUGHNESS its roughness
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
 #ifndef NOH_DEPTH_ONLY
-uniform vec3 noh_f0;       /* reflectance of what is no metal, seen straight on */
+uniform vec3 noh_f0;       /* reflectance of what is no metal, seen straight on; at most the other comes out */
+uniform float noh_f90;     /* and at grazing angles */
 #if defined(NOH_NORMAL_MAP) || defined(NOH_SURFACE_MAP)
 uniform vec4 noh_maps;     /* normal scale, occlusion strength */
 #endif
@@ -16,7 +19,10 @@ uniform vec4 noh_maps;     /* normal scale, occlusion strength */
 uniform mediump sampler2D noh_normal_texture;
 #endif
 #ifdef NOH_SURFACE_MAP
-uniform mediump sampler2D noh_surface_texture; /* r occlusion, g roughness, b metallic */
+uniform mediump sampler2D noh_surface_texture; /* r occlusion, g roughness, b metallic, a weight of f0 and f90 */
+#endif
+#ifdef NOH_SPECULAR_MAP
+uniform mediump sampler2D noh_specular_texture;
 #endif
 #ifdef NOH_EMISSIVE
 uniform vec3 noh_emissive;
@@ -37,6 +43,7 @@ struct noh_surface {
     float occlusion; /* 1: open */
     vec3 emissive;   /* linear */
     vec3 wrinkles;   /* 0..1 by area, regions, channels; the largest counts */
+    float f90;       /* of what is no metal, at grazing angles */
 };
 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
@@ -70,6 +77,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.roughness = noh_material.x;
     s.metallic = noh_material.y;
     s.f0 = noh_f0;
+    s.f90 = noh_f90;
     s.occlusion = 1.0;
     s.emissive = vec3(0.0);
     s.wrinkles = vec3(0.0);
@@ -89,11 +97,24 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.geometric *= side;
     s.normal *= side;
 #ifdef NOH_SURFACE_MAP
-    vec3 map = texture(noh_surface_texture, uv).rgb;
+    vec4 map = texture(noh_surface_texture, uv);
     s.occlusion = 1.0 + noh_maps.y * (map.r - 1.0);
     s.roughness *= map.g;
     s.metallic *= map.b;
+    s.f0 *= map.a;
+    s.f90 *= map.a;
 #endif
+#ifdef NOH_SPECULAR_MAP
+    vec4 specular = texture(noh_specular_texture, uv);
+    s.f0 *= specular.rgb;
+#ifdef NOH_SPECULAR_ROUGHNESS
+    s.roughness *= specular.a;
+#else
+    s.f0 *= specular.a;
+    s.f90 *= specular.a;
+#endif
+#endif
+    s.f0 = min(s.f0, vec3(s.f90)); /* KHR_materials_specular */
 #ifdef NOH_EMISSIVE
     s.emissive = noh_emissive * texture(noh_emissive_texture, uv).rgb;
 #endif

@@ -185,6 +185,8 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 {
     const uint32_t features = v->key.features;
     r->gl->Uniform3fv(v->u_f0, 1, m->f0);
+    r->gl->Uniform1f(v->u_f90, 1.0f - m->f90_loss);
+    if (features & NOH_FEATURE_SPECULAR_MAP) bind_picture(r, NOH_UNIT_SPECULAR, m->specular_texture, pictures);
     if (features & NOH_FEATURE_NORMAL_MAP) bind_picture(r, NOH_UNIT_NORMAL, m->normal_texture, pictures);
     if (features & NOH_FEATURE_SURFACE_MAP) bind_picture(r, NOH_UNIT_SURFACE, m->surface_texture, pictures);
     if (features & (NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_SURFACE_MAP)) {
@@ -463,6 +465,7 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
                                     NOH_UNIT_NORMAL,
                                     NOH_UNIT_SURFACE,
                                     NOH_UNIT_EMISSIVE,
+                                    NOH_UNIT_SPECULAR,
                                     NOH_UNIT_BASE_COLOR };
     r->gl->BindVertexArray(0);
     r->gl->UseProgram(0);

@@ -59,6 +59,10 @@ uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     }
     if (m->surface_texture != NOH_NONE) features |= NOH_FEATURE_SURFACE_MAP;
     if (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) features |= NOH_FEATURE_EMISSIVE;
+    if (m->flags & NOH_MATERIAL_SPECULAR_WEIGHT) features |= NOH_FEATURE_SPECULAR_MAP;
+    if (m->flags & NOH_MATERIAL_SPECULAR_ROUGHNESS) {
+        features |= NOH_FEATURE_SPECULAR_MAP | NOH_FEATURE_SPECULAR_ROUGHNESS;
+    }
     if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
     if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
@@ -100,8 +104,8 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 /* How often a lit pixel reads the shadow map: 4 times, or what its other textures leave of 8 fetches. */
 static unsigned shadow_taps(uint32_t features)
 {
-    static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP, NOH_FEATURE_EMISSIVE,
-                                     NOH_FEATURE_WRINKLES, NOH_FEATURE_WRINKLE_PIXEL };
+    static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
+                                     NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
     return left < 4u ? left : 4u;
@@ -136,6 +140,8 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
                   { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
+                  { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },
+                  { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },
                   { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
@@ -258,6 +264,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_lod", offsetof(noh_gl_variant, u_lod) },
                      { "noh_blends", offsetof(noh_gl_variant, u_blends) },
                      { "noh_f0", offsetof(noh_gl_variant, u_f0) },
+                     { "noh_f90", offsetof(noh_gl_variant, u_f90) },
                      { "noh_emissive", offsetof(noh_gl_variant, u_emissive) },
                      { "noh_maps", offsetof(noh_gl_variant, u_maps) },
                      { "noh_surface_values", offsetof(noh_gl_variant, u_surface_values) },
@@ -324,7 +331,8 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
                                                                       "noh_wrinkle_weights_1",
                                                                       "noh_wrinkle_weights_2",
                                                                       "noh_shadow_map",
-                                                                      "noh_environment" };
+                                                                      "noh_environment",
+                                                                      "noh_specular_texture" };
     char defines[NOH_GL_DEFINES_BYTES];
     whole_source vertex, fragment;
     noh_gl_input inputs[INPUTS_MAX];

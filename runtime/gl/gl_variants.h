@@ -65,6 +65,8 @@ typedef struct noh_gl_variant_key {
 #define NOH_FEATURE_TEETH 64u
 #define NOH_FEATURE_TOON 128u
 #define NOH_FEATURE_WRINKLE_PIXEL 256u /* with wrinkles: pixels read a mask of regions in place of the weight maps */
+#define NOH_FEATURE_SPECULAR_MAP 512u
+#define NOH_FEATURE_SPECULAR_ROUGHNESS 1024u /* with a specular map: its alpha is roughness */
 
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
@@ -72,7 +74,7 @@ typedef struct noh_gl_variant {
     unsigned program;
     int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_surface_values, u_surface_more, u_rest;
+        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
@@ -86,7 +88,8 @@ typedef struct noh_gl_variant {
 #define NOH_UNIT_WRINKLE_WEIGHTS 7u /* and the two after it */
 #define NOH_UNIT_SHADOW 10u
 #define NOH_UNIT_ENVIRONMENT 11u
-#define NOH_UNIT_USER 12u /* the first of those that are left to a game's shaders */
+#define NOH_UNIT_SPECULAR 12u
+#define NOH_UNIT_USER 13u /* the first of those that are left to a game's shaders */
 
 /* NOH_FEATURE_* of a material on a mesh: a normal map wants tangents, and what is unlit has none. */
 uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);

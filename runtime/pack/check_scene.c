@@ -131,13 +131,36 @@ static noh_result check_wrinkle_codes(const noh_check *check, const noh_material
     const uint64_t where = at + offsetof(noh_material, wrinkle_weights);
     if (!(m->flags & NOH_MATERIAL_WRINKLE_CODES)) return NOH_OK;
     if (m->wrinkle_weights[0] == NOH_NONE || m->wrinkle_weights[1] != NOH_NONE || m->wrinkle_weights[2] != NOH_NONE) {
-        return noh_check_fail(check, "material with a mask of wrinkle regions has none, or weight maps too", where);
+        return noh_check_fail(check, "material flags name a mask of wrinkle regions that it has not",
+                              at + offsetof(noh_material, flags));
     }
     h = (const void *)(check->pack->bytes +
                        check->pack->chunks[check->pack->first_texture + m->wrinkle_weights[0]].offset);
     return h->nearest && h->format == NOH_TEXTURE_RGBA8
                ? NOH_OK
                : noh_check_fail(check, "mask of wrinkle regions is filtered or compressed", where);
+}
+
+#define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)
+static noh_result check_specular(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const uint32_t kind = m->flags & SPECULAR;
+    const uint64_t where = at + offsetof(noh_material, specular_texture);
+    const int maps = (m->normal_texture != NOH_NONE) + (m->surface_texture != NOH_NONE) +
+                     (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
+                     (m->wrinkle_texture != NOH_NONE) + (kind != 0) + ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0);
+    if (!(m->f90_loss >= 0.0f && m->f90_loss <= 1.0f)) {
+        return noh_check_fail(check, "what a material reflects at grazing angles is not within 0 to 1",
+                              at + offsetof(noh_material, f90_loss));
+    }
+    if (kind == SPECULAR || (!kind && m->specular_texture) || (kind && m->specular_texture == NOH_NONE)) {
+        return noh_check_fail(check, "material has a specular map without a use of its alpha, or one without the other",
+                              where);
+    }
+    if (maps > (int)NOH_MATERIAL_MAPS_MAX) {
+        return noh_check_fail(check, "material has more maps than a pixel may read", at);
+    }
+    return kind ? check_texture_of(check, m->specular_texture, 0, where) : NOH_OK;
 }
 
 static noh_result check_material(const noh_check *check, const noh_material *m, uint64_t at)
@@ -147,10 +170,11 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
-    if (!result) result = check_wrinkle_codes(check, m, at);
-    if (!result && m->flags & ~63u) {
+    if (!result && m->flags & ~255u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
+    if (!result) result = check_wrinkle_codes(check, m, at);
+    if (!result) result = check_specular(check, m, at);
     if (!result && m->surface > NOH_SURFACE_TOON) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
@@ -165,12 +189,6 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->surface == NOH_SURFACE_TOON && !(m->surface_more[0] >= 0.0f && m->surface_more[0] <= 1.0f)) {
         result = noh_check_fail(check, "the hardness of a toon surface's edge is not within 0 to 1",
                                 at + offsetof(noh_material, surface_more));
-    }
-    for (uint32_t i = 0; !result && i < 2u; i++) {
-        if (m->reserved[i]) {
-            result = noh_check_fail(check, "reserved field of a material is not zero",
-                                    at + offsetof(noh_material, reserved) + 4u * i);
-        }
     }
     return result;
 }

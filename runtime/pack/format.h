@@ -293,6 +293,9 @@ typedef struct noh_node {
 /* wrinkle_weights[0] is a mask of codes, NOH_TEXTURE_RGBA8 and `nearest`, and the others are NOH_NONE: of a byte of
  * channel c, byte / 90 is k of region 3 * c + k; the remainder times 0.014, at most 1, its weight, and 0 above 75 */
 #define NOH_MATERIAL_WRINKLE_CODES 32u
+/* One of them where there is a specular_texture: what its alpha is */
+#define NOH_MATERIAL_SPECULAR_WEIGHT 64u     /* times f0, and times what is reflected at grazing angles */
+#define NOH_MATERIAL_SPECULAR_ROUGHNESS 128u /* times roughness */
 
 /* What the surface is made of: decides how it is lit. noh_material.surface_values and surface_more then are, of
  *   skin   x millimetres in a unit of the world, by which light scatters; 0: 1000. Then the inside of a mouth, in the
@@ -330,9 +333,11 @@ typedef struct noh_material {
     float normal_scale;          /* of the normal map's x and y */
     float occlusion_strength;    /* 0..1: how much of the map's occlusion counts */
     float emissive[3];           /* linear, may be above 1 */
-    float f0[3];                 /* reflectance of what is no metal, seen straight on; 0.04 is usual */
+    float f0[3];                 /* reflectance of what is no metal, seen straight on; 0.04 is usual. Above 1 only where
+                                  * maps lessen it: what comes out is at most the reflectance at grazing angles */
     uint32_t normal_texture;     /* tangent space, +y up: rgb = 0.5 + 0.5 * xyz. In a mesh with tangents */
-    uint32_t surface_texture;    /* r occlusion, g times roughness, b times metallic */
+    uint32_t surface_texture;    /* r occlusion, g times roughness, b times metallic, a times f0 and what is reflected
+                                  * at grazing angles */
     uint32_t emissive_texture;   /* rgb colour, times `emissive` */
     uint32_t wrinkle_texture;    /* a second normal map, that of wrinkles */
     uint32_t wrinkle_weights[3]; /* rgba of the three: how much each of twelve regions covers a texel, read at vertices;
@@ -341,7 +346,8 @@ typedef struct noh_material {
     float surface_values[4];     /* of that surface, above */
     uint32_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */
     float surface_more[6];       /* of that surface, above */
-    uint32_t reserved[2];
+    uint32_t specular_texture;   /* with NOH_MATERIAL_SPECULAR_*: rgb colour, times f0; a as that flag says. Else 0 */
+    float f90_loss;              /* 0..1: what is no metal reflects 1 less this at grazing angles */
 } noh_material;
 
 /* ---- CHUNK_TEXTURE: header, then the mip levels one behind the other, top row first. A level's sides are half of

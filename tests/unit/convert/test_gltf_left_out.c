@@ -97,13 +97,15 @@ static void textures_of_a_material(void **state)
         ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0,\"texCoord\":1},"
         "\"occlusionTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,2]}}},"
         "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},"
-        "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularTexture\":{\"index\":0}}}}],"
+        "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularTexture\":{\"index\":0,"
+        "\"texCoord\":1}}}}],"
         "\"extensionsUsed\":[\"KHR_texture_transform\"]" ONE_TEXTURE,
         "material 'skin': the normal texture was left out: its texture coordinates, or their transform, are not those of "
         "the material's other textures",
         "material 'skin': the occlusion texture was left out: its texture coordinates, or their transform, are not those "
         "of the material's other textures",
-        "material 'skin': the specularTexture of KHR_materials_specular was left out");
+        "material 'skin': the specular texture was left out: its texture coordinates, or their transform, are not those of "
+        "the material's other textures");
 }
 
 /* An extension is named once, with what carries it first, whether "extensionsUsed" lists it or not. */

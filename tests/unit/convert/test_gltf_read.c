@@ -1528,7 +1528,7 @@ static void materials_and_textures(void **state)
     model_free(m);
 }
 
-/* Diffuse becomes base colour, specular what reflects straight on, glossiness roughness; the map's colour is a mean. */
+/* Diffuse becomes base colour, specular what reflects straight on, by texel, glossiness the roughness in its alpha. */
 static void specular_and_glossiness(void **state)
 {
     (void)state;
@@ -1544,16 +1544,55 @@ static void specular_and_glossiness(void **state)
     model *m = load(s);
     const model_material *a = &m->materials[0], *b = &m->materials[1];
     const float diffuse[4] = { 0.5f, 0.25f, 0.125f, 0.75f }, white[4] = { 1, 1, 1, 1 };
-    const uint8_t rough[8] = { 255, 128, 255, 255, 255, 223, 255, 255 }; /* of glossiness 1 and 64 / 255, halved */
+    const uint8_t map[8] = { 255, 0, 0, 128, 0, 128, 255, 223 }; /* of glossiness 1 and 64 / 255, halved */
     assert_floats(a->base_color, diffuse, 4);
     assert_true(a->metallic == 0.0f && a->roughness == 1.0f && a->base_color_texture != MODEL_NONE);
-    assert_true(a->f0[0] == 0.5f && fabsf(a->f0[1] - 0.25f * 0.2159f) < 2e-4f && a->f0[2] == 0.125f);
-    assert_true(a->surface_texture != MODEL_NONE && a->surface_texture != a->base_color_texture);
-    assert_memory_equal(m->textures[a->surface_texture].rgba, rough, sizeof rough);
+    assert_true(a->f0[0] == 1.0f && a->f0[1] == 0.5f && a->f0[2] == 0.25f);
+    assert_true(a->surface_texture == MODEL_NONE && a->specular_roughness == 1 && a->f90_loss == 0.0f);
+    assert_true(a->specular_texture != MODEL_NONE && a->specular_texture != a->base_color_texture);
+    assert_memory_equal(m->textures[a->specular_texture].rgba, map, sizeof map);
+    assert_int_equal(m->textures[a->specular_texture].use, MODEL_TEXTURE_COLOR);
+    assert_int_equal(m->textures[a->specular_texture].alpha_is_data, 1);
     assert_floats(b->base_color, white, 4);
     assert_floats(b->f0, white, 3);
     assert_true(b->metallic == 0.0f && b->roughness == 0.75f && b->surface_texture == MODEL_NONE);
     assert_int_equal(m->warning_count, 0);
+    model_free(m);
+}
+
+/* KHR_materials_specular by texel: the weight goes into the alpha of the surface map, or of the colours where there are
+ * any, so that each material reads one texture more at most. */
+static void specular_maps_are_packed(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"material\":0");
+#define SPECULAR(members) "{\"extensions\":{\"KHR_materials_specular\":{" members "}}"
+    APPEND(
+        s->rest,
+        ",\"materials\":[" SPECULAR("\"specularFactor\":0.5,\"specularTexture\":{\"index\":0}") "}," SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularColorFactor\":[2,1,30]") "}," SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":0}") "}," SPECULAR(
+            "\"specularTexture\":{\"index\":0}") ",\"occlusionTexture\":{\"index\":0},"
+                                                 "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}}," SPECULAR("\"specularFactor\":0.5,\"specularColorFactor\":[1,1,100]") "}," SPECULAR(
+                                                     "\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":1}") "}],"
+                                                                                                                                 "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
+                                                                                                                                 "{\"uri\":\"nowhere.png\"}]",
+        png_2x1);
+#undef SPECULAR
+    model *m = load(s);
+    const model_material *a = m->materials;
+    const uint8_t weight[8] = { 255, 255, 255, 255, 255, 255, 255, 64 }, all[8] = { 255, 0, 0, 255, 0, 128, 255, 64 };
+    const uint8_t colors[8] = { 255, 0, 0, 255, 0, 128, 255, 255 };
+    assert_true(a[0].specular_texture == MODEL_NONE && a[0].f90_loss == 0.5f && fabsf(a[0].f0[0] - 0.02f) < 1e-6f);
+    assert_memory_equal(m->textures[a[0].surface_texture].rgba, weight, sizeof weight);
+    assert_true(a[1].surface_texture == MODEL_NONE && !a[1].specular_roughness);
+    assert_memory_equal(m->textures[a[1].specular_texture].rgba, colors, sizeof colors);
+    assert_true(fabsf(a[1].f0[0] - 0.08f) < 1e-6f &&
+                fabsf(a[1].f0[2] - 1.2f) < 1e-5f); /* the map may bring it below 1 */
+    assert_memory_equal(m->textures[a[2].specular_texture].rgba, all, sizeof all);
+    assert_true(a[2].surface_texture == MODEL_NONE && m->textures[a[2].specular_texture].with_alpha);
+    assert_memory_equal(m->textures[a[3].surface_texture].rgba, all, sizeof all);
+    assert_true(a[4].f0[2] == 0.5f && a[4].f90_loss == 0.5f); /* at most the weight */
+    assert_memory_equal(m->textures[a[5].specular_texture].rgba, colors, sizeof colors);
+    assert_int_equal(m->warning_count, 1);
     model_free(m);
 }
 
@@ -2182,6 +2221,7 @@ int main(void)
         cmocka_unit_test(weights_of_a_mesh_without_targets_are_refused),
         cmocka_unit_test(materials_and_textures),
         cmocka_unit_test(specular_and_glossiness),
+        cmocka_unit_test(specular_maps_are_packed),
         cmocka_unit_test(bad_images_are_warnings),
         cmocka_unit_test(webp_textures),
         cmocka_unit_test(texture_transform_is_baked),

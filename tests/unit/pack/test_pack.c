@@ -425,7 +425,10 @@ static float nan_value(void)
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 32)                                                     \
     X(material_wrinkles, DATA, "unknown models of wrinkles", f->materials[0].wrinkle_models = 1)                     \
-    X(material_reserved, DATA, "reserved field of a material", f->materials[0].reserved[1] = 1)                      \
+    X(material_flags_unknown, DATA, "flags", f->materials[0].flags |= 256)                                           \
+    X(material_specular_missing, DATA, "specular map", f->materials[0].flags |= 192)                                 \
+    X(material_f90, DATA, "grazing angles", f->materials[0].f90_loss = 1.5f)                                         \
+    X(material_specular_unused, DATA, "specular map", f->materials[0].specular_texture = 1)                          \
     X(material_color_nan, DATA, "not finite", f->materials[0].base_color[2] = nan_value())                           \
     X(material_cutoff_infinite, DATA, "not finite", f->materials[1].alpha_cutoff = INFINITE)                         \
     X(material_name, DATA, "outside the strings", f->materials[0].name = 0x10000000u)                                \
@@ -638,7 +641,7 @@ static void errors_say_where(void **state)
     X(materials[0].flags, = 32)                         \
     X(materials[1].normal_texture, = 0)                 \
     X(materials[1].surface, = 9)                        \
-    X(materials[1].reserved[0], = 1)                    \
+    X(materials[1].f90_loss, = -0.5f)                   \
     X(materials[1].name, = 0xffffffffu)                 \
     X(materials[0].name_hash, ^= 1u)                    \
     X(mesh->flags, = 0x80000000u)                       \

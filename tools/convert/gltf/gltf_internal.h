@@ -93,7 +93,7 @@ struct file {
     std::vector<uint32_t> skin_of; /* [json.skins] likewise */
     /* from {use, texture, -1}, or {DATA, occlusion, metallic-roughness}, to an index into out->textures or MODEL_NONE
      */
-    std::map<std::array<int, 3>, uint32_t> texture_of;
+    std::map<std::array<int, 4>, uint32_t> texture_of;
     std::vector<left_out> losses;          /* in the order in which they were met */
     std::map<std::string, size_t> loss_of; /* what -> its place in losses */
 };

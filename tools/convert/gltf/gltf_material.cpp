@@ -17,6 +17,7 @@ namespace gltf
 {
 
 static const uint64_t pixels_max = 64u << 20;
+static const int SPECULAR_KEY = -1; /* in file.texture_of, in place of a use */
 
 static std::string where_of(const file &f, size_t material)
 {
@@ -190,7 +191,7 @@ static uint32_t texture_for(file &f, int index, model_texture_use use, const std
     if (index < 0) return MODEL_NONE;
     if (static_cast<size_t>(index) >= f.json.textures.size())
         fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
-    const std::array<int, 3> key = { static_cast<int>(use), index, -1 };
+    const std::array<int, 4> key = { static_cast<int>(use), index, -1, -1 };
     auto found = f.texture_of.find(key);
     if (found != f.texture_of.end()) return found->second;
     const uint32_t slot = try_texture(f, static_cast<size_t>(index), where);
@@ -198,7 +199,8 @@ static uint32_t texture_for(file &f, int index, model_texture_use use, const std
     return f.texture_of[key] = slot;
 }
 
-/* --- the surface map: occlusion in red, roughness in green, metallic in blue --- */
+/* --- maps of several images: occlusion in red, roughness in green, metallic in blue, the weight of reflections in alpha;
+ * and colours of reflections with such a weight, or roughness, in alpha --- */
 
 static uint8_t between(const uint8_t *rgba, size_t stride, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1,
                        uint64_t fx, uint64_t fy)
@@ -219,61 +221,87 @@ static uint64_t place(uint32_t i, uint32_t from, uint32_t to, uint32_t *low, uin
     return static_cast<uint64_t>(held % 256);
 }
 
-/* The red of `from`, bilinear, into the red of `to`. */
-static void put_red(const model_texture &from, model_texture &to)
+/* A channel of `from`, bilinear, into the same one of `to`: of red 0, of alpha 3. */
+static void put_channel(const model_texture &from, model_texture &to, size_t channel)
 {
     for (uint32_t y = 0; y < to.height; ++y) {
         uint32_t y0, y1, x0, x1;
         const uint64_t fy = place(y, from.height, to.height, &y0, &y1);
         for (uint32_t x = 0; x < to.width; ++x) {
             const uint64_t fx = place(x, from.width, to.width, &x0, &x1);
-            to.rgba[(size_t{ y } * to.width + x) * 4] = between(from.rgba, size_t{ from.width } * 4, x0, x1, y0, y1, fx,
-                                                                fy);
+            to.rgba[(size_t{ y } * to.width + x) * 4 + channel] = between(from.rgba + channel, size_t{ from.width } * 4,
+                                                                          x0, x1, y0, y1, fx, fy);
         }
     }
 }
 
-static void fill_channels(model_texture &t, bool red, bool green_and_blue)
+static void fill_channel(model_texture &t, size_t channel)
 {
     const size_t count = size_t{ t.width } * t.height;
-    for (size_t i = 0; i < count; ++i) {
-        if (red) t.rgba[i * 4] = 255;
-        if (green_and_blue) t.rgba[i * 4 + 1] = t.rgba[i * 4 + 2] = 255;
-        t.rgba[i * 4 + 3] = 255;
-    }
+    for (size_t i = 0; i < count; ++i) t.rgba[i * 4 + channel] = 255;
 }
 
-/* Two images become one, so that a pixel reads one texture: the occlusion takes the other's size and sampling. */
-static uint32_t make_surface_texture(file &f, int occlusion, int roughness, const std::string &where)
+/* Put a channel of another image into a map. */
+static void add_channel(file &f, uint32_t slot, int index, size_t channel, const std::string &where)
 {
-    uint32_t slot = roughness < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(roughness), where);
-    if (occlusion == roughness) {
-        if (slot != MODEL_NONE) fill_channels(f.out->textures[slot], false, false);
-    } else if (slot == MODEL_NONE) {
-        slot = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
-        if (slot != MODEL_NONE) fill_channels(f.out->textures[slot], false, true);
-    } else {
-        fill_channels(f.out->textures[slot], true, false);
-        const uint32_t other = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
-        if (other != MODEL_NONE) {
-            put_red(f.out->textures[other], f.out->textures[slot]);
-            drop_last_texture(f);
-        }
+    const uint32_t other = index < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(index), where);
+    if (other == MODEL_NONE) return;
+    put_channel(f.out->textures[other], f.out->textures[slot], channel);
+    drop_last_texture(f);
+}
+
+static void check_indices(const file &f, std::initializer_list<int> indices, const std::string &where)
+{
+    for (int index : indices)
+        if (index >= 0 && static_cast<size_t>(index) >= f.json.textures.size())
+            fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
+}
+
+/* Images become one, so that a pixel reads one texture: what is put into it takes its size and sampling. */
+static uint32_t make_surface_texture(file &f, int occlusion, int roughness, int weight, const std::string &where)
+{
+    int first = roughness;
+    uint32_t slot = MODEL_NONE;
+    for (int index : { roughness, occlusion, weight }) {
+        if (slot != MODEL_NONE || index < 0) continue;
+        slot = try_texture(f, static_cast<size_t>(index), where);
+        first = index;
     }
-    if (slot != MODEL_NONE) f.out->textures[slot].use = MODEL_TEXTURE_DATA;
+    if (slot == MODEL_NONE) return slot;
+    model_texture &map = f.out->textures[slot];
+    if (first != roughness) fill_channel(map, 1), fill_channel(map, 2);
+    if (first != occlusion) fill_channel(map, 0);
+    if (first != weight) fill_channel(map, 3);
+    if (first != occlusion) add_channel(f, slot, occlusion, 0, where);
+    if (first != weight) add_channel(f, slot, weight, 3, where);
+    map.use = MODEL_TEXTURE_DATA;
     return slot;
 }
 
-static uint32_t surface_texture(file &f, int occlusion, int roughness, const std::string &where)
+static uint32_t surface_texture(file &f, int occlusion, int roughness, int weight, const std::string &where)
 {
-    if (occlusion < 0 && roughness < 0) return MODEL_NONE;
-    for (int index : { occlusion, roughness })
-        if (index >= 0 && static_cast<size_t>(index) >= f.json.textures.size())
-            fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
-    const std::array<int, 3> key = { static_cast<int>(MODEL_TEXTURE_DATA), occlusion, roughness };
+    if (occlusion < 0 && roughness < 0 && weight < 0) return MODEL_NONE;
+    check_indices(f, { occlusion, roughness, weight }, where);
+    const std::array<int, 4> key = { static_cast<int>(MODEL_TEXTURE_DATA), occlusion, roughness, weight };
     auto found = f.texture_of.find(key);
     if (found != f.texture_of.end()) return found->second;
-    return f.texture_of[key] = make_surface_texture(f, occlusion, roughness, where);
+    return f.texture_of[key] = make_surface_texture(f, occlusion, roughness, weight, where);
+}
+
+/* The colour of reflections with their weight in alpha. */
+static uint32_t specular_texture(file &f, int color, int weight, const std::string &where)
+{
+    check_indices(f, { color, weight }, where);
+    const std::array<int, 4> key = { SPECULAR_KEY, color, weight, -1 };
+    auto found = f.texture_of.find(key);
+    if (found != f.texture_of.end()) return found->second;
+    const uint32_t slot = try_texture(f, static_cast<size_t>(color), where);
+    if (slot == MODEL_NONE) return f.texture_of[key] = slot;
+    model_texture &map = f.out->textures[slot];
+    if (color != weight) fill_channel(map, 3);
+    if (color != weight) add_channel(f, slot, weight, 3, where);
+    map.with_alpha = weight >= 0; /* where nothing reflects, colours do not count */
+    return f.texture_of[key] = slot;
 }
 
 /* --- materials --- */
@@ -339,13 +367,17 @@ static tinygltf::TextureInfo texture_in(const tinygltf::Value &extension, const 
     return info;
 }
 
-static std::array<texture_use, 5> textures_of(const tinygltf::Material &m)
+static std::array<texture_use, 7> textures_of(const tinygltf::Material &m)
 {
     const tinygltf::Value *gloss = extension_of(m, gloss_name);
     const tinygltf::TextureInfo base = gloss ? texture_in(*gloss, "diffuseTexture")
                                              : m.pbrMetallicRoughness.baseColorTexture;
     const tinygltf::TextureInfo roughness = gloss ? texture_in(*gloss, "specularGlossinessTexture")
                                                   : m.pbrMetallicRoughness.metallicRoughnessTexture;
+    const tinygltf::Value *specular = gloss ? nullptr : extension_of(m, "KHR_materials_specular");
+    const tinygltf::TextureInfo weight = specular ? texture_in(*specular, "specularTexture") : tinygltf::TextureInfo();
+    const tinygltf::TextureInfo color = specular ? texture_in(*specular, "specularColorTexture")
+                                                 : tinygltf::TextureInfo();
     return { { { base.index, uv_use_of(base.texCoord, base.extensions), "base colour" },
                { m.normalTexture.index, uv_use_of(m.normalTexture.texCoord, m.normalTexture.extensions), "normal" },
                { roughness.index, uv_use_of(roughness.texCoord, roughness.extensions),
@@ -353,7 +385,9 @@ static std::array<texture_use, 5> textures_of(const tinygltf::Material &m)
                { m.occlusionTexture.index, uv_use_of(m.occlusionTexture.texCoord, m.occlusionTexture.extensions),
                  "occlusion" },
                { m.emissiveTexture.index, uv_use_of(m.emissiveTexture.texCoord, m.emissiveTexture.extensions),
-                 "emissive" } } };
+                 "emissive" },
+               { weight.index, uv_use_of(weight.texCoord, weight.extensions), "specular" },
+               { color.index, uv_use_of(color.texCoord, color.extensions), "specular colour" } } };
 }
 
 uv_use uv_use_of(const tinygltf::Material &m)
@@ -388,26 +422,26 @@ static double number_in(const tinygltf::Value *object, const char *key, double o
     return object && object->Get(key).IsNumber() ? object->Get(key).GetNumberAsDouble() : otherwise;
 }
 
-/* KHR_materials_ior and KHR_materials_specular: what reflects straight on. */
-static void read_f0(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+/* KHR_materials_ior and KHR_materials_specular: what reflects straight on, and at grazing angles. */
+static void read_f0(const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     const tinygltf::Value *specular = extension_of(m, "KHR_materials_specular");
     const double ior = number_in(extension_of(m, "KHR_materials_ior"), "ior", 1.5);
     const double straight = ior >= 1.0 ? (ior - 1.0) / (ior + 1.0) : 1.0; /* ior 0: all is reflected */
-    const double factor = straight * straight * number_in(specular, "specularFactor", 1.0);
+    const double factor = number_in(specular, "specularFactor", 1.0);
+    const double weight = factor < 0.0 ? 0.0 : factor > 1.0 ? 1.0 : factor;
+    const bool has_map = specular && specular->Has("specularColorTexture");
     for (size_t i = 0; i < 3; ++i) {
         double color = 1.0;
         if (specular) {
             const tinygltf::Value &list = specular->Get("specularColorFactor");
-            if (list.IsArray() && list.ArrayLen() == 3 && list.Get(i).IsNumber())
-                color = list.Get(i).GetNumberAsDouble();
+            if (list.IsArray() && list.ArrayLen() == 3 && list.Get(static_cast<int>(i)).IsNumber())
+                color = list.Get(static_cast<int>(i)).GetNumberAsDouble();
         }
-        const double f0 = factor * color;
-        out.f0[i] = to_float(f0 < 0.0 ? 0.0 : f0 > 1.0 ? 1.0 : f0, where + " KHR_materials_specular");
+        const double f0 = straight * straight * weight * color;
+        out.f0[i] = to_float(f0 < 0.0 ? 0.0 : f0 > weight && !has_map ? weight : f0, where + " KHR_materials_specular");
     }
-    for (const char *texture : { "specularTexture", "specularColorTexture" })
-        if (specular && specular->Has(texture))
-            leave_out(f, where, text(": the %s of KHR_materials_specular was left out", texture));
+    out.f90_loss = static_cast<float>(1.0 - weight);
 }
 
 /* KHR_materials_pbrSpecularGlossiness: diffuse and specular colours, and a glossiness that is 1 where roughness is 0.
@@ -420,44 +454,55 @@ static double factor_in(const tinygltf::Value &extension, const char *key, size_
     return list.IsArray() && list.ArrayLen() > i && list.Get(at).IsNumber() ? list.Get(at).GetNumberAsDouble() : 1.0;
 }
 
-/* The mean of a colour's channel in linear light, a multiple of 1/4096: the same wherever it is computed. */
-static double mean_light(const model_texture &t, size_t channel)
+static double light_of(uint8_t byte)
 {
-    double sum = 0.0;
-    const size_t count = size_t{ t.width } * t.height;
-    std::array<size_t, 256> texels = {};
-    for (size_t i = 0; i < count; ++i) ++texels[t.rgba[i * 4 + channel]];
-    for (size_t b = 0; b < 256; ++b) {
-        const double s = static_cast<double>(b) / 255.0;
-        sum += static_cast<double>(texels[b]) * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    }
-    return std::floor(4096.0 * sum / static_cast<double>(count) + 0.5) / 4096.0;
+    const double s = static_cast<double>(byte) / 255.0;
+    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-/* Its glossiness becomes a map of roughness, its colour a mean. */
+/* Whether all texels have one colour, so that it needs no map. */
+static bool has_one_color(const model_texture &t)
+{
+    for (size_t i = 1; i < size_t{ t.width } * t.height; ++i)
+        if (memcmp(t.rgba, t.rgba + i * 4, 3) != 0) return false;
+    return true;
+}
+
+static void set_roughness(model_texture &t, size_t channel, double gloss)
+{
+    for (size_t i = 0; i < size_t{ t.width } * t.height; ++i) {
+        uint8_t *texel = t.rgba + i * 4;
+        texel[channel] = static_cast<uint8_t>(255.0 - gloss * texel[3] + 0.5);
+    }
+}
+
+/* Its colours become a map with roughness in alpha, one texture as before. An occlusion map is another one, which may as
+ * well have the roughness where all colours are the same. */
 static void read_gloss_map(file &f, int index, int occlusion, double gloss, model_material &out,
                            const std::string &where)
 {
-    for (int i : { index, occlusion })
-        if (i >= 0 && static_cast<size_t>(i) >= f.json.textures.size())
-            fail(where, text("texture %d does not exist: the file has %zu", i, f.json.textures.size()));
+    check_indices(f, { index, occlusion }, where);
     const uint32_t slot = try_texture(f, static_cast<size_t>(index), where);
-    if (slot == MODEL_NONE) return;
+    if (slot == MODEL_NONE) {
+        out.surface_texture = surface_texture(f, occlusion, -1, -1, where);
+        return;
+    }
     model_texture &t = f.out->textures[slot];
-    t.use = MODEL_TEXTURE_DATA;
-    for (size_t c = 0; c < 3; ++c) out.f0[c] *= static_cast<float>(mean_light(t, c));
-    for (size_t i = 0; i < size_t{ t.width } * t.height; ++i) {
-        uint8_t *texel = t.rgba + i * 4;
-        texel[1] = static_cast<uint8_t>(255.0 - gloss * texel[3] + 0.5);
-        texel[0] = texel[2] = texel[3] = 255;
-    }
-    const uint32_t other = occlusion < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(occlusion), where);
-    if (other != MODEL_NONE) {
-        put_red(f.out->textures[other], f.out->textures[slot]);
-        drop_last_texture(f);
-    }
     out.roughness = 1.0f;
-    out.surface_texture = slot;
+    if (has_one_color(t)) {
+        for (size_t c = 0; c < 3; ++c) out.f0[c] *= static_cast<float>(light_of(t.rgba[c]));
+        t.use = MODEL_TEXTURE_DATA;
+        set_roughness(t, 1, gloss);
+        for (size_t c : { 0, 2, 3 }) fill_channel(t, c);
+        add_channel(f, slot, occlusion, 0, where);
+        out.surface_texture = slot;
+        return;
+    }
+    set_roughness(t, 3, gloss);
+    t.alpha_is_data = 1;
+    out.specular_texture = slot;
+    out.specular_roughness = 1;
+    out.surface_texture = surface_texture(f, occlusion, -1, -1, where);
 }
 
 static void read_gloss(const tinygltf::Value &e, model_material &out, const std::string &where)
@@ -518,6 +563,16 @@ static void read_tint(file &f, const tinygltf::Material &m, model_material &out,
         leave_out(f, where, ": the extra 'tint' is neither true nor false and was ignored");
 }
 
+/* A weight alone goes into the surface map; with colours it goes to these: a fetch less either way. */
+static void read_specular_maps(file &f, const tinygltf::Material &m, int occlusion, int roughness, model_material &out,
+                               const std::string &where)
+{
+    const int weight = index_of(f, m, 5, where), color = index_of(f, m, 6, where);
+    if (color >= 0) out.specular_texture = specular_texture(f, color, weight, where);
+    const bool is_alone = out.specular_texture == MODEL_NONE;
+    out.surface_texture = surface_texture(f, occlusion, roughness, is_alone ? weight : -1, where);
+}
+
 static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
@@ -532,7 +587,7 @@ static void read_maps(file &f, const tinygltf::Material &m, model_material &out,
     if (roughness >= 0 && extension_of(m, gloss_name))
         read_gloss_map(f, roughness, occlusion, 1.0 - static_cast<double>(out.roughness), out, where);
     else
-        out.surface_texture = surface_texture(f, occlusion, roughness, where);
+        read_specular_maps(f, m, occlusion, roughness, out, where);
     if (out.emissive[0] > 0.0f || out.emissive[1] > 0.0f || out.emissive[2] > 0.0f)
         out.emissive_texture = texture_for(f, index_of(f, m, 4, where), MODEL_TEXTURE_COLOR, where);
 }
@@ -554,7 +609,7 @@ static void read_material(file &f, size_t index, model_material &out)
     out.double_sided = m.doubleSided;
     out.unlit = m.extensions.count("KHR_materials_unlit") != 0;
     read_emissive(m, out, where);
-    read_f0(f, m, out, where);
+    read_f0(m, out, where);
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
     read_surface(f, index, out, where);
     read_tint(f, m, out, where);
@@ -563,8 +618,9 @@ static void read_material(file &f, size_t index, model_material &out)
 
 void read_materials(file &f)
 {
-    /* each texture as colours and as normals; one surface map a material, and the image that is put into it */
-    f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 2 + f.json.materials.size() + 1, "textures");
+    /* each texture as colours and as normals; a surface and a specular map a material, and an image that is put into one */
+    f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 2 + f.json.materials.size() * 2 + 1,
+                                              "textures");
     f.out->materials = allocate<model_material>(f, f.json.materials.size(), "materials");
     for (size_t i = 0; i < f.json.materials.size(); ++i) {
         ++f.out->material_count;

@@ -59,6 +59,7 @@ model_material model_material_default(void)
                                    .normal_texture = MODEL_NONE,
                                    .surface_texture = MODEL_NONE,
                                    .emissive_texture = MODEL_NONE,
+                                   .specular_texture = MODEL_NONE,
                                    .wrinkle_texture = MODEL_NONE,
                                    .wrinkle_weights = { MODEL_NONE, MODEL_NONE, MODEL_NONE } };
     return plain;

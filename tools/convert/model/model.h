@@ -31,13 +31,14 @@ typedef struct model_texture {
     uint32_t wrap_s, wrap_t;         /* glTF enum values: 10497 repeat, 33071 clamp, 33648 mirror */
     uint32_t mag_filter, min_filter; /* glTF enum values, 0 = not given */
     model_texture_use use;
-    uint8_t with_alpha; /* a material cuts or blends by its alpha: where that is 0, colours do not count */
-    float alpha_cutoff; /* of a material that cuts by it: mip levels cover as much; else 0 */
-    uint8_t cut_alone;  /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
-    uint8_t etc2;       /* 1: to be compressed */
-    uint32_t size_max;  /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
-    uint32_t cells[2];  /* then divided into columns and rows, 2 to 64 of the same size; 0: not (texture_trim.h) */
-    uint64_t kept[2];   /* of which the i-th stays if bit i is 1; at least one does */
+    uint8_t alpha_is_data; /* a value of its own, which is kept and changes no colour */
+    uint8_t with_alpha;    /* a material cuts or blends by its alpha: where that is 0, colours do not count */
+    float alpha_cutoff;    /* of a material that cuts by it: mip levels cover as much; else 0 */
+    uint8_t cut_alone;     /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
+    uint8_t etc2;          /* 1: to be compressed */
+    uint32_t size_max;     /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
+    uint32_t cells[2];     /* then divided into columns and rows, 2 to 64 of the same size; 0: not (texture_trim.h) */
+    uint64_t kept[2];      /* of which the i-th stays if bit i is 1; at least one does */
 } model_texture;
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;
@@ -63,6 +64,9 @@ typedef struct model_material {
     uint8_t wrinkle_codes;   /* 1: wrinkle_weights[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
     uint32_t surface;        /* NOH_SURFACE_* of pack/format.h */
     float surface_values[4], surface_more[6];
+    uint32_t specular_texture;  /* index into textures or MODEL_NONE */
+    uint8_t specular_roughness; /* 1: its alpha is roughness, else the weight of f0 and f90 */
+    float f90_loss;
 } model_material;
 
 /* What the file lacks for the vertices of one submesh, and model_complete fills in. */

@@ -115,6 +115,7 @@ static void renumber(const model *m, model *other, const uint32_t *map)
         a->normal_texture = moved(a->normal_texture, m->texture_count);
         a->surface_texture = moved(a->surface_texture, m->texture_count);
         a->emissive_texture = moved(a->emissive_texture, m->texture_count);
+        a->specular_texture = moved(a->specular_texture, m->texture_count);
         a->wrinkle_texture = moved(a->wrinkle_texture, m->texture_count);
         for (int k = 0; k < 3; k++) a->wrinkle_weights[k] = moved(a->wrinkle_weights[k], m->texture_count);
     }

@@ -83,6 +83,9 @@ static uint32_t material_flags(const model_material *m)
     return (m->alpha == MODEL_ALPHA_BLEND ? NOH_MATERIAL_BLEND : 0u) |
            (m->alpha == MODEL_ALPHA_MASK ? NOH_MATERIAL_MASK : 0u) |
            (m->double_sided ? NOH_MATERIAL_DOUBLE_SIDED : 0u) | (m->unlit ? NOH_MATERIAL_UNLIT : 0u) |
+           (m->specular_texture == MODEL_NONE ? 0u
+            : m->specular_roughness           ? NOH_MATERIAL_SPECULAR_ROUGHNESS
+                                              : NOH_MATERIAL_SPECULAR_WEIGHT) |
            (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED) | (m->wrinkle_codes ? NOH_MATERIAL_WRINKLE_CODES : 0u);
 }
 
@@ -96,6 +99,8 @@ static void write_maps(const model_material *from, noh_material *to)
     to->surface_texture = from->surface_texture;
     to->emissive_texture = from->emissive_texture;
     to->wrinkle_texture = from->wrinkle_texture;
+    to->specular_texture = from->specular_texture == MODEL_NONE ? 0u : from->specular_texture;
+    to->f90_loss = from->f90_loss;
     to->wrinkle_models = from->wrinkle_models;
     memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
     to->surface = from->surface;

@@ -242,7 +242,7 @@ static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, 
     formats[0] = NOH_TEXTURE_ETC2_RGB;
     formats[1] = NOH_TEXTURE_EAC_RG;
     if (t->use == MODEL_TEXTURE_NORMAL) return 2;
-    if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha) return 1; /* glTF ignores such alphas */
+    if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha && !t->alpha_is_data) return 1; /* glTF ignores such alphas */
     for (size_t i = 0; i < count; i++) {
         if (bytes[i * 4 + 3] != 255) formats[0] = formats[1] = NOH_TEXTURE_ETC2_RGBA;
     }

@@ -43,13 +43,13 @@ static void join(trim *t, uint32_t a, uint32_t b)
     t->group_of[find(t, a)] = find(t, b);
 }
 
-#define MAPS 8u
+#define MAPS 9u
 
 static void maps_of(const model_material *m, uint32_t maps[MAPS])
 {
-    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,    m->surface_texture,
-                                 m->emissive_texture,   m->wrinkle_texture,   m->wrinkle_weights[0],
-                                 m->wrinkle_weights[1], m->wrinkle_weights[2] };
+    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,     m->surface_texture,
+                                 m->emissive_texture,   m->wrinkle_texture,    m->wrinkle_weights[0],
+                                 m->wrinkle_weights[1], m->wrinkle_weights[2], m->specular_texture };
     memcpy(maps, all, sizeof all);
 }
 

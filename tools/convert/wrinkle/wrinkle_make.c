@@ -320,6 +320,7 @@ static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
 static int has_room(const model_material *of)
 {
     const int maps = (of->normal_texture != MODEL_NONE) + (of->surface_texture != MODEL_NONE) +
+                     (of->specular_texture != MODEL_NONE) +
                      (of->emissive[0] > 0.0f || of->emissive[1] > 0.0f || of->emissive[2] > 0.0f);
     return maps + 2 <= (int)NOH_MATERIAL_MAPS_MAX;
 }

@@ -67,6 +67,7 @@ static void measure(parts *p, const model *m, const model_mesh *mesh, const wrin
             fix_by(m, material->normal_texture, at);
             fix_by(m, material->surface_texture, at);
             fix_by(m, material->emissive_texture, at);
+            fix_by(m, material->specular_texture, at);
         }
     }
 }

@@ -5,7 +5,8 @@
 #include "convert/texture/texture_blocks.h"
 #include "noh_gl.h"
 
-#define MAPS 8u
+#define MAPS 9u
+#define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)
 
 typedef struct material_map {
     const char *name, *key;
@@ -18,13 +19,16 @@ static void list_maps(const noh_material *m, material_map maps[MAPS])
                                      { "normal", "normal", m->normal_texture },
                                      { "occlusion, roughness, metallic", "surface", m->surface_texture },
                                      { "emissive", "emissive", m->emissive_texture },
+                                     { m->flags & NOH_MATERIAL_SPECULAR_ROUGHNESS ? "specular colour, roughness"
+                                                                                  : "specular colour, weight",
+                                       "specular", m->flags & SPECULAR ? m->specular_texture : NOH_NONE },
                                      { "wrinkles", "wrinkle", m->wrinkle_texture },
                                      { "wrinkle weights 1-4", "wrinkle_weights_0", m->wrinkle_weights[0] },
                                      { "wrinkle weights 5-8", "wrinkle_weights_1", m->wrinkle_weights[1] },
                                      { "wrinkle weights 9-12", "wrinkle_weights_2", m->wrinkle_weights[2] } };
     const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->wrinkle_weights[0] };
     for (uint32_t i = 0; i < MAPS; i++) maps[i] = all[i];
-    if (m->flags & NOH_MATERIAL_WRINKLE_CODES) maps[5] = codes;
+    if (m->flags & NOH_MATERIAL_WRINKLE_CODES) maps[6] = codes;
 }
 
 static const char *alpha_of(const noh_material *m)
@@ -74,7 +78,7 @@ static material_cost cost_of(const noh_pack *pack, const noh_material *m)
         (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
         cost.bytes += noh_gl_picture_bytes(&t, 1);
         cost.textures++;
-        cost.fetches += k >= 1 && k <= (m->flags & NOH_MATERIAL_WRINKLE_CODES ? 5u : 4u) &&
+        cost.fetches += k >= 1 && k <= (m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u : 5u) &&
                         !(m->flags & NOH_MATERIAL_UNLIT);
     }
     cost.lit = cost.fetches + 5u < NOH_GL_FETCHES_MAX ? cost.fetches + 5u : NOH_GL_FETCHES_MAX;
