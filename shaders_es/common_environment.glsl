@@ -3,7 +3,7 @@
  * with NOH_DEPTH_ONLY. Defines, which noh_gl_variant_defines writes:
  *
  *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)
- *   NOH_SHADOW_TAPS  with it, 2 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
+ *   NOH_SHADOW_TAPS  with it, 1 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
  *                    fetches */
 #if defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
 #ifndef NOH_SHADOW_TAPS
@@ -49,7 +49,9 @@ float noh_key_shadow(vec3 position, vec3 normal)
     vec4 p = vec4(position + normal * (noh_lighting[13].z * (0.7 + 2.0 * slope)), 1.0);
     vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz * 0.5 + 0.5;
     at.z = min(at.z, 1.0) - 0.0003;
-#if NOH_SHADOW_TAPS == 2
+#if NOH_SHADOW_TAPS == 1
+    float sum = noh_shadow_tap(at, 0.0, 0.0);
+#elif NOH_SHADOW_TAPS == 2
     float sum = noh_shadow_tap(at, -0.9, -0.4) + noh_shadow_tap(at, 0.9, 0.4);
 #elif NOH_SHADOW_TAPS == 3
     float sum = noh_shadow_tap(at, 0.4, -1.0) + noh_shadow_tap(at, 0.67, 0.85) + noh_shadow_tap(at, -1.07, 0.15);

@@ -237,6 +237,31 @@ static void surface_maps_and_emissive_colours_count(void **state)
     }
 }
 
+/* Colours and weights of reflections by texel, as KHR_materials_specular has them, and roughness beside colours. */
+static void specular_maps_count(void **state)
+{
+    static const uint8_t maps[4][4] = {
+        { 255, 120, 40, 255 }, { 200, 255, 90, 120 }, { 255, 255, 255, 0 }, { 60, 180, 250, 70 }
+    };
+    static const uint8_t surface[4] = { 230, 140, 255, 90 };
+    (void)state;
+    for (int i = 0; i < 32; i++) {
+        lit_quad q = lit_quad_of();
+        double off, other;
+        q.specular_map = i & 16 ? NULL : maps[i % 4];
+        q.specular_roughness = i >> 2 & 1;
+        q.surface_map = i >> 3 & 1 ? surface : NULL;
+        q.f90_loss = i % 3 ? 0.25f : 0.0f;
+        q.f0 = i % 5 ? 0.5f : 2.5f; /* above 1: colours of a factor of 30 and more */
+        if (!q.specular_map && q.f0 > 1.0f) q.f0 = 1.0f - q.f90_loss;
+        q.metallic = i % 2 ? 0.0f : 0.3f;
+        if (!q.specular_map) q.specular_roughness = 0;
+        compare(&q, NORMALS_BY_NOTHING, &off, &other);
+        if (off >= LIT_QUAD_CLOSE) print_error("case %d: off by %.2f\n", i, off);
+        assert_true(off < LIT_QUAD_CLOSE);
+    }
+}
+
 /* ---- what a material lacks costs nothing ---- */
 
 /* A linear grey by row and an alpha by column, over what is 0.75 in sRGB, as strands are blended in linear light. */
@@ -278,14 +303,15 @@ static void dark_strands_are_as_they_were_painted(void **state)
 static void programs_have_what_materials_have(void **state)
 {
     static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture",
-                                         "noh_surface_values" };
-    static const uint8_t features[] = { 0,
-                                        NOH_FEATURE_NORMAL_MAP,
-                                        NOH_FEATURE_SURFACE_MAP,
-                                        NOH_FEATURE_EMISSIVE,
-                                        NOH_FEATURE_SKIN,
-                                        NOH_FEATURE_EYE,
-                                        NOH_FEATURE_TEETH };
+                                         "noh_surface_values", "noh_specular_texture" };
+    static const uint16_t features[] = { 0,
+                                         NOH_FEATURE_NORMAL_MAP,
+                                         NOH_FEATURE_SURFACE_MAP,
+                                         NOH_FEATURE_EMISSIVE,
+                                         NOH_FEATURE_SKIN,
+                                         NOH_FEATURE_EYE,
+                                         NOH_FEATURE_TEETH,
+                                         NOH_FEATURE_SPECULAR_MAP };
     gpu *g = fixture_gpu();
     noh_gl_ledger ledger;
     (void)state;
@@ -299,7 +325,7 @@ static void programs_have_what_materials_have(void **state)
             NOH_OK);
         for (size_t k = 0; k < TEST_COUNT(names); k++) {
             const GLint at = g->gl.GetUniformLocation(v.program, names[k]);
-            assert_int_equal(at >= 0, i > 3u ? k == 3u : k + 1u == i);
+            assert_int_equal(at >= 0, i > 6u ? k == 4u : i > 3u ? k == 3u : k + 1u == i);
         }
         noh_gl_variant_delete(&g->gl, &ledger, &v);
     }
@@ -342,6 +368,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(nothing_shines_from_behind),
     cmocka_unit_test(a_flat_map_changes_nothing),
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
+    cmocka_unit_test(specular_maps_count),
     cmocka_unit_test(dark_strands_are_as_they_were_painted),
     cmocka_unit_test(programs_have_what_materials_have),
     cmocka_unit_test(features_follow_material_and_mesh),

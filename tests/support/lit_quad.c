@@ -65,23 +65,30 @@ static void fill_material(const lit_quad *q, model *m)
     memcpy(material->emissive, q->emissive, sizeof q->emissive);
     if (q->normal_map) material->normal_texture = 0;
     if (q->surface_map) material->surface_texture = 1;
+    if (q->specular_map) material->specular_texture = 2;
+    material->specular_roughness = (uint8_t)(q->specular_roughness != 0);
+    material->f90_loss = q->f90_loss;
+    for (int i = 0; i < 3 && q->f0 > 0.0f; i++) material->f0[i] = q->f0;
     m->meshes[0].submeshes[0].material = 0;
 }
 
-/* The normal map, and the surface map. */
+/* The normal map, the surface map, and the specular map. */
 static void fill_maps(const lit_quad *q, model *m)
 {
     static const uint8_t none[4] = { 128, 128, 255, 255 };
-    const uint8_t *const texels[2] = { q->normal_map ? q->normal_map : none, q->surface_map ? q->surface_map : none };
-    m->textures = test_zeros(2 * sizeof *m->textures);
-    m->texture_count = 2;
-    for (int i = 0; i < 2; i++) {
+    static const char *const names[3] = { "normal", "surface", "specular" };
+    static const model_texture_use uses[3] = { MODEL_TEXTURE_NORMAL, MODEL_TEXTURE_DATA, MODEL_TEXTURE_COLOR };
+    const uint8_t *const texels[3] = { q->normal_map, q->surface_map, q->specular_map };
+    m->textures = test_zeros(3 * sizeof *m->textures);
+    m->texture_count = 3;
+    for (int i = 0; i < 3; i++) {
         model_texture *t = &m->textures[i];
-        t->name = model_string(i ? "surface" : "normal");
+        t->name = model_string(names[i]);
         t->width = t->height = 1;
         t->rgba = test_zeros(4);
-        memcpy(t->rgba, texels[i], 4);
-        t->use = i ? MODEL_TEXTURE_DATA : MODEL_TEXTURE_NORMAL;
+        memcpy(t->rgba, texels[i] ? texels[i] : none, 4);
+        t->use = uses[i];
+        t->alpha_is_data = i == 2;
     }
     if (!q->normal_map) return;
     m->meshes[0].tangent = test_zeros(16 * sizeof(float));
@@ -138,7 +145,7 @@ static uint8_t *quad_pack(const lit_quad *q, size_t *count)
     fill_material(q, m);
     if (q->picture) fill_textures(q, m);
     if (q->base_map) fill_base_map(q, m);
-    if (q->normal_map || q->surface_map) fill_maps(q, m);
+    if (q->normal_map || q->surface_map || q->specular_map) fill_maps(q, m);
     if (q->uv) mesh->uv = copied(q->uv, 8);
     if (q->color) mesh->color = copied(q->color, 16);
     for (uint32_t v = 0; v < 4; v++) {
@@ -157,7 +164,7 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
     noh_gl_renderer_desc desc;
     noh_gl_renderer renderer;
     noh_gl_mesh drawn;
-    noh_gl_texture pictures[2];
+    noh_gl_texture pictures[3];
     char log[1024] = "";
     memset(&desc, 0, sizeof desc);
     memset(pictures, 0, sizeof pictures);
@@ -269,14 +276,24 @@ static double shade(const lit_quad *q, const cosines *c, int i)
 {
     static const double warm[3] = { 1.02, 0.98, 0.92 }, ground[3] = { 0.23, 0.20, 0.18 },
                         above[3] = { 0.50, 0.54, 0.60 };
-    static const uint8_t full[3] = { 255, 255, 255 };
+    static const uint8_t full[4] = { 255, 255, 255, 255 };
+    static const uint8_t plain[4] = { 255, 255, 255, 255 };
     const uint8_t *map = q->surface_map ? q->surface_map : full;
+    const uint8_t *specular = q->specular_map ? q->specular_map : plain;
+    const double in_alpha = specular[3] / 255.0, weight = q->specular_roughness ? 1.0 : in_alpha;
+    const double dull = (1.0 - (double)q->f90_loss) * weight * (q->surface_map ? map[3] / 255.0 : 1.0);
     const double albedo = (double)q->base[i], metallic = (double)q->metallic * map[2] / 255.0;
-    const double rough = fmax((double)q->roughness * map[1] / 255.0, 0.08);
+    const double rough = fmax((double)q->roughness * map[1] / 255.0 * (q->specular_roughness ? in_alpha : 1.0), 0.08);
+    /* KHR_materials_specular: min(f0 * colour, 1) * weight straight on, the weight at grazing angles; f0 as the pack has
+     * it is over the factor of the weight */
+    const double factor = 1.0 - (double)q->f90_loss, plain_f0 = q->f0 > 0.0f ? (double)q->f0 : 0.04;
+    const double colored = factor > 0.0 ? plain_f0 / factor * decoded(specular[i]) : 0.0;
+    const double dielectric = fmin(colored, 1.0) * dull, f90 = dull + (1.0 - dull) * metallic;
     const double open = 1.0 + (double)q->occlusion_strength * (map[0] / 255.0 - 1.0);
-    const double f0 = 0.04 + (albedo - 0.04) * metallic, sky = open * (ground[i] + (above[i] - ground[i]) * c->up);
+    const double f0 = dielectric + (albedo - dielectric) * metallic,
+                 sky = open * (ground[i] + (above[i] - ground[i]) * c->up);
     double color = albedo * (1.0 - metallic) * (warm[i] * c->wrapped * fabs(c->wrapped) + 0.62 * sky);
-    color += (f0 + (1.0 - f0) * c->edge) * highlight(c->nh, fmax(c->lit, 0.0), c->nv, rough) * c->lit * 2.6;
+    color += (f0 + (f90 - f0) * c->edge) * highlight(c->nh, fmax(c->lit, 0.0), c->nv, rough) * c->lit * 2.6;
     color += f0 * sky * (0.7 - 0.4 * rough) * (0.15 + 0.85 * metallic);
     color += (double)q->emissive[i];
     return color + 0.10 * sky * pow(1.0 - c->nv, 3.0) * (1.0 - 0.6 * rough);

@@ -27,6 +27,9 @@ typedef struct lit_quad {
     const model_texture *base_map; /* in place of that picture, to be compressed as it says, or NULL */
     const uint8_t *normal_map;     /* [4] one texel, or NULL */
     const uint8_t *surface_map;    /* [4] one texel, or NULL */
+    const uint8_t *specular_map;   /* [4] one texel, or NULL */
+    int specular_roughness;        /* its alpha is roughness, not weight */
+    float f0, f90_loss;            /* f0 0: 0.04 */
     float tangent[4];              /* of all vertices, with a normal map */
     float emissive[3], normal_scale, occlusion_strength;
     const noh_gl_shader_desc *shaders; /* in place of the library's; NULL: none */
