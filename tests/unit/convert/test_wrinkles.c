@@ -263,6 +263,10 @@ static void turn(float at[3])
     at[0] = 0.8f * x - 0.6f * y + 1000.0f; /* far away coordinates are rounded to more */
     at[1] = 0.6f * x + 0.8f * y - 300.0f;
 }
+static void widen(float at[3]) /* the sheet is torn along x = 0, where its triangles shear */
+{
+    if (at[0] > 0.0f) at[1] *= 1.37f;
+}
 static void stay(float at[3])
 {
     (void)at;
@@ -282,10 +286,9 @@ static unsigned tie(const model *m, uint32_t target, uint32_t region)
 static void targets_that_compress_nothing_are_tied_to_no_region(void **state)
 {
     (void)state;
-    const sheet_target targets[] = {
-        { "squeeze", squeeze_left },  { "grow", grow }, { "slide", slide }, { "turn", turn }, { "stay", stay },
-        { "slight", shrink_slightly }
-    };
+    const sheet_target targets[] = { { "squeeze", squeeze_left },  { "grow", grow }, { "widen", widen },
+                                     { "slide", slide },           { "turn", turn }, { "stay", stay },
+                                     { "slight", shrink_slightly } };
     const uint32_t count = sizeof targets / sizeof targets[0];
     model *m = sheet_with_mask(targets, count, NULL);
     assert_non_null(m->meshes[0].wrinkles);

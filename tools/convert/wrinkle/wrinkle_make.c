@@ -257,7 +257,7 @@ static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
         at += (size_t)snprintf(list + at, sizeof list - at, count++ ? ", %u" : "%u", r);
     }
     return count && model_warn(m,
-                               "mesh '%s': no target compresses the skin by 1 %% anywhere in region%s %s of the mask, "
+                               "mesh '%s': no target compresses the skin by 1 %% in region%s %s of the mask, "
                                "which never show%s: paint it where targets do, or give it rows `wrinkle TARGET REGION` "
                                "in a recipe (--recipe)",
                                mesh->name, count == 1 ? "" : "s", list, count == 1 ? "s" : "");

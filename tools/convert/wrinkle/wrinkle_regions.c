@@ -10,9 +10,9 @@
 #define FADE_FIRST 0.01f /* compression at which a crease begins to show, */
 #define FADE_LAST 0.035f /* and at which it shows in full */
 #define MATRIX_LEAST \
-    0.04                /* a target that does less than this to a region, over what the strongest does, leaves it be */
-#define SAMPLES_MAX 64u /* of a mask, along a side of a triangle */
-#define COVERED 0.1f    /* the weight at which a place is a region's */
+    0.04                 /* a target that does less than this to a region, over what the strongest does, leaves it be */
+#define SAMPLES_MAX 64u  /* of a mask, along a side of a triangle */
+#define SHOWN_LEAST 0.05 /* of a region's area, where a target that is tied to it compresses by FADE_FIRST */
 
 /* Groups as directions: how much each target compresses their points, unit length. */
 typedef struct clusters {
@@ -354,45 +354,54 @@ region_weights *wrinkle_regions_make(const wrinkle_field *field)
 
 /* ---- the matrix ---- */
 
-/* What targets do to regions: [target_count] each. */
+/* What targets do to regions. */
 typedef struct deeds {
-    double (*sum)[REGION_COUNT];    /* of compression */
-    float (*largest)[REGION_COUNT]; /* compression at one place of the region */
+    double (*sum)[REGION_COUNT];   /* [target_count] of compression times area */
+    double (*shown)[REGION_COUNT]; /* [target_count] area that a target compresses so that creases show */
+    double area[REGION_COUNT];
 } deeds;
 
 static int deeds_make(uint32_t targets, deeds *d)
 {
+    memset(d, 0, sizeof *d);
     d->sum = model_zeros(targets, sizeof *d->sum);
-    d->largest = model_zeros(targets, sizeof *d->largest);
-    return !d->sum || !d->largest;
+    d->shown = model_zeros(targets, sizeof *d->shown);
+    return !d->sum || !d->shown;
 }
 
 static void deeds_free(deeds *d)
 {
     free(d->sum);
-    free(d->largest);
+    free(d->shown);
 }
 
-/* area: of the place. weight: how much of it is the region's */
-static void add_deed(deeds *d, uint32_t target, uint32_t region, float weight, double area, float shrink)
+/* area: of a triangle, as much as is the region's. shrink: [targets] */
+static void add_deeds(deeds *d, uint32_t targets, uint32_t region, double area, const float *shrink)
 {
-    float *largest = &d->largest[target][region];
-    d->sum[target][region] += area * (double)weight * (double)shrink;
-    if (weight >= COVERED && shrink > *largest) *largest = shrink;
+    d->area[region] += area;
+    for (uint32_t t = 0; t < targets; t++) {
+        d->sum[t][region] += area * (double)shrink[t];
+        d->shown[t][region] += shrink[t] >= FADE_FIRST ? area : 0.0;
+    }
 }
 
-/* The target that does most to a region gets 255. A target that shows no crease anywhere in a region is not tied to it,
- * however little the others do. */
+static int is_tied(const deeds *d, uint32_t target, uint32_t region)
+{
+    return d->shown[target][region] > 0.0 && d->shown[target][region] >= SHOWN_LEAST * d->area[region];
+}
+
+/* The target that does most to a region gets 255. A target that shows creases next to nowhere in a region is not tied to
+ * it, however little the others do. */
 static uint8_t *matrix_of(uint32_t targets, const deeds *d)
 {
     uint8_t *matrix = model_zeros(targets, REGION_COUNT);
     for (uint32_t r = 0; r < REGION_COUNT && matrix; r++) {
         double most = 0.0;
         for (uint32_t t = 0; t < targets; t++) {
-            if (d->largest[t][r] >= FADE_FIRST && d->sum[t][r] > most) most = d->sum[t][r];
+            if (is_tied(d, t, r) && d->sum[t][r] > most) most = d->sum[t][r];
         }
         for (uint32_t t = 0; t < targets && most > 0.0; t++) {
-            const double share = d->largest[t][r] >= FADE_FIRST ? d->sum[t][r] / most : 0.0;
+            const double share = is_tied(d, t, r) ? d->sum[t][r] / most : 0.0;
             matrix[t * REGION_COUNT + r] = (uint8_t)(share < MATRIX_LEAST ? 0.0 : share * 255.0 + 0.5);
         }
     }
@@ -412,7 +421,7 @@ static size_t texel_at(const wrinkle_field *f, const region_maps *maps, const do
 }
 
 /* The mean of a mask over a triangle, by samples that are a texel apart at most. */
-static void mean_weights(const wrinkle_field *f, const region_maps *maps, uint32_t triangle, float *weights)
+static void mean_weights(const wrinkle_field *f, const region_maps *maps, uint32_t triangle, double *weights)
 {
     double corner[3][2], longest = 0.0, sum[REGION_COUNT] = { 0.0 };
     for (uint32_t k = 0; k < 3; k++) {
@@ -437,7 +446,7 @@ static void mean_weights(const wrinkle_field *f, const region_maps *maps, uint32
         for (uint32_t r = 0; r < REGION_COUNT; r++)
             sum[r] += maps->map[r % REGION_MAP_COUNT][at + r / REGION_MAP_COUNT];
     }
-    for (uint32_t r = 0; r < REGION_COUNT; r++) weights[r] = (float)(sum[r] / (255.0 * n * n));
+    for (uint32_t r = 0; r < REGION_COUNT; r++) weights[r] = sum[r] / (255.0 * n * n);
 }
 
 uint8_t *wrinkle_matrix_make(const wrinkle_field *field, const region_maps *maps)
@@ -447,12 +456,11 @@ uint8_t *wrinkle_matrix_make(const wrinkle_field *field, const region_maps *maps
     const int failed = deeds_make(targets, &d);
     uint8_t *matrix = NULL;
     for (uint32_t i = 0; i < field->triangle_count && !failed; i++) {
-        float weights[REGION_COUNT];
-        if (field->largest[i] > 0.0f) mean_weights(field, maps, i, weights);
-        for (uint32_t r = 0; r < REGION_COUNT && field->largest[i] > 0.0f; r++) {
-            for (uint32_t t = 0; t < targets && weights[r] > 0.0f; t++) {
-                add_deed(&d, t, r, weights[r], field->area[i], field->shrink[(size_t)i * targets + t]);
-            }
+        double weights[REGION_COUNT];
+        mean_weights(field, maps, i, weights);
+        for (uint32_t r = 0; r < REGION_COUNT; r++) {
+            const double area = field->area[i] * weights[r];
+            if (area > 0.0) add_deeds(&d, targets, r, area, &field->shrink[(size_t)i * targets]);
         }
     }
     if (!failed) matrix = matrix_of(targets, &d);

@@ -23,8 +23,8 @@ typedef struct region_maps {
  * channels as far as that can be. NULL: out of memory. */
 region_weights *wrinkle_regions_make(const wrinkle_field *field);
 
-/* The matrix: [target_count][REGION_COUNT], 255 for the target that compresses a region most, to be freed. A target that
- * nowhere in a region compresses a triangle by 1 % is not tied to it. NULL: out of memory. */
+/* The matrix: [target_count][REGION_COUNT], 255 for the target that compresses a region most, to be freed. A target
+ * that compresses less than a twentieth of a region by 1 % is not tied to it. NULL: out of memory. */
 uint8_t *wrinkle_matrix_make(const wrinkle_field *field, const region_maps *maps);
 
 /* The three weight maps of regions that cover vertices, [size][size][4] each, as region_maps_make orders them; outside
