@@ -40,6 +40,17 @@ static inline int noh_is_number(float x)
     return x >= -NOH_NUMBER_MAX && x <= NOH_NUMBER_MAX;
 }
 
+#define NOH_NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
+
+/* Where to count from instead of the origin: 0 for what is near it, else a multiple of 16 beside x, which is an exact
+ * float, as is its difference to what is near x. */
+static inline float noh_on_grid(float x)
+{
+    if (!(x > NOH_NEAR_ORIGIN || x < -NOH_NEAR_ORIGIN) || !noh_is_number(x)) return 0.0f;
+    if (x >= 134217728.0f || x <= -134217728.0f) return x; /* 2^27: a multiple already */
+    return (float)(int32_t)(x / 16.0f + (x < 0.0f ? -0.5f : 0.5f)) * 16.0f;
+}
+
 /* With errno off (-fno-math-errno) gcc and clang turn the builtin into the processor's instruction. With errno on they
  * call sqrtf for negative arguments, and for all where the processor has no such instruction: there the vector unit
  * takes the root, or plain C. All give the same bits. */

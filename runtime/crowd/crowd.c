@@ -109,6 +109,8 @@ static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
     c->obstacle_count = desc->obstacle_count;
     c->reach = desc->reach;
     c->cells = noh_crowd_cells_of(desc);
+    c->home[0] = (double)noh_crowd_home_of(desc).x;
+    c->home[1] = (double)noh_crowd_home_of(desc).z;
     const uint32_t cell_count = c->cells.width * c->cells.depth;
     c->body = take(&bytes, sizeof(crowd_body), n);
     c->wish = take(&bytes, sizeof(crowd_wish), n);
@@ -166,7 +168,10 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
     *crowd = memory;
     **crowd = c;
     if (c.obstacle_count) {
-        memcpy(CROWD_ARRAY(noh_crowd_obstacle, *crowd, obstacle), d.obstacles, d.obstacle_count * sizeof *d.obstacles);
+        for (uint32_t i = 0; i < d.obstacle_count; i++) {
+            CROWD_ARRAY(noh_crowd_obstacle, *crowd, obstacle)
+            [i] = noh_crowd_obstacle_less(&d.obstacles[i], noh_crowd_home_of(&d));
+        }
         noh_crowd_near(&c.cells, &d, CROWD_ARRAY(uint32_t, *crowd, near_start), CROWD_ARRAY(uint16_t, *crowd, near));
     }
     if (c.ground) noh_crowd_ground_init(*crowd, &d); /* which flow fields lead around */
@@ -207,10 +212,10 @@ noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent
                         index, 0);
     }
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
-    w->goal = v2(agent->goal[0], agent->goal[1]);
+    w->goal = noh_crowd_from(crowd, agent->goal);
     w->radius = agent->radius;
     w->speed = agent->speed;
-    CROWD_ARRAY(vec2, crowd, position)[index] = v2(agent->position[0], agent->position[1]);
+    CROWD_ARRAY(vec2, crowd, position)[index] = noh_crowd_from(crowd, agent->position);
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(agent->velocity[0], agent->velocity[1]);
     CROWD_ARRAY(uint32_t, crowd, id)[index] = agent->id;
     CROWD_ARRAY(uint32_t, crowd, state)[index] = flags_of(agent->flags);
@@ -233,8 +238,8 @@ void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
 {
     NOH_ASSERT(crowd && position && index < crowd->agent_max && !crowd->to_do);
     vec2 *at = CROWD_ARRAY(vec2, crowd, position) + index;
-    const vec2 to = v2(within(position[0], -FAR, FAR), within(position[1], -FAR, FAR));
-    *at = noh_crowd_keep_out(crowd, *at, to, CROWD_CONST(crowd_wish, crowd, wish)[index].radius);
+    const float to[2] = { within(position[0], -FAR, FAR), within(position[1], -FAR, FAR) };
+    *at = noh_crowd_keep_out(crowd, *at, noh_crowd_from(crowd, to), CROWD_CONST(crowd_wish, crowd, wish)[index].radius);
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(0.0f, 0.0f);
     begin_anew(crowd, index);
 }
@@ -242,40 +247,15 @@ void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
 void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
 {
     NOH_ASSERT(crowd && by && !crowd->to_do);
-    const vec2 way = v2(by[0], by[1]);
-    crowd_wish *wish = CROWD_ARRAY(crowd_wish, crowd, wish);
-    vec2 *position = CROWD_ARRAY(vec2, crowd, position);
-    noh_crowd_obstacle *obstacle = CROWD_ARRAY(noh_crowd_obstacle, crowd, obstacle);
-    crowd_flow *flow = CROWD_ARRAY(crowd_flow, crowd, flow);
-    for (uint32_t i = 0; i < crowd->agent_max; i++) {
-        position[i] = v2_sub(position[i], way);
-        wish[i].goal = v2_sub(wish[i].goal, way);
-    }
-    for (uint32_t i = 0; i < 2u * crowd->obstacle_count; i++) {
-        float *end = i % 2u ? obstacle[i / 2u].to : obstacle[i / 2u].from;
-        end[0] -= by[0];
-        end[1] -= by[1];
-    }
-    crowd->cells.origin = v2_sub(crowd->cells.origin, way);
-    if (crowd->ground) {
-        crowd_ground *ground = CROWD_ARRAY(crowd_ground, crowd, ground);
-        ground->cells.origin = v2_sub(ground->cells.origin, way);
-    }
-    if (!crowd->flow) return;
-    flow->cells.origin = v2_sub(flow->cells.origin, way);
-    flow->goal = v2_sub(flow->goal, way);
-    for (uint32_t i = 0; i < flow->field_count; i++) {
-        crowd_field *f = CROWD_ARRAY(crowd_field, flow, field) + i;
-        f->goal = v2_sub(f->goal, way);
-        f->asked = v2_sub(f->asked, way);
-    }
+    for (int i = 0; i < 2; i++) crowd->home[i] -= (double)by[i];
 }
 
 void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);
+    const float absolute[2] = { within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR) };
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
-    const vec2 to = v2(within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR)), by = v2_sub(to, w->goal);
+    const vec2 to = noh_crowd_from(crowd, absolute), by = v2_sub(to, w->goal);
     const float way = v2_length(by);
     w->goal = to;
     if (way > w->radius) begin_anew(crowd, index); /* a goal that wanders is walked round to, too */
@@ -295,8 +275,9 @@ void noh_crowd_field_aim(noh_crowd *crowd, uint32_t field, const float goal[2])
     crowd_flow *flow = CROWD_ARRAY(crowd_flow, crowd, flow);
     const crowd_cells *cells = &flow->cells;
     crowd_field *f = CROWD_ARRAY(crowd_field, flow, field) + field;
-    f->asked = v2(within(goal[0], cells->origin.x, cells->origin.x + (float)cells->width * cells->edge),
-                  within(goal[1], cells->origin.z, cells->origin.z + (float)cells->depth * cells->edge));
+    const vec2 at = noh_crowd_from(crowd, goal);
+    f->asked = v2(within(at.x, cells->origin.x, cells->origin.x + (float)cells->width * cells->edge),
+                  within(at.z, cells->origin.z, cells->origin.z + (float)cells->depth * cells->edge));
     f->is_asked = 1;
 }
 
@@ -320,7 +301,7 @@ int noh_crowd_field_at(const noh_crowd *crowd, uint32_t field, const float at[2]
     vec2 way;
     NOH_ASSERT(crowd && at && direction && crowd->flow);
     const crowd_field *f = noh_crowd_followed(crowd, (field + 1u) << CROWD_FOLLOWS_SHIFT);
-    if (!f->is_built || !noh_crowd_flow_way(crowd, f, v2(at[0], at[1]), &way)) return 0;
+    if (!f->is_built || !noh_crowd_flow_way(crowd, f, noh_crowd_from(crowd, at), &way)) return 0;
     direction[0] = way.x;
     direction[1] = way.z;
     return 1;
@@ -331,10 +312,10 @@ int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_ag
     NOH_ASSERT(crowd && agent && index < crowd->agent_max);
     const crowd_wish *w = CROWD_CONST(crowd_wish, crowd, wish) + index;
     if (!(w->radius > 0.0f)) return 0;
-    memcpy(agent->position, CROWD_CONST(vec2, crowd, position) + index, sizeof agent->position);
+    noh_crowd_to(crowd, CROWD_CONST(vec2, crowd, position)[index], agent->position);
     memcpy(agent->velocity, CROWD_CONST(vec2, crowd, velocity) + index, sizeof agent->velocity);
     const crowd_field *field = noh_crowd_followed(crowd, CROWD_CONST(uint32_t, crowd, state)[index]);
-    memcpy(agent->goal, field ? &field->asked : &w->goal, sizeof agent->goal);
+    noh_crowd_to(crowd, field ? field->asked : w->goal, agent->goal);
     agent->radius = w->radius;
     agent->speed = w->speed;
     agent->flags = given_flags(CROWD_CONST(uint32_t, crowd, state)[index]);

@@ -98,9 +98,9 @@ typedef struct noh_crowd_agent {
 
 typedef struct noh_crowd noh_crowd;
 
-/* The exact bytes of a crowd: 136, 88 an agent, 4 a cell of the grid; with obstacles 16 an agent and 4 a cell more, 20
- * an obstacle and 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more than half as
- * many as agents, and one. With ground 28 and 2 a cell of flow fields. With flow fields 2,136, 24 a field, and for each
+/* The exact bytes of a crowd: 156, 88 an agent, 4 a cell of the grid; with obstacles 16 an agent and 4 a cell more, 20
+ * an obstacle and 2 for each cell within reach of it; rounded up to 16. Cells are no smaller than the reach, and no more
+ * than half as many as agents, and one. With ground 28 and 2 a cell of flow fields. With flow fields 2,136, 24 a field, and for each
  * of their cells 5 and one a field. 0 for an impossible desc. */
 size_t noh_crowd_size(const noh_crowd_desc *desc);
 
@@ -122,9 +122,9 @@ void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
 /* speed 0..15 radii per second: what is outside is clamped */
 void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed);
 
-/* Move the origin of the crowd's world, with noh_stage_shift_origin: agents, goals, obstacles and grids are less by `by`
- * then. A crowd reckons in floats: let its world begin near where it is. Not while a step is under way.
- * by[2] x, z, finite */
+/* Move the origin of the crowd's world, with noh_stage_shift_origin: agents, goals, obstacles, grids and flow fields are
+ * less by `by` then. Nothing is lost: a crowd counts from the middle of its grid, so agents far from the origin walk as
+ * they do at it. by[2] x, z, finite; not while a step is under way */
 void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2]);
 
 /* ---- goals that many share ---- */

@@ -22,7 +22,7 @@ int noh_crowd_flow_cells(const noh_crowd_desc *desc, crowd_cells *cells)
 {
     const float wide = desc->extent[0] / desc->field_cell, deep = desc->extent[1] / desc->field_cell;
     if (!(wide < 65536.0f && deep < 65536.0f)) return 0;
-    cells->origin = v2(desc->origin[0], desc->origin[1]);
+    cells->origin = v2_sub(v2(desc->origin[0], desc->origin[1]), noh_crowd_home_of(desc));
     cells->edge = desc->field_cell;
     cells->per_edge = 1.0f / cells->edge;
     cells->width = (uint32_t)wide + ((float)(uint32_t)wide < wide ? 1u : 0u);

@@ -15,7 +15,7 @@ crowd_cells noh_crowd_cells_of(const noh_crowd_desc *desc)
         }
         cells.edge *= 1.0625f;
     }
-    cells.origin = v2(desc->origin[0], desc->origin[1]);
+    cells.origin = v2_sub(v2(desc->origin[0], desc->origin[1]), noh_crowd_home_of(desc));
     cells.per_edge = 1.0f / cells.edge;
     return cells;
 }
@@ -66,9 +66,10 @@ static int is_near(const crowd_cells *cells, const noh_crowd_obstacle *o, uint32
  * lists the obstacle where start[cell + 1] says, and moves that on. */
 static uint32_t walk(const crowd_cells *cells, const noh_crowd_desc *desc, uint32_t *start, uint16_t *list)
 {
+    const vec2 home = noh_crowd_home_of(desc);
     uint32_t count = 0;
     for (uint32_t i = 0; i < desc->obstacle_count; i++) {
-        const noh_crowd_obstacle *o = &desc->obstacles[i];
+        const noh_crowd_obstacle at = noh_crowd_obstacle_less(&desc->obstacles[i], home), *o = &at;
         const float far = desc->reach + o->radius;
         const int right = o->to[0] > o->from[0], up = o->to[1] > o->from[1];
         uint32_t low[2], high[2];

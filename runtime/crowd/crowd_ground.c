@@ -33,10 +33,11 @@ void noh_crowd_ground_init(noh_crowd *c, const noh_crowd_desc *desc)
     (void)noh_crowd_flow_cells(desc, &ground->cells);
     ground->slope_max = desc->slope_max;
     const float edge = ground->cells.edge, half = 0.5f * edge;
+    const vec2 home = noh_crowd_home_of(desc);
     for (uint32_t row = 0; row < ground->cells.depth; row++) {
         for (uint32_t column = 0; column < ground->cells.width; column++, grades += 2) {
-            const float x = ground->cells.origin.x + ((float)column + 0.5f) * edge;
-            const float z = ground->cells.origin.z + ((float)row + 0.5f) * edge;
+            const float x = ground->cells.origin.x + ((float)column + 0.5f) * edge + home.x;
+            const float z = ground->cells.origin.z + ((float)row + 0.5f) * edge + home.z;
             grades[0] = grade_of(desc->ground, x - half, z, x + half, z, edge);
             grades[1] = grade_of(desc->ground, x, z - half, x, z + half, edge);
         }

@@ -76,8 +76,10 @@ struct noh_crowd {
     uint32_t round;     /* by agent; of a crowd with obstacles */
     uint32_t flow;      /* a crowd_flow; 0: there are no flow fields */
     uint32_t ground;    /* a crowd_ground; 0: it is level */
+    uint32_t unused;    /* so that what follows lies at a multiple of 8 everywhere */
+    double home[2];     /* where all of it counts from: noh_crowd_home_of, as far as the origin was not moved */
 };
-NOH_STATIC_ASSERT(sizeof(noh_crowd) == 132 && sizeof(crowd_round) == 16, crowd);
+NOH_STATIC_ASSERT(sizeof(noh_crowd) == 152 && sizeof(crowd_round) == 16, crowd);
 
 /* Behind it: int8_t[cell][2], the rise along x and along z. */
 typedef struct crowd_ground {
@@ -149,6 +151,33 @@ static inline float v2_cross(vec2 a, vec2 b)
 static inline float v2_length(vec2 a)
 {
     return noh_sqrt(v2_dot(a, a));
+}
+
+/* Near the middle of the grid, so that agents far from the origin are as exact as at it; 0 near the origin. */
+static inline vec2 noh_crowd_home_of(const noh_crowd_desc *desc)
+{
+    return v2(noh_on_grid(desc->origin[0] + 0.5f * desc->extent[0]),
+              noh_on_grid(desc->origin[1] + 0.5f * desc->extent[1]));
+}
+
+static inline noh_crowd_obstacle noh_crowd_obstacle_less(const noh_crowd_obstacle *o, vec2 home)
+{
+    const noh_crowd_obstacle out = { { o->from[0] - home.x, o->from[1] - home.z },
+                                     { o->to[0] - home.x, o->to[1] - home.z },
+                                     o->radius };
+    return out;
+}
+
+/* A place of the world, as it is kept; and back. */
+static inline vec2 noh_crowd_from(const noh_crowd *c, const float at[2])
+{
+    return v2((float)((double)at[0] - c->home[0]), (float)((double)at[1] - c->home[1]));
+}
+
+static inline void noh_crowd_to(const noh_crowd *c, vec2 at, float out[2])
+{
+    out[0] = (float)((double)at.x + c->home[0]);
+    out[1] = (float)((double)at.z + c->home[1]);
 }
 
 /* ---- crowd_grid.c ---- */

@@ -709,8 +709,6 @@ uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in 
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
 /* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix is
  * what noh_lighting_shadow takes too. */
-#define NOH_STAGE_NEAR 512.0f     /* along each axis: a float there is exact to 0.03 mm, in metres */
-float noh_stage_on_grid(float x); /* 0 where it is near, else a coarse number near it: differences to it are exact */
 void noh_view_origin(const noh_stage_view *view, float origin[3]);
 void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out);
 void noh_projection_less(float view_projection[16], const float origin[3], const float rest[4]);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "anim/clock_internal.h"
+#include "base/math_internal.h"
 #include "pose/local_to_model.h"
 #include "stage/stage_internal.h"
 
@@ -195,8 +196,8 @@ static void set_place(const noh_stage *s, noh_stage_actor *a, noh_part_work *w)
     w->place = on->place;
     for (int i = 0; i < 3; i++) {
         const double at = (double)on->place.position[i] + (double)on->rest[i], from = at - a->home[i];
-        if (w->cut || from > (double)NOH_STAGE_NEAR || from < -(double)NOH_STAGE_NEAR) {
-            const double home = (double)noh_stage_on_grid(on->place.position[i]);
+        if (w->cut || from > (double)NOH_NEAR_ORIGIN || from < -(double)NOH_NEAR_ORIGIN) {
+            const double home = (double)noh_on_grid(on->place.position[i]);
             w->home_moved[i] = (float)(home - a->home[i]);
             a->home[i] = home;
         }

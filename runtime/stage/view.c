@@ -21,15 +21,6 @@ static void multiply(const float a[16], const float b[16], float out[16])
 
 /* ---- far from the origin ---- */
 
-#define GRID 16.0f /* a multiple of it is an exact float up to 2^28, and so is its difference to what is near it */
-
-float noh_stage_on_grid(float x)
-{
-    if (!(x > NOH_STAGE_NEAR || x < -NOH_STAGE_NEAR) || !noh_is_number(x)) return 0.0f;
-    if (x >= 134217728.0f || x <= -134217728.0f) return x;
-    return (float)(int32_t)(x / GRID + (x < 0.0f ? -0.5f : 0.5f)) * GRID;
-}
-
 void noh_projection_less(float m[16], const float origin[3], const float rest[4])
 {
     if (origin[0] == 0.0f && origin[1] == 0.0f && origin[2] == 0.0f) return;
@@ -189,7 +180,7 @@ void noh_view_origin(const noh_stage_view *view, float origin[3])
     if (e[0] == 0.0f && e[1] == 0.0f && e[2] == 0.0f && !unproject(view, 0.0f, 0.0f, 0.0f, at)) {
         memset(at, 0, sizeof at); /* a view without an eye: what is in its middle */
     }
-    for (int i = 0; i < 3; i++) origin[i] = noh_stage_on_grid(at[i]);
+    for (int i = 0; i < 3; i++) origin[i] = noh_on_grid(at[i]);
 }
 
 int noh_view_ray(const noh_stage_view *view, float x, float y, uint32_t width, uint32_t height, float origin[3],

@@ -443,9 +443,48 @@ static void the_origin_may_move(void **state)
     free(moved);
 }
 
+/* 100 km from the origin agents go as far as at it, though a step of theirs is less than ten floats there. */
+static void far_away_is_like_here(void **state)
+{
+    const float far_off[2] = { 100000.0f, -250000.0f }, goal[2] = { 3.0f, 4.0f };
+    noh_crowd *crowds[2];
+    float worst = 0.0f;
+    (void)state;
+    for (uint32_t c = 0; c < 2; c++) {
+        const float x = c ? far_off[0] : 0.0f, z = c ? far_off[1] : 0.0f, to[2] = { goal[0] + x, goal[1] + z };
+        const noh_crowd_obstacle wall = { { -1.0f + x, z }, { 4.0f + x, z }, 0.125f };
+        noh_crowd_desc desc = field_of(8, 20.0f);
+        desc.origin[0] += x;
+        desc.origin[1] += z;
+        desc.obstacles = &wall;
+        desc.obstacle_count = 1;
+        desc.field_count = 1;
+        desc.field_radius = 0.3f;
+        crowds[c] = made(&desc);
+        put(crowds[c], 0, 0.5f + x, -3.0f + z, 0.5f + x, -3.0f + z);
+        put(crowds[c], 1, -4.0f + x, 3.0f + z, 4.0f + x, 2.5f + z);
+        noh_crowd_field_aim(crowds[c], 0, to);
+        while (noh_crowd_field_build(crowds[c], 100000)) {}
+        noh_crowd_follow(crowds[c], 0, 0);
+    }
+    for (int i = 0; i < 300; i++) {
+        for (uint32_t c = 0; c < 2; c++) noh_crowd_step(crowds[c], NOH_CROWD_STEP_TICKS);
+        for (uint32_t k = 0; k < 2; k++) {
+            noh_crowd_agent a = stepped(crowds[0], k), b = stepped(crowds[1], k);
+            b.position[0] -= far_off[0], b.position[1] -= far_off[1];
+            worst = fmaxf(worst, apart(a.position, b.position));
+        }
+    }
+    print_message("100 km away: %.3g m beside\n", (double)worst);
+    assert_true(worst < 0.02f); /* told in floats: 8 mm */
+    free(crowds[0]);
+    free(crowds[1]);
+}
+
 int main(int argument_count, char **arguments)
 {
     static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(far_away_is_like_here),
         cmocka_unit_test(the_origin_may_move),
         cmocka_unit_test(one_walks_straight_and_stops),
         cmocka_unit_test(two_who_meet_pass_on_the_right),
