@@ -12,13 +12,22 @@ typedef struct ray {
     float distance; /* of the nearest hit so far */
 } ray;
 
-/* The inverse of a matrix without shear, applied to a point (w 1) or a direction (w 0). */
-static void into(const float m[12], const float v[3], float w, float out[3])
+/* The inverse of a matrix, applied to a point (w 1) or a direction (w 0): joints that an actor hangs on may have a
+ * scale for each axis. Cramer's rule; 0: the matrix is flat, and nothing of it is hit. */
+static int into(const float m[12], const float v[3], float w, float out[3])
 {
-    const float square = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
-    float d[3];
+    float cross[3][3], d[3], determinant;
+    for (int c = 0; c < 3; c++) {
+        const float *a = m + (c + 1) % 3, *b = m + (c + 2) % 3;
+        for (int r = 0; r < 3; r++) {
+            const int y = 4 * ((r + 1) % 3), z = 4 * ((r + 2) % 3);
+            cross[c][r] = a[y] * b[z] - a[z] * b[y];
+        }
+    }
+    determinant = m[0] * cross[0][0] + m[4] * cross[0][1] + m[8] * cross[0][2];
     for (int i = 0; i < 3; i++) d[i] = v[i] - w * m[4 * i + 3];
-    for (int i = 0; i < 3; i++) out[i] = (m[i] * d[0] + m[4 + i] * d[1] + m[8 + i] * d[2]) / square;
+    for (int i = 0; i < 3; i++) out[i] = noh_dot3(cross[i], d) / determinant;
+    return determinant < 0.0f || determinant > 0.0f;
 }
 
 static int meets(const ray *r, const float sphere[4])
@@ -79,8 +88,7 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
     const noh_stage_shown *shown = &s->shown[index];
     const float *weights = k->weights + (size_t)(index - k->first_actor) * k->weight_count;
     float origin[3], direction[3];
-    into(shown->world, r->origin, 1.0f, origin);
-    into(shown->world, r->direction, 0.0f, direction);
+    if (!into(shown->world, r->origin, 1.0f, origin) || !into(shown->world, r->direction, 0.0f, direction)) return;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
         const noh_mesh level = noh_mesh_at_lod(&mesh->mesh, k->plan->levels[shown->level].mesh_levels[m]);

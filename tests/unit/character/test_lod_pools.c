@@ -259,6 +259,36 @@ static void pools_may_begin_with_a_coarser_level(void **state)
     free(p);
 }
 
+/* Of equal priorities the nearer one comes first, and holding a slot counts nothing for one that asks afresh. */
+static void the_nearer_of_equals_comes_first(void **state)
+{
+    static const uint32_t two[2] = { 0, 1 }, counts[2] = { 1, 8 };
+    const noh_lod_pools_desc d = { 6, 2, two, counts, 0 };
+    noh_lod_pools *p = pools_open(&d);
+    (void)state;
+    for (uint32_t nearest = 0; nearest < 6; nearest++) {
+        noh_lod_pools_begin(p);
+        for (uint32_t i = 0; i < 6; i++) {
+            const float distance = i == nearest ? 3.0f : 3.1f + (float)((i * 5u + nearest) % 6u);
+            noh_lod_pools_ask_at(p, i, 0, 7.0f, distance, 1);
+        }
+        noh_lod_pools_share(p);
+        for (uint32_t i = 0; i < 6; i++) assert_int_equal(noh_lod_pools_slot(p, i).level == 0, i == nearest);
+    }
+    for (int afresh = 0; afresh < 2; afresh++) { /* instance 5 holds the slot, 2 is a tenth nearer */
+        noh_lod_pools_begin(p);
+        noh_lod_pools_ask_at(p, 5, 0, 10.0f, 10.0f, afresh);
+        noh_lod_pools_ask_at(p, 2, 0, 11.0f, 9.0f, afresh);
+        noh_lod_pools_share(p);
+        assert_int_equal(noh_lod_pools_slot(p, 2).level, afresh ? 0 : 1);
+    }
+    noh_lod_pools_begin(p);
+    noh_lod_pools_ask_at(p, 4, 0, 10.0f, NAN, 1); /* no distance: as if it were at the eye */
+    noh_lod_pools_share(p);
+    assert_int_equal(noh_lod_pools_slot(p, 4).level, 0);
+    free(p);
+}
+
 /* Six slots, of which eight ask and seven are shown: the first six have one, the seventh rests, the last is left out.
  */
 static void who_finds_no_slot_rests_and_who_is_too_many_is_left_out(void **state)
@@ -364,6 +394,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(odd_priorities_come_last),
     cmocka_unit_test(pools_may_begin_with_a_coarser_level),
     cmocka_unit_test(who_finds_no_slot_rests_and_who_is_too_many_is_left_out),
+    cmocka_unit_test(the_nearer_of_equals_comes_first),
     cmocka_unit_test(few_slots_change_hands_in_a_frame),
 };
 

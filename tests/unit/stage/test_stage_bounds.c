@@ -630,6 +630,53 @@ static void what_hangs_on_a_scaled_figure_is_measured_where_it_hangs(void **stat
     cast_close(&c);
 }
 
+/* On a joint that a clip stretches along one axis: rays at its vertices hit it, its sphere holds them. */
+static void what_hangs_on_a_stretched_joint_is_held_and_hit(void **state)
+{
+    static const float origin[3] = { 0.0f, 0.0f, 0.0f };
+    const noh_look look = { .level = 1 };
+    uint32_t hits = 0, rays = 0;
+    test_random r = test_random_from(8);
+    noh_actor on, hung;
+    figure f;
+    (void)state;
+    figure_open(&f, NULL, 1.0f, 2, 0.2f);
+    {
+        model_channel *c = &f.moves->clips[1].channels[0];
+        size_t count;
+        c->path = MODEL_PATH_SCALE;
+        for (int i = 0; i < 6; i++) c->values[i] = i % 3 == 1 ? 4.0f : 0.5f;
+        free(f.clips);
+        f.clips = skin_pack_with_clips(f.moves, 10.0f, &count);
+        f.c.packs[1] = test_open(f.clips, count);
+    }
+    cast_make(&f.c, NULL);
+    on = come(&f.c, 0, origin, 0.0f, 1.0f);
+    hung = come(&f.c, 0, origin, 0.7f, 0.5f);
+    assert_int_equal(noh_actor_attach(f.c.stage, hung, on, 4, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_look(f.c.stage, hung, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(f.c.stage, on, 0, "way", NULL, NULL), NOH_OK);
+    for (uint32_t round = 0; round < 20; round++) {
+        noh_stage_view view;
+        noh_view_orbit(&view, (const float[3]){ 0.0f, 2.0f, 0.0f }, 0.3f * (float)round, 0.1f, 12.0f, 400, 300);
+        assert_int_equal(noh_stage_frame(f.c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_true(filled(&f.c, hung) <= 1.00001 && filled(&f.c, on) <= 1.00001);
+        for (uint32_t k = 0; k < 8; k++, rays++) {
+            const some s = one_vertex(&f.c, hung, &r);
+            noh_stage_hit hit;
+            float from[3], way[3];
+            for (int i = 0; i < 3; i++) {
+                way[i] = test_random_float(&r, -1.0f, 1.0f);
+                from[i] = (float)s.at[i] - 30.0f * way[i];
+            }
+            hits += noh_stage_pick(f.c.stage, from, way, 1000.0f, &hit, NULL) == NOH_OK;
+        }
+    }
+    printf("%u of %u rays at vertices hit\n", (unsigned)hits, (unsigned)rays);
+    assert_true(hits >= rays * 9u / 10u);
+    figure_close(&f);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -643,6 +690,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(of_equal_sizes_the_nearer_has_the_slot),
         cmocka_unit_test(a_cut_gives_the_slot_to_whoever_is_nearer_now),
         cmocka_unit_test(what_hangs_on_a_scaled_figure_is_measured_where_it_hangs),
+        cmocka_unit_test(what_hangs_on_a_stretched_joint_is_held_and_hit),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
