@@ -34,6 +34,9 @@ noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
         return noh_fail(error, NOH_ERR_LIMIT, "a spring has no joints, or more joints or colliders than the limit",
                         desc->joint_count, NOH_SPRING_JOINTS_MAX);
     }
+    if (!(desc->restitution >= 0.0f && desc->restitution <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "restitution of a spring is not in 0..1", 0, 0);
+    }
     for (uint32_t i = 0; i < desc->joint_count; i++) {
         if (!is_good(&desc->joints[i])) {
             return noh_fail(error, NOH_ERR_ARG, "a spring's joint has no length, or a number out of its range", i, 0);

@@ -49,6 +49,8 @@ typedef struct noh_spring_desc {
     const noh_spring_joint *joints; /* [joint_count] from the first to the last */
     uint32_t joint_count;           /* 1..NOH_SPRING_JOINTS_MAX */
     uint32_t collider_count;        /* 0..NOH_SPRING_COLLIDERS_MAX */
+    float
+        restitution; /* 0..1: the share of its speed towards a collider with which an end leaves it; 0: none, as VRM */
 } noh_spring_desc;
 
 /* Where the first joint is, and how what carries it is turned: world space. */

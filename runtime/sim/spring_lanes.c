@@ -44,18 +44,21 @@ NOH_STATIC_ASSERT(sizeof(obstacle) * 8u <= 72u * sizeof(float) * NOH_LANES, scra
 /* As many chains as there are lanes; lanes without one read the first and write nowhere. */
 typedef struct group {
     const noh_spring_move *moves[NOH_LANES];
-    per_lane joints; /* of each; 0 without one */
-    uint32_t joint_count, collider_count, used;
+    per_lane joints;      /* of each; 0 without one */
+    per_lane restitution; /* of each */
+    uint32_t joint_count, collider_count, used, bounces;
 } group;
 
 static void fill_group(group *g, const noh_spring_move *moves, uint32_t count)
 {
     g->used = count < NOH_LANES ? count : NOH_LANES;
-    g->joint_count = g->collider_count = 0;
+    g->joint_count = g->collider_count = g->bounces = 0;
     for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
         const noh_spring_desc *d = moves[lane < g->used ? lane : 0].desc;
         g->moves[lane] = &moves[lane < g->used ? lane : 0];
         g->joints.f[lane] = lane < g->used ? (float)d->joint_count : 0.0f;
+        g->restitution.f[lane] = d->restitution;
+        g->bounces |= d->restitution > 0.0f;
         if (d->joint_count > g->joint_count) g->joint_count = d->joint_count;
         if (d->collider_count > g->collider_count) g->collider_count = d->collider_count;
     }
@@ -232,6 +235,19 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
     return lane3_choose(lanes_and(hit, is_long), lane3_madd(head, scale, bone), tail);
 }
 
+/* Where an end was before, so that it leaves what it has hit: the way out of it is from `free` to `tail`, and `inertia` is
+ * its speed, without what pulls it, or it would never rest. */
+NOH_ALWAYS_INLINE lane3 bounce(const group *g, lane3 before, lane3 inertia, lane3 free, lane3 tail)
+{
+    const lane3 out = lane3_sub(tail, free);
+    const lanes square = lane3_dot(out, out), hit = lanes_less(lanes_set(1e-12f), square);
+    const lane3 n = lane3_scale(out, lanes_inverse_root(hit, square));
+    const lanes towards = lane3_dot(inertia, n), leaves = lane3_dot(lane3_sub(tail, before), n);
+    const lanes fast = lanes_and(lanes_less(lanes_set(0.0f), g->restitution.v), lanes_less(towards, lanes_set(0.0f)));
+    const lanes back = lanes_add(leaves, lanes_mul(towards, g->restitution.v));
+    return lane3_choose(lanes_and(hit, fast), lane3_madd(before, back, n), before);
+}
+
 typedef struct lane_joint {
     lane3 bone;
     lane4 rest;
@@ -281,7 +297,8 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
         const lane_joint j = load_joint(joint_rows);
         const lanes active = lanes_and(m->live, lanes_less(lanes_set((float)i), g->joints.v)), length = p[6];
         const lane4 unswung = lane4_mul(m->rotation, j.rest);
-        const lane3 pull = lane4_rotate(unswung, j.bone), now = lane3_of(p), kept = lane3_sub(now, m->moved);
+        const lane3 pull = lane4_rotate(unswung, j.bone), now = lane3_of(p);
+        lane3 kept = lane3_sub(now, m->moved);
         const lanes pulled = lanes_mul(seconds, lanes_div(j.stiffness, length));
         lane3 tail = lane3_madd(kept, lanes_sub(one, j.drag), lane3_sub(now, lane3_of(p + 3)));
         tail = lane3_add(tail, lane3_madd(lane3_scale(j.gravity, seconds), pulled, pull));
@@ -290,11 +307,16 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
         const lanes scale = lanes_choose(is_long, lanes_mul(length, lanes_inverse_root(is_long, square)), one);
         tail = lane3_madd(head, scale, lane3_choose(is_long, bone, pull));
         reach = lanes_add(reach, length);
+        const lane3 free = tail;
         const lanes within = lanes_mul(beyond, lanes_add(reach, j.radius));
         for (uint32_t k = 0; k < g->collider_count; k++) {
             if (lanes_any(lanes_less(obstacles[k].near, within))) {
                 tail = push_out(&obstacles[k], head, j.radius, length, tail);
             }
+        }
+        if (g->bounces) {
+            const lane3 inertia = lane3_scale(lane3_sub(now, lane3_of(p + 3)), lanes_sub(one, j.drag));
+            kept = bounce(g, kept, inertia, free, tail);
         }
         const lanes next[ROW] = { tail.x, tail.y, tail.z, kept.x, kept.y, kept.z, length };
         NOH_UNROLL

@@ -179,9 +179,10 @@ static noh_result check_rows(const noh_springs_desc *d, const noh_spring_chain *
     }
     for (uint32_t i = c->first_row; i < c->first_row + c->row_count; i++) {
         const noh_spring_joint joint = joint_of_row(d, c, i);
-        const noh_spring_desc alone = { &joint, 1, 0 };
+        const noh_spring_desc alone = { &joint, 1, 0, d->restitution };
         if (noh_spring_check_desc(&alone, NULL)) {
-            return noh_fail(error, NOH_ERR_ARG, "springs: a row's bone has no length, or a number is out of its range",
+            return noh_fail(error, NOH_ERR_ARG,
+                            "springs: a row's bone has no length, or a number or the restitution is out of its range",
                             i, 0);
         }
     }
@@ -225,9 +226,9 @@ static uint32_t bits_of(uint32_t mask)
     return count;
 }
 
-static noh_spring_desc spring_of(const noh_spring_chain *c, const noh_spring_joint *joints)
+static noh_spring_desc spring_of(const noh_springs_desc *d, const noh_spring_chain *c, const noh_spring_joint *joints)
 {
-    const noh_spring_desc spring = { joints, c->row_count, bits_of(c->collides) };
+    const noh_spring_desc spring = { joints, c->row_count, bits_of(c->collides), d->restitution };
     return spring;
 }
 
@@ -236,7 +237,7 @@ static size_t state_bytes_of(const noh_springs_desc *d, uint32_t chains)
 {
     size_t bytes = (d->chain_count * sizeof(uint32_t) + 15u) & ~(size_t)15u;
     for (uint32_t i = 0; i < chains; i++) {
-        const noh_spring_desc spring = spring_of(&d->chains[i], NULL);
+        const noh_spring_desc spring = spring_of(d, &d->chains[i], NULL);
         bytes += noh_spring_size(&spring);
     }
     return bytes;
@@ -297,7 +298,7 @@ static void fill(noh_springs *s, const noh_springs_desc *d)
             s->rows[row] = joint_of_row(d, c, row);
             w->length += noh_length3(s->rows[row].bone) * d->metres;
         }
-        w->desc = spring_of(c, s->rows + c->first_row);
+        w->desc = spring_of(d, c, s->rows + c->first_row);
         w->first_row = c->first_row;
         w->collides = c->collides;
         w->state = (uint32_t)state;

@@ -39,6 +39,7 @@ typedef struct noh_springs_desc {
     const noh_spring_chain *chains; /* they come in this order: one that hangs on another behind it */
     const noh_spring_capsule *colliders;
     uint32_t collider_count; /* 0..NOH_SPRING_COLLIDERS_MAX */
+    float restitution;       /* noh_spring_desc.restitution of all chains; 0 of a pack's */
 } noh_springs_desc;
 
 typedef struct noh_springs noh_springs;
