@@ -12,6 +12,8 @@
 #define SLOW_PART 0.15f  /* of its size in a second: 0.26 m/s of 1.75 m */
 #define SLOW_STEPS 6u    /* a tenth of a second, after which what is slow is braked, more and more in another half */
 #define BRAKE_STEPS 30u
+#define BENT 0.02f          /* radians past a limit that are more than rounding */
+#define BENT_STEPS 45.0f    /* for each radian, half as long again as it takes */
 #define SLACK_PART 0.00115f /* of its size: 2 mm of 1.75 m */
 #define PUSH_PART 4.6f      /* of its size in a second, by which a push changes one body alone: 8 m/s of 1.75 m */
 #define SPEED_PART 23.0f    /* of its size in a second: 40 m/s of 1.75 m */
@@ -438,6 +440,7 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
                                    const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error)
 {
     const uint32_t count = set->shape.body_count;
+    noh_ragdoll_measures m;
     uint32_t bad = first_bad_pose(bodies, count);
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
@@ -461,6 +464,8 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
             memcpy(s->spin, motions[i].spin, sizeof s->spin);
         }
     }
+    noh_ragdoll_measure(set, doll, NULL, &m);
+    d->bent = m.limit > BENT ? (uint32_t)(m.limit * BENT_STEPS) + 6u : 0;
     wake(d);
     return NOH_OK;
 }
@@ -724,6 +729,7 @@ static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
         if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
             noh_ragdoll_step_dolls(&set->shape, world, awake, count, scratch);
             for (uint32_t k = 0; k < count; k++) {
+                if (awake[k]->bent) awake[k]->bent--;
                 brake(set, awake[k]);
                 rest_or_go_on(set, awake[k]);
             }

@@ -20,7 +20,8 @@
  * have steps of 8 mm at 100 km and of 1 mm at 16 km: noh_ragdolls_shift brings that space nearer.
  *
  * Overlaps: what is inside the world or another body of the doll when a step begins comes out at NOH_PUSH_OUT_SPEED and
- * keeps none of that speed; out of obstacles that hold the axes of bodies, by the side on which the first body is.
+ * keeps none of that speed; out of obstacles that hold the axes of bodies, by the side on which the first body is. Joints
+ * that a doll is placed with past their limits turn back at 2 rad/s.
  *
  * source   Mueller, Macklin, Chentanez, Jeschke, Kim: Detailed Rigid Body Simulation with Extended Position Based
  *          Dynamics, 2020; Macklin et al.: Small Steps in Physics Simulation, 2019

@@ -8,7 +8,7 @@
 
 #define NOH_RAGDOLL_LANES_MAX 8u
 #define NOH_RAGDOLL_LANE_FLOATS 52u                       /* of a body in the shared memory, for each lane */
-#define NOH_RAGDOLL_PLACE_FLOATS (7u + NOH_OBSTACLES_MAX) /* of the doll: its origin, and planes from there */
+#define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* of the doll: its origin, and planes from there */
 #define NOH_RAGDOLL_SCRATCH_FLOATS \
     ((NOH_RAGDOLL_BODIES_MAX * NOH_RAGDOLL_LANE_FLOATS + NOH_RAGDOLL_PLACE_FLOATS) * NOH_RAGDOLL_LANES_MAX)
 
@@ -29,7 +29,7 @@ typedef struct noh_ragdoll_doll {
     uint32_t still;  /* steps since then */
     uint32_t slow;   /* steps since anything of it was fast */
     float origin[3]; /* of all its positions, near its first body: floats have as many digits everywhere */
-    uint32_t reserved;
+    uint32_t bent;   /* steps for which joints that began past their limits are brought back slowly */
 } noh_ragdoll_doll;
 
 /* What dolls share of a body and of the joint to its parent, in the bodies' own spaces. */

@@ -19,6 +19,8 @@
 #include "sim/vector_internal.h"
 #include "sim/world_internal.h"
 
+#define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin past their limits come back */
+#define AT_ONCE 1e3f
 #define POINTS 3u /* of a body that touch the world: its two ends, and one between */
 
 typedef struct lane_body {
@@ -40,8 +42,9 @@ NOH_STATIC_ASSERT(sizeof(lane_body) == NOH_RAGDOLL_LANE_FLOATS * sizeof(lanes), 
 /* A world as the dolls of the lanes have it, each from its own origin. */
 typedef struct lane_world {
     lane3 origin;
-    lane3 root;     /* where the first body is in this substep */
-    lanes push_out; /* how far what overlapped before a substep comes apart in it */
+    lane3 root;      /* where the first body is in this substep */
+    lanes push_out;  /* how far what overlapped before a substep comes apart in it */
+    lanes turn_back; /* as of joints */
     lanes plane_distances[NOH_OBSTACLES_MAX];
 } lane_world;
 NOH_STATIC_ASSERT(sizeof(lane_world) == NOH_RAGDOLL_PLACE_FLOATS * sizeof(lanes), lane_world);
@@ -73,10 +76,13 @@ static void store_doll(const noh_ragdoll_shape *shape, noh_ragdoll_doll *doll, c
     }
 }
 
-static void load_place(const noh_world *world, const noh_ragdoll_doll *doll, lane_world *place, uint32_t lane)
+static void load_place(const noh_world *world, const noh_ragdoll_doll *doll, float seconds, lane_world *place,
+                       uint32_t lane)
 {
     float *to = (float *)(void *)place;
     for (uint32_t k = 0; k < 3; k++) to[k * NOH_LANES + lane] = doll->origin[k];
+    to = (float *)(void *)&place->turn_back;
+    to[lane] = doll->bent ? TURN_BACK_SPEED * seconds : AT_ONCE;
     to = (float *)(void *)place->plane_distances;
     for (uint32_t i = 0; world && i < world->plane_count; i++) {
         to[i * NOH_LANES + lane] = noh_plane_distance(&world->planes[i], doll->origin);
@@ -144,6 +150,7 @@ NOH_ALWAYS_INLINE void push_pair(lane_body *a, lane3 ra, lane_body *b, lane3 rb,
 typedef struct joint {
     const noh_ragdoll_constants *c;
     lane_body *a, *b; /* the parent and the body itself */
+    lanes turn_back;  /* how far what was past a limit before a substep turns back in it, radians */
 } joint;
 
 NOH_ALWAYS_INLINE lane4 frame_a(const joint *j)
@@ -156,17 +163,38 @@ NOH_ALWAYS_INLINE lane4 frame_b(const joint *j)
     return lane4_mul(j->b->q, lane4_set(j->c->frame));
 }
 
+/* The frames as the substep began. */
+NOH_ALWAYS_INLINE lane4 frame_a_before(const joint *j)
+{
+    return lane4_mul(j->a->q_before, lane4_set(j->c->frame_parent));
+}
+
+NOH_ALWAYS_INLINE lane4 frame_b_before(const joint *j)
+{
+    return lane4_mul(j->b->q_before, lane4_set(j->c->frame));
+}
+
+/* Of an angle past a limit: all of what this substep has brought, and of what was there before only so much that nothing
+ * is thrown. */
+NOH_ALWAYS_INLINE lanes way_back(const joint *j, lanes past, lanes before)
+{
+    const lanes zero = lanes_set(0.0f), left = lanes_max(lanes_sub(before, j->turn_back), zero);
+    return lanes_max(lanes_sub(past, left), zero);
+}
+
 /* The axes of a hinge onto each other. */
 NOH_ALWAYS_INLINE void solve_hinge(const joint *j)
 {
     const lane3 c = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
+    const lane3 was = lane3_cross(lane4_axis_z(frame_a_before(j)), lane4_axis_z(frame_b_before(j)));
     const lanes square = lane3_dot(c, c), mask = lanes_less(lanes_set(1e-14f), square);
     const lanes inverse = lanes_inverse_root(mask, square);
-    turn_pair(j->a, j->b, mask, lane3_scale(c, inverse), lanes_mul(square, inverse));
+    const lanes back = way_back(j, lanes_mul(square, inverse), lanes_sqrt(lane3_dot(was, was)));
+    turn_pair(j->a, j->b, mask, lane3_scale(c, inverse), back);
 }
 
-/* Swing back into its ellipse, along the shortest way to the middle. r: of b in the frame of a. */
-NOH_ALWAYS_INLINE void solve_swing(const joint *j, lane4 r)
+/* By what angle swing is out of its ellipse; 0 inside. r: of b in the frame of a. */
+NOH_ALWAYS_INLINE lanes past_swing(const joint *j, lane4 r, lanes *outside)
 {
     const lanes one = lanes_set(1.0f);
     const lanes rest = lanes_add(lanes_mul(r.z, r.z), lanes_mul(r.w, r.w));
@@ -176,22 +204,34 @@ NOH_ALWAYS_INLINE void solve_swing(const joint *j, lane4 r)
     const lanes y = lanes_add(lanes_mul(r.x, r.z), lanes_mul(r.y, r.w));
     const lanes fill = lanes_add(lanes_mul(lanes_mul(x, x), lanes_set(j->c->swing[0])),
                                  lanes_mul(lanes_mul(y, y), lanes_set(j->c->swing[1])));
-    lanes mask = lanes_less(rest, fill); /* fill / rest above 1 */
-    if (!lanes_any(mask)) return;
-    const lane3 n = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
-    const lanes square = lane3_dot(n, n);
-    mask = lanes_and(mask, lanes_less(lanes_set(1e-12f), square));
+    const lanes mask = lanes_less(rest, fill); /* fill / rest above 1 */
+    *outside = mask;
+    if (!lanes_any(mask)) return lanes_set(0.0f);
     const lanes a = lanes_sqrt(swung), b = lanes_sqrt(rest);
     const lanes sine = lanes_mul(a, lanes_sqrt(lanes_div(rest, lanes_choose(mask, fill, one))));
     const lanes cosine = lanes_sqrt(lanes_max(lanes_sub(one, lanes_mul(sine, sine)), lanes_set(0.0f)));
     const lanes over = lanes_sub(lanes_mul(a, cosine), lanes_mul(b, sine));
     const lanes along = lanes_add(lanes_mul(b, cosine), lanes_mul(a, sine));
     const lanes angle = lanes_mul(lanes_set(2.0f), lanes_arc_tangent(over, lanes_max(along, lanes_set(1e-3f))));
+    return lanes_choose(mask, angle, lanes_set(0.0f));
+}
+
+/* Swing back into its ellipse, along the shortest way to the middle. */
+NOH_ALWAYS_INLINE void solve_swing(const joint *j)
+{
+    lanes mask, was;
+    const lanes past = past_swing(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)), &mask);
+    if (!lanes_any(mask)) return;
+    const lane4 r = lane4_mul(lane4_conjugate(frame_a_before(j)), frame_b_before(j));
+    const lanes angle = way_back(j, past, past_swing(j, r, &was));
+    const lane3 n = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
+    const lanes square = lane3_dot(n, n);
+    mask = lanes_and(mask, lanes_less(lanes_set(1e-12f), square));
     turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), angle);
 }
 
-/* Twist back between its limits: no angle is made while it is. */
-NOH_ALWAYS_INLINE void solve_twist(const joint *j, lane4 r)
+/* By what angle, halved, twist is above its limits, or below 0 under them; 0 between them. */
+NOH_ALWAYS_INLINE lanes past_twist(const joint *j, lane4 r, lanes *outside)
 {
     const lanes zero = lanes_set(0.0f), turned = lanes_less(r.w, zero);
     const lanes s0 = lanes_set(j->c->twist_min[0]), c0 = lanes_set(j->c->twist_min[1]);
@@ -200,15 +240,30 @@ NOH_ALWAYS_INLINE void solve_twist(const joint *j, lane4 r)
     const lanes over = lanes_sub(lanes_mul(z, c1), lanes_mul(w, s1));
     const lanes under = lanes_sub(lanes_mul(z, c0), lanes_mul(w, s0));
     const lanes above = lanes_less(zero, over);
-    lanes mask = lanes_or(above, lanes_less(under, zero));
-    if (!lanes_any(mask)) return;
+    const lanes mask = lanes_or(above, lanes_less(under, zero));
+    *outside = mask;
+    if (!lanes_any(mask)) return zero;
     const lanes along = lanes_choose(above, lanes_add(lanes_mul(w, c1), lanes_mul(z, s1)),
                                      lanes_add(lanes_mul(w, c0), lanes_mul(z, s0)));
     const lanes ratio = lanes_arc_tangent(lanes_choose(above, over, under), lanes_max(along, lanes_set(1e-3f)));
+    return lanes_choose(mask, lanes_mul(lanes_set(2.0f), ratio), zero);
+}
+
+/* Twist back between its limits: no angle is made while it is. */
+NOH_ALWAYS_INLINE void solve_twist(const joint *j)
+{
+    const lanes zero = lanes_set(0.0f);
+    lanes mask, was;
+    const lanes past = past_twist(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)), &mask);
+    if (!lanes_any(mask)) return;
+    const lanes before = past_twist(j, lane4_mul(lane4_conjugate(frame_a_before(j)), frame_b_before(j)), &was);
+    const lanes below = lanes_less(past, zero);
+    const lanes size = way_back(j, lanes_abs(past), lanes_max(lanes_choose(below, lanes_negate(before), before), zero));
+    const lanes angle = lanes_choose(below, lanes_negate(size), size);
     const lane3 n = lane3_add(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
     const lanes square = lane3_dot(n, n);
     mask = lanes_and(mask, lanes_less(lanes_set(1e-6f), square));
-    turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), lanes_mul(lanes_set(2.0f), ratio));
+    turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), angle);
 }
 
 /* Towards the angle that the goals have, as a critically damped spring of so many hertz: of the angle it takes
@@ -260,10 +315,8 @@ static inline void solve_joint(const joint *j, lanes h)
     solve_anchors(j);
     if (j->c->flags & NOH_RAGDOLL_HINGE) solve_hinge(j);
     if (!(j->c->flags & NOH_RAGDOLL_LOOSE)) {
-        if (!(j->c->flags & NOH_RAGDOLL_HINGE)) {
-            solve_swing(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)));
-        }
-        solve_twist(j, lane4_mul(lane4_conjugate(frame_a(j)), frame_b(j)));
+        if (!(j->c->flags & NOH_RAGDOLL_HINGE)) solve_swing(j);
+        solve_twist(j);
     }
     solve_strength(j, h);
 }
@@ -626,7 +679,7 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
     for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, seconds, shape->speed_max);
     for (uint32_t i = 0; i < shape->pair_count; i++) solve_pair(shape, &shape->pairs[i], bodies, place->push_out);
     for (uint32_t i = 1; i < shape->body_count; i++) {
-        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
         solve_joint(&j, h);
     }
     place->root = bodies[0].p;
@@ -636,7 +689,7 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
         if (world) bounce(&bodies[i], &shape->bodies[i], world->restitution, seconds);
     }
     for (uint32_t i = 1; i < shape->body_count; i++) {
-        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
         if (j.c->friction > 0.0f) rub_joint(&j, seconds);
     }
 }
@@ -662,11 +715,11 @@ static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world
         bodies[i].q_before = bodies[i].q;
     }
     for (uint32_t i = 1; i < shape->body_count; i++) {
-        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
         solve_joint(&j, lanes_set(0.0f));
     }
     for (uint32_t i = shape->body_count; i-- > 1u;) {
-        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i] };
+        const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
         solve_anchors(&j);
     }
     place->root = bodies[0].p;
@@ -697,7 +750,7 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
         for (uint32_t lane = 0; lane < NOH_LANES; lane++) { /* lanes without a doll repeat the last one */
             const noh_ragdoll_doll *doll = dolls[first + (lane < lanes_used ? lane : lanes_used - 1u)];
             load_doll(shape, doll, bodies, lane);
-            load_place(world, doll, place, lane);
+            load_place(world, doll, seconds, place, lane);
         }
         place->push_out = lanes_set(NOH_PUSH_OUT_SPEED * seconds);
         for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));

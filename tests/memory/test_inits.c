@@ -252,7 +252,7 @@ INIT(spring_init)
         { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } },
         { { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } }
     };
-    const noh_spring_desc desc = { joints, 2, 3 };
+    const noh_spring_desc desc = { joints, 2, 3, 0.0f };
     const noh_spring_carrier carrier = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
     noh_spring *spring;
     return noh_spring_init(memory, bytes, &desc, &carrier, &spring, error);

@@ -807,6 +807,44 @@ static void what_starts_inside_is_not_thrown(void **state)
     }
 }
 
+/* A pose whose joints are past their limits, or a hinge off its axis, is brought back without a blow. */
+static void what_starts_bent_is_not_thrown(void **state)
+{
+    const float turns[3][3] = { { 1.9f, 0.0f, 0.0f }, { 0.0f, 1.9f, 0.0f }, { 0.0f, 0.0f, 1.2f } };
+    (void)state;
+    for (int n = 0; n < 6; n++) {
+        const noh_ragdoll_rig rig = chain(4, n % 2 ? NOH_RAGDOLL_HINGE : 0);
+        noh_ragdoll_pose poses[4];
+        noh_ragdoll_motion motions[4];
+        noh_ragdoll_measures m;
+        noh_ragdolls *set = made(&rig, 1, 10);
+        float q[4], most = 0.0f;
+        rest_poses(&rig, poses);
+        noh_quat_from_rotation(turns[n / 2], q);
+        for (int i = 1; i < 4; i++) { /* all below the first joint */
+            for (int k = 0; k < 3; k++) poses[i].position[k] -= rig.joints[1].anchor[k];
+            noh_quat_rotate(q, poses[i].position, poses[i].position);
+            for (int k = 0; k < 3; k++) poses[i].position[k] += rig.joints[1].anchor[k];
+            noh_quat_mul(q, poses[i].rotation, poses[i].rotation);
+        }
+        noh_ragdoll_place(set, 0, poses, NULL, NULL);
+        for (int f = 1; f <= 90; f++) {
+            noh_ragdolls_step(set, NULL, FRAME);
+            noh_ragdoll_motions(set, 0, motions);
+            for (int i = 0; i < 4; i++) {
+                const float *v = motions[i].velocity, fall = v[1] + 9.82f * (float)f / 60.0f;
+                const float speed = sqrtf(v[0] * v[0] + fall * fall + v[2] * v[2]);
+                most = speed > most ? speed : most;
+            }
+        }
+        noh_ragdoll_measure(set, 0, NULL, &m);
+        print_message("turn %d, %s: up to %.2f m/s, %.3f rad are left\n", n / 2, n % 2 ? "hinge" : "cone", (double)most,
+                      (double)m.limit);
+        assert_true(most < 1.5f && m.limit < 0.05f);
+        free(set);
+    }
+}
+
 /* Bodies of a doll that start in each other come apart slowly, too. */
 static void what_starts_in_itself_is_not_thrown(void **state)
 {
@@ -1010,6 +1048,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_shifted_space_goes_on),
     cmocka_unit_test(what_starts_inside_is_not_thrown),
     cmocka_unit_test(what_starts_in_itself_is_not_thrown),
+    cmocka_unit_test(what_starts_bent_is_not_thrown),
     cmocka_unit_test(a_push_is_spread),
     cmocka_unit_test(a_ball_bounces),
     cmocka_unit_test(bad_rigs_are_refused),
