@@ -146,10 +146,56 @@ static void nearest_has_one_level(void **state)
     buffer_free(&out);
 }
 
+/* Codes that are made smaller are texels of the source, of sides that are no powers of two too. */
+static void codes_are_left_out_and_not_mixed(void **state)
+{
+    (void)state;
+    static uint8_t rgba[37 * 21 * 4];
+    for (uint32_t i = 0; i < 37 * 21; i++) {
+        for (uint32_t c = 0; c < 4; c++) rgba[4 * i + c] = (uint8_t)((i + c) % 2 ? 75 : 165);
+    }
+    model_texture t = texture_of(37, 21, rgba, MODEL_TEXTURE_CODES);
+    for (uint32_t most = 1; most < 64; most *= 3) {
+        noh_texture_header h = { .nearest = 1 };
+        t.size_max = most;
+        byte_buffer out = levels_of(&t, &h);
+        assert_true(h.width <= most && h.level_count == 1 && h.format == NOH_TEXTURE_RGBA8);
+        for (size_t i = 0; i < out.count; i++) assert_true(out.bytes[i] == 75 || out.bytes[i] == 165);
+        buffer_free(&out);
+    }
+}
+
+/* Roughness in an alpha channel: colours of smooth texels count in mip levels as much as others, and alpha stays in
+ * blocks. */
+static void alphas_that_are_data_change_no_colour(void **state)
+{
+    (void)state;
+    uint8_t rgba[8 * 8 * 4];
+    for (uint32_t i = 0; i < 64; i++) {
+        const uint8_t texel[4] = { i % 2 ? 255 : 0, 80, 80, i % 2 ? 0 : 200 };
+        memcpy(rgba + 4 * i, texel, 4);
+    }
+    model_texture t = texture_of(8, 8, rgba, MODEL_TEXTURE_COLOR);
+    noh_texture_header h = { 0 };
+    t.alpha_is_data = 1;
+    byte_buffer out = levels_of(&t, &h);
+    assert_int_equal(out.bytes[256], 188); /* half the light */
+    assert_int_equal(out.bytes[256 + 3], 100);
+    buffer_free(&out);
+    for (uint32_t i = 0; i < 64; i++) rgba[4 * i] = 90;
+    t.etc2 = 1;
+    memset(&h, 0, sizeof h);
+    byte_buffer blocks = { NULL, 0, 0, 0 };
+    assert_int_equal(texture_levels_write(&t, &h, &blocks), 0);
+    assert_int_equal(h.format, NOH_TEXTURE_ETC2_RGBA);
+    buffer_free(&blocks);
+}
+
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(colours_are_means_of_light),   cmocka_unit_test(odd_sides_keep_the_mean),
-    cmocka_unit_test(colours_count_by_their_alpha), cmocka_unit_test(normals_stay_unit),
-    cmocka_unit_test(masks_keep_their_coverage),    cmocka_unit_test(nearest_has_one_level),
+    cmocka_unit_test(codes_are_left_out_and_not_mixed), cmocka_unit_test(alphas_that_are_data_change_no_colour),
+    cmocka_unit_test(colours_are_means_of_light),       cmocka_unit_test(odd_sides_keep_the_mean),
+    cmocka_unit_test(colours_count_by_their_alpha),     cmocka_unit_test(normals_stay_unit),
+    cmocka_unit_test(masks_keep_their_coverage),        cmocka_unit_test(nearest_has_one_level),
 };
 
 TEST_MAIN(tests, NULL, NULL)

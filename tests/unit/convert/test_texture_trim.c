@@ -227,6 +227,27 @@ static void beyond_one(void **state)
     model_free(m);
 }
 
+/* Specular maps and masks of wrinkle regions lose what the other maps lose, though masks are read texel by texel. */
+static void all_maps_are_trimmed(void **state)
+{
+    static const quad quads[1] = { { { 0.1f, 0.1f }, { 0.2f, 0.2f }, 0 } };
+    model *m = model_of(quads, 1, 1);
+    float *was = copy_of_uv(m);
+    (void)state;
+    add_texture(m, "specular", 256, 256);
+    add_texture(m, "wrinkles", 256, 256);
+    add_texture(m, "regions", 128, 128);
+    m->materials[0].specular_texture = 0;
+    m->materials[0].wrinkle_texture = 1;
+    m->materials[0].wrinkle_weights[0] = 2;
+    m->textures[2].use = MODEL_TEXTURE_CODES;
+    m->textures[2].mag_filter = 9728;
+    assert_int_equal(trim_it(m).count, 3);
+    for (uint32_t t = 0; t < 3; t++) expect_same_texels(m, t, was);
+    free(was);
+    model_free(m);
+}
+
 /* What one material reads of a common texture stays for the other, too; and so with a common vertex. */
 static void materials_that_share_lose_the_same(void **state)
 {
@@ -451,6 +472,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_triangles_read_stays),
     cmocka_unit_test(a_corner_is_all_that_is_left),
     cmocka_unit_test(beyond_one),
+    cmocka_unit_test(all_maps_are_trimmed),
     cmocka_unit_test(materials_that_share_lose_the_same),
     cmocka_unit_test(sets_go_with_their_namesakes),
     cmocka_unit_test(what_must_stay_whole),
