@@ -382,6 +382,81 @@ static void rows_of_a_recipe_tie_expressions_to_regions(void **state)
     recipe_free(recipe);
 }
 
+/* ---- masks that pixels read ---- */
+
+static uint32_t add_map(model *m)
+{
+    model_texture *grown = realloc(m->textures, (m->texture_count + 1u) * sizeof *grown);
+    assert_non_null(grown);
+    m->textures = grown;
+    grown[m->texture_count] = (model_texture){ .name = model_string("map"),
+                                               .width = 1,
+                                               .height = 1,
+                                               .rgba = model_zeros(1, 4),
+                                               .wrap_s = 10497,
+                                               .wrap_t = 10497 };
+    return m->texture_count++;
+}
+
+/* A mask of codes in place of three maps, as it was painted; where a pixel has no fetch left for it, vertices read it. */
+static void masks_are_kept_for_pixels(void **state)
+{
+    (void)state;
+    const sheet_target targets[] = { { "squeeze", squeeze_left } };
+    for (int full = 0; full < 2; ++full) {
+        model *m = wrinkle_sheet_make(targets, 1);
+        model_error error = { "", "" };
+        const wrinkle_settings settings = { .models = NOH_WRINKLE_BY_REGION, .mask = mask_path, .by_pixel = 1 };
+        model_material *skin = m->materials;
+        skin->normal_texture = add_map(m);
+        skin->surface_texture = add_map(m);
+        skin->emissive[1] = 0.5f;
+        if (full) skin->specular_texture = add_map(m);
+        write_mask();
+        assert_int_equal(wrinkles_make(m, &settings, &error), 0);
+        unlink(mask_path);
+        skin = m->materials;
+        assert_int_equal(skin->wrinkle_codes, !full);
+        assert_int_equal(skin->wrinkle_weights[1] == MODEL_NONE, !full);
+        assert_int_equal(m->warning_count, full ? 2 : 1); /* region 4 is idle, too */
+        const model_texture *t = &m->textures[skin->wrinkle_weights[0]];
+        assert_int_equal(t->use, full ? MODEL_TEXTURE_DATA : MODEL_TEXTURE_CODES);
+        assert_int_equal(t->mag_filter, full ? 0 : 9728);
+        assert_int_equal(t->rgba[0], full ? 255 : 75);
+        model_free(m);
+    }
+}
+
+/* Halves that share their texels: a mask finds what targets do on both; generated maps cannot tell them apart. */
+static void mirrored_coordinates_take_painted_files(void **state)
+{
+    (void)state;
+    const sheet_target targets[] = { { "squeeze", squeeze_left } };
+    char map_path[80];
+    static const uint8_t normal[4 * 4 * 4] = { 128, 128, 255, 255 };
+    write_mask();
+    snprintf(map_path, sizeof map_path, "%s.map.png", mask_path);
+    assert_int_equal(tool_write_png(map_path, 4, 4, normal), 0);
+    for (int painted = 0; painted < 2; ++painted) {
+        model *m = wrinkle_sheet_make(targets, 1);
+        model_error error = { "", "" };
+        const wrinkle_settings settings = { .models = NOH_WRINKLE_BY_REGION,
+                                            .automatic = 1,
+                                            .map = painted ? map_path : NULL,
+                                            .mask = painted ? mask_path : NULL };
+        for (uint32_t v = 0; v < WRINKLE_SHEET_VERTICES; ++v) {
+            float *u = &m->meshes[0].uv[2 * v];
+            *u = fabsf(2.0f * *u - 1.0f); /* from the middle outwards, on both sides */
+        }
+        assert_int_equal(wrinkles_make(m, &settings, &error), !painted);
+        if (painted)
+            assert_true(tie(m, 0, 0) == 255 && tie(m, 0, 4) == 255); /* both regions lie on the left half, too */
+        model_free(m);
+    }
+    unlink(map_path);
+    unlink(mask_path);
+}
+
 static void rows_of_wrinkles_that_are_wrong_are_refused(void **state)
 {
     (void)state;
@@ -537,6 +612,8 @@ int main(void)
         cmocka_unit_test(a_painted_mask_gets_its_matrix),
         cmocka_unit_test(targets_that_compress_nothing_are_tied_to_no_region),
         cmocka_unit_test(masks_end_at_their_edges),
+        cmocka_unit_test(masks_are_kept_for_pixels),
+        cmocka_unit_test(mirrored_coordinates_take_painted_files),
         cmocka_unit_test(rows_of_a_recipe_tie_expressions_to_regions),
         cmocka_unit_test(rows_of_wrinkles_that_are_wrong_are_refused),
         cmocka_unit_test(creases_follow_the_principal_axis),
