@@ -13,6 +13,7 @@
 #include "convert/model/texture_cut.h"
 #include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
+#include "convert/pack/size_warn.h"
 #include "clip/pack_clip.h"
 #include "convert/springs/springs_bind.h"
 #include "convert/texture/texture_trim.h"
@@ -513,6 +514,9 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     settings.m = s->m;
     failed = make_wrinkles(s, recipe, options, error);
     set_textures(s, options);
+    if (!failed && options->only != CONVERT_MESH && size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm)) {
+        failed = out_of_memory(error);
+    }
     if (options->report) {
         report_warnings(options->report, s);
     }

@@ -1,0 +1,93 @@
+#include "size_warn.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "convert/clips/raw_set.h"
+#include "convert/model/model_build.h"
+#include "convert/skin/joint_radius.h"
+
+#define PERSON_CM 180.0
+#define PERSON_ERROR_CM 0.01
+#define PERSON_SHELL_CM 3.0
+#define SHARE_MOST 2e-3  /* of the size: above it an error shows */
+#define SHARE_LEAST 2e-6 /* below it bytes are spent on nothing */
+#define USUAL_LEAST_CM 20.0
+#define USUAL_MOST_CM 400.0
+
+/* The longest side of a box about joints in the bind pose and what each moves; 0: there is nothing to measure. */
+static double size_cm(const model *m, const raw_set *set, uint32_t index, int *failed)
+{
+    const uint32_t count = set->skeleton.joint_count;
+    double *pose = malloc(((size_t)count + 1u) * 12u * sizeof *pose), size = 0.0;
+    float *radius = malloc((count + 1u) * sizeof *radius);
+    *failed = !pose || !radius;
+    if (!*failed) {
+        (void)joint_radius(m, index, count, radius);
+        raw_pose_object(&set->skeleton, NULL, 0, pose);
+    }
+    for (int axis = 0; axis < 3 && !*failed; axis++) {
+        double low = 0.0, high = 0.0;
+        for (uint32_t j = 0; j < count; j++) {
+            const double *matrix = pose + 12u * (size_t)j, at = matrix[9 + axis];
+            const double around = fmax((double)radius[j], 0.0) * sqrt(vec_dot(matrix, matrix)); /* of its own space */
+            low = j ? fmin(low, at - around) : at - around;
+            high = j ? fmax(high, at + around) : at + around;
+        }
+        size = fmax(size, high - low);
+    }
+    free(pose);
+    free(radius);
+    return size * set->skeleton.unit_cm;
+}
+
+/* To one digit. */
+static double rounded(double x)
+{
+    const double unit = pow(10.0, floor(log10(x)));
+    return fmax(floor(x / unit + 0.5), 1.0) * unit;
+}
+
+/* What a usual size it would be in another unit: the factor, or 0. */
+static double unit_slip(double size)
+{
+    static const double factors[] = { 100.0, 0.01, 1000.0, 0.001, 39.37, 1.0 / 39.37 };
+    for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
+        if (size * factors[i] >= USUAL_LEAST_CM && size * factors[i] <= USUAL_MOST_CM) return factors[i];
+    }
+    return 0.0;
+}
+
+static int warn(model *m, const raw_set *set, double size, double error_cm)
+{
+    const double error = fmin(fmax(rounded(size * PERSON_ERROR_CM / PERSON_CM), 1e-6), 400.0);
+    const double shell = fmin(fmax(rounded(size * PERSON_SHELL_CM / PERSON_CM), 1e-3), 1e5);
+    const double slip = unit_slip(size);
+    char unit[160] = "";
+    if (slip > 0.0) {
+        (void)snprintf(unit, sizeof unit, "; or is it %.3g cm large? Then its unit is wrong: export it scaled by %.3g",
+                       size * slip, slip);
+    }
+    return model_warn(m,
+                      "skeleton '%.60s' and what it moves are %.3g cm large, for which --error-cm %g is %s: "
+                      "--error-cm %g --shell-cm %g go with that size%s",
+                      set->skeleton.name ? set->skeleton.name : "", size, error_cm,
+                      error_cm > size * SHARE_MOST ? "so coarse that it shows" : "finer than anyone sees", error, shell,
+                      unit);
+}
+
+int size_warn(model *m, raw_set *const *sets, uint32_t set_count, double error_cm)
+{
+    const double error = error_cm > 0.0 ? error_cm : PERSON_ERROR_CM;
+    for (uint32_t i = 0; i < set_count; i++) {
+        int failed;
+        double size;
+        if (!sets[i]->clip_count || !sets[i]->skeleton.joint_count) continue;
+        size = size_cm(m, sets[i], i, &failed);
+        if (failed) return 1;
+        if (!(size > 1e-6) || (error <= size * SHARE_MOST && error >= size * SHARE_LEAST)) continue;
+        if (warn(m, sets[i], size, error)) return 1;
+    }
+    return 0;
+}
