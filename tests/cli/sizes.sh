@@ -31,26 +31,26 @@ Frame Time: 0.0333333
 0 100 0 0 0 0 20 0 0 0 0 0
 BVH
 
-says() { # NAME UNIT TEXT OPTIONS...: what a build with this unit warns of; TEXT none: nothing
+warns() { # NAME UNIT TEXT OPTIONS...: what a build with this unit warns of; TEXT none: nothing
     name=$1 unit=$2 text=$3
     shift 3
     noh build "$work/leg.bvh" -o "$work/leg.noh" --unit-cm "$unit" "$@"
     expect 0 "build $name"
     if [ "$text" = none ]; then
-        check "$name: no warning" sh -c '! grep -q "cm large" "$1" "$2"' - "$work/out" "$work/err"
+        check "$name: no warning" sh -c '! grep -q "for which --error-cm" "$1" "$2"' - "$work/out" "$work/err"
     else
         check "$name: '$text'" grep -q -e "$text" "$work/out" "$work/err"
     fi
 }
 
-says 'a leg' 1 none
-says 'a leg of 10 m' 10 none
-says 'a leg of 1 cm' 0.01 'so coarse that it shows: --error-cm 6e-05 --shell-cm 0.02'
-says 'a leg of 1 cm' 0.01 'is it 100 cm large? Then its unit is wrong: export it scaled by 100'
-says 'a leg of 1 cm, as suggested' 0.01 none --error-cm 6e-05 --shell-cm 0.02
-says 'a leg of 100 m' 100 'finer than anyone sees: --error-cm 0.6 --shell-cm 200'
-says 'a leg of 100 m' 100 'is it 100 cm large? Then its unit is wrong: export it scaled by 0.01'
-says 'a leg of 100 m, as suggested' 100 none --error-cm 0.6 --shell-cm 200
-says 'a leg of 1 cm, coarser' 0.01 'coarse that it shows' --error-cm 0.1
+warns 'a leg' 1 none
+warns 'a leg of 10 m' 10 none
+warns 'a leg of 1 cm' 0.01 'so coarse that it shows: --error-cm 6e-05 --shell-cm 0.02'
+warns 'a leg of 1 cm' 0.01 'is it 100 cm large? Then its unit is wrong: export it scaled by 100'
+warns 'a leg of 1 cm, as suggested' 0.01 none --error-cm 6e-05 --shell-cm 0.02
+warns 'a leg of 100 m' 100 'finer than anyone sees: --error-cm 0.6 --shell-cm 200'
+warns 'a leg of 100 m' 100 'is it 100 cm large? Then its unit is wrong: export it scaled by 0.01'
+warns 'a leg of 100 m, as suggested' 100 none --error-cm 0.6 --shell-cm 200
+warns 'a leg of 1 cm, coarser' 0.01 'coarse that it shows' --error-cm 0.1
 
 finish

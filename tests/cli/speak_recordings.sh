@@ -55,6 +55,9 @@ riff('s24.wav', 1, 24, 1, rate, b''.join(struct.pack('<i', v * 256)[:3] for v in
 riff('s32.wav', 1, 32, 1, rate, struct.pack('<%di' % len(x), *[v * 65536 for v in x]))
 riff('f32.wav', 3, 32, 1, rate, struct.pack('<%df' % len(x), *[v / 32768 for v in x]))
 riff('stereo.wav', 1, 16, 2, rate, struct.pack('<%dh' % (2 * len(x)), *[v for s in x for v in (s, s)]))
+riff('opposite.wav', 1, 16, 2, rate, struct.pack('<%dh' % (2 * len(x)), *[v for s in x for v in (s // 2, -(s // 2))]))
+riff('three.wav', 1, 16, 3, rate, struct.pack('<%dh' % (3 * len(x)), *[v for s in x for v in (s // 4, -s // 2, s // 4)]))
+riff('one_side.wav', 1, 16, 2, rate, struct.pack('<%dh' % (2 * len(x)), *[v for s in x for v in (s, 0)]))
 for r in (8000, 11025, 16000, 44100, 48000):
     y = at_rate(r)
     riff('r%d.wav' % r, 1, 16, 1, r, struct.pack('<%dh' % len(y), *y))
@@ -98,6 +101,20 @@ for kind in said u8 s24 s32 f32 stereo r8000 r11025 r16000 r44100 r48000 noise; 
     expect 0 "$kind.wav is read"
     cp "$work/out" "$work/$kind.json"
     check 'its phones begin where they do, 20 ms' python3 "$work/near.py" "$work/text.json" "$work/$kind.json" 0.02
+done
+# Channels that take each other away: the loudest is taken, and not where one is silent.
+for kind in opposite:1 three:2; do
+    noh speak "$work/${kind%:*}.wav" --text 'Papa bought me five boats.' --json
+    expect 0 "${kind%:*}.wav is read"
+    says "channel ${kind#*:} alone is used"
+    cp "$work/out" "$work/phase.json"
+    check 'its phones begin where they do, 20 ms' python3 "$work/near.py" "$work/text.json" "$work/phase.json" 0.02
+done
+noh speak "$work/opposite.wav" --json
+says 'channel 1 alone is used'
+for kind in stereo one_side; do
+    noh speak "$work/$kind.wav" --text 'Papa bought me five boats.' --json
+    check "$kind.wav: no warning" sh -c '! grep -q "alone is used" "$1"' - "$work/err"
 done
 for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut.wav:' \
     'kinds.py:cannot be read as sound' \

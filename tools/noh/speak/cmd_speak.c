@@ -234,11 +234,22 @@ static int check_length(const speak_args *a, const spoken *s, const sound *recor
                      bytes, seconds);
 }
 
+static int read_recording(const speak_args *a, sound *recording)
+{
+    const int status = sound_read(a->subject, recording);
+    if (!status && recording->only_channel) {
+        fprintf(stderr,
+                "noh: %s: warning: its channels take each other away, as in opposite phase: channel %u alone is used\n",
+                a->subject, (unsigned)recording->only_channel);
+    }
+    return status;
+}
+
 static int align(const speak_args *a, spoken *s)
 {
     sound recording;
     alignment aligned;
-    int status = sound_read(a->subject, &recording);
+    int status = read_recording(a, &recording);
     if (status) return status;
     status = check_length(a, s, &recording);
     if (!status) status = alignment_make(&recording, s->text, a->language, &aligned);
@@ -256,7 +267,7 @@ static int align(const speak_args *a, spoken *s)
 static int hear(const speak_args *a, spoken *s)
 {
     sound recording;
-    int status = sound_read(a->subject, &recording);
+    int status = read_recording(a, &recording);
     if (status) return status;
     status = hearing_make(&recording, &a->how, &s->said, &s->track);
     s->clipped = recording.clipped;

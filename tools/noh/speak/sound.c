@@ -60,16 +60,41 @@ static int grow(sound *s, size_t *room, size_t more)
     return !samples;
 }
 
-static void mix(const float *block, size_t frames, size_t channels, sound *out)
+/* What of each channel alone and of their mean is heard: the sums of squares. */
+typedef struct loudness {
+    double own[CHANNELS_MAX], mean;
+} loudness;
+
+/* only: the one channel that is taken, or CHANNELS_MAX: their mean. */
+static void mix(const float *block, size_t frames, size_t channels, size_t only, sound *out, loudness *heard)
 {
     for (size_t f = 0; f < frames; f++) {
         float sum = 0.0f;
-        for (size_t c = 0; c < channels; c++) sum += block[f * channels + c];
-        sum /= (float)channels;
+        for (size_t c = 0; c < channels; c++) {
+            const float x = block[f * channels + c];
+            sum += x;
+            if (x > -1e6f && x < 1e6f) heard->own[c] += (double)x * (double)x;
+        }
+        sum = only < channels ? block[f * channels + only] : sum / (float)channels;
         if (!(sum > -1e6f && sum < 1e6f)) sum = 0.0f;
+        heard->mean += (double)sum * (double)sum;
         out->clipped += sum >= 0.999f || sum <= -0.999f;
         out->samples[out->count++] = sum;
     }
+}
+
+/* The mean of channels that have nothing in common has the sum of their powers over the square of their number; of
+ * channels that take each other away, as in opposite phase, it has less than a quarter of that. Then the loudest
+ * channel is to be taken; else CHANNELS_MAX. */
+static size_t only_channel(const loudness *heard, size_t channels)
+{
+    double sum = 0.0;
+    size_t loudest = 0;
+    for (size_t c = 0; c < channels; c++) {
+        sum += heard->own[c];
+        if (heard->own[c] > heard->own[loudest]) loudest = c;
+    }
+    return channels > 1 && 4.0 * heard->mean * (double)(channels * channels) < sum ? loudest : CHANNELS_MAX;
 }
 
 static int check_info(const char *path, const file_info *info)
@@ -84,7 +109,8 @@ static int check_info(const char *path, const file_info *info)
 }
 
 /* What the header says of the length is not trusted: the samples are counted. */
-static int read_all(const sndfile *s, void *file, const char *path, const file_info *info, sound *out)
+static int read_all(const sndfile *s, void *file, const char *path, const file_info *info, size_t only, sound *out,
+                    loudness *heard)
 {
     const size_t channels = (size_t)info->channels, most = (size_t)SOUND_SECONDS_MAX * (size_t)info->rate;
     float *block = malloc(BLOCK * channels * sizeof *block);
@@ -98,7 +124,7 @@ static int read_all(const sndfile *s, void *file, const char *path, const file_i
         } else if (out->count + (size_t)got > most) {
             status = tool_fail(path, "is longer than %u seconds: cut it at a pause", SOUND_SECONDS_MAX);
         } else {
-            mix(block, (size_t)got, channels, out);
+            mix(block, (size_t)got, channels, only, out, heard);
         }
     }
     free(block);
@@ -107,25 +133,40 @@ static int read_all(const sndfile *s, void *file, const char *path, const file_i
     return status;
 }
 
-int sound_read(const char *path, sound *out)
+/* only: as mix has it. *other: what should have been taken instead. */
+static int read_file(const sndfile *s, const char *path, size_t only, sound *out, size_t *other)
 {
-    sndfile s;
+    loudness heard;
     file_info info;
     void *file;
     int status;
     memset(out, 0, sizeof *out);
-    memset(&s, 0, sizeof s);
     memset(&info, 0, sizeof info);
-    status = load(&s);
-    if (status) return status;
-    file = s.open(path, MODE_READ, &info);
+    memset(&heard, 0, sizeof heard);
+    file = s->open(path, MODE_READ, &info);
     if (!file)
         return tool_fail(path, "cannot be read as sound (WAV, FLAC and others that libsndfile knows): %s",
-                         s.what(NULL));
+                         s->what(NULL));
     status = check_info(path, &info);
-    if (!status) status = read_all(&s, file, path, &info, out);
-    s.close(file);
+    if (!status) status = read_all(s, file, path, &info, only, out, &heard);
+    s->close(file);
+    *other = status ? CHANNELS_MAX : only_channel(&heard, (size_t)info.channels);
     if (status) sound_free(out);
+    return status;
+}
+
+int sound_read(const char *path, sound *out)
+{
+    size_t only, ignored;
+    sndfile s;
+    int status;
+    memset(&s, 0, sizeof s);
+    status = load(&s);
+    if (!status) status = read_file(&s, path, CHANNELS_MAX, out, &only);
+    if (status || only == CHANNELS_MAX) return status;
+    sound_free(out);
+    status = read_file(&s, path, only, out, &ignored);
+    out->only_channel = status ? 0 : (uint32_t)only + 1u;
     return status;
 }
 

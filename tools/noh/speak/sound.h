@@ -15,9 +15,12 @@ typedef struct sound {
     size_t count;
     uint32_t rate;  /* samples a second */
     size_t clipped; /* samples at or beyond full scale when read */
+    /* 0: channels were averaged; else they take each other away, as stereo in opposite phase does, and this one, from 1,
+     * was taken alone */
+    uint32_t only_channel;
 } sound;
 
-/* Channels are averaged; a sample that is no number is silence. Prints an error and returns an exit code; 0 on success:
+/* Channels are averaged, or one is taken (only_channel); a sample that is no number is silence. Prints an error and returns an exit code; 0 on success:
  * as all here. */
 int sound_read(const char *path, sound *out);
 /* The sound at another rate: a sinc under a Kaiser window, whose cut is below half of the lower rate. */
