@@ -11,6 +11,7 @@
 #include "cli/message.h"
 #include "convert/base/nearest.h"
 #include "file/pack_file.h"
+#include "info/info_joints.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
 
@@ -72,18 +73,6 @@ static int open_clip(opened *o, const pack_file *file, uint32_t index)
     return open_cache(o, file->path, &error);
 }
 
-static void print_keys(const pack_file *file, const noh_pack_clip *packed)
-{
-    for (uint32_t i = 0; i < packed->header->event_count; i++) {
-        printf("    %.4f s '%s'\n", packed->events[i].tick / (double)NOH_TICKS_PER_SECOND,
-               noh_pack_string(&file->pack, packed->events[i].name));
-    }
-    for (uint32_t i = 0; i < packed->header->marker_count; i++) {
-        printf("    %.4f s marker '%s'\n", packed->markers[i].tick / (double)NOH_TICKS_PER_SECOND,
-               noh_pack_string(&file->pack, packed->markers[i].name));
-    }
-}
-
 static void print_clip(const pack_file *file, const opened *o)
 {
     printf("clip '%s': %u joints, %u floats, %.3f s at %.4g Hz, %u of %u bytes (%.1f:1)\n", o->packed.name,
@@ -102,7 +91,7 @@ static void print_clip(const pack_file *file, const opened *o)
            plural(o->info.segment_count), o->info.flags & NOH_CLIP_FLAG_SPLIT ? ", split" : "", o->cache_bytes,
            o->packed.header->event_count, plural(o->packed.header->event_count), o->packed.header->marker_count,
            plural(o->packed.header->marker_count));
-    print_keys(file, &o->packed);
+    info_print_keys(&file->pack, &o->packed);
 }
 
 static void json_one(json *j, const opened *o)

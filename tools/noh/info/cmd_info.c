@@ -147,6 +147,7 @@ static int print_clip(const pack_file *file, uint32_t index)
                tool_clip_seconds(&info), info.joint_count, info.float_count, clip.header->clip_bytes,
                clip.header->event_count, plural(clip.header->event_count), clip.header->marker_count,
                plural(clip.header->marker_count), info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
+        info_print_keys(&file->pack, &clip);
         info_print_errors(&file->pack, &clip);
     }
     return status;
@@ -188,6 +189,7 @@ static int print_info(const pack_file *file)
         printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
         info_print_levels(p, i);
         printf("\n");
+        info_print_joints(p, i);
         info_print_springs(p, i);
     }
     for (uint32_t i = 0; i < p->clip_count && !status; i++) {
@@ -307,6 +309,7 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
     json_integer(j, "joints", h->joint_count);
     json_integer(j, "hash", h->hash);
     json_number(j, "unit_cm", (double)h->unit_cm);
+    info_json_joints(j, pack, index);
     info_json_levels(j, pack, index);
     info_json_springs(j, pack, index);
     json_close(j, '}');
@@ -327,6 +330,7 @@ static int json_clip(json *j, const pack_file *file, uint32_t index)
         json_integer(j, "bytes", clip.header->clip_bytes);
         json_integer(j, "events", clip.header->event_count);
         json_integer(j, "markers", clip.header->marker_count);
+        info_json_keys(j, &file->pack, &clip);
         info_json_errors(j, &file->pack, &clip);
         json_close(j, '}');
     }
@@ -414,7 +418,8 @@ static const option options[] = { OPTION_JSON(info_args, as_json) };
 const verb verb_info = {
     .name = "info",
     .files = "PACK",
-    .what = "list what is in a pack: counts, names, bytes, errors certified at build",
+    .what =
+        "list what is in a pack: counts, names, joints, callback keys and markers with their times, bytes, errors certified at build",
     .example = "face.noh\nface.noh --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -31,6 +31,81 @@ static const char *joint_name(const noh_pack *pack, uint32_t skeleton, uint32_t 
     return name ? name : "";
 }
 
+static uint32_t depth_of(const noh_skeleton *s, uint32_t joint)
+{
+    uint32_t depth = 0;
+    for (; s->parents[joint] != NOH_JOINT_ROOT; depth++) joint = s->parents[joint];
+    return depth;
+}
+
+/* Joints lie in an order of their own (coarser levels are the first so many), so each line says the parent. */
+void info_print_joints(const noh_pack *pack, uint32_t skeleton)
+{
+    noh_skeleton s;
+    noh_pack_skeleton_at(pack, skeleton, &s, NULL, NULL);
+    for (uint32_t i = 0; i < s.joint_count; i++) {
+        printf("  %3u %*s%s", i, (int)(2u * (depth_of(&s, i) % 24u)), "", joint_name(pack, skeleton, i));
+        if (s.parents[i] != NOH_JOINT_ROOT) printf(" (%s)", joint_name(pack, skeleton, s.parents[i]));
+        printf("\n");
+    }
+}
+
+void info_json_joints(json *j, const noh_pack *pack, uint32_t skeleton)
+{
+    noh_skeleton s;
+    noh_pack_skeleton_at(pack, skeleton, &s, NULL, NULL);
+    json_open(j, "joint_list", '[');
+    for (uint32_t i = 0; i < s.joint_count; i++) {
+        json_open(j, NULL, '{');
+        json_text(j, "name", joint_name(pack, skeleton, i));
+        if (s.parents[i] == NOH_JOINT_ROOT) {
+            json_null(j, "parent");
+        } else {
+            json_text(j, "parent", joint_name(pack, skeleton, s.parents[i]));
+        }
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
+static double seconds(uint32_t tick)
+{
+    return tick / (double)NOH_TICKS_PER_SECOND;
+}
+
+void info_print_keys(const noh_pack *pack, const noh_pack_clip *clip)
+{
+    for (uint32_t i = 0; i < clip->header->event_count; i++) {
+        printf("    %.4f s '%s'\n", seconds(clip->events[i].tick), noh_pack_string(pack, clip->events[i].name));
+    }
+    for (uint32_t i = 0; i < clip->header->marker_count; i++) {
+        printf("    %.4f s marker '%s'\n", seconds(clip->markers[i].tick),
+               noh_pack_string(pack, clip->markers[i].name));
+    }
+}
+
+static void json_key(json *j, const noh_pack *pack, uint32_t tick, uint32_t name)
+{
+    json_open(j, NULL, '{');
+    json_number(j, "seconds", seconds(tick));
+    json_text(j, "name", noh_pack_string(pack, name));
+    json_close(j, '}');
+}
+
+void info_json_keys(json *j, const noh_pack *pack, const noh_pack_clip *clip)
+{
+    json_open(j, "event_list", '[');
+    for (uint32_t i = 0; i < clip->header->event_count; i++) {
+        json_key(j, pack, clip->events[i].tick, clip->events[i].name);
+    }
+    json_close(j, ']');
+    json_open(j, "marker_list", '[');
+    for (uint32_t i = 0; i < clip->header->marker_count; i++) {
+        json_key(j, pack, clip->markers[i].tick, clip->markers[i].name);
+    }
+    json_close(j, ']');
+}
+
 void info_print_springs(const noh_pack *pack, uint32_t skeleton)
 {
     noh_springs_desc d;
