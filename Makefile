@@ -80,7 +80,8 @@ VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/bas
 VIEW_WITHOUT := $(strip $(if $(shell $(PKG) --exists glfw3 && echo y),,glfw3) $(if $(shell $(PKG) --exists imgui && echo y),,imgui))
 ifeq ($(VIEW_WITHOUT),)
 VIEW_O     := $(VIEW_C:%.c=$(BUILD)/%.o) $(VIEW_CC:%.cpp=$(BUILD)/%.o)
-VIEW_LIBS  := $(shell $(PKG) --libs glfw3 imgui)
+# GLFW is opened at run time (view/view_glfw.c): of it, the headers alone are needed.
+VIEW_LIBS  := $(filter-out -lglfw%,$(shell $(PKG) --libs imgui))
 else
 VIEW_O     := $(VIEW_NOT_C:%.c=$(BUILD)/%.o)
 endif

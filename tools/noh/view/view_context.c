@@ -4,6 +4,7 @@
 
 #include "gl/gl_lost.h"
 #include "cli/message.h"
+#include "view/view_glfw.h"
 
 /* ---- the window ---- */
 
@@ -102,6 +103,8 @@ static int start_context(view_context *c, noh_gl_caps *caps)
 
 int view_context_open(view_context *c, uint32_t width, uint32_t height, const char *title)
 {
+    const int status = view_glfw_load();
+    if (status) return status;
     if (!glfwInit()) {
         return fail_glfw("no display (DISPLAY, or xvfb-run)");
     }
