@@ -134,6 +134,16 @@ noh build "$work/walk.bvh" -o "$work/keys.noh" --events "$work/keys.txt" --quiet
 expect 0 'keys and markers'
 noh clip "$work/keys.noh"
 check 'clip lists both' grep -q "0.0500 s marker 'right'" "$work/out"
+noh info "$work/keys.noh"
+check 'info lists markers' grep -q "0.0500 s marker 'right'" "$work/out"
+check 'info lists callback keys' grep -q "0.1000 s 'step'" "$work/out"
+noh info "$work/keys.noh" --json
+check 'and both, and joints, as JSON' python3 -c "
+import json, sys
+j = json.load(open(sys.argv[1]))
+c, s = j['clips'][0], j['skeletons'][0]
+assert [(e['name'], e['seconds']) for e in c['event_list']] == [('step', 0.1)] and len(c['marker_list']) == 2
+assert len(s['joint_list']) == s['joints'] and s['joint_list'][0]['parent'] is None and s['joint_list'][1]['parent']" "$work/out"
 printf 'walk 0.1 left marker\n' >"$work/keys.txt"
 noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"
 expect 1 'a marker at the end of its clip'

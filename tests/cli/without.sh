@@ -41,4 +41,10 @@ expect 0 'a model, by the whole program'
 noh_without build "$build/mask.glb" -o "$work/without.noh"
 expect 0 'and by this one'
 check 'gives the same bytes' cmp "$work/with.noh" "$work/without.noh"
+if command -v readelf >/dev/null; then
+    check 'GLFW is needed by noh view alone, when it opens a window' sh -c '! readelf -d "$1" | grep -q glfw' - "$build/noh"
+else
+    skip 'GLFW is needed by noh view alone' 'no readelf here'
+fi
+
 finish
