@@ -66,6 +66,21 @@ expect 1 'joints of other names'
 check 'are told' grep -q 'none of its joints has the name' "$work/err"
 noh build "$build/demo/arm.glb" --attach "$build/demo/arm.glb" --only mesh -o "$work/two.noh"
 expect 0 'what is attached shares the joints'
+# A face without joints, on a joint: the head's, or one that is named.
+sh "$(dirname "$0")/../support/small_glb.sh" >"$work/small.glb"
+noh build "$work/small.glb" --attach "$mask" --only mesh -o "$work/x.noh"
+expect 0 'a face that nothing moves'
+check 'is a warning' grep -q "nothing moves it: no joint of the model has 'head' in its name" "$work/out" "$work/err"
+noh build "$work/small.glb" --attach "$mask" --attach-joint b --only mesh -o "$work/x.noh"
+expect 0 'a face on a joint'
+check 'without a warning' sh -c '! grep -q "nothing moves it" "$1" "$2"' - "$work/out" "$work/err"
+noh info "$work/x.noh"
+check 'is moved by it' grep -q "skin 'mask': 1 joint" "$work/out"
+noh build "$work/small.glb" --attach "$mask" --attach-joint c --only mesh -o "$work/x.noh"
+expect 1 'a face on no joint'
+check 'is told' grep -q "no joint 'c'" "$work/err"
+noh build "$mask" --attach-joint b -o "$work/x.noh"
+expect 2 'a joint without a face'
 noh build "$mask" --seam mend --only mesh -o "$work/x.noh"
 expect 0 'nothing to mend'
 check 'is a warning' grep -q 'no seam was closed' "$work/out" "$work/err"

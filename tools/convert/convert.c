@@ -565,6 +565,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
                                options->targets,
                                options->attached,
                                options->attached_count,
+                               options->attach_joint,
                                options->seam,
                                options->turn,
                                options->clean };

@@ -36,6 +36,7 @@ typedef struct convert_options {
     const char *targets;         /* a folder of .obj files: the targets of the first .obj model; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first's */
     uint32_t attached_count;
+    const char *attach_joint; /* that carries those without joints; NULL: the head */
     seam_mode seam;             /* of skinned meshes that go on as each other */
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */

@@ -114,7 +114,7 @@ static int attach_all(const source_options *options, model *m, model_error *erro
         model *other = NULL;
         model_error own = { "", "" };
         int failed = read_model(options->attached[i], options, &other, &own) ||
-                     model_attach(m, other, options->attached[i], &own);
+                     model_attach(m, other, options->attach_joint, options->attached[i], &own);
         model_free(other);
         if (failed) return model_fail(error, options->attached[i], "%s", own.what);
     }

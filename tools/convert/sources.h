@@ -32,6 +32,7 @@ typedef struct source_options {
     const char *targets;         /* of .obj: a folder of targets, see obj_read.h; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first, see model_attach.h */
     uint32_t attached_count;
+    const char *attach_joint; /* that carries those that have no joints; NULL: the head */
     seam_mode seam;
     turn_options turn;
     unsigned clean; /* bits of mocap/clean.h */

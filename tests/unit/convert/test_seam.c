@@ -125,7 +125,7 @@ static model *joined(const shape *below, const shape *above)
 {
     model *m = model_of(below), *other = model_of(above);
     model_error error = { "", "" };
-    if (model_attach(m, other, "head.glb", &error)) fail_msg("%s", error.what);
+    if (model_attach(m, other, NULL, "head.glb", &error)) fail_msg("%s", error.what);
     model_free(other);
     return m;
 }
@@ -188,7 +188,7 @@ static void a_head_of_other_joints_is_refused(void **state)
     model_error error = { "", "" };
     (void)state;
     for (uint32_t n = 0; n < 2; n++) other->nodes[n].name[0] = 'x';
-    assert_int_equal(model_attach(m, other, "head.glb", &error), 1);
+    assert_int_equal(model_attach(m, other, NULL, "head.glb", &error), 1);
     assert_non_null(strstr(error.what, "none of its joints"));
     model_free(other);
     model_free(m);

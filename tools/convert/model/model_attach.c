@@ -3,7 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <math.h>
+
 #include "affine.h"
+#include "base/name_internal.h"
 #include "model_build.h"
 
 static int fail_memory(model_error *error)
@@ -121,6 +124,111 @@ static void renumber(const model *m, model *other, const uint32_t *map)
     }
 }
 
+/* ---- on a joint ---- */
+
+static int is_joint(const model *m, uint32_t node)
+{
+    for (uint32_t s = 0; s < m->skin_count; s++) {
+        for (uint32_t j = 0; j < m->skins[s].joint_count; j++) {
+            if (m->skins[s].joints[j] == node) return 1;
+        }
+    }
+    return 0;
+}
+
+/* As gazes find it (sim/gaze.h). */
+static int is_head(const char *name)
+{
+    static const char *const others[] = { "headtop", "headend", "headnub", "forehead", "headlight" };
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        if (noh_name_has(name, others[i])) return 0;
+    }
+    return noh_name_has(name, "head");
+}
+
+/* Of the first `count` nodes, the joint of that name, or, name NULL, the head. */
+static uint32_t find_joint(const model *m, uint32_t count, const char *name)
+{
+    for (uint32_t n = 0; n < count; n++) {
+        const char *own = plain_name(m->nodes[n].name);
+        if (!own || !is_joint(m, n)) continue;
+        if (name ? strcmp(own, plain_name(name)) == 0 || strcmp(m->nodes[n].name, name) == 0 : is_head(own)) return n;
+    }
+    return MODEL_NONE;
+}
+
+/* Whether a mesh that no skin moves lies on a node or below it. */
+static int has_rigid_mesh(const model *m, uint32_t root)
+{
+    for (uint32_t n = root; n < m->node_count; n++) {
+        uint32_t at = n;
+        if (m->nodes[n].mesh == MODEL_NONE || m->nodes[n].skin != MODEL_NONE) continue;
+        while (at != root && at != MODEL_NONE) at = m->nodes[at].parent;
+        if (at == root) return 1;
+    }
+    return 0;
+}
+
+/* The rotation of three columns at right angles, of length 1 each. */
+static void rotation_of(double r[3][3], float out[4])
+{
+    double q[4], length = 0.0;
+    if (r[0][0] + r[1][1] + r[2][2] > 0.0) {
+        q[3] = 1.0 + r[0][0] + r[1][1] + r[2][2];
+        q[0] = r[1][2] - r[2][1], q[1] = r[2][0] - r[0][2], q[2] = r[0][1] - r[1][0];
+    } else {
+        const int i = r[0][0] > r[1][1] && r[0][0] > r[2][2] ? 0 : r[1][1] > r[2][2] ? 1 : 2;
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        q[i] = 1.0 + r[i][i] - r[j][j] - r[k][k];
+        q[j] = r[i][j] + r[j][i], q[k] = r[i][k] + r[k][i], q[3] = r[j][k] - r[k][j];
+    }
+    for (int i = 0; i < 4; i++) length += q[i] * q[i];
+    for (int i = 0; i < 4; i++) out[i] = (float)(q[i] / sqrt(length));
+}
+
+/* Below a joint, where it stands in the world. returns 1 where the joint's place has no inverse */
+static int hang_on(model *m, uint32_t node, uint32_t joint)
+{
+    model_node *n = &m->nodes[node];
+    double back[16], local[16], columns[3][3];
+    if (affine_invert(m->nodes[joint].world, back)) return 1;
+    affine_multiply(back, n->world, local);
+    for (int c = 0; c < 3; c++) {
+        const double *from = local + 4 * c;
+        double length = sqrt(from[0] * from[0] + from[1] * from[1] + from[2] * from[2]);
+        if (c == 2 && affine_determinant(local) < 0.0) length = -length;
+        for (int i = 0; i < 3; i++) columns[c][i] = length != 0.0 ? from[i] / length : (double)(i == c);
+        n->scale[c] = (float)length;
+        n->translation[c] = (float)local[12 + c];
+    }
+    rotation_of(columns, n->rotation);
+    n->parent = joint;
+    return 0;
+}
+
+/* What stands at the top of the added nodes and no joint moves. joint_name NULL: the head's, and only of a model that is
+ * not skinned. returns 1 on error */
+static int hang_all(model *m, uint32_t before, int is_skinned, const char *joint_name, const char *path,
+                    model_error *error)
+{
+    const uint32_t joint = find_joint(m, before, joint_name);
+    if (joint_name && joint == MODEL_NONE) {
+        return model_fail(error, "", "the model has no joint '%s' to attach it to: --attach-joint names one",
+                          joint_name);
+    }
+    for (uint32_t n = before; n < m->node_count; n++) {
+        if (m->nodes[n].parent != MODEL_NONE || !has_rigid_mesh(m, n) || (is_skinned && !joint_name)) continue;
+        if (joint == MODEL_NONE || hang_on(m, n, joint)) {
+            return model_warn(m,
+                              "%s: nothing moves it: no joint of the model has 'head' in its name; --attach-joint says "
+                              "which one carries it",
+                              path) &&
+                   fail_memory(error);
+        }
+    }
+    return 0;
+}
+
 /* ---- all ---- */
 
 static int shares_joint(const model *other, const uint32_t *map, uint32_t before)
@@ -145,9 +253,10 @@ static int tell(model *m, const model *other, const char *path)
            model_warn(m, "%s: its springs were left out: give them by --springs", path);
 }
 
-int model_attach(model *m, model *other, const char *path, model_error *error)
+int model_attach(model *m, model *other, const char *joint, const char *path, model_error *error)
 {
     const uint32_t before = m->node_count;
+    const int is_skinned = other->skin_count != 0;
     uint32_t *map;
     int failed;
     if (!other->mesh_count) return model_fail(error, "", "it has no meshes to attach");
@@ -162,6 +271,7 @@ int model_attach(model *m, model *other, const char *path, model_error *error)
     }
     renumber(m, other, map);
     free(map);
+    if (hang_all(m, before, is_skinned, joint, path, error)) return 1;
     failed = move_arrays(m, other) || tell(m, other, path);
     return failed ? fail_memory(error) : 0;
 }

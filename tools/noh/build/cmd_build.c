@@ -21,7 +21,7 @@
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
         *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
-        *wrinkle_lookup, *terrain, *textures, *bound, *rename, *seam, *clean;
+        *wrinkle_lookup, *terrain, *textures, *bound, *rename, *seam, *clean, *attach_joint;
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
     double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
         lod_own, wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
@@ -111,6 +111,7 @@ static int set_skin(const build_args *a, convert_options *o)
     }
     o->attached = a->attached.items;
     o->attached_count = (uint32_t)a->attached.count;
+    o->attach_joint = a->attach_joint;
     o->two_streams = a->two_streams.items;
     o->two_stream_count = (uint32_t)a->two_streams.count;
     o->surfaces = a->surfaces.items;
@@ -522,9 +523,17 @@ static const option options[] = {
       .at = offsetof(build_args, attached),
       .value = "FILE",
       .what =
-          "add the meshes of this model to the first one, a head to a body: joints of the same name become one; may repeat",
+          "add the meshes of this model to the first one, a head to a body: joints of the same name become one; one without joints follows that of --attach-joint; may repeat",
       .example = "head.glb",
       .excludes = "--only=anim" },
+    { .name = "--attach-joint",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, attach_joint),
+      .value = "NAME",
+      .what =
+          "the joint that carries what --attach adds and no joint of its own moves, from where it stands; default: the first with 'head' in its name",
+      .example = "mixamorig:Head",
+      .needs = "--attach" },
     { .name = "--seam",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, seam),
