@@ -142,6 +142,7 @@
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
+#define NOH_ATTACH_DEPTH_MAX 8u             /* attachments between an actor and the one that stands by itself */
 #define NOH_LAYERS_MAX 16u                  /* of a kind */
 #define NOH_STAGE_PARTS_MAX 16u             /* of a kind */
 #define NOH_STAGE_PART_BYTES_MAX (1u << 20) /* state of one actor, scratch of one job */

@@ -380,11 +380,12 @@ typedef struct noh_look {
  *         unknown bits */
 noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
 
-/* Hang an actor on a joint of another one: a sword in a hand. Its place is then relative to the joint. The parent is
- * posed wherever the actor is seen.
+/* Attach an actor to a joint of another one, which may be attached itself: a ring on a finger of a hand that a puppet
+ * holds. Its place is then relative to the joint. The parent is posed wherever the actor is seen, and where the parent
+ * is hidden, it is not seen. When a parent is despawned, what was attached to it stays where it was shown.
  * parent  id 0: let go, and stay where it is
- * errors  NOT_FOUND either is gone, or the parent has no such joint; ARG the parent hangs itself, or holds something
- * that would then hang two deep */
+ * errors  NOT_FOUND either is gone, or the parent has no such joint; ARG the parent is the actor itself, or is attached
+ *         to it; LIMIT more than NOH_ATTACH_DEPTH_MAX attachments would follow on each other (need: how many) */
 noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error);
 
 /* ---- play ---- */

@@ -45,6 +45,17 @@ noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_sta
     return a;
 }
 
+noh_stage_actor *noh_stage_parent_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind)
+{
+    return a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, kind) : NULL;
+}
+
+const noh_stage_actor *noh_stage_root_of(const noh_stage *s, const noh_stage_actor *a)
+{
+    for (const noh_stage_actor *on; (on = noh_stage_parent_of(s, a, NULL)) != NULL;) a = on;
+    return a;
+}
+
 noh_result noh_stage_gone(noh_error *error, noh_actor actor)
 {
     return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, or never was", actor.id & 0xffffu, 0);
@@ -454,18 +465,30 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     return NOH_OK;
 }
 
-static int holds_something(const noh_stage *s, uint32_t id)
+/* Attachments from an actor to another one that it is attached to, over others or not; NOH_NONE: it is not. */
+static uint32_t steps_to(const noh_stage *s, const noh_stage_actor *a, const noh_stage_actor *to)
 {
+    uint32_t steps = 0;
+    for (; a && a != to; steps++) a = noh_stage_parent_of(s, a, NULL);
+    return a ? steps : NOH_NONE;
+}
+
+/* Of what is attached to an actor, the most attachments to it. */
+static uint32_t steps_below(const noh_stage *s, const noh_stage_actor *a)
+{
+    uint32_t most = 0;
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        if (s->actors[i].alive && s->actors[i].parent == id) return 1;
+        const uint32_t steps = s->actors[i].alive ? steps_to(s, &s->actors[i], a) : NOH_NONE;
+        if (steps != NOH_NONE && steps > most) most = steps;
     }
-    return 0;
+    return most;
 }
 
 noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error)
 {
     noh_stage_actor *a = NULL, *p;
     noh_stage_kind *k = NULL, *of_parent = NULL;
+    uint32_t depth;
     const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result != NOH_OK) {
         return result;
@@ -484,9 +507,16 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the parent has no such joint", joint,
                         of_parent->skeleton.joint_count);
     }
-    if (p->parent || p == a || holds_something(stage, actor.id)) {
-        return noh_fail(error, NOH_ERR_ARG, "an actor hangs on one that hangs on nothing, and nothing hangs on it",
+    if (steps_to(stage, p, a) != NOH_NONE) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "an actor would be attached to itself: the parent is the actor, or is attached to it; let that "
+                        "go first",
                         actor.id & 0xffffu, 0);
+    }
+    depth = steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);
+    if (depth > NOH_ATTACH_DEPTH_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "more than NOH_ATTACH_DEPTH_MAX attachments follow on each other",
+                        actor.id & 0xffffu, depth);
     }
     a->parent = parent.id;
     a->joint = joint;

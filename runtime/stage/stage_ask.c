@@ -23,12 +23,11 @@ static void joint_matrix(const noh_character *ch, uint32_t joint, float matrix[1
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
 {
     const noh_stage_actor *a = &s->actors[index], *on;
-    noh_stage_kind *k;
+    noh_stage_kind *k = NULL;
     noh_place place;
     noh_stage_shown_place(s, a, s->origin, &place);
     noh_place_matrix(&place, matrix);
-    on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, &k) : NULL;
-    if (on) {
+    for (; (on = noh_stage_parent_of(s, a, &k)) != NULL; a = on) {
         const noh_character *ch = noh_stage_character(k, noh_stage_index(k, on));
         float joint[12], world[12];
         noh_stage_shown_place(s, on, s->origin, &place);

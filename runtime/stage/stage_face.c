@@ -48,8 +48,7 @@ static int target_of(const noh_stage *s, const noh_stage_face *f, const double h
     if (f->looks != NOH_LOOKS_AT_ACTOR) return f->looks == NOH_LOOKS_AT_POINT;
     other = noh_stage_actor_of(s, (noh_actor){ f->target }, &of);
     if (other) {
-        const noh_stage_actor *on = other->parent ? noh_stage_actor_of(s, (noh_actor){ other->parent }, NULL) : NULL;
-        eyes_of(of, on ? on : other, home, point);
+        eyes_of(of, noh_stage_root_of(s, other), home, point);
     }
     return other != NULL;
 }

@@ -44,6 +44,17 @@ noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, 
     return noh_stage_frame_between(stage, views, view_count, 1.0f, error);
 }
 
+/* Who carries something is posed where that is seen, seen itself or not. */
+static void mark_carriers(noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) s->shown[i].updates = 0;
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        const noh_stage_actor *a = &s->actors[i];
+        if (!a->alive || a->look.hidden) continue;
+        while ((a = noh_stage_parent_of(s, a, NULL)) != NULL) s->shown[a - s->actors].updates = NOH_STAGE_CARRIES;
+    }
+}
+
 noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, float alpha,
                                    noh_error *error)
 {
@@ -64,6 +75,7 @@ noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views
     stage->head->behind_ticks = noh_stage_behind(stage, alpha);
     stage->frame++;
     if (!stage->frame) stage->frame = 1;
+    mark_carriers(stage);
     stage->phase = NOH_STAGE_BEGUN;
     return NOH_OK;
 }

@@ -328,6 +328,7 @@ typedef struct noh_stage_shown {
 
 #define NOH_STAGE_MOVED 2u
 #define NOH_STAGE_DUE_LONG 3u /* at once, as the frame was long; it was in view in the one before, so parts go on */
+#define NOH_STAGE_CARRIES 4u /* something is attached to it: from the beginning of a frame until updates are chosen */
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
@@ -535,13 +536,18 @@ noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_sta
 noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, noh_stage_kind **kind,
                             noh_error *error);
 noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an actor's index in the stage */
+/* What an actor is attached to; NULL: nothing. From one to the next at most NOH_ATTACH_DEPTH_MAX times. */
+noh_stage_actor *noh_stage_parent_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind);
+/* The one at the end of its attachments: itself, where it has none. */
+const noh_stage_actor *noh_stage_root_of(const noh_stage *s, const noh_stage_actor *a);
 noh_result noh_stage_gone(noh_error *error, noh_actor actor);
-/* Its own place as the last frame shows it, its position less `origin`; that of one which hangs on another is relative
- * to the joint, and stays so. */
+/* Its own place as the last frame shows it, its position less `origin`; the place of an attached actor is relative to
+ * the joint, and stays so. */
 void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, const float origin[3], noh_place *out);
 void noh_stage_keep_before(noh_stage_actor *a); /* where it is becomes where it was */
 void noh_stage_shift_actor(noh_stage_actor *a, const float by[3]);
-/* Where an actor is drawn, less the stage's origin: its place, or that on its parent's joint as that was posed last. */
+/* Where an actor is drawn, less the stage's origin: its place, or that on its parent's joint, and so on, as they were
+ * posed last. */
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
 /* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
 noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);

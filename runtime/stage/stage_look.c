@@ -44,38 +44,55 @@ static uint32_t look_at_own(const noh_stage *s, uint32_t index, const noh_stage_
     return find_views(s, &s->actors[index], reach);
 }
 
-/* What hangs on another is seen where that may take it. Its own matrix is known only when the other was posed: until
- * then that of the other's last pose stands for it. The other may be looked at in another job: what a look changes of
- * it is not read. */
-static uint32_t look_at_attached(noh_stage *s, uint32_t index, const noh_stage_kind *k, const float own[4])
+/* An attached actor is seen where those that carry it may take it. Its matrix is known only when they were posed: until
+ * then their last poses stand for it. They may be looked at in another job: what a look changes of them is not read.
+ * own: its sphere in its own space; matrix: from there to the world, as of the last poses. */
+static uint32_t look_at_attached(const noh_stage *s, uint32_t index, const noh_stage_kind *k, const float own[4],
+                                 float matrix[12])
 {
-    const noh_stage_actor *a = &s->actors[index], *on = noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL);
-    const noh_stage_kind *of;
-    const noh_character *ch;
+    const noh_stage_actor *a = &s->actors[index], *on = a, *next;
+    noh_stage_kind *of = NULL;
     noh_place place;
-    float world[12], reach[4], far[4], shown[4], length, *matrix = s->shown[index].world;
-    if (!on || on->look.hidden) return 0;
-    of = noh_stage_kind_of(s, (uint32_t)(on - s->actors));
-    ch = noh_stage_character(of, noh_stage_index(of, on));
-    noh_stage_shown_place(s, on, s->origin, &place);
-    noh_place_matrix(&place, world);
+    float world[12], reach[4], shown[4], length;
     noh_stage_shown_place(s, a, s->origin, &place);
     noh_place_matrix(&place, matrix);
-    noh_stage_reach(k, own, far);
-    noh_stage_sphere_in_world(matrix, far, far);
-    length = noh_sqrt(noh_dot3(far, far)) + far[3];
-    if (ch->time.posed && a->joint < of->skeleton.joint_count) {
-        const float *joint = noh_character_pose_palette(ch, ch->time.to_pose) + 12u * (size_t)a->joint;
-        length *= noh_stretch(joint);
-        noh_matrix_multiply(joint, matrix, matrix);
+    noh_stage_reach(k, own, reach);
+    noh_stage_sphere_in_world(matrix, reach, reach);
+    for (; (next = noh_stage_parent_of(s, on, &of)) != NULL; on = next) {
+        const noh_character *ch = noh_stage_character(of, noh_stage_index(of, next));
+        if (next->look.hidden) return 0;
+        length = noh_sqrt(noh_dot3(reach, reach)) + reach[3]; /* from the joint */
+        if (ch->time.posed && on->joint < of->skeleton.joint_count) {
+            const float *joint = noh_character_pose_palette(ch, ch->time.to_pose) + 12u * (size_t)on->joint;
+            length *= noh_stretch(joint);
+            noh_matrix_multiply(joint, matrix, matrix);
+        }
+        noh_stage_sphere_in_world(matrix, own, shown);
+        memcpy(reach, of->reach, sizeof reach);
+        reach[3] += length;
+        noh_stage_widen(reach, shown);
+        noh_stage_shown_place(s, next, s->origin, &place);
+        noh_place_matrix(&place, world);
+        noh_matrix_multiply(world, matrix, matrix);
+        noh_stage_sphere_in_world(world, reach, reach);
     }
-    noh_stage_sphere_in_world(matrix, own, shown);
-    memcpy(reach, of->reach, sizeof reach);
-    reach[3] += length;
-    noh_stage_widen(reach, shown);
-    noh_matrix_multiply(world, matrix, matrix);
-    noh_stage_sphere_in_world(world, reach, reach);
-    return find_views(s, a, reach);
+    return on == a ? 0 : find_views(s, a, reach);
+}
+
+/* Whether a view sees something that is attached to an actor, which then has to be posed. */
+static int carries_seen(const noh_stage *s, const noh_stage_actor *a)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        const noh_stage_actor *other = &s->actors[i], *on = other;
+        const noh_stage_kind *k;
+        float matrix[12];
+        if (!other->alive || !other->parent || other == a) continue;
+        while (on && on != a) on = noh_stage_parent_of(s, on, NULL);
+        if (!on) continue;
+        k = noh_stage_kind_of(s, i);
+        if (look_at_attached(s, i, k, k->reach, matrix)) return 1;
+    }
+    return 0;
 }
 
 float noh_stage_size(const noh_stage *s, const noh_stage_actor *a)
@@ -107,7 +124,8 @@ static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
     if (is_fresh(s, a)) noh_lod_cut(&ch->lod);
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
-    asked = a->look.posed || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
+    /* one that is out of view itself is posed in full for what it carries */
+    asked = a->look.posed || !shown->views || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
     shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, i, &settings, asked)
                                           : noh_character_look(ch, &k->table, &settings, asked));
     if (shown->due == NOH_DUE_AT_ONCE && was_seen && ch->time.posed) shown->due = NOH_STAGE_DUE_LONG;
@@ -128,7 +146,7 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matr
     if (k->weight_count) noh_stage_take_floats(k, noh_stage_index(k, a));
     noh_stage_sphere(k, noh_stage_index(k, a), own);
     if (a->parent) {
-        shown->views = (uint16_t)look_at_attached(s, index, k, own);
+        shown->views = (uint16_t)look_at_attached(s, index, k, own, shown->world);
     } else {
         noh_stage_shown_place(s, a, s->origin, &place);
         noh_place_matrix(&place, shown->world);
@@ -136,9 +154,9 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matr
     }
     a->on_its_way = 0;
     shown->due = NOH_DUE_NOT;
-    shown->updates = 0;
+    shown->updates &= NOH_STAGE_CARRIES;
     noh_stage_measure(s, k, noh_stage_index(k, a), own, matrices);
-    if (shown->views || a->look.posed) {
+    if (shown->views || a->look.posed || (shown->updates && carries_seen(s, a))) {
         choose(s, k, index);
     } else {
         a->was_seen = 0;

@@ -188,11 +188,10 @@ static void set_time(noh_part_work *w, noh_stage_part_head *head, int64_t clock,
     head->was_posed = 1;
 }
 
-/* The place of whom it hangs on, where it does. The home stays while the actor is near it. */
+/* The place of the one at the end of its attachments. The home stays while the actor is near it. */
 static void set_place(const noh_stage *s, noh_stage_actor *a, noh_part_work *w)
 {
-    const noh_stage_actor *on = a->parent ? noh_stage_actor_of(s, (noh_actor){ a->parent }, NULL) : NULL;
-    if (!on) on = a;
+    const noh_stage_actor *on = noh_stage_root_of(s, a);
     w->place = on->place;
     for (int i = 0; i < 3; i++) {
         const double at = (double)on->place.position[i] + (double)on->rest[i], from = at - a->home[i];

@@ -31,7 +31,7 @@ static void leave_out(noh_stage *s, noh_stage_shown *shown, uint32_t index)
 {
     shown->views = 0;
     s->actors[index].was_seen = 0;
-    if (!s->actors[index].look.posed) shown->due = NOH_DUE_NOT;
+    if (!s->actors[index].look.posed && !(shown->updates & NOH_STAGE_CARRIES)) shown->due = NOH_DUE_NOT;
 }
 
 /* A pool may be short of fine slots: the actor is then drawn no finer than its slot, and chooses no finer from now on.
@@ -112,6 +112,7 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
     noh_stage_shown *shown = &s->shown[k->first_actor + i];
     const noh_character *ch = noh_stage_character(k, i);
     uint32_t cost;
+    shown->updates = 0;
     if (shown->due == NOH_DUE_NOT || s->desc.update_budget_ns == UINT64_MAX) {
         shown->updates = shown->due != NOH_DUE_NOT;
         return;

@@ -48,6 +48,18 @@ static const char *bad_place(const noh_place *place)
     return NULL;
 }
 
+static int is_too_deep(const reader *r, const noh_stage_actor *a)
+{
+    const noh_stage_actor *actors = in_copy(r, r->s->actors);
+    for (uint32_t depth = 0; depth <= NOH_ATTACH_DEPTH_MAX; depth++) {
+        const uint32_t index = a->parent & 0xffffu;
+        if (!a->parent || index >= r->s->actor_count) return 0;
+        if (!actors[index].alive || actors[index].generation != a->parent >> 16) return 0;
+        a = &actors[index];
+    }
+    return 1;
+}
+
 static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh_stage_actor *a)
 {
     const char *what;
@@ -71,6 +83,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
     if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
+    if (is_too_deep(r, a)) return "state: an actor is attached to itself, or over too many others";
     for (uint32_t l = 0; l < k->layer_count; l++) {
         if ((a->started[l / 8u] >> 4u * (l % 8u) & 15u) >= k->layers[l].track_count)
             return "state: bad track of a layer";

@@ -890,6 +890,127 @@ static void what_hangs_on_a_joint_goes_with_it(void **state)
     cast_close(&c);
 }
 
+static void attach(const cast *c, noh_actor actor, noh_actor parent)
+{
+    if (noh_actor_attach(c->stage, actor, parent, 20, &said) != NOH_OK) fail_msg("%s", said.what);
+}
+
+static void joint_of(const cast *c, noh_actor actor, float joint[12])
+{
+    assert_int_equal(noh_actor_joint(c->stage, actor, 20, joint, NULL), NOH_OK);
+}
+
+/* Each on a joint of the one before: circles and too many are refused, in any order of attaching; one that goes leaves
+ * what was attached to it where it was, with all that is attached to that; a state with a circle is refused. */
+static void attachments_on_attachments(void **state)
+{
+    const noh_place up = { { 0.0f, 0.25f, 0.1f }, { 0, 0, 0.6f, 0.8f }, 0.75f };
+    const noh_look posed = { .posed = 1 };
+    const uint32_t most = NOH_ATTACH_DEPTH_MAX + 1u;
+    noh_actor a[NOH_ATTACH_DEPTH_MAX + 3u];
+    float before[2][12], after[12], local[12], last[12];
+    noh_stage_view view = cast_view(0, 9.0f);
+    size_t bytes;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[PUPPETS].actor_count = most + 2u;
+    cast_make(&c, NULL);
+    for (uint32_t i = 0; i < most + 2u; i++) {
+        assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, i ? &up : NULL, &a[i], NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_look(c.stage, a[i], &posed, NULL), NOH_OK);
+        if (!i) assert_int_equal(noh_actor_play(c.stage, a[i], 0, "dance", NULL, NULL), NOH_OK);
+    }
+    for (uint32_t i = most - 1u; i > 0; i--) attach(&c, a[i], a[i - 1u]); /* from the end on */
+    assert_int_equal(noh_actor_attach(c.stage, a[most], a[most - 1u], 20, &said), NOH_ERR_LIMIT);
+    assert_int_equal(said.need, most);
+    assert_int_equal(noh_actor_attach(c.stage, a[0], a[most], 20, &said), NOH_ERR_LIMIT);
+    assert_int_equal(noh_actor_attach(c.stage, a[0], a[0], 20, &said), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_attach(c.stage, a[0], a[5], 20, &said), NOH_ERR_ARG);
+    assert_non_null(strstr(said.what, "attached to itself"));
+    for (int f = 0; f < 10; f++) assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    joint_of(&c, a[1], last); /* the matrices of one that rests: what one puts on the next */
+    for (uint32_t i = 2; i < most; i++) {
+        float want[12], parent[12], first[12];
+        joint_of(&c, a[i - 1u], parent);
+        joint_of(&c, a[i], after);
+        if (i == 2) memcpy(first, parent, sizeof first);
+        for (int r = 0; r < 3; r++) { /* where the place's origin is carried to */
+            want[r] = parent[4 * r] * up.position[0] + parent[4 * r + 1] * up.position[1] +
+                      parent[4 * r + 2] * up.position[2] + parent[4 * r + 3];
+        }
+        noh_place at;
+        joint_of(&c, a[i], local);
+        assert_int_equal(noh_actor_attach(c.stage, a[i], (noh_actor){ 0 }, 0, NULL), NOH_OK);
+        assert_int_equal(noh_actor_place(c.stage, a[i], &at, NULL), NOH_OK);
+        for (int r = 0; r < 3; r++) assert_true(fabsf(at.position[r] - want[r]) < 1e-4f);
+        assert_true(fabsf(at.scale - powf(0.75f, (float)i)) < 1e-4f);
+        assert_int_equal(noh_actor_set_place(c.stage, a[i], &up, NULL), NOH_OK);
+        attach(&c, a[i], a[i - 1u]);
+        joint_of(&c, a[i], after);
+        for (int k = 0; k < 12; k++) assert_true(fabsf(after[k] - local[k]) < 1e-4f);
+    }
+    joint_of(&c, a[2], before[0]);
+    joint_of(&c, a[5], before[1]);
+    assert_int_equal(noh_stage_despawn(c.stage, a[1], NULL), NOH_OK);
+    joint_of(&c, a[2], after);
+    for (int k = 0; k < 12; k++) assert_true(fabsf(after[k] - before[0][k]) < 1e-4f);
+    joint_of(&c, a[5], after);
+    for (int k = 0; k < 12; k++) assert_true(fabsf(after[k] - before[1][k]) < 1e-4f);
+    const void *kept = noh_stage_state(c.stage, &bytes);
+    uint8_t *copy = malloc(bytes);
+    memcpy(copy, kept, bytes);
+    assert_int_equal(noh_stage_set_state(c.stage, copy, bytes, &said), NOH_OK);
+    for (size_t i = 0; i + 4 <= bytes; i += 4) { /* the parent of the first of the chain: the last of it */
+        uint32_t word;
+        memcpy(&word, copy + i, 4);
+        if (word != a[2].id) continue;
+        memcpy(copy + i, &a[3].id, 4);
+        break;
+    }
+    assert_int_equal(noh_stage_set_state(c.stage, copy, bytes, &said), NOH_ERR_DATA);
+    free(copy);
+    cast_close(&c);
+}
+
+/* What carries something that a view sees is posed, seen itself or not; hidden, it hides what it carries. */
+static void a_carrier_out_of_view_is_posed(void **state)
+{
+    const noh_place far = { { 0.0f, 0.0f, 30.0f }, { 0, 0, 0, 0 }, 1.0f };
+    const noh_look hidden = { .hidden = 1 }, plain = { 0 };
+    float before[12], after[12], sphere[4];
+    const noh_play bows = { .fade_ticks = 1, .start_ticks = 24000 };
+    noh_actor actors[3];
+    uint32_t head;
+    noh_stage_view view;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    head = noh_stage_find(c.stage, PUPPETS, NOH_NAME_JOINT, "head");
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, i ? &far : NULL, &actors[i], NULL), NOH_OK);
+    assert_int_equal(noh_actor_play(c.stage, actors[0], 0, "bow", &bows, NULL), NOH_OK);
+    attach(&c, actors[1], actors[0]);
+    attach(&c, actors[2], actors[1]);
+    for (int f = 0; f < 40; f++) { /* close to the last one, whichever way it is swung */
+        assert_int_equal(noh_actor_sphere(c.stage, actors[2], sphere, NULL), NOH_OK);
+        noh_view_orbit(&view, sphere, 1.5707963f, 0.0f, 5.0f, 640, 360);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_true(noh_stage_stats_of(c.stage)->seen < 3);
+        if (f == 5) assert_int_equal(noh_actor_joint(c.stage, actors[0], head, before, NULL), NOH_OK);
+    }
+    assert_int_equal(noh_actor_joint(c.stage, actors[0], head, after, NULL), NOH_OK);
+    assert_true(hypotf(hypotf(after[3] - before[3], after[7] - before[7]), after[11] - before[11]) > 0.01f);
+    assert_int_equal(noh_actor_set_look(c.stage, actors[0], &hidden, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_stats_of(c.stage)->seen, 0);
+    assert_int_equal(noh_actor_set_look(c.stage, actors[0], &plain, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_true(noh_stage_stats_of(c.stage)->seen > 0);
+    cast_close(&c);
+}
+
 static void a_ray_meets_the_nearest_actor(void **state)
 {
     noh_actor actors[CAST_ACTORS];
@@ -1174,6 +1295,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_state_is_put_back_to_the_bit),
         cmocka_unit_test(a_damaged_state_does_no_harm),
         cmocka_unit_test(what_hangs_on_a_joint_goes_with_it),
+        cmocka_unit_test(attachments_on_attachments),
+        cmocka_unit_test(a_carrier_out_of_view_is_posed),
         cmocka_unit_test(a_ray_meets_the_nearest_actor),
         cmocka_unit_test(a_ray_goes_through_its_pixel),
         cmocka_unit_test(a_kind_draws_the_nodes_of_its_list),
