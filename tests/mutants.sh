@@ -4,7 +4,7 @@
 # A row of the tables there names a mutant: tests/mutants/NAME.patch, an edit that puts the source's error into the code
 # or, where the source has none, breaks the technique. This script applies each to a copy of the tree, builds the row's
 # test there and demands that it fails by one of its own assertions: a mutant that does not compile, crashes or takes
-# too long shows nothing. Before that, the same test has to pass on the tree itself. Ends with "N passed, N failed,
+# too long shows nothing. Before that, the same test has to pass in the copy as it is. Ends with "N passed, N failed,
 # N skipped"; a test that is skipped here, for want of a model or a driver, skips its mutant.
 #
 #   NOH_BUILD   a build folder inside the tree (build); the tests are built there first
@@ -81,33 +81,36 @@ restore() { # NUMBER PATCH
     (cd "$work/$1" && find "$build" -type f -newer "$work/$1.stamp") >"$work/$1.new"
     while read -r file; do
         case $file in
-        *.[oad] | */gen/*) cp -p "$file" "$work/$1/$file" 2>/dev/null || rm -f "$work/$1/$file" ;;
+        *.[oad] | */gen/* | "$build"/noh) cp -p "$file" "$work/$1/$file" 2>/dev/null || rm -f "$work/$1/$file" ;;
         *) rm -f "$work/$1/$file" ;;
         esac
     done <"$work/$1.new"
 }
 
-# The test passes on the tree itself, or skips there: it is run once, whatever the number of its mutants.
-on_the_tree() { # PROGRAM FUNCTION
-    key=$work/log/tree.$(echo "$1 $2" | tr ' /' __)
+# The test passes in the copy without the mutant, or skips there: what it needs beside the program is there.
+unmutated() { # NUMBER PROGRAM FUNCTION
+    key=$work/log/$1.$(echo "$2 $3" | tr ' /' __)
     [ -f "$key.told" ] && told=$(cat "$key.told") && return
-    verdict "$tree" "$1" "$2" "$key"
+    mkdir -p "$(dirname "$work/$1/$(goal "$2")")"
+    cp -p "$tree/$(goal "$2")" "$work/$1/$(goal "$2")"
+    verdict "$work/$1" "$2" "$3" "$key"
     echo "$told" >"$key.told"
 }
 
 one() { # NUMBER NAME PROGRAM FUNCTION
     copy=$work/$1 patch=tests/mutants/$2.patch log=$work/log/$2
-    on_the_tree "$3" "$4"
+    unmutated "$1" "$3" "$4"
     case $told in
     passes) ;;
     skips:*) echo "skip - $2 # SKIP${told#skips:}" && return ;;
-    *) echo "not ok - $2: on the tree as it is, $3 $4 $told" && tail -n 12 "$key" | sed 's/^/#   /' && return ;;
+    *) echo "not ok - $2: without it, $3 $4 $told" && tail -n 12 "$key" | sed 's/^/#   /' && return ;;
     esac
     touch "$copy.stamp"
     sleep 0.02 # what is written from here on is newer
     if ! patch -d "$copy" -p1 -F0 -s -t --no-backup-if-mismatch -r - <"$patch" >"$log" 2>&1; then
         told='does not apply'
-    elif ! limited 900 make -C "$copy" -j1 --no-print-directory DEPS=0 WERROR= BUILD="$build" "$(goal "$3")" >"$log" 2>&1 </dev/null; then
+    elif ! limited 900 make -C "$copy" -j1 --no-print-directory DEPS=0 WERROR= BUILD="$build" "$(goal "$3")" \
+        >"$log" 2>&1 </dev/null; then
         told='does not compile'
     else
         verdict "$copy" "$3" "$4" "$log"
@@ -128,7 +131,7 @@ copy() { # FOLDER
         case $file in build*) ;; *) cp -pR "$file" "$1/" ;; esac
     done
     (cd "$build" && find . \( -path ./mutants -o -path ./web -o -path ./tests/log -o -path ./angle \) -prune -o -type f \
-        \( -name '*.[oad]' -o -path './gen/*' -o -name embed -o -name '*.noh' -o -name '*.glb' \) -print) |
+        \( -name '*.[oad]' -o -path './gen/*' -o -name embed -o -name noh -o -name '*.noh' -o -name '*.glb' \) -print) |
         tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
 }
 
