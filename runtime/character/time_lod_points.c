@@ -48,9 +48,9 @@ static float point_off(const noh_time_hold *holds, uint32_t count, const float *
     return noh_dot3(error, error);
 }
 
-/* No point is off by more: by the largest that any joint's matrix alone would move a point as far away as its own, in the
- * Frobenius norm. It costs as much as a point for each joint, and of most poses of most clips it is all that is needed:
- * where they move little or evenly, mixes are right. */
+/* A bound for all points: the largest that any joint's error moves a point as far away as the farthest that it holds,
+ * by the Frobenius norm. A joint costs as much as a point, and for most poses the bound is enough: where a clip moves
+ * little or evenly, mixes are right. */
 static float most_off(const work *w, uint32_t joint_count)
 {
     float most = 0.0f;
