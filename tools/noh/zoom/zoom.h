@@ -133,8 +133,8 @@ void zoom_surface_close(zoom_surface *z);
 
 /* Bounds. */
 #define ZOOM_SLACK 1.25 /* times the allowed error in pixels: of silhouettes and surfaces */
-#define ZOOM_POP                                                                                                      \
-    1.0 /* of 255, as zoom_compare_colors measures: what a level change may do in one frame; the least step of 8 bits \
+#define ZOOM_POP \
+    1.02 /* of 255, as zoom_compare_colors measures: what a level change may do in one frame; the least step of 8 bits \
          */
 
 /* The worst of all frames. */
