@@ -581,8 +581,8 @@ static void spin_by(const whole_doll *w, const float v[3], float out[3])
     for (int i = 0; i < 3; i++) out[i] = determinant > 0.0f ? noh_dot3(minors[i], v) / determinant : 0.0f;
 }
 
-/* All free bodies as if they were one: by mass, and turned so far that none gets more than twice the mean speed, or more
- * than a doll may have. */
+/* All free bodies as if they were one: by mass, and turned so far that none gets more than twice the mean speed, or
+ * more than a doll may have. */
 static void push_whole(const noh_ragdoll_shape *shape, noh_ragdoll_doll *d, const float point[3],
                        const float impulse[3])
 {

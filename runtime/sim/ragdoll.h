@@ -20,8 +20,8 @@
  * have steps of 8 mm at 100 km and of 1 mm at 16 km: noh_ragdolls_shift brings that space nearer.
  *
  * Overlaps: what is inside the world or another body of the doll when a step begins comes out at NOH_PUSH_OUT_SPEED and
- * keeps none of that speed; out of obstacles that hold the axes of bodies, by the side on which the first body is. Joints
- * that a doll is placed with past their limits turn back at 2 rad/s.
+ * keeps none of that speed; out of obstacles that hold the axes of bodies, by the side on which the first body is.
+ * Joints that a doll is placed with past their limits turn back at 2 rad/s.
  *
  * source   Mueller, Macklin, Chentanez, Jeschke, Kim: Detailed Rigid Body Simulation with Extended Position Based
  *          Dynamics, 2020; Macklin et al.: Small Steps in Physics Simulation, 2019
@@ -129,12 +129,12 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
 noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *goals, uint32_t held,
                               const float *hertz, noh_error *error);
 
-/* A push in newton seconds, at a point in the space of the bodies. Wakes the doll. The body nearest to the point takes it
- * alone until its speed has changed by 4.6 of the doll's sizes (noh_ragdolls_desc) in a second, 8 m/s for 1.75 m; all
- * beyond is spread over all free bodies by their masses, as if the doll were rigid, so that four times the push throws it
- * four times as fast. Its spin is limited: no body gets more than twice the mean speed, or more than the limit below.
- * ranges  no body moves faster than 23 sizes in a second, 40 m/s for 1.75 m: what is beyond that, 2,800 Ns on 70 kg at
- *         rest, is lost. A push that is not finite, or beyond 1e15, does nothing */
+/* A push in newton seconds, at a point in the space of the bodies. Wakes the doll. The body nearest to the point takes
+ * it alone until its speed has changed by 4.6 of the doll's sizes (noh_ragdolls_desc) in a second, 8 m/s for 1.75 m;
+ * all beyond is spread over all free bodies by their masses, as if the doll were rigid, so that four times the push
+ * throws it four times as fast. Its spin is limited: no body gets more than twice the mean speed, or more than the
+ * limit below. ranges  no body moves faster than 23 sizes in a second, 40 m/s for 1.75 m: what is beyond that, 2,800 Ns
+ *         on 70 kg at rest, is lost. A push that is not finite, or beyond 1e15, does nothing */
 void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3]);
 
 /* Time moves on for all dolls that are awake, in any pieces. A doll of which nothing moved by more than a 50th of its

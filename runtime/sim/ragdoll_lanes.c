@@ -174,8 +174,8 @@ NOH_ALWAYS_INLINE lane4 frame_b_before(const joint *j)
     return lane4_mul(j->b->q_before, lane4_set(j->c->frame));
 }
 
-/* Of an angle past a limit: all of what this substep has brought, and of what was there before only so much that nothing
- * is thrown. */
+/* Of an angle past a limit: all of what this substep has brought, and of what was there before only so much that
+ * nothing is thrown. */
 NOH_ALWAYS_INLINE lanes way_back(const joint *j, lanes past, lanes before)
 {
     const lanes zero = lanes_set(0.0f), left = lanes_max(lanes_sub(before, j->turn_back), zero);
@@ -335,8 +335,8 @@ NOH_ALWAYS_INLINE lane3 moved_at(const lane_body *b, lane3 arm)
     return lane3_add(lane3_sub(b->p, b->p_before), lane3_cross(turned, arm));
 }
 
-/* How far to push where `depth` is below 0 after a way of `moved` along the normal: all of what this substep has brought,
- * and of what was there before only so much that nothing is thrown. */
+/* How far to push where `depth` is below 0 after a way of `moved` along the normal: all of what this substep has
+ * brought, and of what was there before only so much that nothing is thrown. */
 NOH_ALWAYS_INLINE lanes way_out(lanes depth, lanes moved, lanes push_out)
 {
     const lanes zero = lanes_set(0.0f), before = lanes_sub(depth, moved);
@@ -627,8 +627,8 @@ static inline void predict(lane_body *b, lanes h, float seconds, float speed_max
     for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
 }
 
-/* What leaves the world is stopped, or leaves at a share of the speed at which it came; what came at no more than gravity
- * makes in two substeps only rests. */
+/* What leaves the world is stopped, or leaves at a share of the speed at which it came; what came at no more than
+ * gravity makes in two substeps only rests. */
 static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float restitution, float seconds)
 {
     const lanes zero = lanes_set(0.0f);

@@ -231,8 +231,8 @@ static void rub(solver *s, uint32_t i, float friction)
     apply(s, h->arm, 1.0f, change);
 }
 
-/* The speed at which a point leaves that comes at `speed`, is `depth` inside already, and is pulled towards the world by
- * `gravity`: as if it had bounced at the surface, or small bounces would never end. */
+/* The speed at which a point leaves that comes at `speed`, is `depth` inside already, and is pulled towards the world
+ * by `gravity`: as if it had bounced at the surface, or small bounces would never end. */
 static float bounced(float restitution, float speed, float depth, float gravity)
 {
     const float before = speed - gravity * SECONDS, lift = 2.0f * gravity * depth;

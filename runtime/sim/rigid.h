@@ -1,4 +1,4 @@
-/* rigid.h: a free rigid body that forces, torques and impulses move: a box, a capsule, a ball, or a box with round edges.
+/* rigid.h: a free rigid body that forces, torques and impulses move: a box, a capsule, a ball, a rounded box.
  *
  *   noh_rigid_init          a body at rest
  *   noh_rigid_set_motion    its velocity and spin
@@ -13,17 +13,17 @@
  *
  * A force F at a point p accelerates the body by F / mass, and turns it by the torque (p - x) x F about its centre x.
  * What is kept is the angular momentum, not the spin, so a body that turns freely keeps it to the last bits, and its
- * energy within a bound: rotation is put together out of exact turns about the three axes of inertia. Time goes in steps
- * of 1/600 s. Free flight under constant forces is exact.
+ * energy within a bound: rotation is put together out of exact turns about the three axes of inertia. Time goes in
+ * steps of 1/600 s. Free flight under constant forces is exact.
  *
  * It collides with a noh_world, by up to 24 contacts, with that world's friction and restitution: corners, edges and
- * round ends; of a height field what corners touch. Bodies do not meet each other or ragdolls. What overlaps comes apart
- * at NOH_PUSH_OUT_SPEED. A body that moves by more than its own thickness in 1/600 s can pass through a thin obstacle.
- * One that touches something, and is slower than 0.08 m/s at its rim for half a second, falls asleep until something is
- * done to it.
+ * round ends; of a height field what corners touch. Bodies do not meet each other or ragdolls. What overlaps comes
+ * apart at NOH_PUSH_OUT_SPEED. A body that moves by more than its own thickness in 1/600 s can pass through a thin
+ * obstacle. One that touches something, and is slower than 0.08 m/s at its rim for half a second, falls asleep until
+ * something is done to it.
  *
- * A noh_rigid is the caller's, 144 bytes without pointers: a copy goes on as it would, with the same bits everywhere. It
- * is simulated about an origin of its own, as ragdolls are (ragdoll.h). Its fields are read by calls.
+ * A noh_rigid is the caller's, 144 bytes without pointers: a copy goes on as it would, with the same bits everywhere.
+ * It is simulated about an origin of its own, as ragdolls are (ragdoll.h). Its fields are read by calls.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 6 (rigid bodies, which it leaves to a library);
  *          Dullweber, Leimkuhler, McLachlan: Symplectic splitting methods for rigid body molecular dynamics, 1997;
  *          Catto: Iterative Dynamics with Temporal Coherence, 2005 (impulses of contacts)
@@ -70,8 +70,8 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
  * errors  ARG not finite: nothing changes */
 noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error);
 
-/* They add up, and act for all the time of the next noh_rigid_step, then are gone. Gravity acts without them. Calls with
- * what is not finite do nothing.
+/* They add up, and act for all the time of the next noh_rigid_step, then are gone. Gravity acts without them. Calls
+ * with what is not finite do nothing.
  * units  force newtons, torque newton metres, impulse newton seconds; points in the world */
 void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3]);
 void noh_rigid_torque(noh_rigid *body, const float torque[3]);
@@ -96,9 +96,9 @@ int noh_rigid_sleeps(const noh_rigid *body);
 /* Each point p of its space becomes p + by, metres; it loses nothing that floats at the new place cannot hold. */
 void noh_rigid_shift(noh_rigid *body, const float by[3]);
 
-/* A point mass, as noh_point_move moves it, out of a world: what overlaps leaves by what its speed has brought it in, and
- * otherwise at NOH_PUSH_OUT_SPEED. Its speed towards an obstacle is turned back by the world's restitution, its speed
- * along it braked by friction. For noh_verlet_move: velocity = (position - before) / seconds, and afterwards
+/* A point mass, as noh_point_move moves it, out of a world: what overlaps leaves by what its speed has brought it in,
+ * and otherwise at NOH_PUSH_OUT_SPEED. Its speed towards an obstacle is turned back by the world's restitution, its
+ * speed along it braked by friction. For noh_verlet_move: velocity = (position - before) / seconds, and afterwards
  * before = position - seconds * velocity. Ends of springs and rods (noh_distance_keep) are such points.
  * ranges   radius 0.., seconds above 0: of the move that came before
  * returns  whether it touched something */

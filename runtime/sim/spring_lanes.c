@@ -235,8 +235,8 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
     return lane3_choose(lanes_and(hit, is_long), lane3_madd(head, scale, bone), tail);
 }
 
-/* Where an end was before, so that it leaves what it has hit: the way out of it is from `free` to `tail`, and `inertia` is
- * its speed, without what pulls it, or it would never rest. */
+/* Where an end was before, so that it leaves what it has hit: the way out of it is from `free` to `tail`, and `inertia`
+ * is its speed, without what pulls it, or it would never rest. */
 NOH_ALWAYS_INLINE lane3 bounce(const group *g, lane3 before, lane3 inertia, lane3 free, lane3 tail)
 {
     const lane3 out = lane3_sub(tail, free);

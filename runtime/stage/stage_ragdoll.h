@@ -15,8 +15,8 @@
  * Getting up: among clips that begin on the ground, the one whose pelvis lies most like the ragdoll's is played. The
  * place moves under it, on the ground, and the difference between the poses decays from the bodies' velocities.
  *
- * It falls alike at any distance from the origin that a place can have: bodies are kept from an origin near to them. What
- * is inside an obstacle as it begins to fall comes out at NOH_PUSH_OUT_SPEED (sim/world.h) and is not thrown.
+ * It falls alike at any distance from the origin that a place can have: bodies are kept from an origin near to them.
+ * What is inside an obstacle as it begins to fall comes out at NOH_PUSH_OUT_SPEED (sim/world.h) and is not thrown.
  *
  * For one limp limb, hold all bodies, release the limb, and let the actor fall: the limb hangs from a body that clips
  * move. For a fall with strength, give joints a `hertz`: they turn towards the angles of the clips.

@@ -1,5 +1,5 @@
-/* Tests of runtime/sim/rigid.c and contact.c: closed forms of flight, spin, impulses, bounces and friction; rest on every
- * kind of obstacle; overlaps; the same far away and in any pieces of time; point masses. */
+/* Tests of runtime/sim/rigid.c and contact.c: closed forms of flight, spin, impulses, bounces and friction; rest on
+ * every kind of obstacle; overlaps; the same far away and in any pieces of time; point masses. */
 #include "sim/rigid.h"
 
 #include <math.h>

@@ -464,8 +464,8 @@ static void a_fork_goes_on(void **state)
     for (int k = 0; k < 2; k++) close_swingers(&c[k]);
 }
 
-/* At any rate of frames sleeves are where they are at 60 Hz, but for the arms' way between two poses. Frames longer than
- * an eighth of a second once began all of them anew. */
+/* At any rate of frames sleeves are where they are at 60 Hz, but for the arms' way between two poses. Frames longer
+ * than an eighth of a second once began all of them anew. */
 static void seldom_frames_swing_alike(void **state)
 {
     static const uint32_t rates[] = { 60, 12, 7, 5, 3, 2 };
