@@ -169,18 +169,26 @@ static void measure(const noh_ragdoll_source *s, noh_gaze_rig *rig)
     }
 }
 
-noh_result noh_gaze_rig_make(const noh_ragdoll_source *source, noh_gaze_rig *rig, noh_error *error)
+noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error)
 {
-    NOH_ASSERT(source && source->pack && rig);
-    const uint32_t head = find_head(source);
+    noh_ragdoll_source s;
+    noh_result result;
+    uint32_t head;
+    NOH_ASSERT(pack && rig);
+    memset(&s, 0, sizeof s);
+    s.pack = pack;
+    s.skeleton = skeleton;
+    result = noh_pack_skeleton_at(pack, skeleton, &s.joints, NULL, error);
+    if (result != NOH_OK) return result;
+    head = find_head(&s);
     if (head == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no joint of this skeleton has 'head' in its name: fill in the rig of its gaze by hand", 0, 0);
     }
     memset(rig, 0, sizeof *rig);
-    find_chain(source, head, rig);
-    find_eyes(source, head, rig->eyes);
-    measure(source, rig);
+    find_chain(&s, head, rig);
+    find_eyes(&s, head, rig->eyes);
+    measure(&s, rig);
     return NOH_OK;
 }
 

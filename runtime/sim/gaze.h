@@ -40,9 +40,9 @@ typedef struct noh_gaze_rig {
 /* Spine, neck, head and eyes, as far as joints have such names ('mixamorig:Spine1', 'neck.x', 'b_Head_05', 'LeftEye');
  * a spine is what has no legs below it. The body looks along +z in the bind pose. Without joints for eyes they are in
  * the middle of the head's skin.
- * source   as for a ragdoll; metres and mass are not read
- * errors   NOT_FOUND no joint's name has 'head' */
-noh_result noh_gaze_rig_make(const noh_ragdoll_source *source, noh_gaze_rig *rig, noh_error *error);
+ * pack     its names, and the skinned meshes of that skeleton
+ * errors   NOT_FOUND no joint's name has 'head', or as noh_pack_skeleton_at */
+noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error);
 
 /* 64 bytes. A copy of it goes on as it does; zeros look ahead. */
 typedef struct noh_gaze {

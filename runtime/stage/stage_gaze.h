@@ -3,7 +3,7 @@
  *   noh_stage_gaze_part    a part of a kind (stage/part.h) that turns spine, neck, head and eyes
  *   noh_stage_reach_part   one that puts hands on points
  *
- *   noh_gaze_rig_make(&source, &gaze.rig, &error);
+ *   noh_gaze_rig_make(&pack, 0, &gaze.rig, &error);
  *   const noh_stage_part parts[] = { noh_stage_gaze_part(&gaze), noh_stage_feet_part(&feet),
  *                                    noh_stage_reach_part(&reach) };
  *   noh_gaze *g = noh_actor_part(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;

@@ -37,7 +37,7 @@ static noh_ragdoll_source open_body(body *b, const char *name)
 static void open_person(body *b, const char *name)
 {
     const noh_ragdoll_source source = open_body(b, name);
-    assert_int_equal(noh_gaze_rig_make(&source, &b->gaze, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &b->gaze, NULL), NOH_OK);
     if (noh_reach_rig_make(&source, &b->reach, NULL) != NOH_OK) b->reach.arm_count = 0;
 }
 
@@ -142,7 +142,7 @@ static void others_do_or_say_why_not(void **state)
     float target[3];
     noh_ragdoll_source source = open_body(&b, "khronos/Fox.glb");
     (void)state;
-    assert_int_equal(noh_gaze_rig_make(&source, &b.gaze, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &b.gaze, NULL), NOH_OK);
     pose_bind(&b);
     point_at(&b, 30.0f, -10.0f, 3.0f, target);
     step_gaze(&b, &g, target, FRAME);
@@ -150,7 +150,7 @@ static void others_do_or_say_why_not(void **state)
     assert_int_equal(noh_reach_rig_make(&source, &reach, &said), NOH_ERR_NOT_FOUND);
     skin_asset_close(&b.a);
     source = open_body(&b, "khronos/SimpleSkin.gltf");
-    assert_int_equal(noh_gaze_rig_make(&source, &b.gaze, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &b.gaze, &said), NOH_ERR_NOT_FOUND);
     assert_non_null(strstr(said.what, "head"));
     skin_asset_close(&b.a);
 }

@@ -37,7 +37,7 @@ static void open_scene(scene *s)
     source.pack = &s->cast.packs[0];
     source.metres = 1.0f;
     assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
-    if (noh_gaze_rig_make(&source, &s->gaze.rig, &said) != NOH_OK) fail_msg("gaze: %s", said.what);
+    if (noh_gaze_rig_make(source.pack, 0, &s->gaze.rig, &said) != NOH_OK) fail_msg("gaze: %s", said.what);
     if (noh_reach_rig_make(&source, &s->reach, &said) != NOH_OK) fail_msg("hands: %s", said.what);
     measure_rest(s, &source.joints);
     s->parts[0] = noh_stage_gaze_part(&s->gaze);

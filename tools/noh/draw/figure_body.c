@@ -143,8 +143,8 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
     if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &source.joints, &header, error)) return 0;
     source.metres = (float)header->unit_cm / 100.0f;
     b->metre = 1.0f / source.metres;
-    if (b->looks &&
-        (kind->face || !noh_gaze_rig_make(&source, &b->gazes[k].rig, error) || add_face(b, kind, k, error))) {
+    if (b->looks && (kind->face || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k].rig, error) ||
+                     add_face(b, kind, k, error))) {
         b->parts[k][count++] = noh_stage_gaze_part(&b->gazes[k]);
     }
     if (b->has_ground && !noh_feet_rig_make(&source, &b->feet[k].rig, error)) {
