@@ -82,6 +82,22 @@ layout(std140) uniform noh_palette_block {
 #define NOH_PALETTE_ROW(i) noh_palette[i]
 #endif
 
+/* ---- what a game says of an instance ---- */
+
+/* A crowd's: x: which of its rows it is; 0: none. */
+uniform highp vec4 noh_user_values;
+
+/* noh_look.user, noh_gl_skin_set_user or noh_gl_draw_user: four floats that mean nothing to the library; zeros where
+ * there are none. */
+vec4 noh_user()
+{
+#ifdef NOH_CROWD
+    return noh_user_values.x > 0.0 ? noh_crowd_row(int(noh_user_values.x)) : vec4(0.0);
+#else
+    return noh_user_values;
+#endif
+}
+
 /* ---- influences: runtime/pack/format.h ---- */
 
 #if NOH_INFLUENCES > 0

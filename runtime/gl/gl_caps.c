@@ -563,3 +563,23 @@ noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error 
     if (result == NOH_OK) *out = caps;
     return result;
 }
+
+/* ---- without a driver ---- */
+
+void noh_gl_caps_nominal(noh_gl_caps *out)
+{
+    static const char name[] = "a nominal GLES 3.2 device";
+    NOH_ASSERT(out);
+    memset(out, 0, sizeof *out);
+    out->version = 320;
+    out->is_es = 1;
+    memcpy(out->renderer, name, sizeof name);
+    out->texture_size_max = 2048;
+    out->array_layers_max = 256;
+    out->draw_buffers_max = out->color_attachments_max = 4;
+    out->uniform_block_bytes_max = 16384;
+    out->vertex_textures_max = 16;
+    out->vertex_attributes_max = 16;
+    out->mrt3 = out->render_f32 = out->render_f16 = out->render_u32 = 1;
+    out->blend_f32 = out->blend_f16 = out->blend_f32_exact = out->layered = out->etc2 = 1;
+}

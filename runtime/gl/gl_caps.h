@@ -61,6 +61,11 @@ typedef struct noh_gl_caps {
  * errors  ARG api or out is NULL; GL the driver cannot run the probe's programs */
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error);
 
+/* Capabilities for plans without a driver or a context, as of a build machine: an OpenGL ES 3.2 device with every
+ * feature, and limits and textures as large as ES 3.0 demands. Plans of it may choose another path than the player's
+ * GPU; a stage is made with a plan of the caps that were probed. */
+void noh_gl_caps_nominal(noh_gl_caps *out);
+
 /* For `version` and `geometry_defines` of the desc of a program with a geometry stage (gl_program.h). The version is
  * NULL where there are no geometry shaders; the defines are NULL where no #extension is needed. */
 const char *noh_gl_geometry_version(const noh_gl_api *api);

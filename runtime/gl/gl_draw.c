@@ -8,6 +8,7 @@
  * around it, thin and mostly of one colour, is blended in stored order. */
 #include "gl/gl_draw.h"
 
+#include <limits.h>
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -24,6 +25,8 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     noh_gl_samplers_none(r->gl, 0, NOH_UNIT_USER);
     r->camera = *camera;
     noh_gl_draw_tint(r, NULL);
+    noh_gl_draw_user(r, NULL);
+    r->priority = NOH_PRIORITY_ANY;
     noh_gl_draw_wrinkles(r, NULL);
     noh_gl_draw_triangles(r, NULL);
     for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
@@ -35,6 +38,30 @@ void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
     static const uint8_t white[4] = { 255, 255, 255, 255 };
     NOH_ASSERT(r);
     memcpy(r->tint, tint ? tint : white, sizeof r->tint);
+}
+
+void noh_gl_draw_user(noh_gl_renderer *r, const float values[4])
+{
+    NOH_ASSERT(r);
+    memset(r->user, 0, sizeof r->user);
+    if (values) memcpy(r->user, values, sizeof r->user);
+}
+
+void noh_gl_draw_priority(noh_gl_renderer *r, int priority)
+{
+    NOH_ASSERT(r);
+    r->priority = priority;
+}
+
+int noh_gl_next_priority(const noh_mesh *mesh, int above)
+{
+    int lowest = NOH_PRIORITY_ANY;
+    NOH_ASSERT(mesh && mesh->header);
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const noh_material *m = noh_gl_material_of(mesh, &mesh->submeshes[i]);
+        if ((m->flags & NOH_MATERIAL_BLEND) && m->priority > above && m->priority < lowest) lowest = m->priority;
+    }
+    return lowest;
 }
 
 void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles)
@@ -150,6 +177,7 @@ static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const floa
     r->gl->Uniform4fv(v->u_world, 3, world);
     r->gl->Uniform4fv(v->u_normal, 3, rows);
     noh_gl_tint_bits(r->tint, tint);
+    if (v->u_user >= 0) r->gl->Uniform4fv(v->u_user, 1, r->user);
     if (morph) {
         r->gl->Uniform4i(v->u_morph, morph->tile_x | (GLint)tint[0], morph->tile_y | (GLint)tint[1],
                          morph->width_log2 | (GLint)tint[2], morph->touched);
@@ -360,6 +388,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
         set_instance(j->r, v, j->world, j->morph);
     } else {
         set_front(j->r, 0);
+        if (v->u_user >= 0) j->r->gl->Uniform4f(v->u_user, (float)j->skin->user_row, 0.0f, 0.0f, 0.0f);
     }
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
@@ -381,7 +410,8 @@ static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_
     draw_submesh(j, s, first);
 }
 
-static void draw_part_of(const draw_job *j, draw_part part)
+/* Of one priority, where blended; any otherwise. */
+static void draw_part_of(const draw_job *j, draw_part part, int priority)
 {
     size_t first;
     const noh_mesh level = noh_gl_mesh_lod(j->mesh, j->lod->level, &first);
@@ -391,7 +421,7 @@ static void draw_part_of(const draw_job *j, draw_part part)
         const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
         const uint16_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
-        if (draws_nothing(j, s) || !is_in_part(m, part)) {
+        if (draws_nothing(j, s) || !is_in_part(m, part) || (part == PART_BLENDED && m->priority != priority)) {
             continue;
         }
         if (!v || v->key.features != features) {
@@ -413,6 +443,18 @@ static void draw_part_of(const draw_job *j, draw_part part)
     }
 }
 
+static void draw_blended(const draw_job *j)
+{
+    const noh_mesh *mesh = &j->mesh->mesh;
+    if (j->r->priority != NOH_PRIORITY_ANY) {
+        draw_part_of(j, PART_BLENDED, j->r->priority);
+        return;
+    }
+    for (int p = noh_gl_next_priority(mesh, INT_MIN); p != NOH_PRIORITY_ANY; p = noh_gl_next_priority(mesh, p)) {
+        draw_part_of(j, PART_BLENDED, p);
+    }
+}
+
 static void draw_pass(const draw_job *j, int pass)
 {
     NOH_ASSERT(j->mesh->vertex_array && pass >= NOH_DRAW_OPAQUE && pass <= NOH_DRAW_DEPTH);
@@ -423,15 +465,15 @@ static void draw_pass(const draw_job *j, int pass)
     }
     if (pass == NOH_DRAW_DEPTH) {
         noh_gl_depth_only_begin(j->r->gl, &j->r->raster);
-        draw_part_of(j, PART_SOLID_DEPTH);
-        draw_part_of(j, PART_CUT_DEPTH);
+        draw_part_of(j, PART_SOLID_DEPTH, 0);
+        draw_part_of(j, PART_CUT_DEPTH, 0);
         noh_gl_depth_only_end(j->r->gl, &j->r->raster);
     } else if (pass == NOH_DRAW_BLENDED) {
         noh_gl_blend_begin(j->r->gl, &j->r->raster);
-        draw_part_of(j, PART_BLENDED);
+        draw_blended(j);
         noh_gl_blend_end(j->r->gl, &j->r->raster);
     } else {
-        draw_part_of(j, PART_OPAQUE);
+        draw_part_of(j, PART_OPAQUE, 0);
     }
 }
 

@@ -11,7 +11,7 @@
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next; noh_gl_draw_wrinkles, its wrinkles;
- *                            noh_gl_draw_triangles, which triangles of it
+ *                            noh_gl_draw_user, values for shaders of your own; noh_gl_draw_triangles, which triangles of it
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the
  * textures of glTF's materials.
@@ -166,6 +166,8 @@ typedef struct noh_gl_renderer {
     const noh_lighting *lighting;
     noh_gl_camera camera;                /* of this pass */
     uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
+    float user[4];                       /* likewise */
+    int priority;                        /* likewise, or NOH_PRIORITY_ANY */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* likewise, as vectors of noh_wrinkle_regions */
     uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
     const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
@@ -243,6 +245,20 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
  *         counts where the material blends.
  *         NULL: white */
 void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
+
+/* Four floats for the meshes that noh_gl_draw_mesh draws next, which are noh_user() in vertex shaders of your own;
+ * noh_gl_draw_begin makes them 0. Instances of a crowd have their own (noh_gl_skin_set_user). NULL: zeros */
+void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
+
+/* Which blended submeshes noh_gl_draw_mesh and noh_gl_draw_crowd draw next: those of materials of this priority. A
+ * renderer of your own that sorts the meshes of a figure draws them once for each priority, from low to high, and within
+ * one from far to near. NOH_PRIORITY_ANY, as after noh_gl_draw_begin: all, from low to high, and in the order of the
+ * pack where they are alike. Opaque ones are drawn in any case */
+#define NOH_PRIORITY_ANY 1000
+void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
+
+/* The lowest priority of a mesh's blended materials that is above `above`; NOH_PRIORITY_ANY: there is none. */
+int noh_gl_next_priority(const noh_mesh *mesh, int above);
 
 /* Which triangles noh_gl_draw_mesh draws next; noh_gl_draw_begin makes it all. Borrowed until then. NULL: all. */
 void noh_gl_draw_triangles(noh_gl_renderer *renderer, const noh_gl_triangles *triangles);

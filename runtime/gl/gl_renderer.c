@@ -143,7 +143,7 @@ noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh
                                 noh_error *error)
 {
     const wish w = { desc, mesh, list, error };
-    noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0, 0 };
     const uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
     noh_result result = want(&w, NULL, 0);
     skin.mode = desc->palettes;

@@ -242,6 +242,21 @@ noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const 
     return NOH_OK;
 }
 
+noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const float values[4], noh_error *error)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    span changed = { UINT32_MAX, 0 };
+    NOH_ASSERT(values);
+    if (!skin->user_rows) {
+        return skin->plan.mode != NOH_PALETTE_TEXTURE
+                   ? no_crowds(instance, error)
+                   : noh_fail(error, NOH_ERR_UNSUPPORTED, "the desc of the palettes has no user_values", instance, 0);
+    }
+    put_rows(skin, first_row(m, instance) + m->stride - 1u, values, 1, &changed);
+    send(skin, &changed);
+    return NOH_OK;
+}
+
 /* ---- making ---- */
 
 static noh_result create_buffer(noh_gl_skin *skin, noh_error *error)
@@ -293,10 +308,12 @@ static noh_result create_object(noh_gl_skin *skin, noh_error *error)
 
 static void set_bind_pose(noh_gl_skin *skin)
 {
+    static const float none[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
     for (uint32_t i = 0; i < skin->plan.instance_count; i++) {
         (void)put_palettes(skin, i, identity, 0);
         if (skin->plan.mode == NOH_PALETTE_TEXTURE) {
             noh_gl_skin_set_place(skin, i, identity, NULL, NULL);
+            if (skin->user_rows) (void)noh_gl_skin_set_user(skin, i, none, NULL);
         }
     }
 }
@@ -330,6 +347,7 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *dev
     }
     noh_gl_skin_carve(&arena, desc->mesh_count, &plan, s);
     noh_gl_skin_layout(desc, plan.mode, s->align, s->meshes);
+    s->user_rows = desc->user_values && plan.mode == NOH_PALETTE_TEXTURE;
     set_bind_pose(s);
     result = create_object(s, error);
     if (!result) {
@@ -378,11 +396,12 @@ uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance)
 {
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
-    noh_gl_skin_binding binding = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding binding = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0, 0 };
     binding.mode = skin->plan.mode;
     binding.name = skin->plan.mode == NOH_PALETTE_TEXTURE ? skin->texture.name : skin->buffer.name;
     binding.first = first_row(m, instance);
     binding.stride = m->stride;
+    binding.user_row = skin->user_rows ? m->stride - 1u : 0;
     binding.width_log2 = skin->width_log2;
     binding.align = skin->align;
     return binding;

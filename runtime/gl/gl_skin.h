@@ -8,6 +8,7 @@
  *   noh_gl_skin_write_matrices, noh_gl_skin_touch  the same from several threads at once
  *   noh_gl_skin_set_place     set one instance's place in the world and its morph tile, for crowds
  *   noh_gl_skin_set_tint      set one instance's tint, for crowds
+ *   noh_gl_skin_set_user      set four floats of one instance, for crowds and shaders of your own
  *   noh_gl_skin_update        upload what changed
  *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
  *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
@@ -49,6 +50,7 @@ typedef struct noh_gl_skin_desc {
     uint32_t mesh_count;
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_palette_mode mode;           /* 0: auto */
+    int user_values;                 /* 1: instances have room for noh_gl_skin_set_user: a row more, in a texture */
 } noh_gl_skin_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
@@ -73,6 +75,7 @@ typedef struct noh_gl_skin_binding {
     uint32_t width_log2; /* row i is the texel (i & (width - 1), i >> width_log2); 0 for a uniform buffer */
     uint32_t align;      /* palettes start at multiples of this many rows */
     uint32_t influences; /* use at most this many joints per vertex, the strongest ones; 0: all */
+    uint32_t user_row;   /* which of an instance's rows has its user values; 0: none */
 } noh_gl_skin_binding;
 
 /* Choose the mode and measure it, without touching GL.
@@ -127,6 +130,10 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
  *         NULL: white, as at first
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds */
 noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error);
+
+/* Set four floats of one instance, for noh_gl_draw_crowd: noh_user() in vertex shaders of your own. Zeros at first.
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds, or the desc has no user_values */
+noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const float values[4], noh_error *error);
 
 /* Set how much the regions of one instance are wrinkled, for noh_gl_draw_crowd: 0 at first. noh_gl_skin_set_place keeps
  * it.

@@ -21,6 +21,7 @@ struct noh_gl_skin {
     noh_gl_ledger *ledger;
     noh_gl_skin_plan plan;
     uint32_t align, width_log2;
+    uint32_t user_rows; /* of an instance, behind its palettes: 0 or 1 */
     uint32_t mesh_count;
     noh_gl_skin_mesh *meshes;        /* [mesh_count] */
     float *rows;                     /* [texel_count, in a texture width * height][4] */

@@ -125,12 +125,14 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
 uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
                             noh_gl_skin_mesh *meshes)
 {
-    const noh_gl_skin_binding shape = { mode, 0, 0, 0, 0, align, 0 };
+    const noh_gl_skin_binding shape = { mode, 0, 0, 0, 0, align, 0, 0 };
+    const uint32_t user_rows = desc->user_values && mode == NOH_PALETTE_TEXTURE;
     uint64_t row = 0;
     uint32_t instance = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         uint32_t count = count_of(desc, i),
-                 stride = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count);
+                 stride = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count) +
+                          user_rows;
         if (meshes) {
             meshes[i].mesh = desc->meshes[i];
             meshes[i].instance_count = count;

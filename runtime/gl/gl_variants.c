@@ -269,6 +269,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_maps", offsetof(noh_gl_variant, u_maps) },
                      { "noh_surface_values", offsetof(noh_gl_variant, u_surface_values) },
                      { "noh_surface_more", offsetof(noh_gl_variant, u_surface_more) },
+                     { "noh_user_values", offsetof(noh_gl_variant, u_user) },
                      { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
                      { "noh_rest", offsetof(noh_gl_variant, u_rest) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },
@@ -356,11 +357,18 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
     return noh_gl_program_create(device->api, desc, program, device->log, device->log_bytes, error);
 }
 
+static void tell_made(const noh_gl_api *api, const noh_gl_shader_desc *own, const noh_gl_variant *v)
+{
+    api->UseProgram(v->program);
+    own->made(own->user, api, v->program, v->key);
+    api->UseProgram(0);
+}
+
 noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const noh_gl_shader_desc *own,
                                  const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
                                  noh_error *error)
 {
-    static const noh_gl_shader_desc library = { NULL, NULL, NULL, NULL, NULL, 0, NULL, NULL, NOH_VIEW_LIT, NULL, 0 };
+    static const noh_gl_shader_desc library = { .view = NOH_VIEW_LIT };
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
@@ -386,6 +394,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
         if (result) {
             noh_gl_variant_delete(device->api, device->ledger, &v);
         } else {
+            if (own->made) tell_made(device->api, own, &v);
             *out = v;
         }
     }

@@ -74,7 +74,7 @@ typedef struct noh_gl_variant {
     unsigned program;
     int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90;
+        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
@@ -138,10 +138,14 @@ typedef struct noh_gl_shader_desc {
      * shader may read these, at locations of your choice below GL_MAX_VERTEX_ATTRIBS, and those of meshes */
     const noh_gl_input *inputs;
     uint32_t input_count; /* 0..NOH_GL_OWN_INPUTS_MAX */
+    /* Called once for each program when it was made, by create and again by restore: look uniforms up and set those that
+     * do not change. It is in use, and none is afterwards. key: the kind of mesh and pass that it is for. NULL: nothing
+     * to do */
+    void (*made)(void *user, const noh_gl_api *api, unsigned program, noh_gl_variant_key key);
 } noh_gl_shader_desc;
 
 /* Compile a program for a key. The device's ledger may be NULL.
- * own       the shaders; NULL: the library's. `bind` is not called here
+ * own       the shaders; NULL: the library's. `made` is called, `bind` is not
  * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0
  * errors    LIMIT more samplers than NOH_GL_OWN_SAMPLERS_MAX, or inputs than NOH_GL_OWN_INPUTS_MAX; DATA, GL, MEMORY as
  * noh_gl_program_create: the log then has the driver's words, which count the lines of your text from 1 */

@@ -178,6 +178,10 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->surface > NOH_SURFACE_TOON) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
+    if (!result && (m->priority < -128 || m->priority > 127)) {
+        result = noh_check_fail(check, "priority of a material is not in -128..127",
+                                at + offsetof(noh_material, priority));
+    }
     if (!result && (m->wrinkle_models > 7u || !m->wrinkle_models != (m->wrinkle_texture == NOH_NONE))) {
         result = noh_check_fail(check, "material has unknown models of wrinkles, or models without a wrinkle map",
                                 at + offsetof(noh_material, wrinkle_models));

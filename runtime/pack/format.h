@@ -344,7 +344,8 @@ typedef struct noh_material {
                                   * or a mask that is read at pixels: NOH_MATERIAL_WRINKLE_CODES */
     uint32_t surface;            /* NOH_SURFACE_* */
     float surface_values[4];     /* of that surface, above */
-    uint32_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */
+    uint16_t wrinkle_models;     /* NOH_WRINKLE_BY_*: what shows the wrinkle map, the largest of them; 0 without one */
+    int16_t priority;            /* where it blends: drawn after lower ones of the same figure; -128..127 */
     float surface_more[6];       /* of that surface, above */
     uint32_t specular_texture;   /* with NOH_MATERIAL_SPECULAR_*: rgb colour, times f0; a as that flag says. Else 0 */
     float f90_loss;              /* 0..1: what is no metal reflects 1 less this at grazing angles */

@@ -301,17 +301,6 @@ noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set)
     return carve(&arena, set->count).dolls;
 }
 
-void noh_ragdolls_shift(noh_ragdolls *set, const float by[3])
-{
-    for (uint32_t i = 0; i < set->count * NOH_RAGDOLL_BODIES_MAX; i++) {
-        noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[i / NOH_RAGDOLL_BODIES_MAX];
-        noh_ragdoll_state *b = &d->bodies[i % NOH_RAGDOLL_BODIES_MAX];
-        noh_sub3(b->position, by, b->position);
-        noh_sub3(b->goal_position, by, b->goal_position);
-        noh_sub3(d->lain[i % NOH_RAGDOLL_BODIES_MAX], by, d->lain[i % NOH_RAGDOLL_BODIES_MAX]);
-    }
-}
-
 static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 {
     NOH_ASSERT(set && doll < set->count);

@@ -104,9 +104,6 @@ void noh_ragdoll_origin_shift(float origin[3], const float by[3], float lost[3])
 /* What is wrong with a copy of the set from outside; NULL: it is good. */
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy);
 
-/* The origin of the world moves by `by`, metres: so much less is where all is. */
-void noh_ragdolls_shift(noh_ragdolls *set, const float by[3]);
-
 /* The dolls of a set, and the memory that they share. */
 noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set);
 float *noh_ragdoll_scratch(noh_ragdolls *set);

@@ -157,6 +157,8 @@ typedef struct noh_stage_desc {
     int full_detail;      /* 1: each actor is shown at its kind's finest level, or at noh_look.level, with everything
                            * else in full: no tables of LOD, no programs that fade or take fewer influences */
     int without_depth;    /* 1: NOH_PASS_DEPTH is never drawn: its programs are not compiled */
+    int user_values;      /* 1: shaders of your own read noh_look.user: 16 bytes more on the CPU and on the GPU for each
+                           * mesh of an actor that is seen */
     int without_shader;   /* 1: every noh_stage_draw names a shader: the library's programs are not compiled */
     int without_transfer; /* 1: meshes with a transfer (light/transfer.h) are lit as those without, and their records
                            * are not on the GPU; without `light` they are not either */
@@ -374,6 +376,7 @@ typedef struct noh_look {
     uint8_t wrinkle_models; /* NOH_WRINKLE_BY_* of pack/format.h, in place of those of its materials; 0: those */
     uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: nothing is left of them */
     uint8_t reserved[2];    /* 0 */
+    float user[4];          /* noh_user() in vertex shaders of your own, where noh_stage_desc.user_values is 1 */
 } noh_look;
 
 /* errors  NOT_FOUND; ARG pixels is not in 0..NOH_PIXELS_MAX, the kind has no such texture_set, or wrinkle_models has

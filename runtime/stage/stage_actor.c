@@ -332,10 +332,7 @@ noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error
         noh_stage_shift_parts(k, noh_stage_index(k, a), by);
     }
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
-        const noh_stage_kind *k = &stage->kinds[i];
-        if (!k->ragdoll) continue;
-        noh_ragdolls_shift(k->dolls, (const float[3]){ by[0] * k->ragdoll->metres, by[1] * k->ragdoll->metres,
-                                                       by[2] * k->ragdoll->metres });
+        if (stage->kinds[i].ragdoll) noh_stage_shift_ragdolls(&stage->kinds[i], back);
     }
     for (int n = 0; n < 3; n++) {
         stage->origin[n] -= by[n];

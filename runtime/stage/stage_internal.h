@@ -157,8 +157,8 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_look) == 32, look);
-NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 224, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 48, look);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 240, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
 NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);

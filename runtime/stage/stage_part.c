@@ -129,13 +129,6 @@ void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3])
         float *point = noh_stage_face_of(k, index)->point;
         for (int i = 0; i < 3; i++) point[i] -= by[i];
     }
-    if (k->ragdoll) {
-        noh_stage_body *b = noh_stage_body_of(k, index);
-        for (uint32_t i = 0; i < 2u * NOH_RAGDOLL_BODIES_MAX; i++) {
-            float *at = b->bodies[i / NOH_RAGDOLL_BODIES_MAX][i % NOH_RAGDOLL_BODIES_MAX].position;
-            for (int n = 0; n < 3; n++) at[n] -= by[n] * k->ragdoll->metres;
-        }
-    }
 }
 
 /* ---- what a part may ask ---- */

@@ -116,7 +116,7 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
 {
     const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
     noh_mesh mesh;
-    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE };
+    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE, m->desc->user_values };
     const size_t from = m->arena.used;
     noh_gl_skin_plan plan;
     noh_result result;
@@ -457,7 +457,7 @@ static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, 
 
 /* One actor's mesh: its weights and its place. */
 static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_actor *actor,
-                         const noh_stage_shown *shown, const float *weights)
+                         const noh_stage_shown *shown, int has_user, const float *weights)
 {
     noh_gl_morph_binding morph;
     float world[12];
@@ -473,6 +473,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     if (!noh_gl_is_mirrored(item, actor, shown)) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
         (void)noh_gl_skin_set_tint(item->skin, shown->place, noh_stage_tint_of(actor), NULL);
+        if (has_user) (void)noh_gl_skin_set_user(item->skin, shown->place, actor->look.user, NULL);
         upload_regions(mesh, item, shown->place, weights);
     }
 }
@@ -498,7 +499,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
     const float *weights = k->weights + (size_t)index * k->weight_count;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        upload_place(mesh, &items[m], &k->actors[index], shown, weights + mesh->first_weight);
+        upload_place(mesh, &items[m], &k->actors[index], shown, s->desc.user_values, weights + mesh->first_weight);
         if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }
 }

@@ -1,6 +1,8 @@
 /* stage_gl_draw.c: one pass of a view. */
+#include <limits.h>
 #include <string.h>
 
+#include "character/character_internal.h"
 #include "mesh/wrinkles.h"
 #include "pose/local_to_model.h"
 #include "stage_gl/stage_gl_internal.h"
@@ -73,6 +75,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     if (is_morphed && !noh_gl_any_weight(weights, m->mesh.header->target_count))
         morph.touched = 0; /* nothing is there */
     noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
+    noh_gl_draw_user(d->renderer, d->s->desc.user_values ? actor_at(d, place)->look.user : NULL);
     set_wrinkles(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
                      &lod, pictures_of(d, place), d->pass);
@@ -156,6 +159,118 @@ static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
     }
 }
 
+/* ---- what blends: the meshes of a figure from far to near ---- */
+
+static void move_point(const float *matrix, const float *p, float out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const float *row = matrix + 4 * i;
+        out[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+    }
+}
+
+/* The middle of a mesh's bounds as its joints carry it, each as much as any other. */
+static void move_skinned(const noh_character *ch, const noh_skin *skin, const float middle[3], float out[3])
+{
+    const float *palette = noh_character_pose_palette(ch, ch->time.to_pose);
+    const int multiplied = (int)(ch->multiplied >> ch->time.to_pose & 1u);
+    const uint32_t count = skin->header->joint_count;
+    float sum[3] = { 0.0f, 0.0f, 0.0f };
+    for (size_t k = 0; k < count; k++) {
+        float bound[3], p[3];
+        memcpy(bound, middle, sizeof bound);
+        if (!multiplied) move_point(skin->inverse_bind + 12u * k, middle, bound);
+        move_point(palette + 12u * skin->joints[k], bound, p);
+        for (int i = 0; i < 3; i++) sum[i] += p[i];
+    }
+    for (int i = 0; i < 3; i++) out[i] = sum[i] / (float)count;
+}
+
+/* The square of its distance from the eye. */
+static float distance_of(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    const noh_stage_mesh *m = &d->k->meshes[mesh];
+    const noh_mesh_header *h = m->mesh.header;
+    const float *eye = d->s->views[d->view].eye, *world = shown_at(d, place)->world;
+    float p[3], at[3], square = 0.0f;
+    for (int i = 0; i < 3; i++) p[i] = 0.5f * (h->bounds_min[i] + h->bounds_max[i]);
+    if (m->skinned) {
+        move_skinned(noh_stage_character(d->k, d->k->order[place]), &m->skin, p, at);
+    } else if (m->node_world) {
+        move_point(m->node_world, p, at);
+    } else {
+        memcpy(at, p, sizeof at);
+    }
+    move_point(world, at, p);
+    for (int i = 0; i < 3; i++) square += (p[i] - eye[i]) * (p[i] - eye[i]);
+    return square;
+}
+
+/* One actor's meshes of a priority. Of those that are equally far, the first in the pack is drawn first. */
+static void draw_sorted(const drawing *d, const uint8_t *meshes, uint32_t count, uint32_t place, uint32_t run)
+{
+    float distances[NOH_STAGE_MESHES_MAX];
+    uint8_t sorted[NOH_STAGE_MESHES_MAX];
+    for (uint32_t i = 0; i < count; i++) {
+        const float distance = distance_of(d, meshes[i], place);
+        uint32_t at = i;
+        for (; at && distances[at - 1u] < distance; at--) {
+            distances[at] = distances[at - 1u];
+            sorted[at] = sorted[at - 1u];
+        }
+        distances[at] = distance;
+        sorted[at] = meshes[i];
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (run == NOH_NONE) {
+            draw_fading(d, sorted[i], place);
+        } else {
+            draw_together(d, sorted[i], run, place, 1);
+        }
+    }
+}
+
+static void draw_meshes(const drawing *d, const uint8_t *meshes, uint32_t count)
+{
+    const uint32_t runs = noh_stage_run_count(d->k);
+    for (uint32_t run = 0; run < runs; run++) {
+        if (count == 1u) {
+            draw_run(d, meshes[0], run);
+            continue;
+        }
+        for (uint32_t p = d->k->runs[run]; p < d->k->runs[run + 1u]; p++) {
+            if (is_seen(d, p)) draw_sorted(d, meshes, count, p, run);
+        }
+    }
+    for (uint32_t p = d->k->runs[runs]; p < d->k->runs[runs + 1u]; p++) {
+        if (is_seen(d, p)) draw_sorted(d, meshes, count, p, NOH_NONE);
+    }
+}
+
+/* By priority; within one, of each actor from far to near, where there are several meshes. A mesh alone is drawn for all
+ * actors of a run at once. */
+static void draw_blended(const drawing *d)
+{
+    int priority = INT_MIN;
+    for (;;) {
+        uint8_t meshes[NOH_STAGE_MESHES_MAX];
+        uint32_t count = 0;
+        int next = NOH_PRIORITY_ANY;
+        for (uint32_t m = 0; m < d->k->plan->mesh_count; m++) {
+            const int p = noh_gl_next_priority(&d->on_gl->items[m].model->mesh.mesh, priority);
+            if (p > next || p == NOH_PRIORITY_ANY) continue;
+            if (p < next) count = 0;
+            next = p;
+            meshes[count++] = (uint8_t)m;
+        }
+        if (!count) break;
+        noh_gl_draw_priority(d->renderer, next);
+        draw_meshes(d, meshes, count);
+        priority = next;
+    }
+    noh_gl_draw_priority(d->renderer, NOH_PRIORITY_ANY);
+}
+
 static void draw_kind(const drawing *d)
 {
     const uint32_t runs = noh_stage_run_count(d->k);
@@ -173,7 +288,11 @@ static void draw_pass(drawing *d, int pass)
     for (uint32_t i = 0; i < d->s->desc.kind_count; i++) {
         d->k = &d->s->kinds[i];
         d->on_gl = &d->gl->kinds[i];
-        draw_kind(d);
+        if (pass == NOH_DRAW_BLENDED) {
+            draw_blended(d);
+        } else {
+            draw_kind(d);
+        }
     }
 }
 

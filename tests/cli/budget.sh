@@ -52,6 +52,12 @@ expect 0 'in 2 MiB'
 cp "$work/out" "$work/small"
 check 'the parts add up' adds_up "$work/small"
 check 'it keeps the bound' test $(($(sum_of 2 "$work/small") + $(sum_of 3 "$work/small"))) -le 2097152
+noh budget "$puppet" --actors 20 --nominal --bytes 2097152 --strict
+expect 1 'strictly, that does not fit'
+check 'and the message says so' grep -q 'the stage keeps its bytes by giving up [1-9]' "$work/err"
+noh budget "$puppet" --actors 20 --nominal --strict
+expect 0 'strictly, without a bound'
+noh budget "$puppet" --actors 20 --nominal --bytes 2097152
 check 'and says what that cost' sh -c 'grep -q "^gave up finest level (kind puppet_levels): now [1-7], at most [0-9.]* pixels, for [1-9][0-9]* bytes$" "$1"' - "$work/small"
 noh budget "$puppet" --actors 20 --nominal --cpu-bytes 700000 --gpu-bytes 3000000
 expect 0 'bounds apart'

@@ -209,7 +209,8 @@ static void a_toon_shader_has_its_steps(void **state)
 /* ---- what the game binds ---- */
 
 typedef struct binder {
-    uint32_t calls;
+    uint32_t calls, made;
+    GLuint programs[64]; /* of which `made` were told */
     GLuint texture;
     const noh_material *material;
 } binder;
@@ -222,9 +223,22 @@ static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_ma
     assert_int_equal(current, program);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);
     api->BindTexture(GL_TEXTURE_2D, b->texture);
-    api->Uniform4f(api->GetUniformLocation(program, "u_add"), 0.0f, 0.5f, 0.0f, 0.0f);
     b->material = material;
     b->calls++;
+}
+
+/* Of a program that `bind` has not seen yet. */
+static void made(void *user, const noh_gl_api *api, GLuint program, noh_gl_variant_key key)
+{
+    binder *b = user;
+    GLint current = 0;
+    api->GetIntegerv(GL_CURRENT_PROGRAM, &current);
+    assert_int_equal(current, program);
+    assert_in_range(key.influences, 0, 8);
+    assert_in_range(b->made, 0, 63);
+    for (uint32_t i = 0; i < b->made; i++) assert_int_not_equal(b->programs[i], program);
+    b->programs[b->made++] = program;
+    if (!key.depth) api->Uniform4f(api->GetUniformLocation(program, "u_add"), 0.0f, 0.5f, 0.0f, 0.0f);
 }
 
 static GLuint texel_of(const noh_gl_api *gl, const uint8_t rgba[4])
@@ -249,12 +263,13 @@ static void textures_uniforms_and_defines_arrive(void **state)
     static const uint8_t red[4] = { 255, 0, 0, 255 };
     static const int opaque[] = { NOH_DRAW_OPAQUE };
     const tube_kind k = { 0, 0, 0, NOH_VIEW_LIT };
-    binder b = { 0, 0, NULL };
+    binder b = { 0 };
     const noh_gl_shader_desc own = { .fragment = fragment,
                                      .defines = "#define BLUE 1.0\n",
                                      .samplers = samplers,
                                      .sampler_count = 2,
                                      .bind = bind,
+                                     .made = made,
                                      .user = &b };
     const noh_gl_api *gl = &fixture_gpu()->gl;
     noh_gl_ledger ledger = { 0 };
@@ -268,6 +283,7 @@ static void textures_uniforms_and_defines_arrive(void **state)
     open_tube(&t, &bytes, &pack, &k);
     desc = desc_of(&t, &k, &own);
     r = renderer_of(&desc, &ledger);
+    assert_int_equal(b.made, r.variant_count);
     for (int restored = 0; restored < 2; restored++) {
         uint8_t *rgba;
         uint32_t seen = 0;
@@ -284,7 +300,9 @@ static void textures_uniforms_and_defines_arrive(void **state)
         }
         assert_true(seen > SIDE * SIDE / 50u);
         free(rgba);
+        b.made = 0;
         assert_int_equal(noh_gl_renderer_restore(&r, NULL, 0, NULL), NOH_OK);
+        assert_int_equal(b.made, r.variant_count);
     }
     noh_gl_renderer_delete(&r);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);

@@ -80,7 +80,8 @@ typedef struct wardrobe {
     uint8_t *bytes[2];
     noh_pack packs[2];
     noh_texture_set sets[2];
-    noh_kind_desc kind;
+    noh_kind_desc kind, each[ACTORS];
+    int apart; /* 1: a kind of its own for each actor, which is drawn alone */
     noh_stage_desc desc;
     noh_stage_plan plan;
     noh_stage *stage;
@@ -113,13 +114,19 @@ static void wardrobe_make(wardrobe *w, gpu *g)
     static const float middle[3] = { 2.0f, 0.0f, 0.0f };
     static char log[4096];
     const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, log, sizeof log };
+    for (uint32_t i = 0; i < ACTORS && w->apart; i++) {
+        w->each[i] = w->kind;
+        w->each[i].actor_count = 1;
+        w->desc.kinds = w->each;
+        w->desc.kind_count = ACTORS;
+    }
     if (noh_stage_plan_make(&w->desc, &g->caps, &w->plan, &said) != NOH_OK) fail_msg("plan: %s", said.what);
     w->memory = test_aligned(NULL, (size_t)w->plan.cpu_bytes);
     if (noh_stage_init(w->memory, (size_t)w->plan.cpu_bytes, &device, &w->desc, &w->plan, &w->stage, &said) != NOH_OK)
         fail_msg("stage: %s", said.what);
     for (uint32_t i = 0; i < ACTORS; i++) {
         const noh_place place = { .position = { (float)i, 0.0f, 0.0f } };
-        assert_int_equal(noh_stage_spawn(w->stage, 0, &place, &w->actors[i], NULL), NOH_OK);
+        assert_int_equal(noh_stage_spawn(w->stage, w->apart ? i : 0, &place, &w->actors[i], NULL), NOH_OK);
         assert_int_equal(noh_actor_set_look(w->stage, w->actors[i], &looks[i], NULL), NOH_OK);
     }
     noh_view_orbit(&w->view, middle, 0.0f, 0.0f, 1.45f, WIDTH, HEIGHT);
@@ -280,6 +287,57 @@ static void own_shaders_are_given_the_tint(void **state)
     free(memory);
     canvas_close(&to);
     wardrobe_close(&w);
+    fixture_expect_no_errors();
+}
+
+/* And four floats of each actor, in one draw of a crowd and alone; zeros in a stage that does not ask for them. */
+static void own_shaders_are_given_user_values(void **state)
+{
+    static const char vertex[] = "flat out vec4 v_user;\n"
+                                 "void main() {\n"
+                                 "    noh_vertex v = noh_fetch();\n"
+                                 "    v_user = noh_user();\n"
+                                 "    gl_Position = noh_view_projection * vec4(v.position, 1.0);\n"
+                                 "}\n";
+    static const char fragment[] =
+        "flat in vec4 v_user; out vec4 color;\n"
+        "void main() { noh_fade(); color = vec4(v_user.w > 6.5 ? v_user.rgb : vec3(0.0), 1.0); }\n";
+    const noh_gl_shader_desc desc = { .name = "user", .vertex = vertex, .fragment = fragment };
+    static uint32_t rgba[PIXELS];
+    gpu *g = fixture_gpu();
+    (void)state;
+    for (uint32_t way = 0; way < 3; way++) {
+        noh_stage_shader *shader;
+        void *memory;
+        canvas to;
+        wardrobe w;
+        wardrobe_open(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_ON);
+        w.apart = way == 1;
+        w.desc.user_values = way < 2;
+        wardrobe_make(&w, g);
+        for (uint32_t a = 0; a < ACTORS; a++) {
+            noh_look look = looks[a];
+            for (uint32_t i = 0; i < 3; i++) look.user[i] = (float)((a + 1u) >> i & 1u);
+            look.user[3] = 7.0f;
+            assert_int_equal(noh_actor_set_look(w.stage, w.actors[a], &look, NULL), NOH_OK);
+        }
+        assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+        memory = test_aligned(NULL, noh_stage_shader_size(w.stage));
+        assert_int_equal(
+            noh_stage_shader_create(w.stage, memory, noh_stage_shader_size(w.stage), &desc, NULL, 0, &shader, NULL),
+            NOH_OK);
+        draw(&w, &to, shader, rgba);
+        for (uint32_t a = 0; a < ACTORS; a++) {
+            for (uint32_t i = 0; i < 3; i++) {
+                const uint32_t want = way < 2 ? 255u * ((a + 1u) >> i & 1u) : 0;
+                assert_int_equal(middle_of(&w, rgba, a)[i], want);
+            }
+        }
+        noh_stage_shader_delete(shader);
+        free(memory);
+        canvas_close(&to);
+        wardrobe_close(&w);
+    }
     fixture_expect_no_errors();
 }
 
@@ -511,6 +569,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(actors_look_as_their_parts_drawn_by_hand),
         cmocka_unit_test(own_shaders_are_given_the_tint),
+        cmocka_unit_test(own_shaders_are_given_user_values),
         cmocka_unit_test(every_way_of_drawing_has_the_tint),
         cmocka_unit_test(sets_take_what_is_planned),
         cmocka_unit_test(textures_are_shared_between_kinds),

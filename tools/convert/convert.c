@@ -11,6 +11,7 @@
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
 #include "convert/model/texture_cut.h"
+#include "convert/model/priority.h"
 #include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
 #include "convert/pack/size_warn.h"
@@ -594,6 +595,9 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     }
     for (uint32_t i = 0; i < options->tint_count; i++) {
         if (tint_assign(s->m, options->tints[i], error)) return 1;
+    }
+    for (uint32_t i = 0; i < options->priority_count; i++) {
+        if (priority_assign(s->m, options->priorities[i], error)) return 1;
     }
     return options->only != CONVERT_CLIPS && surface_shapes_find(s->m, options->report, error);
 }

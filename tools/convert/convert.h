@@ -32,6 +32,8 @@ typedef struct convert_options {
     uint32_t surface_count;
     const char *const *tints; /* [tint_count] "MATERIAL=on|off", see tint.h */
     uint32_t tint_count;
+    const char *const *priorities; /* [priority_count] "MATERIAL=N", see priority.h */
+    uint32_t priority_count;
     const char *identity;        /* a model of the same vertices whose targets make people; NULL: none */
     const char *targets;         /* a folder of .obj files: the targets of the first .obj model; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first's */

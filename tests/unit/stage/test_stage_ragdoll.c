@@ -190,11 +190,8 @@ static void a_world_is_shifted(void **state)
         assert_int_equal(noh_actor_fall(c.stage, actors[0], NULL), NOH_OK);
         run(&c, 10);
         if (shifts) {
-            noh_stage_shift_ragdolls(&c.stage->kinds[0], way);
-            for (uint32_t i = 0; i < 2; i++) {
-                noh_place *place = &c.stage->kinds[0].actors[i].place;
-                for (int k = 0; k < 3; k++) place->position[k] += way[k];
-            }
+            const float back[3] = { -way[0], -way[1], -way[2] };
+            assert_int_equal(noh_stage_shift_origin(c.stage, back, NULL), NOH_OK);
         }
         assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK); /* at the speed of before */
         run(&c, 20);

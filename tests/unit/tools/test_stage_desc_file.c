@@ -150,7 +150,8 @@ static noh_stage_plan plan_of_text(uint64_t bytes_max, const noh_stage_gpu *draw
 
 static void plans_by_text_and_in_c_are_equal_byte_by_byte(void **state)
 {
-    const noh_gl_caps caps = gpu_nominal_caps();
+    noh_gl_caps caps;
+    noh_gl_caps_nominal(&caps);
     const noh_stage_plan whole = plan_in_c(0, &noh_stage_on_gl, &caps);
     const uint64_t all = whole.cpu_bytes + whole.gpu_bytes, bounds[] = { 0, all - 1u, all / 2u };
     (void)state;

@@ -573,6 +573,20 @@ static void read_specular_maps(file &f, const tinygltf::Material &m, int occlusi
     out.surface_texture = surface_texture(f, occlusion, roughness, is_alone ? weight : -1, where);
 }
 
+/* By "extras": {"priority": 1}, or VRM's order of what blends, -9..9. */
+static void read_priority(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+{
+    const double queue = number_in(extension_of(m, "VRMC_materials_mtoon"), "renderQueueOffsetNumber", 0.0);
+    if (queue >= -128.0 && queue <= 127.0) out.priority = static_cast<int8_t>(queue);
+    if (!m.extras.IsObject() || !m.extras.Has("priority")) return;
+    const tinygltf::Value &value = m.extras.Get("priority");
+    const double number = value.IsNumber() ? value.GetNumberAsDouble() : 1000.0;
+    if (number >= -128.0 && number <= 127.0 && number == static_cast<double>(static_cast<int>(number)))
+        out.priority = static_cast<int8_t>(number);
+    else
+        leave_out(f, where, ": the extra 'priority' is no whole number from -128 to 127 and was ignored");
+}
+
 static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
@@ -613,6 +627,7 @@ static void read_material(file &f, size_t index, model_material &out)
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
     read_surface(f, index, out, where);
     read_tint(f, m, out, where);
+    read_priority(f, m, out, where);
     read_maps(f, m, out, where);
 }
 

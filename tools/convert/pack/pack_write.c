@@ -101,7 +101,7 @@ static void write_maps(const model_material *from, noh_material *to)
     to->wrinkle_texture = from->wrinkle_texture;
     to->specular_texture = from->specular_texture == MODEL_NONE ? 0u : from->specular_texture;
     to->f90_loss = from->f90_loss;
-    to->wrinkle_models = from->wrinkle_models;
+    to->wrinkle_models = (uint16_t)from->wrinkle_models;
     memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
     to->surface = from->surface;
     memcpy(to->surface_values, from->surface_values, sizeof to->surface_values);
@@ -122,6 +122,7 @@ static void write_materials(writer *w)
         to.metallic = from->metallic;
         to.roughness = from->roughness;
         to.alpha_cutoff = from->alpha_cutoff;
+        to.priority = from->priority;
         write_maps(from, &to);
         buffer_append(&w->out, &to, sizeof to);
     }

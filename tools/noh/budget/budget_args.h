@@ -11,7 +11,7 @@ enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, 
 typedef struct budget_args {
     const char *pack, *anim, *path, *accumulate, *driver;
     double instances, lod;
-    int as_json, nominal, why;
+    int as_json, nominal, why, strict;
     figure_desc figure;
     /* of a stage */
     const char *desc, *place, *ground;

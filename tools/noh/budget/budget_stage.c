@@ -117,6 +117,11 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     if (!status && file && desc->gpu) status = add_hair(&b, file, &desc->kinds[0]);
     if (!status && a->as_json) status = stage_budget_json(&b);
     if (!status && !a->as_json) stage_budget_print(&b);
+    if (!status && a->strict && b.plan.concession_count) {
+        status = tool_fail(subject,
+                           "the stage keeps its bytes by giving up %u thing%s; allow more bytes, or ask for less",
+                           b.plan.concession_count, b.plan.concession_count == 1u ? "" : "s");
+    }
     stage_budget_free(&b);
     return status;
 }

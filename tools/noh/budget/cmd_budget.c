@@ -127,7 +127,7 @@ int budget_caps(const budget_args *a, int draws, noh_gl_caps *caps)
     gpu g;
     int status;
     if (a->nominal || !draws) {
-        *caps = gpu_nominal_caps();
+        noh_gl_caps_nominal(caps);
         return 0;
     }
     status = gpu_open(&g, a->driver);
@@ -299,6 +299,11 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, without_gpu),
       .what = "a stage that steps and poses, and draws nothing",
+      .needs = OF_STAGE },
+    { .name = "--strict",
+      .kind = OPTION_FLAG,
+      .at = offsetof(budget_args, strict),
+      .what = "exit 1 where the stage keeps its bytes by giving something up",
       .needs = OF_STAGE },
     OPTION_JSON(budget_args, as_json),
 };

@@ -25,8 +25,8 @@ typedef struct build_args {
     int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
     double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
         lod_own, wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
-    option_list dual_quaternion, two_streams, surfaces, tints, clip_errors, joint_errors, lod_from, spring_lines,
-        attached;
+    option_list dual_quaternion, two_streams, surfaces, tints, priorities, clip_errors, joint_errors, lod_from,
+        spring_lines, attached;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -118,6 +118,8 @@ static int set_skin(const build_args *a, convert_options *o)
     o->surface_count = (uint32_t)a->surfaces.count;
     o->tints = a->tints.items;
     o->tint_count = (uint32_t)a->tints.count;
+    o->priorities = a->priorities.items;
+    o->priority_count = (uint32_t)a->priorities.count;
     o->skin.dual_quaternion = a->dual_quaternion.items;
     o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
     return 0;
@@ -565,6 +567,14 @@ static const option options[] = {
       .what =
           "let a material take the tint of an instance, or not; may repeat; default: what its extras say (\"tint\"), else off for skin, eyes and teeth, by surface or name",
       .example = "hair=off",
+      .excludes = "--only=anim" },
+    { .name = "--priority",
+      .kind = OPTION_LIST,
+      .at = offsetof(build_args, priorities),
+      .value = "MATERIAL=N",
+      .what =
+          "where it blends, draw a material after those of the same figure that are lower, -128 to 127; within one priority the farther mesh comes first; may repeat; default: what its extras say (\"priority\") or VRM's MToon (renderQueueOffsetNumber), else 0",
+      .example = "lashes=1",
       .excludes = "--only=anim" },
     { .name = "--identity",
       .kind = OPTION_INPUT,

@@ -78,24 +78,6 @@ void gpu_close(gpu *g)
     memset(g, 0, sizeof *g);
 }
 
-noh_gl_caps gpu_nominal_caps(void)
-{
-    noh_gl_caps caps;
-    memset(&caps, 0, sizeof caps);
-    caps.version = 320;
-    caps.is_es = 1;
-    snprintf(caps.renderer, sizeof caps.renderer, "a nominal GLES 3.2 device");
-    caps.texture_size_max = 2048;
-    caps.array_layers_max = 256;
-    caps.draw_buffers_max = caps.color_attachments_max = 4;
-    caps.uniform_block_bytes_max = 16384;
-    caps.vertex_textures_max = 16;
-    caps.vertex_attributes_max = 16;
-    caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
-    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = 1;
-    return caps;
-}
-
 int gpu_morph_open(gpu_morph *m, gpu *g, const noh_gl_morph_desc *desc, const char *subject)
 {
     noh_gl_morph_plan plan;

@@ -21,9 +21,6 @@ int gpu_open_drawing(gpu *g, const char *driver);
 /* 1 where the driver gives vertices back, by transform feedback. */
 int gpu_gives_vertices(const noh_gl_api *gl);
 void gpu_close(gpu *g);
-/* Capabilities to assume without a driver: a GLES 3.2 device with every feature, and textures as large as ES 3.0
- * demands. */
-noh_gl_caps gpu_nominal_caps(void);
 
 /* One noh_gl_morph with its memory. */
 typedef struct gpu_morph {

@@ -52,6 +52,7 @@ void info_print_materials(const noh_pack *pack)
                m->flags & NOH_MATERIAL_DOUBLE_SIDED ? ", two-sided" : "",
                m->flags & NOH_MATERIAL_UNLIT ? ", unlit" : "");
         if (m->flags & NOH_MATERIAL_UNTINTED) printf(", without tint");
+        if (m->priority) printf(", priority %d", (int)m->priority);
         for (uint32_t k = 0; k < MAPS; k++) {
             if (maps[k].texture != NOH_NONE)
                 printf(", %s '%s'", maps[k].name, noh_pack_chunk_name(pack, pack->first_texture + maps[k].texture));
@@ -144,6 +145,7 @@ static void json_material(json *j, const noh_pack *pack, const noh_material *m)
     json_text(j, "alpha", alpha_of(m));
     json_bool(j, "double_sided", (m->flags & NOH_MATERIAL_DOUBLE_SIDED) != 0);
     json_bool(j, "tint", !(m->flags & NOH_MATERIAL_UNTINTED));
+    json_number(j, "priority", (double)m->priority);
     json_open(j, "maps", '{');
     for (uint32_t k = 0; k < MAPS; k++) {
         if (maps[k].texture != NOH_NONE) json_integer(j, maps[k].key, maps[k].texture);
