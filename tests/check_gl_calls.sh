@@ -12,14 +12,14 @@ find runtime -name "*.c" -exec cat {} + >"$work/sources"
 # The fields of a list in the header.
 fields() {
     awk -v list="#define $1(X)" 'index($0, list) == 1 { on = 1; next } on { print } on && !/\\$/ { exit }' $header |
-        sed -n 's/.*X(\([A-Za-z0-9]*\),.*/\1/p' | sort -u
+        sed -n 's/.*X(\([A-Za-z0-9_]*\),.*/\1/p' | sort -u
 }
 fields NOH_GL_REQUIRED >"$work/required"
 fields NOH_GL_EXTRA >"$work/extra"
 fields NOH_GL_OPTIONAL >"$work/optional"
 
 # gl->DrawArrays(, api->..., m->gl->..., p->api->...
-cat "$work/sources" | grep -oE '(gl|api)->[A-Z][A-Za-z0-9]*\(' | sed 's/.*->//; s/(//' | sort -u >"$work/called"
+cat "$work/sources" | grep -oE '(gl|api)->[A-Z][A-Za-z0-9_]*\(' | sed 's/.*->//; s/(//' | sort -u >"$work/called"
 comm -23 "$work/called" "$work/optional" >"$work/core"
 
 check 'the lists were read' test "$(wc -l <"$work/required")" -gt 50 -a "$(wc -l <"$work/called")" -gt 50
@@ -36,7 +36,7 @@ done >"$work/unasked"
 check 'optional functions are compared with NULL before they are called' sh -c '! grep . "$1"' - "$work/unasked"
 
 awk '/^<!-- required -->/ { on = 1; next } /^<!-- end -->/ { on = 0 } on' platform/README.md |
-    grep -oE 'gl[A-Z][A-Za-z0-9]*' | sed 's/^gl//' | sort -u >"$work/documented"
+    grep -oE 'gl[A-Z][A-Za-z0-9_]*' | sed 's/^gl//' | sort -u >"$work/documented"
 check 'platform/README.md lists them' cmp "$work/required" "$work/documented"
 # Gen and Delete of whole lists are made by name there: `glGen${what}`. Strings are C's.
 grep -v '^ *//' platform/web/package/gl.js | cat - platform/web/context.c >"$work/page"
