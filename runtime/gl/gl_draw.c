@@ -8,7 +8,6 @@
  * around it, thin and mostly of one colour, is blended in stored order. */
 #include "gl/gl_draw.h"
 
-#include <limits.h>
 #include <string.h>
 
 #include "gl/gl_debug.h"
@@ -450,7 +449,8 @@ static void draw_blended(const draw_job *j)
         draw_part_of(j, PART_BLENDED, j->r->priority);
         return;
     }
-    for (int p = noh_gl_next_priority(mesh, INT_MIN); p != NOH_PRIORITY_ANY; p = noh_gl_next_priority(mesh, p)) {
+    for (int p = noh_gl_next_priority(mesh, -NOH_PRIORITY_ANY); p != NOH_PRIORITY_ANY;
+         p = noh_gl_next_priority(mesh, p)) {
         draw_part_of(j, PART_BLENDED, p);
     }
 }

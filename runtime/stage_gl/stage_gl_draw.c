@@ -1,5 +1,4 @@
 /* stage_gl_draw.c: one pass of a view. */
-#include <limits.h>
 #include <string.h>
 
 #include "character/character_internal.h"
@@ -251,7 +250,7 @@ static void draw_meshes(const drawing *d, const uint8_t *meshes, uint32_t count)
  * actors of a run at once. */
 static void draw_blended(const drawing *d)
 {
-    int priority = INT_MIN;
+    int priority = -NOH_PRIORITY_ANY;
     for (;;) {
         uint8_t meshes[NOH_STAGE_MESHES_MAX];
         uint32_t count = 0;
