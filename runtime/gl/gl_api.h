@@ -9,8 +9,8 @@
  * struct in the caller's memory and belongs to that context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
  *
  * No header of noh includes one of GL's, defines a GL_ name or declares a GL type, so noh goes with every GL header and
- * loader, in any order. Include the one that you use for names such as GL_TRIANGLES. Here GLenum and GLuint are unsigned,
- * GLint and GLsizei int, GLsizeiptr ptrdiff_t, as they are in all of them.
+ * loader, in any order. Include the one that you use for names such as GL_TRIANGLES. Here GLenum and GLuint are
+ * unsigned, GLint and GLsizei int, GLsizeiptr ptrdiff_t, as they are in all of them.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H

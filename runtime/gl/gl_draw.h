@@ -11,7 +11,8 @@
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *   noh_gl_draw_tint         the tint of what noh_gl_draw_mesh draws next; noh_gl_draw_wrinkles, its wrinkles;
- *                            noh_gl_draw_user, values for shaders of your own; noh_gl_draw_triangles, which triangles of it
+ *                            noh_gl_draw_user, values for shaders of your own; noh_gl_draw_triangles, which
+ *                            triangles of it; noh_gl_draw_priority, which of what blends; noh_gl_next_priority
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the
  * textures of glTF's materials.
@@ -251,8 +252,8 @@ void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
 void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
 
 /* Which blended submeshes noh_gl_draw_mesh and noh_gl_draw_crowd draw next: those of materials of this priority. A
- * renderer of your own that sorts the meshes of a figure draws them once for each priority, from low to high, and within
- * one from far to near. NOH_PRIORITY_ANY, as after noh_gl_draw_begin: all, from low to high, and in the order of the
+ * renderer of your own that sorts the meshes of a figure draws them once for each priority, from low to high, and
+ * within one from far to near. NOH_PRIORITY_ANY, as after noh_gl_draw_begin: all, from low to high, and in the order of the
  * pack where they are alike. Opaque ones are drawn in any case */
 #define NOH_PRIORITY_ANY 1000
 void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
@@ -281,8 +282,8 @@ void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const
                        const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
                        const noh_gl_texture *pictures, int pass);
 
-/* End what noh_gl_draw_begin began: unbind program, vertex array, textures and uniform buffer, and put render state back
- * (gl_state.h). */
+/* End what noh_gl_draw_begin began: unbind program, vertex array, textures and uniform buffer, and put render state
+ * back (gl_state.h). */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
 
 #ifdef __cplusplus
