@@ -253,8 +253,8 @@ void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
 
 /* Which blended submeshes noh_gl_draw_mesh and noh_gl_draw_crowd draw next: those of materials of this priority. A
  * renderer of your own that sorts the meshes of a figure draws them once for each priority, from low to high, and
- * within one from far to near. NOH_PRIORITY_ANY, as after noh_gl_draw_begin: all, from low to high, and in the order of the
- * pack where they are alike. Opaque ones are drawn in any case */
+ * within one from far to near. NOH_PRIORITY_ANY, as after noh_gl_draw_begin: all, from low to high, and in the order of
+ * the pack where they are alike. Opaque ones are drawn in any case */
 #define NOH_PRIORITY_ANY 1000
 void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
 

@@ -246,8 +246,8 @@ static void draw_meshes(const drawing *d, const uint8_t *meshes, uint32_t count)
     }
 }
 
-/* By priority; within one, of each actor from far to near, where there are several meshes. A mesh alone is drawn for all
- * actors of a run at once. */
+/* By priority; within one, of each actor from far to near, where there are several meshes. A mesh alone is drawn for
+ * all actors of a run at once. */
 static void draw_blended(const drawing *d)
 {
     int priority = -NOH_PRIORITY_ANY;
