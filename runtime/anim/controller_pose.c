@@ -1,8 +1,9 @@
 /* controller_pose.c: the pose and the root motion of a controller.
  *
  * A pose is made in four steps: the low group's tracks are blended, and laid over the bind pose as far as they hide it
- * (noh_track_cover); the high group's result is laid over them; additive tracks are added in the order of their indices; what is left of an inertial transition is added last, since it is the
- * difference between two such results. A single track with its full weight skips the blend, which would return it. */
+ * (noh_track_cover); the high group's result is laid over them; additive tracks are added in the order of their
+ * indices; what is left of an inertial transition is added last, since it is the difference between two such results.
+ * A single track with its full weight skips the blend, which would return it. */
 #include "anim/controller_pose.h"
 
 #include <string.h>
@@ -161,8 +162,8 @@ static void find_covers(const view *v, float *joints, float *floats)
     }
 }
 
-/* Let the bind pose and the floats' defaults shine through the low group's result. Floats whose weights sum to less than
- * `full` of the blend show their defaults in part already. */
+/* Let the bind pose and the floats' defaults shine through the low group's result. Floats whose weights sum to less
+ * than `full` of the blend show their defaults in part already. */
 static void lay_over_bind(const view *v, noh_transform *pose, float *floats)
 {
     const noh_blend *b = &v->scratch->blend;
@@ -372,8 +373,8 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 /* ---- root motion ---- */
 
 /* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the
- * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. `cover` is how far
- * they hide the bind pose, which does not move; `bare` what rising tracks leave of the rest. */
+ * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. `cover` is how
+ * far they hide the bind pose, which does not move; `bare` what rising tracks leave of the rest. */
 typedef struct root_sum {
     double translation[3], turn, weight, total, cover, bare;
 } root_sum;

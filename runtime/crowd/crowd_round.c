@@ -31,7 +31,7 @@ static vec2 turned(vec2 v, float cosine, float sine)
     return v2(v.x * cosine - v.z * sine, v.x * sine + v.z * cosine);
 }
 
-/* A goal that an agent is too wide to stand on is the place beside it, on the agent's side where it is within a wall. */
+/* A goal that an agent is too wide to stand on is the place beside it; of one within a wall, on the agent's side. */
 static vec2 place_for(const noh_crowd *c, vec2 goal, float radius, vec2 to)
 {
     goal = v2_madd(goal, -1e-3f, to);
@@ -87,8 +87,8 @@ static void begin(const noh_crowd *c, const crowd_body *b, crowd_round *m, vec2 
     m->heading = v2(0.0f, 0.0f);
 }
 
-/* Past ends that are seen, as long as that gets it nearer: once it has walked round something, each step has to. returns
- * 0 where it does not */
+/* Past ends that are seen, as long as that gets it nearer: once it has walked round something, each step has to.
+ * returns 0 where it does not */
 static int past_ends(const noh_crowd *c, const crowd_body *b, crowd_round *m, vec2 to, float distance, float speed,
                      vec2 *direction)
 {

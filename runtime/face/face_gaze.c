@@ -30,8 +30,8 @@ void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float m
     noh_quat_rotate(rotation, middle, middle);
 }
 
-/* A yaw to what is behind counts on over the shoulder to which the head has turned: it would else swing from one side to
- * the other with every small motion there. */
+/* A yaw to what is behind counts on over the shoulder to which the head has turned: it would else swing from one side
+ * to the other with every small motion there. */
 static float over_shoulder(float yaw, float head)
 {
     if (yaw < -BEHIND && head > 0.0f) return yaw + TURN;

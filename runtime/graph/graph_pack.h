@@ -87,9 +87,9 @@ noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pac
  * set must outlive it.
  * errors  ARG a field of desc, named, a set over the limits, or memory NULL or misaligned; MEMORY need: the bytes;
  *         those of noh_pack_graph_at; NOT_FOUND the set has no clip of a name (where: its index in source.clips, see
- *         noh_graph_pack_clip_name), or none that a node adds relative to (where: the node); the skeleton has no joint of a name (where: its index in source.names);
- *         DATA a node that these clips do not suit (where: its index), such as a one-shot whose clip is a loop;
- *         LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
+ *         noh_graph_pack_clip_name), or none that a node adds relative to (where: the node); the skeleton has no joint
+ *         of a name (where: its index in source.names); DATA a node that these clips do not suit (where: its index),
+ *         such as a one-shot whose clip is a loop; LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
 noh_result noh_graph_pack_init(void *memory, size_t bytes, const noh_graph_pack_desc *desc, noh_graph_pack **made,
                                noh_error *error);
 

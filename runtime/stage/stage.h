@@ -408,17 +408,17 @@ typedef struct noh_play {
     noh_loop loop;       /* default NOH_LOOP_OF_CLIP: the clip's own */
     uint32_t sync_group; /* default (0) none; 1..NOH_SYNC_GROUPS_MAX */
     uint32_t flags;      /* NOH_PLAY_* */
-    /* On a layer that adds: the clip from whose first frame the difference is taken. Default (NULL) this clip itself, so
-     * that a clip of one pose adds nothing: give it a reference, or NOH_PLAY_FROM_BIND */
+    /* On a layer that adds: the clip from whose first frame the difference is taken. Default (NULL) this clip itself,
+     * so that a clip of one pose adds nothing: give it a reference, or NOH_PLAY_FROM_BIND */
     const char *reference;
 } noh_play;
 
 /* Play a clip on a layer; what played there fades out. Where all tracks of the layer are in use, the lightest ends. A
  * base layer that moves joints and on which nothing plays is not faded in: there is nothing to fade from.
  * play    NULL: zeros
- * errors  NOT_FOUND the actor is gone, or the kind has no such clip or reference; ARG layer, a field of play, or NOH_PLAY_INERTIA
- *         without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so many are wanted), or
- *         NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks) */
+ * errors  NOT_FOUND the actor is gone, or the kind has no such clip or reference; ARG layer, a field of play, or
+ *         NOH_PLAY_INERTIA without noh_kind_desc.inertia; LIMIT too many changes over time are under way (need: so
+ *         many are wanted), or NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks) */
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error);
 
