@@ -226,7 +226,7 @@ static void world_open(world *w)
     assert_int_equal(noh_pack_skeleton_at(k->mesh, 0, &source.joints, NULL, NULL), NOH_OK);
     source.metres = 1.0f;
     assert_int_equal(noh_feet_rig_make(&source, &w->feet.rig, NULL), NOH_OK);
-    assert_int_equal(noh_gaze_rig_make(&source, &w->gaze.rig, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(k->mesh, 0, &w->gaze.rig, NULL), NOH_OK);
     w->feet.ground.below = ground_below;
     w->feet.ground.user = w->moved;
     w->parts[0] = noh_stage_gaze_part(&w->gaze);

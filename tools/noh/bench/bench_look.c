@@ -94,9 +94,9 @@ static void strip_material(noh_material *m, unsigned keeps)
     if (!(keeps & KEEP_NORMAL)) m->normal_texture = NOH_NONE;
     if (!(keeps & KEEP_SURFACE)) m->surface_texture = NOH_NONE;
     if (!(keeps & KEEP_HAIR)) m->flags &= ~(NOH_MATERIAL_BLEND | NOH_MATERIAL_MASK);
-    if (!(keeps & KEEP_AREA)) m->wrinkle_models &= ~NOH_WRINKLE_BY_AREA;
-    if (!(keeps & KEEP_REGION)) m->wrinkle_models &= ~NOH_WRINKLE_BY_REGION;
-    if (!(keeps & KEEP_CHANNEL)) m->wrinkle_models &= ~NOH_WRINKLE_BY_CHANNEL;
+    if (!(keeps & KEEP_AREA)) m->wrinkle_models &= (uint16_t)~NOH_WRINKLE_BY_AREA;
+    if (!(keeps & KEEP_REGION)) m->wrinkle_models &= (uint16_t)~NOH_WRINKLE_BY_REGION;
+    if (!(keeps & KEEP_CHANNEL)) m->wrinkle_models &= (uint16_t)~NOH_WRINKLE_BY_CHANNEL;
     if (!m->wrinkle_models) m->wrinkle_texture = NOH_NONE;
     if (!(keeps & keep_of_surface(m->surface))) m->surface = NOH_SURFACE_PLAIN;
     if (!(keeps & KEEP_EMISSIVE)) {
