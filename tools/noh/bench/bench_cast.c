@@ -119,7 +119,7 @@ typedef struct by_hand {
     cast *of; /* whose parts these are */
     const noh_stage_kind *kind;
     noh_character_scratch scratch;
-    float *floats, *weights; /* of one actor */
+    float *weights; /* of one actor */
 } by_hand;
 
 static int open_hand(by_hand *h, cast *of)
@@ -129,51 +129,50 @@ static int open_hand(by_hand *h, cast *of)
     memset(h, 0, sizeof *h);
     h->of = of;
     h->kind = k;
-    h->floats = malloc((k->float_count + 1u) * sizeof *h->floats);
     h->weights = malloc((k->weight_count + 1u) * sizeof *h->weights);
-    return !h->floats || !h->weights ||
-                   noh_character_scratch_init(of->stage->jobs[0].scratch, of->stage->scratch_bytes, &desc, &h->scratch,
-                                              NULL)
+    return !h->weights || noh_character_scratch_init(of->stage->jobs[0].scratch, of->stage->scratch_bytes, &desc,
+                                                     &h->scratch, NULL)
                ? tool_fail("bench", "out of memory")
                : 0;
 }
 
 static void close_hand(by_hand *h)
 {
-    free(h->floats);
     free(h->weights);
     memset(h, 0, sizeof *h);
 }
 
-/* Pixels per unit at the nearest point of the kind's sphere; 0: outside of the view. */
-static float scale_of(const by_hand *h, const float world[12], float scale)
+/* Pixels per unit at the nearest point of what an actor shows; 0: outside of the view. */
+static float scale_of(by_hand *h, uint32_t index)
 {
-    const noh_view_planes *v = &h->of->stage->planes[0];
-    const float *r = h->kind->reach, radius = r[3] * scale;
-    float at[3], nearest;
-    for (int i = 0; i < 3; i++) {
-        at[i] = world[4 * i] * r[0] + world[4 * i + 1] * r[1] + world[4 * i + 2] * r[2] + world[4 * i + 3];
-    }
+    noh_stage *s = h->of->stage;
+    const noh_stage_kind *k = h->kind;
+    noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    float own[4], reach[4];
+    if (k->weight_count) noh_stage_take_floats(k, index);
+    noh_stage_sphere(k, index, own);
+    noh_place_matrix(&k->actors[index].place, shown->world);
+    noh_stage_reach(k, own, reach);
+    noh_stage_sphere_in_world(shown->world, reach, reach);
     for (int p = 0; p < 4; p++) {
-        const float *plane = v->planes[p];
-        if (plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2] + plane[3] < -radius) return 0.0f;
+        const float *plane = s->planes[0].planes[p];
+        if (plane[0] * reach[0] + plane[1] * reach[1] + plane[2] * reach[2] + plane[3] < -reach[3]) return 0.0f;
     }
-    nearest = v->eye_plane[0] * at[0] + v->eye_plane[1] * at[1] + v->eye_plane[2] * at[2] + v->eye_plane[3] -
-              radius * v->w_slope;
-    return v->scale / (nearest > 1e-3f ? nearest : 1e-3f);
+    shown->views = 1;
+    noh_stage_measure(s, k, index, own, s->jobs[0].matrices);
+    return shown->scale;
 }
 
 /* The weights of both sources of floats: clips, and defaults where no clip moves a target. */
-static void take_weights(by_hand *h, noh_character *ch)
+static void take_weights(by_hand *h, noh_character *ch, uint32_t index)
 {
     const noh_stage_kind *k = h->kind;
-    const float *shown = noh_character_floats(ch, h->floats);
+    const float *floats = k->floats + (size_t)index * k->float_count;
+    noh_stage_take_floats(k, index);
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-            const uint32_t f = k->sources[mesh->first_float + t];
-            h->weights[mesh->first_weight + t] = f < k->set.float_count ? shown[f] : k->defaults[f];
-        }
+        memcpy(h->weights + mesh->first_weight, floats + mesh->first_float,
+               mesh->mesh.header->target_count * sizeof *h->weights);
     }
     if (k->weight_count) {
         (void)noh_lod_targets(&ch->lod, &h->of->stage->desc.lod, h->weights, k->target_radii, k->weight_count,
@@ -237,18 +236,18 @@ static void run_by_hand(void *self, uint32_t frame)
     noh_clip_cache_begin_frame(k->bank->cache);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_character *ch = noh_stage_character(k, i);
-        const noh_place *place = &k->actors[i].place;
-        float world[12], scale;
+        noh_stage *stage = h->of->stage;
+        float scale;
         (void)noh_character_step(ch, &k->set, FRAME_TICKS, NULL, NULL);
-        noh_place_matrix(place, world);
-        scale = scale_of(h, world, place->scale);
+        scale = scale_of(h, i);
         if (scale <= 0.0f) continue;
-        if (noh_character_look(ch, &k->table, &h->of->stage->desc.lod, scale * place->scale) != NOH_DUE_NOT) {
+        if (noh_character_look(ch, &k->table, &stage->desc.lod, scale * k->actors[i].place.scale) != NOH_DUE_NOT) {
             noh_character_update(ch, &k->set, &k->skeleton, k->joint_radii, &h->scratch);
+            noh_stage_measure_shown(stage, k, i, stage->jobs[0].matrices);
         }
-        take_weights(h, ch);
+        take_weights(h, ch, i);
         memcpy(k->weights + (size_t)i * k->weight_count, h->weights, k->weight_count * sizeof *h->weights);
-        hand_over(h, ch, &h->of->stage->shown[i], world);
+        hand_over(h, ch, &stage->shown[i], stage->shown[i].world);
     }
     send(h);
 }
