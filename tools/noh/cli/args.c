@@ -11,7 +11,7 @@
 #include "message.h"
 #include "convert/base/nearest.h"
 
-#define OPTIONS_MAX 64
+#define OPTIONS_MAX 128
 
 int parse_level(double value, uint32_t *level)
 {
@@ -270,6 +270,7 @@ int args_read(const verb *v, int argc, char **argv)
 {
     given g;
     int only_files = 0, status = set_defaults(v);
+    if (v->option_count > OPTIONS_MAX) return tool_usage("noh %s has more options than OPTIONS_MAX in args.c", v->name);
     memset(&g, 0, sizeof g);
     g.files = (const char **)(void *)((char *)v->args + v->files_at);
     for (int i = 0; i < argc && !status; i++) {
