@@ -103,6 +103,46 @@ check 'both gaps are filled' grep -q "^clean 'swing': 2 gaps in 1 tracks filled,
 check 'its foot, which never moves, makes it go nowhere' grep -q "^clean 'swing': the root goes 0.0 cm" "$work/out"
 noh build "$work/swing.bvh" -o "$work/x.noh" --clean gaps
 check 'gaps alone give the same pack' cmp -s "$work/x.noh" "$work/clean.noh"
+# ---- footsteps ----
+
+awk 'BEGIN { # two legs that are lifted in turn
+    print "HIERARCHY\nROOT hips\n{\nOFFSET 0 90 0\nCHANNELS 3 Xposition Yposition Zposition"
+    print "JOINT head\n{\nOFFSET 0 80 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}"
+    for (side = 1; side >= -1; side -= 2) {
+        print "JOINT " (side > 0 ? "Left" : "Right") "Foot\n{\nOFFSET", 10 * side, "-85 0"
+        print "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 -5 12\n}\n}"
+    }
+    print "}\nMOTION\nFrames: 121\nFrame Time: 0.0166667"
+    for (i = 0; i <= 120; i++) {
+        up = 15 * sin(3.14159265 * (i % 30) / 30)
+        is_left = i % 60 < 30
+        print 0, 90, 0, 0, 0, 0, 10, -85 + (is_left ? up : 0), 0, -10, -85 + (is_left ? 0 : up), 0
+    }
+}' >"$work/march.bvh"
+printf 'march 0.25 shout\n' >"$work/march.txt"
+noh build "$work/march.bvh" -o "$work/march.noh" --clean contact-keys --events "$work/march.txt"
+expect 0 'callback keys of footsteps'
+check 'two steps a foot' grep -q "^clean 'march': 4 callback keys where 2 feet come down" "$work/out"
+noh info "$work/march.noh" --json
+check 'in ticks where each comes down, with those of a file' python3 -c "
+import json, sys
+keys = json.load(open(sys.argv[1]))['clips'][0]['event_list']
+times = {n: [e['seconds'] for e in keys if e['name'] == n] for n in ('left_foot', 'right_foot', 'shout')}
+want = {'left_foot': [0.5, 1.5], 'right_foot': [0.0, 1.0], 'shout': [0.25]}
+for name, at in want.items():
+    assert len(times[name]) == len(at), times
+    for a, b in zip(sorted((t + 0.1) % 2 - 0.1 for t in times[name]), at): assert abs(a - b) < 0.04, times
+assert len(keys) == 5" "$work/out"
+noh build "$work/sides.bvh" -o "$work/x.noh" --clean contact-keys
+expect 0 'none to be found'
+check 'is a warning' grep -q "^warning: clip 'sides'" "$work/out"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/flat.obj"
+noh build "$work/flat.obj" -o "$work/x.noh" --clean contact-keys
+expect 1 'footsteps without a clip'
+says 'needs a clip that moves joints'
+noh build "$work/march.bvh" -o "$work/x.noh" --clean contact-keys --only mesh
+expect 2 'footsteps of a mesh alone'
+
 for ending in c3d trc; do
     : >"$work/markers.$ending"
     noh build "$work/markers.$ending" -o "$work/x.noh"

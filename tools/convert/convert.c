@@ -6,6 +6,7 @@
 #include "convert/clips/events_read.h"
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
+#include "convert/mocap/clean.h"
 #include "convert/model/model_build.h"
 #include "convert/model/recipe_make.h"
 #include "convert/model/surface_kind.h"
@@ -33,10 +34,23 @@ static int out_of_memory(model_error *error)
     return 1;
 }
 
+static int has_moves(const source *s)
+{
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        for (uint32_t c = 0; c < s->sets[i]->clip_count; c++) {
+            if (s->sets[i]->clips[c].joint_count) return 1;
+        }
+    }
+    return 0;
+}
+
 static int apply_events(const convert_options *options, source *s, model_error *error)
 {
     event_list *list = NULL;
     int failed;
+    if ((options->clean & CLEAN_KEYS) && !has_moves(s)) {
+        return model_fail(error, "", "--clean contact-keys needs a clip that moves joints, and there is none");
+    }
     if (!options->events) {
         return 0;
     }

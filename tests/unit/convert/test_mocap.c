@@ -39,8 +39,8 @@ static int walking_foot(double t, int right, double *z, double *y)
     return 0;
 }
 
-/* captured: hips that go; else as an exoskeleton has them, at one place. */
-static raw_set *walker(int captured)
+/* captured: hips that go; else as an exoskeleton has them, at one place. from_s: where in its walk it begins. */
+static raw_set *walker_from(int captured, double from_s)
 {
     static const char *const names[JOINTS] = { "hips", "head", "foot_l", "toe_l", "foot_r", "toe_r" };
     static const uint32_t parents[JOINTS] = { MODEL_NONE, HIPS, HIPS, LEFT, HIPS, RIGHT };
@@ -57,7 +57,7 @@ static raw_set *walker(int captured)
         memcpy(set->skeleton.joints[j].translation, rest[j], sizeof rest[j]);
     }
     for (uint32_t f = 0; f < FRAMES; f++) {
-        const double t = f / RATE, z = 1.2 * t;
+        const double t = f / RATE + from_s, z = 1.2 * t;
         for (uint32_t j = 0; j < JOINTS; j++) {
             const size_t at = (size_t)f * JOINTS + j;
             const double angle = 0.5 * sin(TURN * t + j);
@@ -76,6 +76,11 @@ static raw_set *walker(int captured)
         }
     }
     return set;
+}
+
+static raw_set *walker(int captured)
+{
+    return walker_from(captured, 0.0);
 }
 
 static void feet_are_found_when_they_stand(void **state)
@@ -129,11 +134,116 @@ static void a_root_is_made_of_contacts(void **state)
     assert_int_equal(clean_set(set, CLEAN_ROOT | CLEAN_CONTACTS, NULL), 0); /* a second time: it goes already */
     assert_true(fabs((double)clip->translations[(size_t)(FRAMES - 1) * JOINTS * 3 + 2] - 7.2) < 0.15);
     assert_in_range(clip->event_count, 10, 12);
-    assert_true(clip->events[0].is_marker);
-    assert_string_equal(clip->events[0].name, "foot_r");
-    assert_true(fabs(clip->events[0].time_s - 0.5) < 0.06);
-    assert_string_equal(clip->events[1].name, "foot_l");
-    assert_true(fabs(clip->events[1].time_s - 1.0) < 0.06);
+    const raw_event *first = clip->events + (strcmp(clip->events[0].name, "foot_l") == 0); /* at the loop's seam */
+    assert_true(first[0].is_marker);
+    assert_string_equal(first[0].name, "foot_r");
+    assert_true(fabs(first[0].time_s - 0.5) < 0.06);
+    assert_string_equal(first[1].name, "foot_l");
+    assert_true(fabs(first[1].time_s - 1.0) < 0.06);
+    raw_set_free(set);
+}
+
+/* A loop of six passes has six keys a foot, wherever in a pass it begins: none twice at its seam, and none missing. */
+static void steps_get_callback_keys(void **state)
+{
+    double worst = 0.0;
+    (void)state;
+    for (uint32_t begin = 0; begin < 120; begin++) {
+        const double from_s = (begin % 60u) / RATE;
+        raw_set *set = walker_from(begin < 60u, from_s);
+        raw_clip *clip = &set->clips[0];
+        uint32_t counts[2] = { 0, 0 };
+        assert_int_equal(clean_set(set, CLEAN_KEYS | CLEAN_CONTACTS, NULL), 0);
+        for (uint32_t i = 0; i < clip->event_count; i++) {
+            const raw_event *e = &clip->events[i];
+            const int right = strcmp(e->name, "right_foot") == 0;
+            if (e->is_marker) continue;
+            if (!right) assert_string_equal(e->name, "left_foot");
+            counts[right]++;
+            assert_int_equal(e->payload[0], right);
+            assert_true(e->time_s >= 0.0 && e->time_s < raw_clip_duration_s(clip));
+            const double phase = e->time_s + from_s + (right ? 0.5 : 0.0), off = phase - floor(phase + 0.5);
+            worst = fmax(worst, fabs(off));
+        }
+        if (counts[0] != 6 || counts[1] != 6 || clip->event_count != 24)
+            fail_msg("begun at %.3f s: %u left, %u right of %u", from_s, counts[0], counts[1], clip->event_count);
+        raw_set_free(set);
+    }
+    print_message("keys within %.3f s of where feet come down\n", worst);
+    assert_true(worst < 0.04);
+}
+
+/* Sides by names and by place. A clip that is no loop has no key for a foot that stands at its start. */
+static void keys_are_named_by_sides(void **state)
+{
+    static const char *const names[4][3] = { { "foot_l", "foot_r", "left_foot" },
+                                             { "RightFoot", "LeftFoot", "right_foot" },
+                                             { "a", "b", "left_foot" },
+                                             { "Bip R Foot", "Bip L Foot", "right_foot" } };
+    const raw_event own = { .name = (char[]){ "shout" }, .time_s = 2.0 };
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        raw_set *set = walker_from(1, 0.1);
+        raw_clip *clip = &set->clips[0];
+        for (uint32_t side = 0; side < 2; side++) {
+            char **name = &set->skeleton.joints[side ? RIGHT : LEFT].name;
+            free(*name);
+            *name = model_string(names[i][side]);
+        }
+        clip->frame_count = 331; /* five passes and a half */
+        assert_int_equal(raw_clip_add_event(clip, &own), 0);
+        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL), 0);
+        assert_int_equal(clip->event_count, 1 + 5 + 6);
+        uint32_t lefts = 0, others = 0;
+        for (uint32_t k = 0; k < clip->event_count; k++) {
+            const raw_event *e = &clip->events[k];
+            assert_true(k == 0 || e->time_s >= clip->events[k - 1u].time_s);
+            lefts += e->payload[0] == 0 && strcmp(e->name, names[i][2]) == 0;
+            others += strcmp(e->name, "shout") == 0;
+        }
+        assert_int_equal(lefts, 5); /* of the first foot */
+        assert_int_equal(others, 1);
+        raw_set_free(set);
+    }
+}
+
+/* A rig with two joints to a foot has one key a step. */
+static void a_foot_of_two_joints_steps_once(void **state)
+{
+    (void)state;
+    for (uint32_t begin = 0; begin < 60; begin++) {
+        raw_set *set = walker_from(1, begin / RATE);
+        raw_clip *clip = &set->clips[0];
+        set->skeleton.joints[LEFT_TOE].parent = HIPS;
+        for (size_t at = 0; at < (size_t)FRAMES * JOINTS * 3; at += JOINTS * 3)
+            memcpy(clip->translations + at + 3 * LEFT_TOE, clip->translations + at + 3 * LEFT, 3 * sizeof(float));
+        memcpy(set->skeleton.joints[LEFT_TOE].translation, rest[LEFT], sizeof rest[LEFT]);
+        free(set->skeleton.joints[LEFT_TOE].name);
+        set->skeleton.joints[LEFT_TOE].name = model_string("ik.l");
+        set->skeleton.joints[LEFT_TOE].translation[0] += 0.02f;
+        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL), 0);
+        assert_int_equal(clip->event_count, 12);
+        raw_set_free(set);
+    }
+}
+
+/* Who stands all the while has no step, and the report says so. */
+static void no_step_is_a_warning(void **state)
+{
+    raw_set *set = walker(1);
+    raw_clip *clip = &set->clips[0];
+    char line[256] = "";
+    FILE *report = tmpfile();
+    (void)state;
+    assert_non_null(report);
+    for (uint32_t f = 1; f < FRAMES; f++)
+        memcpy(clip->translations + (size_t)f * JOINTS * 3, clip->translations, JOINTS * 3 * sizeof(float));
+    assert_int_equal(clean_set(set, CLEAN_KEYS, report), 0);
+    assert_int_equal(clip->event_count, 0);
+    rewind(report);
+    assert_non_null(fgets(line, sizeof line, report));
+    assert_non_null(strstr(line, "warning: clip 'walk' has no contact-keys"));
+    fclose(report);
     raw_set_free(set);
 }
 
@@ -327,6 +437,9 @@ static void words_are_parsed(void **state)
     assert_int_equal(what, 15);
     assert_int_equal(clean_parse("jitter,gaps", &what), 0);
     assert_int_equal(what, CLEAN_GAPS | CLEAN_JITTER);
+    assert_int_equal(clean_parse("contact-keys,gaps", &what), 0);
+    assert_int_equal(what, CLEAN_GAPS | CLEAN_KEYS);
+    assert_int_equal(clean_parse("contact", &what), 1);
     assert_int_equal(clean_parse("", &what), 1);
     assert_int_equal(clean_parse("gaps,", &what), 1);
     assert_int_equal(clean_parse("gap", &what), 1);
@@ -338,6 +451,10 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(feet_are_found_when_they_stand),
         cmocka_unit_test(a_root_is_made_of_contacts),
+        cmocka_unit_test(steps_get_callback_keys),
+        cmocka_unit_test(keys_are_named_by_sides),
+        cmocka_unit_test(a_foot_of_two_joints_steps_once),
+        cmocka_unit_test(no_step_is_a_warning),
         cmocka_unit_test(what_was_seen_is_left),
         cmocka_unit_test(gaps_are_filled),
         cmocka_unit_test(jitter_is_filtered),

@@ -73,6 +73,17 @@ static uint32_t partner_of(const raw_skeleton *skeleton, const char *name)
     return MODEL_NONE;
 }
 
+int raw_side(const raw_skeleton *skeleton, uint32_t joint)
+{
+    for (uint32_t at = joint; at != MODEL_NONE; at = skeleton->joints[at].parent) {
+        if (partner_of(skeleton, skeleton->joints[at].name) != MODEL_NONE) return 1;
+        for (uint32_t j = 0; j < skeleton->joint_count; j++) {
+            if (partner_of(skeleton, skeleton->joints[j].name) == at) return -1;
+        }
+    }
+    return 0;
+}
+
 int raw_facing(const raw_skeleton *skeleton, double *degrees)
 {
     double *pose = malloc((skeleton->joint_count + 1u) * 12u * sizeof *pose);

@@ -1,6 +1,7 @@
 /* raw_turn.h: recordings whose rest pose says little, or that face elsewhere: what .bvh leaves to whoever reads it.
  *
  *   raw_rest_from_frame  the bind pose is that of the first frame
+ *   raw_side             whether a joint is a left or a right one
  *   raw_facing           where a skeleton faces, by its left and right
  *   raw_turn             skeleton and clips turned about +y */
 #ifndef NOH_CONVERT_CLIPS_RAW_TURN_H
@@ -21,6 +22,9 @@ typedef struct turn_options {
 
 /* Of the first clip that moves joints. Clips stay as they are. Returns 0, or 1: there is none. */
 int raw_rest_from_frame(raw_set *set);
+
+/* By the names of the joint and of those above it, as below: 1 left, -1 right, 0 neither. */
+int raw_side(const raw_skeleton *skeleton, uint32_t joint);
 
 /* Joints in pairs by their names (LeftUpLeg and RightUpLeg, lHip and rHip, hand_l and hand_r, thigh.L and thigh.R):
  * with y up, forward is what left and up make. degrees  from +z towards +x, -180 to 180, of the bind pose returns  0,

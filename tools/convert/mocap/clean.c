@@ -6,9 +6,11 @@
 #include "gaps.h"
 #include "jitter.h"
 
+#define FEET (CLEAN_ROOT | CLEAN_CONTACTS | CLEAN_KEYS)
+
 int clean_parse(const char *text, unsigned *what)
 {
-    static const char *const words[] = { "gaps", "jitter", "root", "contacts" };
+    static const char *const words[] = { "gaps", "jitter", "root", "contacts", "contact-keys" };
     *what = 0;
     if (strcmp(text, "off") == 0) return 0;
     if (strcmp(text, "all") == 0) {
@@ -18,7 +20,7 @@ int clean_parse(const char *text, unsigned *what)
     for (const char *word = text;; word++) {
         const size_t length = strcspn(word, ",");
         unsigned bit = 0;
-        for (unsigned i = 0; i < 4; i++) {
+        for (unsigned i = 0; i < sizeof words / sizeof words[0]; i++) {
             if (strlen(words[i]) == length && strncmp(words[i], word, length) == 0) bit = 1u << i;
         }
         if (!bit) return 1;
@@ -60,6 +62,21 @@ static int has_markers(const raw_clip *clip)
     return 0;
 }
 
+static int add_keys(const contacts *c, raw_clip *clip, FILE *report)
+{
+    uint32_t added = 0;
+    const int failed = contacts_add_keys(c, clip, &added);
+    if (report && added) {
+        fprintf(report, "clean '%s': %u callback keys where %u feet come down\n", clip->name, added, contacts_feet(c));
+    } else if (report && !failed) {
+        fprintf(report,
+                "warning: clip '%s' has no contact-keys: no foot comes down in it; give keys by --events if it has "
+                "steps\n",
+                clip->name);
+    }
+    return failed;
+}
+
 static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what, FILE *report)
 {
     int failed;
@@ -67,7 +84,11 @@ static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what,
     contacts *c = contacts_find(skeleton, clip, &failed);
     if (failed) return 1;
     if (!c) {
-        if (report) fprintf(report, "clean '%s': no feet: no joints in the lowest tenth of the body\n", clip->name);
+        if (report) {
+            fprintf(report, "%s '%s': no feet: no joints in the lowest tenth of the body%s\n",
+                    what & CLEAN_KEYS ? "warning: clip" : "clean", clip->name,
+                    what & CLEAN_KEYS ? ", so it has no contact-keys: give them by --events" : "");
+        }
         return 0;
     }
     if ((what & CLEAN_ROOT) && contacts_on_the_spot(c)) {
@@ -80,6 +101,7 @@ static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what,
         failed = contacts_mark(c, skeleton, clip, &marked);
         if (report) fprintf(report, "clean '%s': %u feet come down %u times\n", clip->name, contacts_feet(c), marked);
     }
+    if (!failed && (what & CLEAN_KEYS)) failed = add_keys(c, clip, report);
     contacts_free(c);
     return failed;
 }
@@ -91,7 +113,7 @@ int clean_set(raw_set *set, unsigned what, FILE *report)
         if (!clip->joint_count) continue;
         if ((what & CLEAN_GAPS) && fill_gaps(&set->skeleton, clip, report)) return 1;
         if ((what & CLEAN_JITTER) && filter_jitter(&set->skeleton, clip, report)) return 1;
-        if ((what & (CLEAN_ROOT | CLEAN_CONTACTS)) && use_feet(&set->skeleton, clip, what, report)) return 1;
+        if ((what & FEET) && use_feet(&set->skeleton, clip, what, report)) return 1;
     }
     return 0;
 }

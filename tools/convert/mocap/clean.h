@@ -8,10 +8,11 @@
 
 /* Bits of what is done. */
 enum {
-    CLEAN_GAPS = 1,    /* gaps.h */
-    CLEAN_JITTER = 2,  /* jitter.h */
-    CLEAN_ROOT = 4,    /* contacts.h: of clips that stay on the spot */
-    CLEAN_CONTACTS = 8 /* sync markers where feet come down, in clips without markers */
+    CLEAN_GAPS = 1,     /* gaps.h */
+    CLEAN_JITTER = 2,   /* jitter.h */
+    CLEAN_ROOT = 4,     /* contacts.h: of clips that stay on the spot */
+    CLEAN_CONTACTS = 8, /* sync markers where feet come down, in clips without markers */
+    CLEAN_KEYS = 16     /* callback keys there; not part of "all" */
 };
 
 /* "gaps,jitter", "all", "off". Returns 0, or 1: a word is unknown. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/clips/raw_set.h"
+#include "convert/clips/raw_turn.h"
 #include "track.h"
 
 #define POINTS_MAX 64u
@@ -14,6 +15,9 @@
 #define RISE_LAW 0.05      /* of it per second: so does one that goes up or down so fast */
 #define LIFT_SHARE 0.005   /* of it: hips that move less up and down were not captured */
 #define CONTACT_LEAST_S 0.05
+#define SIDE_SHARE 0.01   /* of the height: a foot so far from the middle is a left or a right one */
+#define CLOSES_SHARE 0.02 /* of it: how far joints of a loop's last frame are from the first, local to their parents */
+#define CLOSES_ANGLE 0.1  /* likewise, radians */
 
 /* Below the first a foot comes down, above the second it leaves: shares of the body's height, and of it per second. */
 static const double low[2] = { 0.03, 0.045 }, slow[2] = { 0.25, 0.4 };
@@ -27,12 +31,13 @@ typedef struct foot_point {
 struct contacts {
     uint32_t foot_count, point_count, frame_count, hips;
     uint32_t feet[CONTACT_FEET_MAX];
+    int sides[CONTACT_FEET_MAX]; /* 1 left, -1 right, 0 neither */
     foot_point points[POINTS_MAX];
     double height, rate;
-    double *at;      /* [frame_count][point_count][3], on the path */
-    double *path;    /* [frame_count][3] how far the root goes; zeros for one that was captured */
-    uint8_t *stands; /* [frame_count][foot_count] */
-    int on_the_spot;
+    double *at;              /* [frame_count][point_count][3], on the path */
+    double *path;            /* [frame_count][3] how far the root goes; zeros for one that was captured */
+    uint8_t *stands;         /* [frame_count][foot_count] */
+    int on_the_spot, closes; /* 1: the last frame is the first again */
 };
 
 /* ---- feet ---- */
@@ -109,6 +114,16 @@ static void find_hips(contacts *c, const raw_skeleton *skeleton, uint8_t *count)
     }
 }
 
+/* By names, else by the side of the middle on which the foot is in the bind pose: +x is left as a model faces +z. */
+static void find_sides(contacts *c, const raw_skeleton *skeleton, const double *pose)
+{
+    for (uint32_t foot = 0; foot < c->foot_count; foot++) {
+        const double x = pose[(size_t)c->feet[foot] * 12u + 9u], far = SIDE_SHARE * c->height;
+        c->sides[foot] = raw_side(skeleton, c->feet[foot]);
+        if (!c->sides[foot]) c->sides[foot] = (x > far) - (x < -far);
+    }
+}
+
 static int find_feet(contacts *c, const raw_skeleton *skeleton, double *pose)
 {
     uint8_t *marks = malloc(2u * (size_t)skeleton->joint_count);
@@ -121,6 +136,7 @@ static int find_feet(contacts *c, const raw_skeleton *skeleton, double *pose)
     find_low(skeleton, pose, bottom + LOW_SHARE * c->height, marks);
     add_points(c, skeleton, marks + skeleton->joint_count, marks);
     find_hips(c, skeleton, marks);
+    find_sides(c, skeleton, pose);
     free(marks);
     return 0;
 }
@@ -187,48 +203,70 @@ static void find_path(contacts *c, int lift, double *scratch)
 
 /* ---- standing ---- */
 
-static double speed_of(const contacts *c, uint32_t point, uint32_t frame)
+static double way_of(const contacts *c, uint32_t point, uint32_t from, uint32_t to)
 {
-    const uint32_t reach = (uint32_t)fmax(1.0, c->rate / 60.0 + 0.5);
-    const uint32_t from = frame > reach ? frame - reach : 0;
-    const uint32_t to = frame + reach < c->frame_count ? frame + reach : c->frame_count - 1u;
     double sum = 0.0;
     for (uint32_t i = 0; i < 3; i++) {
         const double d = c->at[((size_t)to * c->point_count + point) * 3u + i] -
                          c->at[((size_t)from * c->point_count + point) * 3u + i];
         sum += d * d;
     }
-    return to > from ? sqrt(sum) * c->rate / (to - from) : 0.0;
+    return sqrt(sum);
+}
+
+/* At a seam by the ways on both sides of it. */
+static double speed_of(const contacts *c, uint32_t point, uint32_t frame)
+{
+    const uint32_t last = c->frame_count - 1u, wanted = (uint32_t)fmax(1.0, c->rate / 60.0 + 0.5);
+    const uint32_t reach = wanted < last ? wanted : last;
+    const uint32_t from = frame > reach ? frame - reach : 0, to = frame + reach < last ? frame + reach : last;
+    const uint32_t before = c->closes ? reach - (frame - from) : 0, after = c->closes ? reach - (to - frame) : 0;
+    const uint32_t frames = before + (to - from) + after;
+    const double way = way_of(c, point, last - before, last) + way_of(c, point, from, to) + way_of(c, point, 0, after);
+    return frames ? way * c->rate / frames : 0.0;
 }
 
 static void find_standing(contacts *c, uint32_t point, double *heights)
 {
     const uint32_t foot = c->points[point].foot;
     double floor_y;
-    int is_down = 0;
+    int is_down = 0; /* of a loop: as it ends */
     for (uint32_t f = 0; f < c->frame_count; f++) heights[f] = c->at[((size_t)f * c->point_count + point) * 3u + 1u];
     floor_y = mocap_rank(heights, c->frame_count, c->frame_count / 20u);
-    for (uint32_t f = 0; f < c->frame_count; f++) {
-        const double over = c->at[((size_t)f * c->point_count + point) * 3u + 1u] - floor_y;
-        is_down = over < low[is_down] * c->height && speed_of(c, point, f) < slow[is_down] * c->height;
-        if (is_down) c->stands[(size_t)f * c->foot_count + foot] = 1;
+    for (int pass = !c->closes; pass < 2; pass++) {
+        for (uint32_t f = 0; f < c->frame_count; f++) {
+            const double over = c->at[((size_t)f * c->point_count + point) * 3u + 1u] - floor_y;
+            is_down = over < low[is_down] * c->height && speed_of(c, point, f) < slow[is_down] * c->height;
+            if (is_down && pass) c->stands[(size_t)f * c->foot_count + foot] = 1;
+        }
     }
+}
+
+static uint8_t *standing(const contacts *c, uint32_t foot, uint32_t frame)
+{
+    const uint32_t f = c->closes ? frame % (c->frame_count - 1u) : frame;
+    return &c->stands[(size_t)f * c->foot_count + foot];
+}
+
+/* Whether a run of a value begins at a frame. The first frame of a loop follows the last but one. */
+static int begins(const contacts *c, uint32_t foot, int value, uint32_t frame)
+{
+    const uint32_t before = frame ? frame - 1u : c->frame_count - 2u;
+    return (frame || c->closes) && *standing(c, foot, frame) == value && *standing(c, foot, before) != value;
 }
 
 /* Contacts shorter than CONTACT_LEAST_S, and gaps in one as short, are none. */
 static void smooth_standing(contacts *c, uint32_t foot, int value)
 {
     const uint32_t least = (uint32_t)(CONTACT_LEAST_S * c->rate + 0.5);
-    for (uint32_t f = 1, end; f < c->frame_count; f = end) {
-        end = f + 1u;
-        if (c->stands[(size_t)f * c->foot_count + foot] != value ||
-            c->stands[(size_t)(f - 1u) * c->foot_count + foot] == value) {
-            continue;
-        }
-        while (end < c->frame_count && c->stands[(size_t)end * c->foot_count + foot] == value) end++;
-        if (end == c->frame_count || end - f >= least) continue;
-        for (uint32_t k = f; k < end; k++) c->stands[(size_t)k * c->foot_count + foot] = !value;
+    for (uint32_t f = 0; f < c->frame_count; f++) {
+        uint32_t end = f + 1u;
+        if (!begins(c, foot, value, f)) continue;
+        while ((c->closes || end < c->frame_count) && end - f < least && *standing(c, foot, end) == value) end++;
+        if (end - f >= least || (!c->closes && end == c->frame_count)) continue;
+        for (uint32_t k = f; k < end; k++) *standing(c, foot, k) = (uint8_t)!value;
     }
+    if (c->closes) c->stands[(size_t)(c->frame_count - 1u) * c->foot_count + foot] = *standing(c, foot, 0);
 }
 
 static double spread(const double *values, uint32_t count)
@@ -239,6 +277,21 @@ static double spread(const double *values, uint32_t count)
         most = fmax(most, values[3u * i]);
     }
     return most - least;
+}
+
+/* Whether the joints of the last frame are where those of the first are. Roots may go on. */
+static int ends_as_it_began(const contacts *c, const raw_skeleton *skeleton, const raw_clip *clip)
+{
+    const size_t last = (size_t)(clip->frame_count - 1u) * clip->joint_count;
+    for (uint32_t j = 0; j < clip->joint_count; j++) {
+        const float *t = clip->translations + 3u * (size_t)j, *q = clip->rotations + 4u * (size_t)j;
+        double off = 0.0, dot = 0.0;
+        if (skeleton->joints[j].parent == MODEL_NONE) continue;
+        for (size_t i = 0; i < 3; i++) off = hypot(off, (double)t[3u * last + i] - (double)t[i]);
+        for (size_t i = 0; i < 4; i++) dot += (double)q[4u * last + i] * (double)q[i];
+        if (off > CLOSES_SHARE * c->height || fabs(dot) < cos(0.5 * CLOSES_ANGLE)) return 0;
+    }
+    return clip->frame_count > 2;
 }
 
 static int find(contacts *c, const raw_skeleton *skeleton, const raw_clip *clip, double *pose)
@@ -254,6 +307,7 @@ static int find(contacts *c, const raw_skeleton *skeleton, const raw_clip *clip,
     }
     c->on_the_spot = fmax(spread(hips, c->frame_count), spread(hips + 2, c->frame_count)) < SPOT_SHARE * c->height;
     if (c->on_the_spot) find_path(c, spread(hips + 1, c->frame_count) < LIFT_SHARE * c->height, hips);
+    c->closes = ends_as_it_began(c, skeleton, clip);
     for (uint32_t p = 0; p < c->point_count; p++) find_standing(c, p, hips);
     for (uint32_t foot = 0; foot < c->foot_count; foot++) {
         smooth_standing(c, foot, 0);
@@ -335,18 +389,56 @@ double contacts_move_root(const contacts *c, const raw_skeleton *skeleton, raw_c
     return gone;
 }
 
+/* The frames at which feet come down, within the clip. */
+static int comes_down(const contacts *c, uint32_t foot, uint32_t frame)
+{
+    return frame + 1u < c->frame_count && begins(c, foot, 1, frame);
+}
+
 int contacts_mark(const contacts *c, const raw_skeleton *skeleton, raw_clip *clip, uint32_t *added)
 {
     *added = 0;
-    for (uint32_t f = 1; f + 1u < clip->frame_count; f++) {
+    for (uint32_t f = 0; f < clip->frame_count; f++) {
         for (uint32_t foot = 0; foot < c->foot_count; foot++) {
             const raw_event event = { .name = skeleton->joints[c->feet[foot]].name,
                                       .time_s = f / clip->sample_rate_hz,
                                       .is_marker = 1 };
-            if (!contacts_stands(c, foot, f) || contacts_stands(c, foot, f - 1u)) continue;
+            if (!comes_down(c, foot, f)) continue;
             if (raw_clip_add_event(clip, &event)) return 1;
             *added += 1u;
             break; /* a clip has no two markers at one time */
+        }
+    }
+    return 0;
+}
+
+/* Whether another foot of its side came down just before, or one of a lower number does now: rigs have several joints to
+ * a foot. */
+static int is_told(const contacts *c, uint32_t foot, uint32_t frame)
+{
+    const uint32_t span = c->frame_count - 1u, least = (uint32_t)(CONTACT_LEAST_S * c->rate + 0.5);
+    for (uint32_t k = 0; k <= least && (k <= frame || (c->closes && k < span)); k++) {
+        const uint32_t at = k <= frame ? frame - k : frame + span - k;
+        for (uint32_t other = 0; other < c->foot_count; other++) {
+            if (other == foot || c->sides[other] != c->sides[foot] || (!k && other > foot)) continue;
+            if (comes_down(c, other, at)) return 1;
+        }
+    }
+    return 0;
+}
+
+int contacts_add_keys(const contacts *c, raw_clip *clip, uint32_t *added)
+{
+    static char names[3][16] = { "right_foot", "foot", "left_foot" };
+    *added = 0;
+    for (uint32_t f = 0; f < clip->frame_count; f++) {
+        for (uint32_t foot = 0; foot < c->foot_count && clip->event_count < RAW_EVENTS_MAX; foot++) {
+            const raw_event event = { .name = names[1 + c->sides[foot]],
+                                      .time_s = f / clip->sample_rate_hz,
+                                      .payload = { (uint8_t)foot } };
+            if (!comes_down(c, foot, f) || is_told(c, foot, f)) continue;
+            if (raw_clip_add_event(clip, &event)) return 1;
+            *added += 1u;
         }
     }
     return 0;

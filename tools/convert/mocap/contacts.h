@@ -3,7 +3,8 @@
  * Feet are found by shape: joints of which all that hangs below is in the lowest tenth of the bind pose. A foot stands
  * while a point of it (a joint, or the end of the last) is low and slow; both have two thresholds, so that a foot at
  * one of them does not flicker. Heights are measured from each point's own floor, the height under which it is in a
- * twentieth of the frames: the ground is taken to be level.
+ * twentieth of the frames: the ground is taken to be level. Where the last frame is the first again, a foot that stands
+ * across that seam comes down once.
  *
  * Mechanical capture (an exoskeleton) knows angles and no place: its root stays where it is, as it does in a walk made
  * on the spot for a game. What the feet do says where it was: at each step the root moves against the points that are
@@ -36,5 +37,11 @@ double contacts_move_root(const contacts *c, const raw_skeleton *skeleton, raw_c
 /* A sync marker at each time at which a foot comes down, of its joint's name; the first of those that do in one frame.
  * *added: how many. Returns 1 when out of memory. */
 int contacts_mark(const contacts *c, const raw_skeleton *skeleton, raw_clip *clip, uint32_t *added);
+
+/* A callback key at each of these times, of all feet: left_foot, right_foot, or foot for one that is neither, by the
+ * names of the joint and of those above it, else by where it is in the bind pose (+x is left). The payload is the
+ * foot's number, from 0 in the order of the joints, as a 64-bit integer. Feet of one side that come down together,
+ * within 0.05 s, have one key. *added, and returns, as above. */
+int contacts_add_keys(const contacts *c, raw_clip *clip, uint32_t *added);
 
 #endif

@@ -64,7 +64,8 @@ static int set_clip(const build_args *a, convert_options *o)
         return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->facing);
     }
     if (clean_parse(a->clean, &o->clean)) {
-        return tool_usage("--clean wants off, all or a list of gaps, jitter, root and contacts, not '%s'", a->clean);
+        return tool_usage("--clean wants off, all or a list of gaps, jitter, root, contacts and contact-keys, not '%s'",
+                          a->clean);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
@@ -817,8 +818,9 @@ static const option options[] = {
       .value = "off|all|LIST",
       .initial = "off",
       .what =
-          "clean up recorded clips, any of gaps (filled), jitter (filtered as far as it is noise), root (moved by the feet where it stays on the spot), contacts (a sync marker where a foot comes down)",
-      .example = "gaps,jitter" },
+          "clean up recorded clips, any of gaps (filled), jitter (filtered as far as it is noise), root (moved by the feet where it stays on the spot), contacts (a sync marker where a foot comes down), contact-keys (a callback key there, left_foot or right_foot: noh help FORMATS); all is the first four",
+      .example = "gaps,jitter",
+      .excludes = "--only=mesh" },
 };
 
 const verb verb_build = {

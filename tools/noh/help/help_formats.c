@@ -30,6 +30,11 @@ const char *const help_formats_text[] = {
     "   walk 0.53 right marker",
     "   walk 0.02 step 1 min=0.25",
     "   \"wave hand\" 1.5 sound 0xff",
+    "# callback keys of footsteps (noh build --clean contact-keys)",
+    "Where a foot comes down in a clip it gets a callback key: left_foot or right_foot by the side of its joint, as names have it (foot_l, "
+    "LeftFoot, foot.L), else by where it is in the bind pose (+x is left as a model faces +z); foot where it is neither. The payload is "
+    "the foot's number, from 0 in the order of the joints: of four feet two are left. Feet of one side that come down together have one key. A foot that stands across the seam of a loop has "
+    "one key. Keys of --events are kept.",
     "# callback keys in glTF",
     "The extras of an animation hold the same; a key that cannot be read is left out with a warning:",
     "   \"extras\": {\"loop\": true, \"events\": [{\"time\": 0.5, \"name\": \"step\", \"payload\": 7, \"weightMin\": 0.1},",
