@@ -226,11 +226,6 @@ void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3])
 {
     NOH_ASSERT(walkers && by);
     for (uint32_t i = 0; i < walkers->walker_max; i++) {
-        walker *r = noh_walker_at(walkers, i);
-        r->height -= by[1];
-        for (int k = 0; k < 2; k++) {
-            r->at[k] -= by[2 * k];
-            r->body[k] -= by[2 * k];
-        }
+        noh_walker_at(walkers, i)->height -= by[1]; /* x and z move with the crowd's home */
     }
 }

@@ -92,7 +92,8 @@ void noh_walkers_face(noh_walkers *walkers, uint32_t index, const float directio
 int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float heading[2]);
 
 /* Move the origin of the world, with noh_crowd_shift_origin and noh_stage_shift_origin: walkers are less by `by` then.
- * They count in floats of the world, which round by 0.5 mm at 8 km and by 4 mm at 100 km: there, move the origin. */
+ * In x and z they count from where their crowd counts, so they walk as exactly at 100 km as at the origin. Heights are
+ * floats of the world. */
 void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3]);
 
 /* Move actors and their clips after their agents. Call it before noh_stage_step, with the same ticks. An actor that is

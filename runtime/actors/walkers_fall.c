@@ -31,8 +31,11 @@ static uint32_t next_nearest(noh_walkers *w, noh_stage *stage, const float point
 
 static noh_result push(noh_stage *stage, const walker *r, const float point[3], float impulse)
 {
-    const float at[3] = { r->body[0], point[1], r->body[1] };
+    noh_place place;
     float away[3];
+    const noh_result found = noh_actor_place(stage, (noh_actor){ r->actor }, &place, NULL);
+    if (found) return found;
+    const float at[3] = { place.position[0], point[1], place.position[2] };
     noh_push_away(point, at, impulse, away);
     if (away[0] == 0.0f && away[2] == 0.0f) {
         away[0] = impulse * r->heading[0];
@@ -61,12 +64,14 @@ uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float po
 /* ---- tended ---- */
 
 /* As it lies or stands: its agent and what is known of where it is. */
-static void bring(walker *r, noh_crowd *crowd, const noh_place *place)
+static void bring(walker *r, noh_crowd *crowd, const noh_stage_actor *a)
 {
-    const float at[2] = { place->position[0], place->position[2] };
+    const float at[2] = { a->place.position[0], a->place.position[2] };
     noh_crowd_move(crowd, r->agent, at);
-    memcpy(r->body, at, sizeof r->body);
-    memcpy(r->at, at, sizeof r->at);
+    for (int i = 0; i < 2; i++) {
+        r->body[i] = (float)((double)at[i] + (double)a->rest[2 * i] - crowd->home[i]);
+        r->at[i] = r->body[i];
+    }
 }
 
 /* It goes on from where it has got up, facing as it does, without a leap. */
@@ -114,7 +119,7 @@ static int tend(noh_walkers *w, walker *r, noh_crowd *crowd, noh_stage *stage, u
     if (was_down && !r->fallen) fall_down(r, crowd);
     if (!r->fallen) return 0;
     if (!(is_dead && was_down)) (void)noh_fall_step(&r->fall, stage, actor, layer, ticks, error);
-    if (was_down || !r->begun) bring(r, crowd, &a->place);
+    if (was_down || !r->begun) bring(r, crowd, a);
     if (!r->begun && !is_down(stage, actor)) stand_up(w, r, &a->place);
     if (noh_fall_lasts(&r->fall, stage, actor)) return 1;
     (void)noh_actor_stop(stage, actor, layer, FADE_TICKS, NULL);

@@ -124,6 +124,18 @@ static void set_near(noh_walkers *w, noh_stage *stage, uint32_t index, uint8_t i
     if (n) n->is_near = is_near;
 }
 
+/* x, z of its agent in the world, by the actor, which moves with the stage's origin. returns 0: the actor is gone */
+static int agent_of(const noh_stage *stage, const walker *r, float at[2])
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, (noh_actor){ r->actor }, &k);
+    for (int i = 0; i < 2 && a; i++) {
+        const double off = (double)r->at[i] - (double)r->body[i];
+        at[i] = (float)((double)a->place.position[2 * i] + (double)a->rest[2 * i] + off);
+    }
+    return a != NULL;
+}
+
 uint32_t noh_walkers_near(noh_walkers *walkers, noh_stage *stage, const float eye[3])
 {
     NOH_ASSERT(walkers && stage && eye);
@@ -131,8 +143,10 @@ uint32_t noh_walkers_near(noh_walkers *walkers, noh_stage *stage, const float ey
     walkers->near_count = 0;
     for (uint32_t i = 0; i < walkers->walker_max; i++) {
         const walker *r = noh_walker_at(walkers, i);
-        const float x = r->at[0] - eye[0], y = r->height - eye[1], z = r->at[1] - eye[2];
-        if (r->actor && r->begun) take(walkers, i, (x * x + y * y + z * z) * (r->is_near ? BONUS : 1.0f));
+        float at[2];
+        if (!r->actor || !r->begun || !agent_of(stage, r, at)) continue;
+        const float x = at[0] - eye[0], y = r->height - eye[1], z = at[1] - eye[2];
+        take(walkers, i, (x * x + y * y + z * z) * (r->is_near ? BONUS : 1.0f));
     }
     for (uint32_t i = 0; i < walkers->walker_max; i++) {
         if (noh_walker_at(walkers, i)->is_near) noh_walker_at(walkers, i)->is_near = 2u; /* until it is chosen again */

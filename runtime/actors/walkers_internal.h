@@ -2,6 +2,7 @@
 #ifndef NOH_ACTORS_WALKERS_INTERNAL_H
 #define NOH_ACTORS_WALKERS_INTERNAL_H
 
+#include "crowd/crowd_internal.h"
 #include "stage/fall.h"
 #include "stage/stage_internal.h"
 #include "actors/walkers.h"
@@ -29,8 +30,8 @@ typedef struct walker_soles {
 typedef struct walker {
     uint32_t actor; /* 0: none */
     uint32_t agent;
-    float at[2];         /* of the agent, in the last step */
-    float body[2];       /* where it is drawn */
+    float at[2];         /* of the agent, in the last step, from the crowd's home */
+    float body[2];       /* where it is drawn, likewise: the actor's place less home */
     float height, climb; /* of the place, and its speed */
     float heading[2];    /* unit */
     float velocity[2];   /* smoothed, for the heading */

@@ -1,6 +1,7 @@
 /* walkers_step.c: places and clips that follow agents. */
 #include <string.h>
 
+#include "anim/root_internal.h"
 #include "base/math_internal.h"
 #include "base/quat.h"
 #include "base/trig.h"
@@ -27,6 +28,7 @@ typedef struct step {
     noh_stage *stage;
     noh_stage_kind *k;
     const noh_ground *ground;
+    const double *home; /* [2] x, z of the crowd: where agents and walkers count from */
     uint32_t ticks;
     float seconds;
 } step;
@@ -186,7 +188,9 @@ static void play(const step *s, const walker *r, noh_controller *c, float passes
 
 static float ground_at(const step *s, const walker *r)
 {
-    const float up = 2.0f, from[3] = { r->at[0], r->height + up, r->at[1] };
+    const float up = 2.0f;
+    const float from[3] = { (float)(s->home[0] + (double)r->at[0]), r->height + up,
+                            (float)(s->home[1] + (double)r->at[1]) };
     float normal[3];
     if (!s->ground || !(s->ground->world || s->ground->below)) return 0.0f;
     const float distance = noh_ground_below(s->ground, from, 1e3f, normal);
@@ -224,14 +228,17 @@ static void turned_by(const float rotation[4], float scale, float x, float z, fl
     out[1] = scale * turned[2];
 }
 
-static void put(const step *s, const walker *r, const noh_place *was, const float rotation[4])
+static void put(const step *s, const walker *r, noh_stage_actor *a, const noh_place *was, const float rotation[4])
 {
     noh_place place = *was;
+    float rest[2];
     memcpy(place.rotation, rotation, sizeof place.rotation);
-    place.position[0] = r->body[0];
+    for (int i = 0; i < 2; i++) noh_split(s->home[i] + (double)r->body[i], &place.position[2 * i], &rest[i]);
     place.position[1] = r->height;
-    place.position[2] = r->body[1];
-    (void)noh_actor_set_place(s->stage, (noh_actor){ r->actor }, &place, NULL);
+    if (!noh_actor_set_place(s->stage, (noh_actor){ r->actor }, &place, NULL)) {
+        a->rest[0] = rest[0];
+        a->rest[2] = rest[1];
+    }
     if (!r->begun) (void)noh_actor_cut(s->stage, (noh_actor){ r->actor }, NULL);
 }
 
@@ -317,13 +324,13 @@ static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[
     go_on(s, r, &was, rotation, &p);
     keep_near(r);
     noh_walkers_tell_leg(s->w, s->stage, r);
-    put(s, r, &was, rotation);
+    put(s, r, a, &was, rotation);
     r->begun = 1;
 }
 
 static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
 {
-    noh_crowd_agent agent;
+    float at[2];
     noh_stage_kind *k;
     noh_stage_actor *a = noh_stage_actor_of(s->stage, (noh_actor){ r->actor }, &k);
     if (!a) {
@@ -334,17 +341,21 @@ static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
         r->begun = 0;
         return;
     }
-    memcpy(agent.position, r->at, sizeof agent.position); /* without its agent it stops */
-    (void)noh_crowd_agent_at(crowd, r->agent, &agent);
-    follow(s, r, a, agent.position);
+    if (!noh_crowd_shown(crowd, r->agent, at)) memcpy(at, r->at, sizeof at); /* without its agent it stops */
+    follow(s, r, a, at);
 }
 
 noh_result noh_walkers_step(noh_walkers *walkers, const noh_crowd *crowd, noh_stage *stage, const noh_ground *ground,
                             uint32_t ticks, noh_error *error)
 {
     NOH_ASSERT(walkers && crowd && stage);
-    const step s = { walkers, stage, &stage->kinds[walkers->kind],
-                     ground,  ticks, (float)ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) };
+    const step s = { walkers,
+                     stage,
+                     &stage->kinds[walkers->kind],
+                     ground,
+                     crowd->home,
+                     ticks,
+                     (float)ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) };
     if (stage->phase != NOH_STAGE_IDLE) {
         return noh_fail(error, NOH_ERR_ARG, "walkers go on outside of steps and frames", 0, 0);
     }

@@ -323,12 +323,23 @@ int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_ag
     return 1;
 }
 
+int noh_crowd_shown(const noh_crowd *crowd, uint32_t index, float at[2])
+{
+    NOH_ASSERT(crowd && at && index < crowd->agent_max);
+    const vec2 position = CROWD_CONST(vec2, crowd, position)[index],
+               velocity = CROWD_CONST(vec2, crowd, velocity)[index];
+    const float ago = CROWD_STEP_S * (1.0f - (float)crowd->time.left * (1.0f / (float)NOH_CROWD_STEP_TICKS));
+    at[0] = position.x - ago * velocity.x;
+    at[1] = position.z - ago * velocity.z;
+    return CROWD_CONST(crowd_wish, crowd, wish)[index].radius > 0.0f;
+}
+
 int noh_crowd_agent_at(const noh_crowd *crowd, uint32_t index, noh_crowd_agent *agent)
 {
+    float at[2];
     if (!noh_crowd_agent_stepped(crowd, index, agent)) return 0;
-    const float ago = CROWD_STEP_S * (1.0f - (float)crowd->time.left * (1.0f / (float)NOH_CROWD_STEP_TICKS));
-    agent->position[0] -= ago * agent->velocity[0];
-    agent->position[1] -= ago * agent->velocity[1];
+    (void)noh_crowd_shown(crowd, index, at);
+    noh_crowd_to(crowd, v2(at[0], at[1]), agent->position);
     return 1;
 }
 

@@ -168,6 +168,10 @@ static inline noh_crowd_obstacle noh_crowd_obstacle_less(const noh_crowd_obstacl
     return out;
 }
 
+/* Where noh_crowd_agent_at shows an agent, less the crowd's home, which floats of the world lose far away. returns 0 if
+ * there is no such agent */
+int noh_crowd_shown(const noh_crowd *crowd, uint32_t index, float at[2]);
+
 /* A place of the world, as it is kept; and back. */
 static inline vec2 noh_crowd_from(const noh_crowd *c, const float at[2])
 {

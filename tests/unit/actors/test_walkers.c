@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "actors/walkers.h"
+#include "stage/stage_internal.h"
 
 #define RADIUS 0.25f
 
@@ -548,6 +549,101 @@ static void the_nearest_have_their_feet_on_the_ground(void **state)
     close_street(&s);
 }
 
+/* ---- an origin that moves ---- */
+
+#define MOVERS 8u
+#define JOINTS_SHOWN 4u
+
+/* Eight walk on from where they are; half have their feet put on the ground. */
+static void open_mover(street *s, noh_actor actors[MOVERS])
+{
+    open_street(s, MOVERS, MOVERS / 2u, 1);
+    for (uint32_t i = 0; i < MOVERS; i++) {
+        const float angle = 6.2831853f * (float)i / (float)MOVERS, x = 3.0f * cosf(angle), z = 3.0f * sinf(angle);
+        const float at[2] = { x, z }, goal[2] = { -x, -z };
+        actors[i] = enter(s, i, at, goal, 0.5f + 0.05f * (float)i);
+    }
+}
+
+/* Their places and some joints, less the way that the origin has moved; drawing counts from near the eye. */
+static void step_mover(street *s, const noh_actor actors[MOVERS], const double moved[3],
+                       double at[MOVERS][1 + JOINTS_SHOWN][3])
+{
+    const float eye[3] = { (float)-moved[0], (float)(2.0 - moved[1]), (float)-moved[2] };
+    noh_stage_view view;
+    float origin[3];
+    (void)noh_crowd_step(s->crowd, CAST_STEP);
+    assert_int_equal(noh_walkers_step(s->walkers, s->crowd, s->cast.stage, &s->feet.ground, CAST_STEP, NULL), NOH_OK);
+    assert_int_equal(noh_stage_step(s->cast.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_walkers_near(s->walkers, s->cast.stage, eye), MOVERS / 2u);
+    noh_view_orbit(&view, eye, 0.5f, 0.3f, 4.0f, 640, 360);
+    assert_int_equal(noh_stage_frame_begin(s->cast.stage, &view, 1, NULL), NOH_OK);
+    assert_int_equal(noh_stage_frame_end(s->cast.stage, NULL), NOH_OK);
+    noh_stage_origin(s->cast.stage, origin);
+    for (uint32_t i = 0; i < MOVERS; i++) {
+        noh_place place;
+        assert_int_equal(noh_actor_place(s->cast.stage, actors[i], &place, NULL), NOH_OK);
+        for (int k = 0; k < 3; k++) at[i][0][k] = (double)place.position[k] + moved[k];
+        for (uint32_t j = 0; j < JOINTS_SHOWN; j++) {
+            float m[12];
+            const uint32_t joint = s->feet.rig.legs[j % 2u].points[2u * (j / 2u)].joint;
+            assert_int_equal(noh_stage_joint(s->cast.stage, actors[i], joint, m, NULL), NOH_OK);
+            for (int k = 0; k < 3; k++) at[i][1 + j][k] = (double)m[4 * k + 3] + (double)origin[k] + moved[k];
+        }
+    }
+}
+
+static double apart3(const double a[3], const double b[3])
+{
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* Under walkers of one of two streets the origin moves, there and back again. What shows is the same to a
+ * millimetre, and what noh_actor_place tells to a float of that distance. */
+static void the_origin_may_move(void **state)
+{
+    static const float ways[][3] = { { 4096.0f, 16.0f, -2048.0f },
+                                     { 100000.0f, 0.0f, -100000.0f },
+                                     { 1e6f, 0.0f, 0.0f } };
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    for (size_t w = 0; w < TEST_COUNT(ways); w++) {
+        static double a[MOVERS][1 + JOINTS_SHOWN][3], b[MOVERS][1 + JOINTS_SHOWN][3];
+        noh_actor here_actors[MOVERS], moved_actors[MOVERS];
+        double moved[3] = { 0.0, 0.0, 0.0 }, told = 0.0, shown = 0.0, way = 0.0;
+        const double none[3] = { 0.0, 0.0, 0.0 };
+        street here, moves;
+        open_mover(&here, here_actors);
+        open_mover(&moves, moved_actors);
+        for (int f = 0; f < 600; f++) {
+            if (f % 100 == 50) {
+                const float sign = f % 200 == 50 ? 1.0f : -1.0f;
+                const float by[3] = { sign * ways[w][0], sign * ways[w][1], sign * ways[w][2] },
+                            flat[2] = { by[0], by[2] };
+                noh_crowd_shift_origin(moves.crowd, flat);
+                noh_walkers_shift_origin(moves.walkers, by);
+                assert_int_equal(noh_stage_shift_origin(moves.cast.stage, by, NULL), NOH_OK);
+                moves.floor.distance -= by[1];
+                for (int k = 0; k < 3; k++) moved[k] += (double)by[k];
+            }
+            step_mover(&here, here_actors, none, a);
+            step_mover(&moves, moved_actors, moved, b);
+            for (uint32_t i = 0; i < MOVERS; i++) {
+                told = fmax(told, apart3(a[i][0], b[i][0]));
+                for (uint32_t j = 1; j <= JOINTS_SHOWN; j++) shown = fmax(shown, apart3(a[i][j], b[i][j]));
+                if (f == 599) way = fmax(way, apart3(a[i][0], none));
+            }
+        }
+        print_message("%.0f m: shown within %.3f mm, told within %.3f mm\n", (double)ways[w][0], 1000.0 * shown,
+                      1000.0 * told);
+        assert_true(way > 1.0);
+        assert_true(shown < 0.001);
+        assert_true(told < 1e-4 + (double)ways[w][0] / 8388608.0);
+        close_street(&here);
+        close_street(&moves);
+    }
+}
+
 static void what_walkers_cannot_use_is_refused(void **state)
 {
     street s;
@@ -757,6 +853,45 @@ static void who_is_pushed_falls_and_goes_on(void **state)
     close_street(&s);
 }
 
+/* With an origin that is 100 km away, walkers near a point fall there, their agents under them, and walk on; and they do
+ * when it is back again. */
+static void who_falls_far_away_goes_on(void **state)
+{
+    const float by[3] = { 100000.0f, 0.0f, -100000.0f }, flat[2] = { by[0], by[2] };
+    const float back[3] = { -by[0], 0.0f, -by[2] }, flat_back[2] = { back[0], back[2] };
+    noh_actor actors[COUNT];
+    street s;
+    (void)state;
+    if (getenv("NOH_WALKERS_PACK")) return;
+    open_street_of(&s, COUNT, 0, 1, DOLLS);
+    fill(&s, 1, actors);
+    for (uint32_t f = 0; f < 60; f++) frame(&s, CAST_STEP);
+    for (int home = 0; home < 2; home++) {
+        uint32_t up = 0, frames = 0;
+        noh_crowd_shift_origin(s.crowd, home ? flat_back : flat);
+        noh_walkers_shift_origin(s.walkers, home ? back : by);
+        assert_int_equal(noh_stage_shift_origin(s.cast.stage, home ? back : by, NULL), NOH_OK);
+        const float point[3] = { home ? 0.0f : -by[0], 1.2f, home ? 0.0f : -by[2] };
+        assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, point, 8.0f, 90.0f), DOLLS);
+        while (up < 60 && ++frames < 1500) {
+            up = tend(&s) ? 0 : up + 1u;
+            frame(&s, CAST_STEP);
+            for (uint32_t i = 0; i < COUNT; i++) {
+                if (noh_walkers_is_down(s.walkers, i)) assert_true(distance_of(&s, actors[i], i) < 0.21f);
+            }
+        }
+        assert_true(frames > 60 && frames < 1500);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            noh_place place;
+            assert_int_equal(noh_actor_place(s.cast.stage, actors[i], &place, NULL), NOH_OK);
+            assert_true(hypotf(place.position[0] - point[0], place.position[2] - point[2]) < 8.0f);
+            assert_true(fabsf(place.position[1]) < 0.01f && distance_of(&s, actors[i], i) <= 0.72f);
+            assert_int_equal(noh_actor_body(s.cast.stage, actors[i]), NOH_BODY_STANDS);
+        }
+    }
+    close_street(&s);
+}
+
 /* From its clips to the ground and back to its clips: no joint leaps, but for what it falls and gets up by. */
 static void it_gets_up_where_it_lies(void **state)
 {
@@ -839,11 +974,13 @@ int main(int argc, char **argv)
         cmocka_unit_test(feet_do_not_slide_in_a_crowd),
         cmocka_unit_test(walkers_are_the_same_for_any_number_of_jobs),
         cmocka_unit_test(the_nearest_have_their_feet_on_the_ground),
+        cmocka_unit_test(the_origin_may_move),
         cmocka_unit_test(what_walkers_cannot_use_is_refused),
         cmocka_unit_test(who_stands_turns),
         cmocka_unit_test(stops_and_turns_are_steps),
         cmocka_unit_test(nobody_turns_faster_than_asked),
         cmocka_unit_test(who_is_pushed_falls_and_goes_on),
+        cmocka_unit_test(who_falls_far_away_goes_on),
         cmocka_unit_test(it_gets_up_where_it_lies),
         cmocka_unit_test(who_is_dead_lies),
     };
