@@ -141,8 +141,9 @@ void noh_crowd_finish(noh_crowd *c, uint32_t rank)
     }
     *state = waited | (*state & ~CROWD_WAITED);
     if (c->obstacle_count) {
-        const uint32_t yields = CROWD_CONST(crowd_round, c, round)[item].yields;
-        *state = (*state & ~(0xffu << CROWD_YIELDS_SHIFT)) | yields << CROWD_YIELDS_SHIFT;
+        const crowd_round *m = CROWD_CONST(crowd_round, c, round) + item;
+        *state &= ~(0xffu << CROWD_YIELDS_SHIFT | 3u << CROWD_HAND_SHIFT);
+        *state |= (uint32_t)m->yields << CROWD_YIELDS_SHIFT | (uint32_t)m->mode << CROWD_HAND_SHIFT;
     }
     CROWD_ARRAY(vec2, c, velocity)[item] = velocity;
     CROWD_ARRAY(vec2, c, position)[item] = to;

@@ -22,6 +22,7 @@
 #define CROWD_WAITED 0xffu        /* of the state: steps */
 #define CROWD_FOLLOWS_SHIFT 8u    /* of the state: 1 and the flow field, of 8 bits */
 #define CROWD_YIELDS_SHIFT 16u    /* of the state: steps, of 8 bits */
+#define CROWD_HAND_SHIFT 24u      /* of the state: crowd_round.mode, of 2 bits */
 #define CROWD_ITEMS 0x0fffffffu   /* the rest */
 #define CROWD_FAST 1.5f           /* times the speed that an agent likes: the most that it is pushed to */
 
@@ -50,7 +51,7 @@ typedef struct crowd_round {
     uint8_t idle;  /* steps without coming nearer */
     uint8_t mode;  /* 0: goes by itself; 1, 2: keeps the wall to its left, right */
     uint8_t has_gone_round;
-    uint8_t yields; /* steps for which it makes way; the state has what it was before this step */
+    uint8_t yields; /* steps for which it makes way; the state has this and mode as they were before this step */
 } crowd_round;
 
 typedef struct crowd_cells {
@@ -253,6 +254,9 @@ vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
  * walked so. returns 0 where it is there */
 int noh_crowd_round(noh_crowd *c, const crowd_body *b, vec2 now, vec2 goal, float speed, vec2 *direction,
                     float *distance);
+/* Who has waited long at a wall, before one that stays there or came along it the other way, turns round: not both at
+ * once. */
+void noh_crowd_turn_round(noh_crowd *c, uint32_t rank, const crowd_runs *runs, uint32_t waited);
 
 /* ---- crowd_flow.c, crowd_follow.c ---- */
 

@@ -211,6 +211,7 @@ void noh_crowd_plan(noh_crowd *c, uint32_t rank, const crowd_runs *runs)
             const uint32_t yields = yield_of(c, rank, runs, waited);
             CROWD_ARRAY(crowd_round, c, round)[CROWD_ITEM(b)].yields = (uint8_t)yields;
             if (yields) direction = aside_of(c, b);
+            noh_crowd_turn_round(c, rank, runs, waited);
         }
         if (goes) wish = way_among(c, rank, runs, (float)waited, direction, speed);
         CROWD_ARRAY(vec2, c, plan[0])[rank] = v2_madd(now, BLEND, v2_sub(wish, now));

@@ -18,6 +18,7 @@
 #define PROBE 0.5f    /* radii that a direction has to be free for */
 #define PROGRESS 0.2f /* cosine of a way that gets nearer */
 #define TURN_STEPS 45u
+#define TURN_WITHIN 2.5f /* radii of both */
 #define ALIKE 1.25f
 #define TURN_S \
     0.7f /* what is walked ahead, of the speed that it has in that direction; half a second's is full speed */
@@ -108,20 +109,6 @@ static int past_ends(const noh_crowd *c, const crowd_body *b, crowd_round *m, ve
     return !m->has_gone_round;
 }
 
-/* Who has stood at a wall for long, before one that comes along it the other way, turns round: not both at once. */
-static void turn_round(const noh_crowd *c, const crowd_body *b, crowd_round *m)
-{
-    const uint32_t item = CROWD_ITEM(b);
-    const uint32_t patience = TURN_STEPS + (CROWD_CONST(uint32_t, c, id)[item] * 0x9e3779b9u >> 26);
-    if ((CROWD_CONST(uint32_t, c, state)[item] & CROWD_WAITED) < TURN_STEPS) {
-        m->idle = 0;
-    } else if (++m->idle > patience) {
-        m->idle = 0;
-        m->mode = (uint8_t)(HAND_LEFT + HAND_RIGHT - m->mode);
-        m->heading = v2(0.0f, 0.0f);
-    }
-}
-
 /* Nearer than where it began to walk along a wall, it lets go where it can go on. */
 static int lets_go(const noh_crowd *c, const crowd_body *b, crowd_round *m, vec2 to, float distance, float speed,
                    int is_free, vec2 *direction)
@@ -164,10 +151,43 @@ int noh_crowd_round(noh_crowd *c, const crowd_body *b, vec2 now, vec2 goal, floa
         begin(c, b, m, now, to, *distance, speed);
     }
     if (!m->mode) return 1;
-    turn_round(c, b, m);
     if (!along_wall(c, b, m, speed, direction)) return 0;
     sees = v2_dot(now, *direction) * TURN_S; /* round a corner it walks slowly, or it would miss a narrow door */
     sees = sees > CREEP * speed ? sees : CREEP * speed;
     if (sees < *distance) *distance = sees;
     return 1;
+}
+
+/* Whether somebody close ahead stays there, or waits and came along the wall the other way. Those ahead who go the same
+ * way are a queue: it moves on, as before a door. */
+static int is_met(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, const crowd_round *m)
+{
+    const crowd_body *bodies = CROWD_CONST(crowd_body, c, body), *b = &bodies[rank];
+    const uint16_t *names = CROWD_CONST(uint16_t, c, neighbor) + (size_t)rank * CROWD_NEIGHBORS;
+    const uint32_t other_hand = HAND_LEFT + HAND_RIGHT - (uint32_t)m->mode;
+    for (uint32_t k = 0; k < CROWD_NEIGHBORS && names[k] != CROWD_NO_NEIGHBOR; k++) {
+        const crowd_body *other = &bodies[noh_crowd_rank_of(runs, names[k])];
+        const uint32_t state = CROWD_CONST(uint32_t, c, state)[CROWD_ITEM(other)];
+        const vec2 to = v2_sub(other->at, b->at);
+        const float radii = TURN_WITHIN * (b->radius + other->radius);
+        const int comes = (state >> CROWD_HAND_SHIFT & 3u) == other_hand && state & CROWD_WAITED;
+        if (!comes && !(other->item & CROWD_HOLDS)) continue;
+        if (v2_dot(to, to) <= radii * radii && v2_dot(to, m->heading) > 0.0f) return 1;
+    }
+    return 0;
+}
+
+void noh_crowd_turn_round(noh_crowd *c, uint32_t rank, const crowd_runs *runs, uint32_t waited)
+{
+    const uint32_t item = CROWD_ITEM(CROWD_CONST(crowd_body, c, body) + rank);
+    const uint32_t patience = TURN_STEPS + (CROWD_CONST(uint32_t, c, id)[item] * 0x9e3779b9u >> 26);
+    crowd_round *m = CROWD_ARRAY(crowd_round, c, round) + item;
+    if (!m->mode) return;
+    if (waited < TURN_STEPS || !is_met(c, rank, runs, m)) {
+        m->idle = 0;
+    } else if (++m->idle > patience) {
+        m->idle = 0;
+        m->mode = (uint8_t)(HAND_LEFT + HAND_RIGHT - m->mode);
+        m->heading = v2(0.0f, 0.0f);
+    }
 }

@@ -110,7 +110,7 @@ static uint32_t hash_of(uint32_t jobs, uint32_t turn, uint32_t seconds)
 static void bits_are_those_of_every_processor(void **state)
 {
     const int is_long = getenv("NOH_LONG") != NULL;
-    const uint32_t seconds = is_long ? LONG : SHORT, wanted = is_long ? 0x06a20a1du : 0x9c070d3du;
+    const uint32_t seconds = is_long ? LONG : SHORT, wanted = is_long ? 0x61332ca1u : 0xc7344ad2u;
     (void)state;
     const uint32_t hash = hash_of(1, 0, seconds);
     print_message("after %u s: %08x\n", seconds, hash);

@@ -229,13 +229,68 @@ static void crowds_pass_through_a_door(void **state)
     }
 }
 
+/* Who waits in a queue along the wall of a door goes on waiting, and does not walk away. */
+static void a_queue_at_a_door_stays_there(void **state)
+{
+    const noh_crowd_obstacle walls[] = { WALL(-19, 0, -0.9f, 0), WALL(0.9f, 0, 19, 0) };
+    (void)state;
+    for (int shift = 0; shift < 2; shift++) {
+        noh_crowd *crowd = made(walls, 2, 160);
+        uint32_t out = 0;
+        for (uint32_t i = 0; i < 160u; i++) {
+            const float x = 0.7f * ((float)(i % 16u) - 7.5f) + 0.05f * (float)shift, half = 0.53f;
+            const float from[2] = { x, -1.5f - 0.7f * (float)(i / 16u) };
+            const float to[2] = { x < -half ? -half : x > half ? half : x, 0.5f };
+            put(crowd, i, from, to);
+        }
+        for (int step = 0; step < 30 * 40 && out < 160u; step++) {
+            noh_crowd_step(crowd, NOH_CROWD_STEP_TICKS);
+            for (uint32_t i = 0; i < 160u; i++) {
+                noh_crowd_agent a;
+                if (!noh_crowd_agent_stepped(crowd, i, &a)) continue;
+                if (fabsf(a.position[0]) > 9.0f) fail_msg("agent %u walks away, shift %d", i, shift);
+                if (a.position[1] < 0.0f) continue;
+                noh_crowd_remove(crowd, i);
+                out++;
+            }
+        }
+        if (out != 160u) fail_msg("%u out, shift %d", out, shift);
+        free(crowd);
+    }
+}
+
+/* Of two ways past a wall the shorter one is a gap in which somebody stands: all take the other. */
+static void who_stands_in_a_gap_is_walked_round(void **state)
+{
+    const noh_crowd_obstacle walls[] = { WALL(0, -3, 0, 3), WALL(0, 3.75f, 0, 9.75f) };
+    (void)state;
+    for (uint32_t count = 1; count < 6u; count += 2u) {
+        for (int o = 0; o < 8; o++) {
+            noh_crowd *crowd = made(walls, 2, count + 1u);
+            const noh_crowd_agent stands = { { 0, 3.375f }, { 0, 0 }, { 0, 3.375f }, 0.25f, 0.0f, 0, 100 };
+            assert_int_equal(noh_crowd_put(crowd, count, &stands, NULL), NOH_OK);
+            for (uint32_t i = 0; i < count; i++) {
+                const float x = 5.0f + 0.6f * (float)i, z = 0.5f * (float)o;
+                const float from[2] = { -x, z }, to[2] = { x, z };
+                put(crowd, i, from, to);
+            }
+            run(crowd, 60.0f);
+            for (uint32_t i = 0; i < count; i++) {
+                noh_crowd_agent a;
+                assert_true(noh_crowd_agent_stepped(crowd, i, &a));
+                if (a.position[0] < 0.3f) fail_msg("agent %u of %u, at %d: does not get past", i, count, o);
+            }
+            free(crowd);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_straight_wall_is_walked_round),
-        cmocka_unit_test(every_shape_is_walked_round),
-        cmocka_unit_test(goals_that_cannot_be_reached),
-        cmocka_unit_test(crowds_pass_through_a_door),
+        cmocka_unit_test(a_straight_wall_is_walked_round), cmocka_unit_test(every_shape_is_walked_round),
+        cmocka_unit_test(goals_that_cannot_be_reached),    cmocka_unit_test(crowds_pass_through_a_door),
+        cmocka_unit_test(a_queue_at_a_door_stays_there),   cmocka_unit_test(who_stands_in_a_gap_is_walked_round),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
