@@ -16,6 +16,7 @@
 
 #define ROUNDING 1.000004f /* more than the sums and roots below can lose */
 #define REACH_SAMPLES 64u  /* of each clip */
+#define NEAR_RADII 2.25f   /* of its sphere, about its centre: within, an eye is measured to the figure */
 
 static float larger(float a, float b)
 {
@@ -160,7 +161,7 @@ static float nearest_of_joints(const noh_stage_mesh *mesh, const noh_view_planes
     return nearest;
 }
 
-/* For an eye within its sphere. */
+/* For an eye within its sphere, or near it. */
 static float nearest_of_figure(const noh_stage_kind *k, uint32_t index, const noh_view_planes *v, const float world[12],
                                float *matrices)
 {
@@ -189,6 +190,14 @@ static float distance_to(const float eye[3], const float at[3])
     return noh_sqrt(noh_dot3(to, to));
 }
 
+/* A sphere holds more than the figure: next to it, its nearest point is near where the figure is not. So that who comes
+ * nearer is always shown larger, the sphere's nearest point gives way to the figure's from NEAR_RADII to 1 of its radii
+ * about it: neither is farther than what can be seen. */
+static float nearest_of_both(float of_sphere, float of_figure, float share)
+{
+    return of_figure > of_sphere ? of_sphere + (of_figure - of_sphere) * (share < 1.0f ? share : 1.0f) : of_sphere;
+}
+
 void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t index, const float own[4], float *matrices)
 {
     noh_stage_shown *shown = &s->shown[k->first_actor + index];
@@ -203,8 +212,11 @@ void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t ind
         float nearest = noh_dot3(w, sphere) + w[3] - sphere[3] * planes->w_slope, here;
         if (!(shown->views >> v & 1u) || planes->is_light) continue;
         if (planes->w_slope > 0.0f) {
-            nearest = outside < 0.0f ? nearest_of_figure(k, index, planes, shown->world, matrices)
-                                     : larger(nearest, outside * planes->corner * planes->w_slope);
+            const float share = (NEAR_RADII * sphere[3] - apart) / ((NEAR_RADII - 1.0f) * larger(sphere[3], FLT_MIN));
+            nearest = larger(nearest, outside * planes->corner * planes->w_slope);
+            if (share > 0.0f) {
+                nearest = nearest_of_both(nearest, nearest_of_figure(k, index, planes, shown->world, matrices), share);
+            }
         }
         here = planes->scale / larger(nearest, planes->near_w);
         shown->scale = larger(shown->scale, here);
