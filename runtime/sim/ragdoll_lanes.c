@@ -21,7 +21,9 @@
 
 #define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin past their limits come back */
 #define AT_ONCE 1e3f
-#define POINTS 3u /* of a body that touch the world: its two ends, and one between */
+#define DOWN 0.7f    /* a way that leads more steeply than 45 degrees */
+#define NO_WAY 1e12f /* more than the size of any box */
+#define POINTS 3u    /* of a body that touch the world: its two ends, and one between */
 
 typedef struct lane_body {
     lane3 p;
@@ -503,24 +505,33 @@ NOH_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
     return lanes_choose(lanes_less(sign, lanes_set(0.0f)), lanes_negate(size), size);
 }
 
-/* What a way out of one side of a box costs a point and the first body together: the side below or above 0. */
-NOH_ALWAYS_INLINE lanes cost_of_side(lanes at, lanes root, float half, lanes *below)
+/* What a way out of one side of a box costs a point and the first body together, or where the box holds the first body,
+ * that body alone: the side below or above 0. A box that holds it most likely stands on the ground: no way leads down.
+ * up: of the axis, in the world */
+NOH_ALWAYS_INLINE lanes cost_of_side(lanes at, lanes root, lanes held, float half, lanes up, lanes *below)
 {
-    const lanes h = lanes_set(half), zero = lanes_set(0.0f);
-    const lanes up = lanes_add(lanes_sub(h, at), lanes_max(lanes_sub(h, root), zero));
-    const lanes down = lanes_add(lanes_add(h, at), lanes_max(lanes_add(h, root), zero));
-    *below = lanes_less(down, up);
-    return lanes_min(down, up);
+    const lanes h = lanes_set(half), zero = lanes_set(0.0f), own = lanes_choose(held, root, at);
+    const lanes steep = lanes_set(DOWN), ground = lanes_set(NO_WAY);
+    lanes above = lanes_add(lanes_sub(h, own), lanes_max(lanes_sub(h, root), zero));
+    lanes under = lanes_add(lanes_add(h, own), lanes_max(lanes_add(h, root), zero));
+    above = lanes_add(above, lanes_choose(lanes_and(held, lanes_less(up, lanes_negate(steep))), ground, zero));
+    under = lanes_add(under, lanes_choose(lanes_and(held, lanes_less(steep, up)), ground, zero));
+    *below = lanes_less(under, above);
+    return lanes_min(under, above);
 }
 
-/* Out of a box that holds the point: by one side for all that is inside, or a doll would be caught around it. */
-static lanes out_with_root(const noh_obb *box, lane3 l, lane3 root, lane3 *n)
+/* Out of a box that holds the point: by one side for all that is inside, or a doll would be caught around it.
+ * up: in the box's space */
+static lanes out_with_root(const noh_obb *box, lane3 l, lane3 root, lane3 up, lane3 *n)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), less = lanes_set(-1.0f);
+    const lanes past = lanes_max(lanes_max(past_side(root.x, box->half[0]), past_side(root.y, box->half[1])),
+                                 past_side(root.z, box->half[2]));
+    const lanes held = lanes_less(past, zero);
     lane3 below;
-    const lanes x = cost_of_side(l.x, root.x, box->half[0], &below.x);
-    const lanes y = cost_of_side(l.y, root.y, box->half[1], &below.y);
-    const lanes z = cost_of_side(l.z, root.z, box->half[2], &below.z);
+    const lanes x = cost_of_side(l.x, root.x, held, box->half[0], up.x, &below.x);
+    const lanes y = cost_of_side(l.y, root.y, held, box->half[1], up.y, &below.y);
+    const lanes z = cost_of_side(l.z, root.z, held, box->half[2], up.z, &below.z);
     const lanes not_x = lanes_less(lanes_min(y, z), x), not_y = lanes_less(z, y);
     n->x = lanes_choose(not_x, zero, lanes_choose(below.x, less, one));
     n->y = lanes_choose(not_x, lanes_choose(not_y, zero, lanes_choose(below.y, less, one)), zero);
@@ -548,6 +559,7 @@ NOH_ALWAYS_INLINE lanes out_of_box(const noh_obb *box, lane3 l, lane3 *n, lanes 
 
 static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world, const lane_world *place)
 {
+    static const float world_up[3] = { 0.0f, 1.0f, 0.0f };
     for (uint32_t i = 0; i < world->box_count; i++) {
         const noh_obb *box = &world->boxes[i];
         const lane4 q = lane4_set(box->rotation);
@@ -565,8 +577,9 @@ static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_
             const lanes inside = lanes_choose(outside, lanes_set(0.0f), all);
             if (lanes_any(inside)) {
                 const lane3 root = lane4_rotate(lane4_conjugate(q), lane3_sub(place->root, centre));
+                const lane3 up = lane4_rotate(lane4_conjugate(q), lane3_set(world_up));
                 lane3 out;
-                depth = lanes_choose(outside, depth, out_with_root(box, l, root, &out));
+                depth = lanes_choose(outside, depth, out_with_root(box, l, root, up, &out));
                 n = lane3_choose(outside, n, out);
             }
             depth = lanes_sub(depth, lanes_set(c->radius));

@@ -807,6 +807,29 @@ static void what_starts_inside_is_not_thrown(void **state)
     }
 }
 
+/* A wall that stands on the ground and holds a doll or its middle: all of it leaves by one side, and not down. */
+static void what_starts_in_a_wall_leaves_by_one_side(void **state)
+{
+    static const float thick[] = { 0.2f, 0.5f, 1.0f };
+    noh_world world = ground_world(0.6f);
+    noh_obb wall = { { 0.0f, 1.5f, 0.0f }, { 4.0f, 1.5f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    (void)state;
+    world.boxes = &wall;
+    world.box_count = 1;
+    for (uint32_t i = 0; i < sizeof thick / sizeof *thick; i++) {
+        for (int to = -4; to <= 4; to++) {
+            outcome o;
+            wall.half[2] = thick[i];
+            wall.centre[2] = 0.02f * (float)to * thick[i];
+            o = start_in(&world, 0.0f);
+            print_message("wall of %.1f m, its middle %5.2f m away: up %.2f m/s, away %.2f m, inside %.4f m\n",
+                          2.0 * (double)thick[i], (double)wall.centre[2], (double)o.up, (double)o.away,
+                          (double)o.penetration);
+            assert_true(o.up < 2.5f && o.away < 2.0f + thick[i] && o.penetration < 0.01f);
+        }
+    }
+}
+
 /* A pose whose joints are past their limits, or a hinge off its axis, is brought back without a blow. */
 static void what_starts_bent_is_not_thrown(void **state)
 {
@@ -1047,6 +1070,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_falls_by_half_g_t_squared),
     cmocka_unit_test(a_shifted_space_goes_on),
     cmocka_unit_test(what_starts_inside_is_not_thrown),
+    cmocka_unit_test(what_starts_in_a_wall_leaves_by_one_side),
     cmocka_unit_test(what_starts_in_itself_is_not_thrown),
     cmocka_unit_test(what_starts_bent_is_not_thrown),
     cmocka_unit_test(a_push_is_spread),
