@@ -9,11 +9,12 @@
 
 #define ROUNDING 1.000002f
 
+/* out may be own. */
 void noh_stage_sphere_in_world(const float world[12], const float own[4], float out[4])
 {
-    for (int i = 0; i < 3; i++) {
-        out[i] = world[4 * i] * own[0] + world[4 * i + 1] * own[1] + world[4 * i + 2] * own[2] + world[4 * i + 3];
-    }
+    const float x = own[0], y = own[1], z = own[2];
+    for (int i = 0; i < 3; i++)
+        out[i] = world[4 * i] * x + world[4 * i + 1] * y + world[4 * i + 2] * z + world[4 * i + 3];
     out[3] = own[3] * noh_stretch(world) * ROUNDING;
 }
 
