@@ -495,6 +495,29 @@ static void pixels_a_metre_are_those_of_the_nearest_point(void **state)
     figure_close(&f);
 }
 
+/* Wherever it stands, and however it is turned, a camera before it sees it. */
+static void a_turned_actor_is_seen_anywhere(void **state)
+{
+    test_random r = test_random_from(3);
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.desc.kind_count = 1;
+    cast_make(&c, NULL);
+    for (uint32_t round = 0; round < 40; round++) {
+        const float at[3] = { test_random_float(&r, -400, 400), test_random_float(&r, -100, 100),
+                              test_random_float(&r, -400, 400) };
+        const float middle[3] = { at[0], at[1] + 1.0f, at[2] };
+        const noh_actor actor = come(&c, PUPPETS, at, test_random_float(&r, -3, 3), 1.0f);
+        noh_stage_view view;
+        noh_view_orbit(&view, middle, test_random_float(&r, 0, 6), 0.2f, 4.0f, 640, 480);
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_stats_of(c.stage)->seen, 1);
+        assert_int_equal(noh_stage_despawn(c.stage, actor, NULL), NOH_OK);
+    }
+    cast_close(&c);
+}
+
 /* Two figures that play the same: the nearer one is never coarser, from the first frame on; with the eye inside the
  * sphere of one and barely outside of the other's, too. */
 static void the_nearer_of_two_has_the_finer_level(void **state)
@@ -692,6 +715,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_weight_of_a_clip_takes_nobody_out_of_view),
         cmocka_unit_test(a_joint_that_travels_is_seen_where_it_is),
         cmocka_unit_test(pixels_a_metre_are_those_of_the_nearest_point),
+        cmocka_unit_test(a_turned_actor_is_seen_anywhere),
         cmocka_unit_test(the_nearer_of_two_has_the_finer_level),
         cmocka_unit_test(of_equal_sizes_the_nearer_has_the_slot),
         cmocka_unit_test(a_cut_gives_the_slot_to_whoever_is_nearer_now),
