@@ -88,6 +88,7 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(GetUniformBlockIndex, unsigned, (unsigned, const char *))                                             \
     X(UniformBlockBinding, void, (unsigned, unsigned, unsigned))                                            \
     X(Uniform1i, void, (int, int))                                                                          \
+    X(Uniform1f, void, (int, float))                                                                        \
     X(Uniform2i, void, (int, int, int))                                                                     \
     X(Uniform3i, void, (int, int, int, int))                                                                \
     X(Uniform4i, void, (int, int, int, int, int))                                                           \
@@ -174,7 +175,6 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(Uniform4ui, void, (int, unsigned, unsigned, unsigned, unsigned))                      \
     X(Uniform1uiv, void, (int, int, const unsigned *))                                      \
     X(Uniform4uiv, void, (int, int, const unsigned *))                                      \
-    X(Uniform1f, void, (int, float))                                                        \
     X(Uniform1fv, void, (int, int, const float *))                                          \
     X(UniformMatrix3fv, void, (int, int, unsigned char, const float *))                     \
     /* buffers */                                                                           \

@@ -10,7 +10,7 @@ const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEqua
 // By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r, m: a buffer, a vertex
 // array, a texture, a framebuffer, a renderbuffer, a sampler; n: a number.
 const mapped = {
-    AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform2i: 'unn',
+    AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform1f: 'un', Uniform2i: 'unn',
     Uniform3i: 'unnn', Uniform4i: 'unnnn', Uniform2f: 'unn', Uniform3f: 'unnn', Uniform4f: 'unnnn', BindBuffer: 'nb', BindBufferBase: 'nnb',
     BindBufferRange: 'nnbnn', BindVertexArray: 'v', BindTexture: 'nt', BindFramebuffer: 'nf', FramebufferTexture2D: 'nnntn',
     FramebufferTextureLayer: 'nntnn', BindRenderbuffer: 'nr', BindSampler: 'nm',
