@@ -66,8 +66,8 @@ void noh_decals_step(noh_decals *decals, uint32_t ticks)
 
 float noh_decal_alpha(const noh_decals *decals, uint32_t index)
 {
-    const noh_decal *d = &decals->decals[index];
     NOH_ASSERT(index < decals->capacity);
+    const noh_decal *d = &decals->decals[index];
     if (d->mesh == NOH_NONE) return 0.0f;
     if (!decals->hold_ticks || d->age_ticks <= decals->hold_ticks) return 1.0f;
     if (d->age_ticks - decals->hold_ticks >= decals->fade_ticks) return 0.0f;

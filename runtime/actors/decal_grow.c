@@ -140,10 +140,10 @@ static uint32_t collect(const noh_decal *decal, const noh_mesh *mesh, uint32_t t
 
 void noh_decal_grow(const noh_decal *decal, const noh_mesh *mesh, uint32_t triangle, noh_decal_patch *out)
 {
-    float reach = SPHERE_SQUARE * decal->size * decal->size;
-    uint32_t all, near_count;
     NOH_ASSERT(decal && mesh && out && (out->triangles || !out->room));
     NOH_ASSERT(triangle == NOH_NONE || triangle < mesh->header->index_count / 3u);
+    float reach = SPHERE_SQUARE * decal->size * decal->size;
+    uint32_t all, near_count;
     out->count = out->left_out = out->lone = 0;
     all = near_count = collect(decal, mesh, triangle, reach, out);
     for (int i = 0; i < SHRINKS_MAX && near_count > out->room; i++) {
@@ -170,10 +170,10 @@ static int has_corner(const noh_decal_patch *patch, const noh_mesh *mesh, uint32
 uint32_t noh_decal_again(const noh_decal *decal, const noh_decal_patch *before, const noh_mesh *mesh_before,
                          const noh_mesh *mesh)
 {
+    NOH_ASSERT(decal && before && mesh_before && mesh);
     const float reach = SPHERE_SQUARE * decal->size * decal->size, radius = noh_sqrt(reach);
     uint32_t best = NOH_NONE;
     float least = reach;
-    NOH_ASSERT(decal && before && mesh_before && mesh);
     for (uint32_t t = 0; t < mesh->header->index_count / 3u; t++) {
         const float *p[3];
         float square;

@@ -105,9 +105,9 @@ noh_stage_part noh_wig_part(const noh_wig *wig)
 
 void noh_wig_points(const noh_wig *wig, const void *state, float *points)
 {
+    NOH_ASSERT(wig && points);
     const noh_hair_desc *d = &wig->cut->desc;
     const wig_state *s = state;
-    NOH_ASSERT(wig && points);
     if (s && s->begun) {
         noh_hair_points((const noh_hair *)(const void *)(s + 1), d, points);
     } else {

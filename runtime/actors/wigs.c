@@ -244,10 +244,10 @@ const noh_wigs_body *noh_wigs_bodies(const noh_wigs *wigs, uint32_t *count)
 
 void noh_wigs_points(const noh_wigs *wigs, uint32_t body, float *points)
 {
+    NOH_ASSERT(wigs && points && body < wigs->body_count);
     const noh_wigs_body *b = &wigs->bodies[body];
     const noh_hair_desc *d = &wigs->desc.wig->cut->desc;
     const size_t count = (size_t)d->hair_count * d->point_count * 3u;
-    NOH_ASSERT(wigs && points && body < wigs->body_count);
     if (b->slot == NOH_NONE) {
         memcpy(points, d->rest, count * sizeof *points);
         return;

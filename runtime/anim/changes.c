@@ -116,9 +116,9 @@ static noh_result add(noh_change *table, uint32_t count, noh_change_target *targ
 noh_result noh_changes_add(noh_change *table, uint32_t count, noh_change_target *target, uint32_t track_count,
                            const noh_change_desc *desc, noh_error *error)
 {
+    NOH_ASSERT(table && target && desc && target->set && target->tracks && target->priority_blend);
     const char *what = bad_change(target, track_count, desc);
     noh_change c;
-    NOH_ASSERT(table && target && desc && target->set && target->tracks && target->priority_blend);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, desc->track, 0);
     }

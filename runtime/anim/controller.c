@@ -96,11 +96,11 @@ static void fill_head(noh_controller *c, const noh_controller_desc *d, layout l)
 noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_desc *desc, noh_controller **controller,
                                noh_error *error)
 {
+    NOH_ASSERT(desc && controller);
     const char *what = bad_desc(desc);
     noh_arena arena;
     noh_result result;
     layout l;
-    NOH_ASSERT(desc && controller);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -178,10 +178,10 @@ static int sync_fits(const noh_controller *c, const noh_clip_set *set, uint32_t 
 noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track_desc *desc,
                                 noh_error *error)
 {
+    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     noh_track started;
     noh_track *tracks = noh_controller_tracks(c);
     noh_result result;
-    NOH_ASSERT(c && desc && IS_SET_OF(c, set));
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
         return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
@@ -506,9 +506,9 @@ static int64_t next_event(const noh_controller *c, const noh_clip_set *set, int6
  * cut: the ticks at which something happens depend on the clock alone, never on where a step ends. */
 uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
+    NOH_ASSERT(c && IS_SET_OF(c, set));
     int64_t end = noh_clock_add(c->clock, ticks);
     delivery d = { NULL, NULL, NULL, NULL, 0, 0, 0 };
-    NOH_ASSERT(c && IS_SET_OF(c, set));
     NOH_VALIDATE((c->flags & STEPPING) || noh_controller_check(c, c->bytes, set, NULL) == NOH_OK);
     if (c->flags & STEPPING) {
         return 0; /* called by its own callback */

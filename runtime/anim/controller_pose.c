@@ -58,11 +58,11 @@ size_t noh_pose_scratch_size(const noh_clip_set *set, int inertial)
 noh_result noh_pose_scratch_init(void *memory, size_t bytes, const noh_clip_set *set, int inertial,
                                  noh_pose_scratch *scratch, noh_error *error)
 {
+    NOH_ASSERT(set && scratch);
     const char *what = noh_clip_set_excess(set);
     noh_arena arena;
     noh_result result = what ? noh_fail(error, NOH_ERR_ARG, what, 0, 0)
                              : noh_arena_open(&arena, memory, bytes, noh_pose_scratch_size(set, inertial), error);
-    NOH_ASSERT(set && scratch);
     if (result == NOH_OK) {
         carve(&arena, set, inertial, scratch);
     }
@@ -266,10 +266,10 @@ static const void *at(const noh_controller *c, uint32_t offset)
 
 void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transform *pose, float *floats)
 {
+    NOH_ASSERT(c && (!c->inertia_ticks || c->inertia_offset));
     int64_t elapsed = noh_clock_since(noh_clock_add(c->clock, -ago), c->inertia_start);
     float elapsed_s = (float)(elapsed < 0 ? 0 : elapsed) / (float)NOH_TICKS_PER_SECOND;
     float duration_s = (float)c->inertia_ticks / (float)NOH_TICKS_PER_SECOND;
-    NOH_ASSERT(c && (!c->inertia_ticks || c->inertia_offset));
     if (c->inertia_ticks && elapsed < (int64_t)c->inertia_ticks) {
         noh_inertia_apply(c->lod_joint_count, (const noh_inertia_joint *)at(c, c->inertia_offset), elapsed_s,
                           duration_s, pose);
@@ -331,8 +331,8 @@ static const char *bad_transition(const noh_controller *c, const noh_pose_scratc
 noh_result noh_controller_inertia_capture(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
                                           noh_error *error)
 {
-    const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
+    const char *what = bad_transition(c, scratch);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
@@ -358,8 +358,8 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
 noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch,
                                         uint32_t duration_ticks, noh_error *error)
 {
-    const char *what = bad_transition(c, scratch);
     NOH_ASSERT(c && set && scratch);
+    const char *what = bad_transition(c, scratch);
     what = what ? what : duration_ticks == 0 ? "duration_ticks is 0" : NULL;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);

@@ -106,10 +106,10 @@ static uint32_t keys_before(const noh_event_key *keys, uint32_t count, int64_t t
 
 int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passage *passage, int64_t *position_tick)
 {
+    NOH_ASSERT(passage && position_tick && (keys || !count));
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
-    NOH_ASSERT(passage && position_tick && (keys || !count));
     /* Every whole leg forwards contains every key, so this ends after three legs at most. */
     while (count && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
@@ -149,11 +149,11 @@ static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint3
 uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit,
                          noh_key_fn fn, void *user)
 {
+    NOH_ASSERT(passage && fn && (keys || !count));
     uint32_t passed = 0;
     span s = passage_span(passage);
     legs l = passage_legs(passage, s);
     leg g;
-    NOH_ASSERT(passage && fn && (keys || !count));
     while (count && passed < limit && next_leg(passage, s, &l, &g)) {
         uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
         passed += (g.descending ? pass_descending : pass_ascending)(keys, begin, end, &g, limit - passed, fn, user);

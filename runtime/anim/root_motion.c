@@ -274,8 +274,8 @@ noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32
 noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
                                int64_t from, int64_t to)
 {
-    uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
     NOH_ASSERT(set && track && clip < set->clip_count);
+    uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
     /* a ping-pong clip comes back to where it was, so only a repeating one adds up its passes */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop)
                                              : 0;

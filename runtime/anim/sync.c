@@ -32,10 +32,10 @@ static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m,
  * all clips of a group. */
 noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, int64_t position)
 {
+    NOH_ASSERT(set && clip && clip->duration_ticks > 0);
     uint32_t count = interval_count(clip), first = canonical(set, clip), n = 0;
     int64_t rest = noh_time_clip(position, clip->duration_ticks, NOH_LOOP_REPEAT), begin, end;
     noh_phase p;
-    NOH_ASSERT(set && clip && clip->duration_ticks > 0);
     if (rest < marker_position(set, clip, 0)) {
         rest += noh_position_of(clip->duration_ticks); /* before the first marker: the last interval, across the seam */
     }
@@ -60,8 +60,8 @@ int64_t noh_sync_position(const noh_clip_set *set, const noh_clip_entry *clip, n
 
 int noh_sync_fits(const noh_clip_set *set, const noh_clip_entry *a, const noh_clip_entry *b)
 {
-    uint32_t first_a = canonical(set, a), first_b = canonical(set, b);
     NOH_ASSERT(set && a && b);
+    uint32_t first_a = canonical(set, a), first_b = canonical(set, b);
     if (a->marker_count != b->marker_count) {
         return 0;
     }
@@ -109,8 +109,8 @@ static int64_t nearest(const noh_clip_set *set, const noh_clip_entry *m, noh_pha
 
 void noh_sync_join(const noh_clip_set *set, noh_track *track, const noh_track *leader)
 {
-    noh_phase phase = noh_sync_phase(set, clip_of(set, leader), leader->position);
     NOH_ASSERT(set && track && leader && track != leader);
+    noh_phase phase = noh_sync_phase(set, clip_of(set, leader), leader->position);
     noh_track_place(track, clip_of(set, track), nearest(set, clip_of(set, track), phase, track->position));
 }
 

@@ -42,9 +42,9 @@ static uint32_t turns(const noh_track *track, const noh_clip_entry *clip)
 
 noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_track_desc *desc, noh_error *error)
 {
+    NOH_ASSERT(track && set && desc);
     const char *what = bad_desc(set, desc);
     const noh_clip_entry *m;
-    NOH_ASSERT(track && set && desc);
     what = what ? what : bad_sync(set, desc);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
@@ -90,10 +90,10 @@ noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip
 
 int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, int64_t ticks)
 {
+    NOH_ASSERT(track && set && track->clip < set->clip_count && ticks >= 0);
     const noh_clip_entry *m = &set->clips[track->clip];
     noh_passage p;
     int64_t at, way, speed = track->speed_now < 0 ? -track->speed_now : track->speed_now;
-    NOH_ASSERT(track && set && track->clip < set->clip_count && ticks >= 0);
     if (track->mode == NOH_TRACK_OFF || speed == 0 || m->event_count == 0 || ticks == 0) {
         return 0;
     }
@@ -110,8 +110,8 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
 
 int noh_track_ended(const noh_track *track, const noh_clip_entry *clip)
 {
-    int64_t end = track->speed_now < 0 ? 0 : noh_position_of(clip->duration_ticks);
     NOH_ASSERT(track && clip);
+    int64_t end = track->speed_now < 0 ? 0 : noh_position_of(clip->duration_ticks);
     return track->loop == NOH_LOOP_ONCE && track->position == end && !track->placed;
 }
 
@@ -124,11 +124,11 @@ float noh_track_cover(const noh_track *track)
 
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago)
 {
+    NOH_ASSERT(track && clip);
     noh_loop loop = (noh_loop)track->loop;
     /* a seek that fires keys may travel billions of passes in its tick: keep the product in range */
     const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1);
     int64_t speed = track->speed_now > most ? most : track->speed_now < -most ? -most : track->speed_now;
     int64_t position = noh_time_advance(track->position, -speed, ago, clip->duration_ticks, loop);
-    NOH_ASSERT(track && clip);
     return (uint32_t)(noh_time_clip(position, clip->duration_ticks, loop) / 65536);
 }

@@ -466,8 +466,8 @@ uint32_t noh_clip_bank_find(const noh_clip_bank *bank, const char *name)
 
 int noh_clip_bank_moves(const noh_clip_bank *bank, uint32_t index, uint32_t group)
 {
-    const bank_clip *clip = &bank->bound[index];
     NOH_ASSERT(index < bank->clips.clip_count && group < bank->group_count);
+    const bank_clip *clip = &bank->bound[index];
     for (uint32_t i = 0; i < clip->float_runs; i++) {
         if (clip->floats[i].to == bank->groups[group].first && clip->floats[i].width == bank->groups[group].width) {
             return 1;

@@ -37,8 +37,8 @@ noh_result noh_arena_open(noh_arena *arena, void *memory, size_t bytes, size_t n
 
 noh_arena noh_arena_over(void *memory, size_t bytes)
 {
-    noh_arena arena = { (uint8_t *)memory, memory ? bytes : 0, 0 };
     NOH_ASSERT(!misalignment(memory));
+    noh_arena arena = { (uint8_t *)memory, memory ? bytes : 0, 0 };
     return arena;
 }
 

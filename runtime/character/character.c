@@ -42,8 +42,8 @@ static layout layout_of(const noh_character_desc *d, size_t controller_bytes)
 
 size_t noh_character_size(const noh_character_desc *desc)
 {
-    size_t controller_bytes = noh_controller_size(&desc->controller);
     NOH_ASSERT(desc);
+    size_t controller_bytes = noh_controller_size(&desc->controller);
     return controller_bytes ? layout_of(desc, controller_bytes).bytes : 0;
 }
 
@@ -65,13 +65,13 @@ static void fill_head(noh_character *ch, const noh_character_desc *d, const layo
 noh_result noh_character_init(void *memory, size_t bytes, const noh_character_desc *desc, noh_character **character,
                               noh_error *error)
 {
+    NOH_ASSERT(desc && character);
     size_t controller_bytes = noh_controller_size(&desc->controller);
     noh_controller *controller;
     noh_character *ch = (noh_character *)memory;
     noh_arena arena;
     noh_result result;
     layout l;
-    NOH_ASSERT(desc && character);
     if (controller_bytes == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* which names the field */
     }
@@ -120,12 +120,12 @@ size_t noh_character_scratch_size(const noh_character_desc *desc)
 noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_character_desc *desc,
                                       noh_character_scratch *scratch, noh_error *error)
 {
+    NOH_ASSERT(desc && scratch);
     size_t need = noh_character_scratch_size(desc), pose_bytes;
     noh_arena arena;
     noh_result result;
     noh_controller *controller;
     void *pose_memory;
-    NOH_ASSERT(desc && scratch);
     if (need == 0) {
         return noh_controller_init(NULL, 0, &desc->controller, &controller, error);
     }
@@ -221,10 +221,10 @@ noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const 
 noh_due noh_character_look_given(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
                                  float pixels_per_metre, const float *update_error_m)
 {
+    NOH_ASSERT(ch && table && settings);
     noh_controller *c = noh_character_controller(ch);
     const int64_t clock = noh_character_clock(ch);
     uint32_t joints;
-    NOH_ASSERT(ch && table && settings);
     noh_lod_choose(&ch->lod, table, settings, pixels_per_metre, update_error_m,
                    noh_clock_add(clock, -(int64_t)ch->time.behind_ticks));
     joints = noh_lod_joint_count(&ch->lod, table);
@@ -289,12 +289,12 @@ int64_t noh_character_pose_clock(const noh_character *ch)
 
 void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_character_scratch *scratch)
 {
+    NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
     const noh_controller *c = controller_of(ch);
     /* The pose of the next update is found by playing a copy of the controller to that tick, without firing callbacks.
      */
     noh_time_update u = noh_time_lod_update(&ch->time);
     int64_t ahead = noh_clock_since(u.pose_clock, noh_character_clock(ch));
-    NOH_ASSERT(ch && set && scratch && set->joint_count == ch->joint_count && set->float_count == ch->float_count);
     if (u.keep < 1.0f) {
         keep_shown(ch, u.pose ^ 1u, u.keep);
     }
@@ -354,11 +354,11 @@ void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_
 
 const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count)
 {
+    NOH_ASSERT(ch->time.posed && joint_count <= ch->joint_count);
     uint32_t to = ch->time.to_pose;
     const float *last = at(ch, ch->palette_offsets[to]);
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(mixed || part >= 1.0f);
-    NOH_ASSERT(ch->time.posed && joint_count <= ch->joint_count);
     if (part >= 1.0f) {
         return last;
     }
@@ -368,11 +368,11 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
 
 const float *noh_character_floats(const noh_character *ch, float *mixed)
 {
+    NOH_ASSERT(ch->time.posed);
     uint32_t to = ch->time.to_pose;
     const float *last = pose_floats(ch, to);
     float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(mixed || part >= 1.0f || !ch->float_count);
-    NOH_ASSERT(ch->time.posed);
     if (part >= 1.0f) {
         return last;
     }
@@ -382,18 +382,18 @@ const float *noh_character_floats(const noh_character *ch, float *mixed)
 
 void noh_character_sphere(const noh_character *ch, float sphere[4])
 {
-    uint32_t to = ch->time.to_pose;
-    float part = noh_time_lod_fraction(&ch->time);
     NOH_ASSERT(sphere);
     NOH_ASSERT(ch->time.posed);
+    uint32_t to = ch->time.to_pose;
+    float part = noh_time_lod_fraction(&ch->time);
     mix_floats(ch->spheres[to ^ 1u], ch->spheres[to], part, 4, sphere);
 }
 
 float noh_character_stretch(const noh_character *ch)
 {
+    NOH_ASSERT(ch->time.posed);
     uint32_t to = ch->time.to_pose;
     float part = noh_time_lod_fraction(&ch->time), stretch;
-    NOH_ASSERT(ch->time.posed);
     mix_floats(&ch->stretches[to ^ 1u], &ch->stretches[to], part, 1, &stretch);
     return stretch;
 }

@@ -71,12 +71,12 @@ static int bad_counts(const noh_skeleton *s, const uint32_t *counts, uint32_t le
 noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip,
                                  const uint32_t *counts, uint32_t level_count, float *error_m, noh_error *error)
 {
+    NOH_ASSERT(probe && counts && error_m);
     const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_arena arena;
     uint32_t duration;
     work w;
     noh_result result;
-    NOH_ASSERT(probe && counts && error_m);
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
         return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent",
                         clip, 0);

@@ -38,7 +38,8 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
 {
     double sum = 0.0;
     NOH_ASSERT(s);
-    if (!(s->pixels >= 0.0f && s->pixels <= NOH_PIXELS_MAX)) return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
+    if (!(s->pixels >= 0.0f && s->pixels <= NOH_PIXELS_MAX))
+        return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_LOD_KIND_COUNT; i++) {
         if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f))
             return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
@@ -239,11 +240,11 @@ static void forget_levels(noh_lod *d)
 void noh_lod_choose(noh_lod *d, const noh_lod_table *t, const noh_lod_settings *s, float pixels_per_metre,
                     const float *update_error_m, int64_t clock)
 {
+    NOH_ASSERT(d && t && s && pixels_per_metre >= 0.0f);
     double quality_m = quality_metres(s, pixels_per_metre);
     errors mesh = errors_of(t, NOH_LOD_MESH), joints = errors_of(t, NOH_LOD_JOINTS);
     errors influences = errors_of(t, NOH_LOD_INFLUENCES), rates = rate_errors(t, update_error_m);
     float coarser;
-    NOH_ASSERT(d && t && s && pixels_per_metre >= 0.0f);
     NOH_VALIDATE(noh_lod_table_check(t, NULL) == NOH_OK);
     NOH_VALIDATE(noh_lod_settings_check(s, NULL) == NOH_OK);
     if (!d->started) {
@@ -274,8 +275,8 @@ void noh_lod_set_limit(noh_lod *d, uint32_t level)
 
 uint32_t noh_lod_finest(const noh_lod *d)
 {
-    uint8_t finest = d->mesh < d->mesh_before ? d->mesh : d->mesh_before;
     NOH_ASSERT(d);
+    uint8_t finest = d->mesh < d->mesh_before ? d->mesh : d->mesh_before;
     return d->mesh_wanted < finest ? d->mesh_wanted : finest;
 }
 
@@ -289,10 +290,10 @@ void noh_lod_cut(noh_lod *d)
 
 void noh_lod_set_mesh(noh_lod *d, const noh_lod_table *t, uint32_t level, float pixels_per_metre)
 {
+    NOH_ASSERT(d && t);
     static const noh_lod none;
     const uint32_t last = t->mesh_level_count ? t->mesh_level_count - 1u : 0;
     const uint32_t first = t->mesh_level_first < last ? t->mesh_level_first : last;
-    NOH_ASSERT(d && t);
     *d = none;
     d->mesh = d->mesh_before = (uint8_t)(level < first ? first : level < last ? level : last);
     d->error_m = t->mesh_level_count ? t->meshes[d->mesh].error_m : 0.0f;
@@ -301,9 +302,9 @@ void noh_lod_set_mesh(noh_lod *d, const noh_lod_table *t, uint32_t level, float 
 
 float noh_lod_fade(const noh_lod *d, int64_t clock)
 {
+    NOH_ASSERT(d);
     int64_t since = noh_clock_since(clock, d->fade_start);
     float x;
-    NOH_ASSERT(d);
     if (since >= (int64_t)d->fade_ticks) {
         return 1.0f;
     }
@@ -345,9 +346,9 @@ uint32_t noh_lod_joint_count(const noh_lod *d, const noh_lod_table *t)
 
 uint32_t noh_lod_influence_count(const noh_lod *d, const noh_lod_table *t)
 {
+    NOH_ASSERT(d && t && (!t->influence_level_count || d->influences < t->influence_level_count));
     uint32_t used = t->influence_level_count ? t->influences[d->influences].influence_count : 0;
     uint32_t stored = t->mesh_level_count ? t->meshes[d->mesh].influence_count : 0;
-    NOH_ASSERT(d && t && (!t->influence_level_count || d->influences < t->influence_level_count));
     return used == 0 || (stored != 0 && stored < used) ? stored : used;
 }
 

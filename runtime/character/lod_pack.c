@@ -248,12 +248,12 @@ static void fill(const noh_lod_pack_desc *desc, const source *s, parts *p, noh_l
 noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc *desc, noh_lod_pack *lod,
                              noh_error *error)
 {
+    NOH_ASSERT(desc && lod);
     noh_arena arena;
     noh_result result;
     source s;
     parts p;
     const char *what = resolve(desc, &s);
-    NOH_ASSERT(desc && lod);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

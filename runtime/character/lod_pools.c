@@ -116,12 +116,12 @@ static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
 noh_result noh_lod_pools_init(void *memory, size_t bytes, const noh_lod_pools_desc *desc, noh_lod_pools **pools,
                               noh_error *error)
 {
+    NOH_ASSERT(desc && pools);
     noh_arena arena;
     noh_result result;
     noh_lod_pools *p;
     uint32_t slots = 0;
     const char *what = bad_field(desc, &slots);
-    NOH_ASSERT(desc && pools);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

@@ -96,8 +96,8 @@ static uint32_t visibility_steps(float visibility)
 
 void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks, float visibility, uint32_t cost)
 {
-    noh_schedule_item *item = &s->items[s->count];
     NOH_ASSERT(s && s->order == AS_OFFERED);
+    noh_schedule_item *item = &s->items[s->count];
     s->late_ticks = late_ticks > s->late_ticks ? late_ticks : s->late_ticks;
     s->late_high_water = late_ticks > s->late_high_water ? late_ticks : s->late_high_water;
     if (s->count == s->capacity) {
@@ -160,9 +160,9 @@ uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cos
 
 uint32_t noh_cost_ns(const noh_cost_weights *w, uint32_t joints, uint32_t pairs, uint32_t vertices)
 {
+    NOH_ASSERT(w);
     double cost = (double)w->per_instance + (double)w->per_joint * joints + (double)w->per_pair * pairs +
                   (double)w->per_vertex * vertices;
-    NOH_ASSERT(w);
     if (!(cost > 1.0)) {
         return 1;
     }

@@ -51,11 +51,11 @@ int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float 
  * comes first, joint by joint, and the product follows where it is still to be made. */
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices)
 {
+    NOH_ASSERT(ch->time.posed && skin && matrices);
     const uint32_t to = ch->time.to_pose;
     const float *source = noh_character_pose_palette(ch, to ^ 1u), *target = noh_character_pose_palette(ch, to);
     const float part = noh_time_lod_fraction(&ch->time);
     const int multiplied = (int)(ch->multiplied >> to & 1u);
-    NOH_ASSERT(ch->time.posed && skin && matrices);
     NOH_ASSERT(part >= 1.0f || (int)(ch->multiplied >> (to ^ 1u) & 1u) == multiplied);
     for (size_t k = 0; k < skin->header->joint_count; k++) {
         const size_t joint = skin->joints[k];

@@ -31,8 +31,8 @@ static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
 {
-    const int64_t shown = noh_clock_add(clock, -(int64_t)t->behind_ticks), ticks = noh_clock_since(shown, t->clock);
     NOH_ASSERT(t && (unsigned)rate < NOH_UPDATE_RATE_COUNT);
+    const int64_t shown = noh_clock_add(clock, -(int64_t)t->behind_ticks), ticks = noh_clock_since(shown, t->clock);
     t->frame_ticks = ticks < 0 ? 0 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
     t->clock = shown;
     t->chosen_rate = (uint8_t)rate;
@@ -43,8 +43,8 @@ void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
 
 noh_due noh_time_lod_due(const noh_time_lod *t)
 {
-    int unseen = t->frame_ticks > NOH_TIME_LOD_UNSEEN_TICKS;
     NOH_ASSERT(t);
+    int unseen = t->frame_ticks > NOH_TIME_LOD_UNSEEN_TICKS;
     if (!t->posed || (unseen && t->clock > t->to_clock)) {
         return NOH_DUE_AT_ONCE;
     }
@@ -53,8 +53,8 @@ noh_due noh_time_lod_due(const noh_time_lod *t)
 
 uint32_t noh_time_lod_late(const noh_time_lod *t)
 {
-    int64_t late = noh_clock_since(t->clock, t->due_clock);
     NOH_ASSERT(t);
+    int64_t late = noh_clock_since(t->clock, t->due_clock);
     return late < 0 || !t->posed ? 0 : late > UINT32_MAX ? UINT32_MAX : (uint32_t)late;
 }
 
@@ -115,9 +115,9 @@ static noh_time_update update_ahead(noh_time_lod *t, uint32_t period)
 
 noh_time_update noh_time_lod_update(noh_time_lod *t)
 {
+    NOH_ASSERT(t->to_pose < 2u);
     uint32_t period = noh_update_period((noh_update_rate)t->chosen_rate);
     int exact = noh_time_lod_due(t) == NOH_DUE_AT_ONCE;
-    NOH_ASSERT(t->to_pose < 2u);
     if (t->frame_ticks >= period) {
         period = 0;
         exact |= t->behind_ticks == 0;
@@ -129,8 +129,8 @@ noh_time_update noh_time_lod_update(noh_time_lod *t)
 
 float noh_time_lod_fraction(const noh_time_lod *t)
 {
-    int64_t since = noh_clock_since(t->clock, t->from_clock), span = noh_clock_since(t->to_clock, t->from_clock);
     NOH_ASSERT(t);
+    int64_t since = noh_clock_since(t->clock, t->from_clock), span = noh_clock_since(t->to_clock, t->from_clock);
     return since >= span || span <= 0 ? 1.0f : since > 0 ? (float)since / (float)span : 0.0f;
 }
 

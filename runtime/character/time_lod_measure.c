@@ -39,11 +39,11 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
 noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe *probe, uint32_t clip, float *error_m,
                                 noh_error *error)
 {
+    NOH_ASSERT(probe && error_m);
     const char *what = probe->joint_radius_m ? noh_probe_fault(probe, clip) : "probe: joint_radius_m is NULL";
     noh_result result;
     noh_arena arena;
     noh_rate_work w;
-    NOH_ASSERT(probe && error_m);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, clip, 0);
     }

@@ -490,8 +490,8 @@ void noh_clip_cache_begin_frame(noh_clip_cache *cache)
  */
 static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
-    uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
     NOH_ASSERT(tracks <= cache->clips[clip].clip->info.track_count);
+    uint32_t s = cache->cached_of[cache->clips[clip].first + segment];
     if (s == NOH_CLIP_NOT_CACHED) {
         s = find_room(cache, clip, NOH_CLIP_NOT_CACHED, 0);
         if (s == NOH_CLIP_NOT_CACHED) return 0;

@@ -140,11 +140,11 @@ static void decode_track(noh_bits *b, noh_bits *high, const noh_clip *clip, cons
 void noh_clip_decode(const noh_clip *clip, const noh_clip_basis *basis, noh_clip_cursor *cursor, uint32_t track_end,
                      uint8_t *frames)
 {
+    NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
+    NOH_ASSERT(basis->frames == noh_clip_segment_frames(clip, cursor->segment));
     const uint32_t rotation_bytes = clip->info.flags & NOH_CLIP_FLAG_WIDE ? ROTATION_WIDE : ROTATION_NARROW;
     const uint32_t reads_high = cursor->high && !basis->halved;
     noh_bits b = noh_bits_over(clip->bytes, 0, clip->segment_offsets[cursor->segment + 1u]), high = b;
-    NOH_ASSERT(track_end <= clip->info.track_count && cursor->segment < clip->info.segment_count);
-    NOH_ASSERT(basis->frames == noh_clip_segment_frames(clip, cursor->segment));
     noh_bits_seek(&b, cursor->position);
     if (reads_high) {
         noh_bits_seek(&high, cursor->high);

@@ -145,11 +145,11 @@ static void move(const noh_dual_quaternion *q, noh_vertex *vertex)
 void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                           uint32_t index, noh_vertex *out)
 {
+    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
     uint32_t places[NOH_INFLUENCES_MAX];
     float weights[NOH_INFLUENCES_MAX];
     uint32_t count = noh_mesh_influences(mesh, index, places, weights);
     noh_dual_quaternion sum;
-    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
     blend(joints, places, weights, count, &sum);
     if (layers) {
         noh_morph_vertex(mesh, layers, index, out);
@@ -170,12 +170,12 @@ void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joi
 void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
                          float out[3])
 {
+    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
     uint32_t places[NOH_INFLUENCES_MAX];
     float weights[NOH_INFLUENCES_MAX];
     const uint32_t count = noh_mesh_influences(mesh, index, places, weights);
     noh_dual_quaternion sum;
     noh_vertex vertex;
-    NOH_ASSERT(joints && out && mesh->header->skin != NOH_NONE);
     blend(joints, places, weights, count, &sum);
     noh_mesh_vertex(mesh, index, &vertex);
     memcpy(vertex.position, p, sizeof vertex.position);

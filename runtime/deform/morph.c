@@ -261,11 +261,11 @@ static const uint32_t *delta_at(const noh_mesh *mesh, const noh_target *t, uint3
 
 void noh_morph_position_by(const noh_mesh *mesh, const float *weights, uint32_t index, float out[3])
 {
+    NOH_ASSERT(mesh && weights && out);
     const uint32_t texel = (uint32_t)noh_mesh_accumulation_texel(mesh, index);
     const uint32_t x = texel & ((1u << mesh->header->morph_width_log2) - 1u);
     const uint32_t y = texel >> mesh->header->morph_width_log2;
     float sum[3] = { 0.0f, 0.0f, 0.0f };
-    NOH_ASSERT(mesh && weights && out);
     for (uint32_t t = 0; texel < mesh->header->touched_count && t < mesh->header->target_count; t++) {
         const noh_target *target = &mesh->targets[t];
         const uint32_t *words = weights[t] != 0.0f ? delta_at(mesh, target, x, y) : NULL;

@@ -127,8 +127,8 @@ static void finish_one(const noh_mesh *mesh, const noh_morph_layers *layers, uin
 void noh_morph_finish_scalar(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count,
                              void *out)
 {
-    const uint32_t stride = noh_morph_finished_stride(mesh);
     NOH_ASSERT(first <= mesh->header->vertex_count && count <= mesh->header->vertex_count - first && (out || !count));
+    const uint32_t stride = noh_morph_finished_stride(mesh);
     for (uint32_t i = 0; i < count; i++) {
         finish_one(mesh, layers, first + i, noh_mesh_accumulation_texel(mesh, first + i),
                    (uint8_t *)out + (size_t)i * stride);

@@ -76,9 +76,9 @@ static int is_whole(const noh_mesh *mesh, const group *g)
 
 uint32_t noh_correctives_bind(const noh_mesh *mesh, noh_corrective_term *terms, uint32_t term_max)
 {
+    NOH_ASSERT(mesh && (terms || !term_max));
     const noh_pack *pack = mesh->pack;
     uint32_t count = 0;
-    NOH_ASSERT(mesh && (terms || !term_max));
     for (group g = group_from(pack, 0); g.first < g.end; g = group_from(pack, g.end)) {
         if (!is_whole(mesh, &g)) continue;
         for (uint32_t row = g.first; row < g.end; row++, count++) {

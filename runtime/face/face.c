@@ -89,9 +89,9 @@ static void look_ahead(noh_face *face, const noh_face_desc *desc)
 
 noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t seed, uint32_t flags, noh_error *error)
 {
+    NOH_ASSERT(face && desc);
     uint64_t where = 0;
     const char *what = bad_desc(desc, &where);
-    NOH_ASSERT(face && desc);
     if (what || flags > NOH_FACE_FLAGS) {
         return noh_fail(error, NOH_ERR_ARG, what ? what : "flags of a face: unknown bits", where, 0);
     }
@@ -108,8 +108,8 @@ noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t see
 
 void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flags)
 {
-    const uint32_t before = face->flags;
     NOH_ASSERT(face && desc && flags <= NOH_FACE_FLAGS);
+    const uint32_t before = face->flags;
     if (flags & (NOH_FACE_CALM | NOH_FACE_NO_WANDER)) memset(face->away, 0, sizeof face->away);
     if (flags & NOH_FACE_CALM) memset(face->tremor, 0, sizeof face->tremor);
     face->flags = (uint8_t)flags;
@@ -372,9 +372,9 @@ noh_result noh_face_feel(noh_face *face, noh_emotion emotion, float amount, uint
 
 void noh_face_set_activity(noh_face *face, const noh_face_desc *desc, noh_activity activity)
 {
+    NOH_ASSERT(face && desc && (unsigned)activity < NOH_ACTIVITY_COUNT);
     const uint32_t now = (uint32_t)face->clock;
     float before, after;
-    NOH_ASSERT(face && desc && (unsigned)activity < NOH_ACTIVITY_COUNT);
     if (activity == face->activity) {
         return;
     }

@@ -56,8 +56,8 @@ void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float r
 
 void noh_lighting_pack_rest(const noh_lighting *lighting, float rows[NOH_SH_COUNT_MAX][4])
 {
-    const noh_light *rest = &lighting->rest;
     NOH_ASSERT(lighting && rows);
+    const noh_light *rest = &lighting->rest;
     memset(rows, 0, NOH_SH_COUNT_MAX * sizeof *rows);
     for (uint32_t l = 0, i = 0; l < rest->order; l++) {
         for (; i < NOH_SH_COUNT(l + 1u); i++) {

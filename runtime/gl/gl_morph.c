@@ -289,9 +289,9 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
 
 void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh)
 {
+    NOH_ASSERT(morph->table_count > morph->mesh_count);
     const uint32_t of_tables = morph->meshes[morph->meshes[0].owner].mesh.header->level;
     const uint32_t finest = mesh->header->level > of_tables ? mesh->header->level : of_tables;
-    NOH_ASSERT(morph->table_count > morph->mesh_count);
     morph->source = noh_mesh_at_lod(mesh, finest);
     for (uint32_t i = 0; i < morph->mesh_count; i++) {
         noh_gl_morph_mesh *own = &morph->meshes[i];

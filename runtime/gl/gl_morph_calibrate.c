@@ -68,11 +68,11 @@ noh_result noh_gl_morph_calibrate(void *memory, size_t bytes, const noh_gl_devic
                                   const noh_gl_morph_desc *desc, noh_gl_clock clock, void *user, uint64_t budget_ns,
                                   noh_gl_morph_times *times, noh_error *error)
 {
+    NOH_ASSERT(device && desc && clock && times);
     const float share = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
     uint64_t need;
     noh_arena arena;
     noh_result result;
-    NOH_ASSERT(device && desc && clock && times);
     result = noh_gl_morph_calibrate_size(desc, device->caps, &need, error);
     if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)need, error);
     memset(times, 0, sizeof *times);

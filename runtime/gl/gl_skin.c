@@ -57,8 +57,8 @@ static void send(noh_gl_skin *skin, const span *changed)
 /* Write rows that differ from what is there. */
 static void put_rows(const noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count, span *changed)
 {
-    float *own = skin->rows + 4u * (size_t)row;
     NOH_ASSERT((uint64_t)row + count <= skin->plan.texel_count);
+    float *own = skin->rows + 4u * (size_t)row;
     if (memcmp(own, values, 16u * (size_t)count) != 0) {
         memcpy(own, values, 16u * (size_t)count);
         widen(changed, row, count);

@@ -113,8 +113,8 @@ uint32_t noh_gl_crowd_rows(const noh_mesh *mesh)
 
 uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *mesh, uint32_t palette)
 {
-    uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? noh_gl_crowd_rows(mesh) : 0;
     NOH_ASSERT(binding->align && palette <= mesh->header->palette_count);
+    uint32_t row = binding->mode == NOH_PALETTE_TEXTURE ? noh_gl_crowd_rows(mesh) : 0;
     for (uint32_t i = 0; i < palette; i++) {
         row += (noh_gl_joint_rows(mesh) * mesh->palettes[i].joint_count + binding->align - 1u) / binding->align *
                binding->align;

@@ -73,13 +73,13 @@ static void upload_block(const noh_gl_api *api, const noh_gl_table *t, uint32_t 
 void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
                          const void *data)
 {
+    NOH_ASSERT(table->texture.name && (data || !count));
+    NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
     uint32_t width = 1u << table->width_log2, x = first & (width - 1u), y = first >> table->width_log2;
     uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that was begun */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
     noh_gl_pixels kept;
-    NOH_ASSERT(table->texture.name && (data || !count));
-    NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, table->texture.name);
     noh_gl_unpack_begin(api, &kept);

@@ -410,9 +410,9 @@ void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette)
 {
+    NOH_ASSERT(variant->key.texture == (skin->mode == NOH_PALETTE_TEXTURE) || !variant->key.influences);
     uint32_t row = mesh->header->palette_count ? noh_gl_palette_row(skin, mesh, palette) : 0;
     NOH_ASSERT(palette < mesh->header->palette_count || !palette);
-    NOH_ASSERT(variant->key.texture == (skin->mode == NOH_PALETTE_TEXTURE) || !variant->key.influences);
     if (variant->key.texture) {
         api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_PALETTES);
         api->BindTexture(GL_TEXTURE_2D, skin->name);

@@ -217,9 +217,9 @@ static const char *bad_shots(const noh_graph *g, const noh_clip_set *set, uint32
 
 noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error)
 {
+    NOH_ASSERT(graph && set);
     const char *what = bad_count(graph);
     uint32_t where = 0;
-    NOH_ASSERT(graph && set);
     what = what ? what : noh_clip_set_excess(set);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);

@@ -78,8 +78,8 @@ static int is_named(const noh_pack *pack, uint32_t stored, uint32_t stored_hash,
 
 uint32_t noh_pack_graph_find(const noh_pack *pack, const char *name)
 {
-    const uint32_t hash = noh_hash_name(name);
     NOH_ASSERT(pack && name);
+    const uint32_t hash = noh_hash_name(name);
     for (uint32_t i = 0; i < pack->graph_count; i++) {
         const noh_pack_chunk *c = &pack->chunks[pack->first_graph + i];
         if (is_named(pack, c->name, c->name_hash, name, hash)) return i;
@@ -285,13 +285,13 @@ static int is_inertial(const noh_pack_graph *g)
 
 noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pack_needs *needs, noh_error *error)
 {
+    NOH_ASSERT(desc && needs);
     noh_arena arena = noh_arena_measure();
     noh_pack_graph g;
     noh_graph_nodes nodes;
     noh_graph_shape shape;
     parts p;
     const noh_result result = check_desc(desc, &g, error);
-    NOH_ASSERT(desc && needs);
     if (result != NOH_OK) {
         return result;
     }

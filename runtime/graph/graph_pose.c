@@ -33,20 +33,20 @@ size_t noh_graph_shape_scratch_size(const noh_graph_shape *shape, const noh_clip
 
 size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set)
 {
-    const noh_graph_shape shape = noh_graph_shape_of(graph);
     NOH_ASSERT(graph && set);
+    const noh_graph_shape shape = noh_graph_shape_of(graph);
     return noh_graph_shape_scratch_size(&shape, set);
 }
 
 noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
                                   noh_graph_scratch *scratch, noh_error *error)
 {
+    NOH_ASSERT(graph && set && scratch);
     const char *what = noh_clip_set_excess(set);
     size_t pose_need = noh_pose_scratch_size(set, noh_graph_is_inertial(graph));
     noh_arena arena;
     noh_result result = what ? noh_fail(error, NOH_ERR_ARG, what, 0, 0)
                              : noh_arena_open(&arena, memory, bytes, noh_graph_scratch_size(graph, set), error);
-    NOH_ASSERT(graph && set && scratch);
     if (result != NOH_OK) {
         return result;
     }

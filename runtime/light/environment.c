@@ -228,11 +228,11 @@ void noh_light_irradiance(const noh_light *light, const float normal[3], float r
 
 void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh_light *rest)
 {
+    NOH_ASSERT(light && direction && rgb && rest && rest != light && light->order >= 2u);
     static const float luminance[3] = { 0.2126f, 0.7152f, 0.0722f };
     static const uint32_t first[3] = { 3, 1, 2 }; /* x, y, z of band 1 */
     const uint32_t fitted = light->order < 4u ? light->order : 4u;
     float basis[NOH_SH_COUNT_MAX], length = 0.0f, d2;
-    NOH_ASSERT(light && direction && rgb && rest && rest != light && light->order >= 2u);
     *rest = *light;
     for (uint32_t k = 0; k < 3u; k++) {
         direction[k] = noh_dot3(luminance, light->coefs[first[k]]);

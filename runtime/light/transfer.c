@@ -58,10 +58,10 @@ static float signed_byte(uint8_t byte)
 
 void noh_transfer_lobe(const noh_mesh *mesh, const noh_transfer *transfer, uint32_t vertex, noh_lobe *lobe)
 {
+    NOH_ASSERT(mesh && transfer && lobe && vertex < mesh->header->vertex_count);
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
     const uint32_t order = transfer->header->order, flags = transfer->header->flags;
     const uint8_t *record = transfer->records + (size_t)vertex * NOH_TRANSFER_RECORD_BYTES(order, flags);
-    NOH_ASSERT(mesh && transfer && lobe && vertex < mesh->header->vertex_count);
     memset(lobe, 0, sizeof *lobe);
     lobe->occlusion = (float)record[0] / 255.0f;
     lobe->shape[0] = 1.0f;
@@ -99,9 +99,9 @@ void noh_lobe_turn(noh_lobe *lobe, const float from[3], const float to[3])
 
 void noh_lobe_shade(const noh_lobe *lobe, uint32_t order, const noh_light *light, float rgb[3])
 {
+    NOH_ASSERT(lobe && light && rgb && order >= 1 && order <= NOH_SH_ORDER_MAX);
     const uint32_t bands = order < light->order ? order : light->order;
     float basis[NOH_SH_COUNT_MAX];
-    NOH_ASSERT(lobe && light && rgb && order >= 1 && order <= NOH_SH_ORDER_MAX);
     noh_sh_basis(bands, lobe->axis, basis);
     noh_sh_convolve(bands, lobe->shape, basis);
     memset(rgb, 0, 3 * sizeof *rgb);

@@ -168,8 +168,8 @@ uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
 
 uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex)
 {
-    const int offset = noh_mesh_uv_texel_offset(mesh);
     NOH_ASSERT(vertex < mesh->header->vertex_count);
+    const int offset = noh_mesh_uv_texel_offset(mesh);
     return offset < 0 ? NOH_TEXEL_NONE
                       : load_u32(mesh->attributes + (size_t)vertex * mesh->header->attribute_stride + offset);
 }
@@ -191,10 +191,10 @@ static uint32_t stored_weight(const uint32_t *words, uint32_t n)
 uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joints[NOH_INFLUENCES_MAX],
                              float weights[NOH_INFLUENCES_MAX])
 {
+    NOH_ASSERT(mesh->header->skin != NOH_NONE && vertex < mesh->header->vertex_count && joints && weights);
     uint32_t count = mesh->header->influence_count, rest = NOH_WEIGHT_ONE;
     const uint32_t *words = mesh->influences + (size_t)vertex * NOH_INFLUENCE_WORDS(count);
     const uint16_t *palette;
-    NOH_ASSERT(mesh->header->skin != NOH_NONE && vertex < mesh->header->vertex_count && joints && weights);
     palette = mesh->palette_joints + mesh->palettes[noh_mesh_palette(mesh, vertex)].first_joint;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t weight = i ? stored_weight(words + (count == 8u ? 2 : 1), i) : 0;
@@ -229,9 +229,9 @@ static void decode_color(const uint8_t *bytes, float color[4])
 
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3])
 {
+    NOH_ASSERT(index < mesh->header->vertex_count && normal && tangent);
     const uint8_t *record = mesh->attributes + (size_t)index * mesh->header->attribute_stride;
     uint32_t word;
-    NOH_ASSERT(index < mesh->header->vertex_count && normal && tangent);
     word = load_u32(record);
     noh_octahedral_unfold((float)low_half(word) * (1.0f / 32767.0f), (float)high_half(word) * (1.0f / 32767.0f),
                           normal);

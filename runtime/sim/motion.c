@@ -28,8 +28,8 @@ void noh_point_move(float position[3], float velocity[3], const float accelerati
 void noh_verlet_move(float position[3], float before[3], const float acceleration[3], float seconds,
                      float seconds_before, float keep)
 {
-    const float ratio = keep * (seconds / seconds_before), square = seconds * (seconds + seconds_before) * 0.5f;
     NOH_ASSERT(seconds > 0.0f && seconds_before > 0.0f);
+    const float ratio = keep * (seconds / seconds_before), square = seconds * (seconds + seconds_before) * 0.5f;
     for (int i = 0; i < 3; i++) {
         const float now = position[i];
         position[i] = now + (now - before[i]) * ratio + acceleration[i] * square;

@@ -611,8 +611,8 @@ static void push_body(const noh_ragdoll_constants *c, noh_ragdoll_state *s, cons
 
 void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3])
 {
-    noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
+    noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     const float most = 1e15f; /* squares stay finite */
     float from[3], own[3], rest[3];
     if (!is_finite3(point) || !(noh_dot3(impulse, impulse) < most * most)) return;

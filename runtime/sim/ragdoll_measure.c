@@ -146,9 +146,9 @@ static float energy_of(const noh_ragdoll_constants *c, const noh_ragdoll_state *
 
 void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world *world, noh_ragdoll_measures *m)
 {
+    NOH_ASSERT(doll < set->count);
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
     const noh_ragdoll_doll *d = doll_of(set, doll);
-    NOH_ASSERT(doll < set->count);
     memset(m, 0, sizeof *m);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
         const noh_ragdoll_constants *c = &set->shape.bodies[i];

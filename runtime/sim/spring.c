@@ -171,9 +171,9 @@ static float begin_shown(const noh_spring *s, float turn[4])
 
 void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, float *ends)
 {
+    NOH_ASSERT(desc->joint_count == spring->joint_count && ends);
     float turn[4], head[3] = { 0.0f, 0.0f, 0.0f }, at[3];
     const float t = begin_shown(spring, turn);
-    NOH_ASSERT(desc->joint_count == spring->joint_count && ends);
     memcpy(at, spring->last.position, sizeof at);
     for (uint32_t i = 0; i < spring->joint_count; i++) {
         float tail[3], bone[3];

@@ -265,13 +265,13 @@ static const char *cannot_spawn(const noh_stage *s, uint32_t kind)
 
 noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *place, noh_actor *actor, noh_error *error)
 {
+    NOH_ASSERT(stage && actor);
     static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f };
     const char *what = cannot_spawn(stage, kind);
     noh_stage_free *f;
     noh_stage_actor *a;
     noh_place normal;
     noh_result result;
-    NOH_ASSERT(stage && actor);
     if (!what) what = normal_place(place ? place : &origin, &normal);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, kind, 0);
@@ -315,8 +315,8 @@ void noh_stage_shift_actor(noh_stage_actor *a, const float by[3])
 
 noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error *error)
 {
-    const float back[3] = { -by[0], -by[1], -by[2] };
     NOH_ASSERT(stage && by);
+    const float back[3] = { -by[0], -by[1], -by[2] };
     if (stage->phase != NOH_STAGE_IDLE || !noh_is_number(by[0]) || !noh_is_number(by[1]) || !noh_is_number(by[2])) {
         return noh_fail(error, NOH_ERR_ARG,
                         stage->phase != NOH_STAGE_IDLE ? "the origin of a stage is moved outside of steps and frames"

@@ -127,10 +127,10 @@ uint32_t noh_stage_jobs(noh_stage *stage)
 
 void noh_stage_job(noh_stage *stage, uint32_t job)
 {
+    NOH_ASSERT(stage && (stage->phase == NOH_STAGE_LOOKING || stage->phase == NOH_STAGE_POSING));
     const uint32_t count = stage->phase == NOH_STAGE_LOOKING ? stage->actor_count : stage->todo_count;
     const uint32_t each = cut_of(stage, count), first = job * each;
     const uint32_t end = first + each < count ? first + each : count;
-    NOH_ASSERT(stage && (stage->phase == NOH_STAGE_LOOKING || stage->phase == NOH_STAGE_POSING));
     NOH_ASSERT(job < jobs_for(stage, count));
     if (stage->phase == NOH_STAGE_LOOKING) {
         noh_stage_look_at(stage, job, first, end);

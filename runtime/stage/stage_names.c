@@ -78,10 +78,10 @@ static uint32_t count_of(const noh_stage_kind *k, noh_name what)
 
 uint32_t noh_stage_find(const noh_stage *stage, uint32_t kind, noh_name what, const char *name)
 {
+    NOH_ASSERT(stage && name && kind < stage->desc.kind_count);
     const noh_stage_kind *k;
     const uint32_t hash = noh_hash_name(name);
     uint32_t count;
-    NOH_ASSERT(stage && name && kind < stage->desc.kind_count);
     k = &stage->kinds[kind];
     count = count_of(k, what);
     for (uint32_t i = 0; i < count; i++) {

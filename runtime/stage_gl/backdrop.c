@@ -89,11 +89,11 @@ static void gradient_ends(const noh_lighting *lighting, float ends[2][4])
 void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, const noh_gl_light *light,
                        const noh_lighting *lighting, const noh_stage_view *view)
 {
+    NOH_ASSERT(backdrop && light && lighting && view);
     const noh_gl_api *gl = backdrop->gl;
     const GLuint program = backdrop->program;
     float rows[NOH_LIGHTING_ROWS][4], rays[3][4], ends[2][4];
     noh_gl_raster raster;
-    NOH_ASSERT(backdrop && light && lighting && view);
     noh_lighting_pack(lighting, 0, rows);
     corner_rays(view, rays);
     gradient_ends(lighting, ends);

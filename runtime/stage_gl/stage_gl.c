@@ -541,11 +541,11 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
 
 noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error)
 {
+    NOH_ASSERT(stage->gpu && out);
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     const noh_stage_shown *shown;
     const noh_gl_item *item;
-    NOH_ASSERT(stage->gpu && out);
     if (!a) {
         return noh_stage_gone(error, actor);
     }

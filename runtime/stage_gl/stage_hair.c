@@ -199,10 +199,10 @@ noh_result noh_stage_hair_restore(noh_stage_hair *hair, char *log, size_t log_by
 noh_result noh_stage_hair_update(noh_stage_hair *hair, noh_stage *stage, noh_actor actor, uint32_t part,
                                  noh_error *error)
 {
+    NOH_ASSERT(hair && stage);
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     const void *state = noh_actor_part(stage, actor, part);
-    NOH_ASSERT(hair && stage);
     hair->views = 0;
     if (!a || !state) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, has no such part, or a frame has begun", part, 0);
