@@ -56,7 +56,9 @@ MACHINE  := $(shell $(CC) -dumpmachine)
 
 # Folders are found, never listed: a file that is added or moved is built. sources DIR,PATTERN: DIR and two levels below.
 sources     = $(sort $(foreach pattern,$(2),$(wildcard $(1)/$(pattern) $(1)/*/$(pattern) $(1)/*/*/$(pattern))))
-RUNTIME_C  := $(call sources,runtime,*.c)
+# In the order in which the rooms include, which is also the order of the amalgam.
+ROOMS      := $(shell sh tools/docs/rooms.sh order)
+RUNTIME_C  := $(foreach room,$(ROOMS),$(call sources,runtime/$(room),*.c))
 # template.c is for reading; the tests compile it.
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(call sources,tools/convert,*.c)
@@ -68,13 +70,13 @@ TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C),$(call sources,tools/noh,*.c)
 DEMO_C     := $(call sources,tools/demo_assets,*.c)
 EXAMPLE_C  := $(sort $(wildcard tools/examples/*.c))
 STAGES     := vert geom frag
-# What games put into their own shaders (runtime/gl/gl_shader_text.h) is in the library by itself, too.
-SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%)) $(foreach text,layers attributes skin face transfer vertex fade fragment wrinkle material environment scatter eye light,shaders_es/common_$(text).glsl) shaders_es/decal_vertex.glsl shaders_es/decal_fragment.glsl
+# .glsl files are for shaders of a game's own, too (runtime/gl/device/gl_shader_text.h).
+SHADERS    := $(call sources,shaders_es,$(STAGES:%=*.%) *.glsl)
 TOOL_SHADERS := $(call sources,tools/noh,$(STAGES:%=*.%))
 # Under sanitizers, of what draws and of the program as a whole, only what is listed (NOH_LONG=1: all).
 SANITIZED  := $(if $(SAN),$(if $(NOH_LONG),,$(shell sed '/^\#/d' tests/sanitized.txt)))
 TEST_C     := $(filter $(if $(SANITIZED),tests/unit/% tests/memory/% $(SANITIZED:%=tests/%.c),%),$(call sources,tests,test_*.c))
-VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)
+VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/core/base/version.h)
 
 # `noh view` needs a window and panels; without their libraries the verb says which are missing.
 VIEW_WITHOUT := $(strip $(if $(shell $(PKG) --exists glfw3 && echo y),,glfw3) $(if $(shell $(PKG) --exists imgui && echo y),,imgui))
@@ -298,22 +300,22 @@ $(BUILD)/demo_assets: $(DEMO_O)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
 
-# Makes runtime/clip/clip_tables.c out of raw clips; after a change of the clip format only.
+# Makes runtime/motion/clip/clip_tables.c out of raw clips; after a change of the clip format only.
 $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
-# Makes runtime/face/ear_tables.c out of synthetic speech, after a change of the ear only: `make ear-tables` (ten
+# Makes runtime/life/face/ear_tables.c out of synthetic speech, after a change of the ear only: `make ear-tables` (ten
 # minutes; `tools/deps.sh ear` installs the synthesisers).
 TRAIN_EAR_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/train_ear/*.c)))
-$(BUILD)/train_ear: $(TRAIN_EAR_O) $(patsubst %,$(BUILD)/runtime/face/%.o,ear_cepstra ear_net phones)
+$(BUILD)/train_ear: $(TRAIN_EAR_O) $(patsubst %,$(BUILD)/runtime/life/face/%.o,ear_cepstra ear_net phones)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lespeak-ng -lm
 
 ear-tables: $(BUILD)/train_ear
 	$(Q)cd $(BUILD) && ./train_ear $(CURDIR)/tools/train_ear/sentences.txt $(CURDIR)/tools/train_ear/phones.txt \
 	    >ear_tables.c
-	$(Q)mv $(BUILD)/ear_tables.c runtime/face/ear_tables.c
+	$(Q)mv $(BUILD)/ear_tables.c runtime/life/face/ear_tables.c
 
 # Our LOD levels against meshoptimizer's; for `make bench`.
 LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
@@ -646,7 +648,7 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/base/version.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/core/base/version.h \
     tools/web_convert/worker.js $(wildcard $(WEB_CONVERT)/convert.wasm)
 	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE tools/web_convert/worker.js $(WEB_CONVERT)
 

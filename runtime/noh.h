@@ -23,7 +23,7 @@
  * the byte or index at fault, `need` the size or count that was wanted; 0 where that means nothing. Setters of one
  * number and noh_gl_timer_poll have none: their result says all. Bad data, short memory and a missing capability are
  * errors. A caller's bug (a NULL, an index past its count) is an assert, of two tiers that a build switches on:
- * base/assert.h.
+ * assert.h.
  *
  * Not found. A function that finds by name returns an index, or NOH_NONE. A function that returns a noh_result returns
  * NOH_ERR_NOT_FOUND.
@@ -33,127 +33,127 @@
  * Threads. What is opened from bytes (packs, meshes, skins, skeletons, clips) and every desc is read-only: any number
  * of threads may share it. What an init made is for one thread at a time, each object for itself: two characters may be
  * posed on two threads. Sampling from a clip bank changes its cache: to pose on several threads give each a view
- * (bank/clip_bank.h). Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of
+ * (clip_bank.h). Functions without an object (base/, deform/) keep no state. GL objects belong to the thread of
  * the GL context. The library takes no lock. In each header a line "Threads:" says which of these holds there. */
 #ifndef NOH_H
 #define NOH_H
 
 /* ---- what a game calls first ---- */
 
-#include "stage/stage.h"            /* a whole cast of characters out of one block */
-#include "stage/part.h"             /* what changes a pose before it is shown */
-#include "stage/stage_face.h"       /* faces of its actors */
-#include "stage/stage_feet.h"       /* actors that stand on the ground */
-#include "stage/stage_gaze.h"       /* actors that look at points and reach for them */
-#include "actors/walkers.h"         /* actors that go where agents of a crowd go */
-#include "stage/stage_ragdoll.h"    /* actors that fall and get up */
-#include "stage/fall.h"             /* pushing them, and when they get up */
-#include "actors/blob.h"            /* where actors darken the ground */
-#include "actors/decal.h"           /* marks on actors */
-#include "actors/decal_grow.h"      /* their triangles */
-#include "stage/springs.h"          /* chains of joints that swing */
-#include "actors/wig.h"             /* hair of actors */
-#include "actors/wigs.h"            /* hair of crowds */
-#include "stage/view.h"             /* cameras and lights for it */
-#include "base/version.h"           /* which noh this is */
-#include "base/result.h"            /* noh_result, noh_error */
-#include "base/limits.h"            /* every limit, in one place */
-#include "pack/pack.h"              /* open a pack; pack/format.h has its bytes */
-#include "pack/etc2.h"              /* decode the blocks of compressed textures */
-#include "wire/wire.h"              /* packs as they are sent, unpacked while they arrive */
-#include "mesh/wrinkles.h"          /* how much morph weights wrinkle regions of skin */
-#include "mesh/mesh.h"              /* its meshes and skins: vertices, triangles, targets, LOD levels */
-#include "clip/pack_clip.h"         /* its skeletons and clips */
-#include "bank/clip_bank.h"         /* a pack's clips, ready to be played: a set, and the cache behind it */
-#include "character/character.h"    /* one character: a controller, what it shows, how finely */
-#include "character/skin_palette.h" /* what it shows, as matrices of any skin */
-#include "anim/controller.h"        /* tracks: start, fade, seek, callback keys */
-#include "anim/controller_pose.h"   /* poses of a controller */
-#include "pose/local_to_model.h"    /* poses to matrices and palettes */
-#include "deform/morph.h"           /* targets on the CPU: the reference and the fallback */
-#include "deform/morph_finish.h"    /* morphed vertices in the formats of vertex buffers */
-#include "deform/skin.h"            /* skins on the CPU, likewise */
-#include "deform/skin_list.h"       /* vertices that more than eight joints move, on the CPU */
-#include "deform/bounds.h"          /* a box round what is deformed */
-#include "deform/pick.h"            /* a ray against what is deformed */
+#include "stage/cast/stage.h"             /* a whole cast of characters out of one block */
+#include "stage/cast/part.h"              /* what changes a pose before it is shown */
+#include "stage/cast/stage_face.h"        /* faces of its actors */
+#include "stage/cast/stage_feet.h"        /* actors that stand on the ground */
+#include "stage/cast/stage_gaze.h"        /* actors that look at points and reach for them */
+#include "stage/actors/walkers.h"         /* actors that go where agents of a crowd go */
+#include "stage/cast/stage_ragdoll.h"     /* actors that fall and get up */
+#include "stage/cast/fall.h"              /* pushing them, and when they get up */
+#include "stage/actors/blob.h"            /* where actors darken the ground */
+#include "stage/actors/decal.h"           /* marks on actors */
+#include "stage/actors/decal_grow.h"      /* their triangles */
+#include "stage/cast/springs.h"           /* chains of joints that swing */
+#include "stage/actors/wig.h"             /* hair of actors */
+#include "stage/actors/wigs.h"            /* hair of crowds */
+#include "stage/cast/view.h"              /* cameras and lights for it */
+#include "core/base/version.h"            /* which noh this is */
+#include "core/base/result.h"             /* noh_result, noh_error */
+#include "core/base/limits.h"             /* every limit, in one place */
+#include "core/pack/pack.h"               /* open a pack; pack/format.h has its bytes */
+#include "core/pack/etc2.h"               /* decode the blocks of compressed textures */
+#include "core/wire/wire.h"               /* packs as they are sent, unpacked while they arrive */
+#include "core/mesh/wrinkles.h"           /* how much morph weights wrinkle regions of skin */
+#include "core/mesh/mesh.h"               /* its meshes and skins: vertices, triangles, targets, LOD levels */
+#include "motion/clip/pack_clip.h"        /* its skeletons and clips */
+#include "motion/bank/clip_bank.h"        /* a pack's clips, ready to be played: a set, and the cache behind it */
+#include "stage/character/character.h"    /* one character: a controller, what it shows, how finely */
+#include "stage/character/skin_palette.h" /* what it shows, as matrices of any skin */
+#include "motion/anim/controller.h"       /* tracks: start, fade, seek, callback keys */
+#include "motion/anim/controller_pose.h"  /* poses of a controller */
+#include "motion/pose/local_to_model.h"   /* poses to matrices and palettes */
+#include "deform/morph/morph.h"           /* targets on the CPU: the reference and the fallback */
+#include "deform/morph/morph_finish.h"    /* morphed vertices in the formats of vertex buffers */
+#include "deform/skin/skin.h"             /* skins on the CPU, likewise */
+#include "deform/skin/skin_list.h"        /* vertices that more than eight joints move, on the CPU */
+#include "deform/pick/bounds.h"           /* a box round what is deformed */
+#include "deform/pick/pick.h"             /* a ray against what is deformed */
 
 /* ---- more ways to move ---- */
 
-#include "graph/graph.h"            /* an animation graph over a controller */
-#include "graph/graph_pack.h"       /* the same out of a pack, played by names */
-#include "anim/clip_set.h"          /* the clips that controllers share: a set of your own, without a pack */
-#include "anim/mask.h"              /* weights per joint: which of them a track moves */
-#include "anim/root_motion.h"       /* root displacement of clips */
-#include "anim/event_queue.h"       /* callback keys collected, to be read later */
-#include "anim/ping_pong.h"         /* weights as functions of time: a ramp, a ping-pong */
-#include "deform/dual_quaternion.h" /* skins that keep their volume where joints twist */
+#include "motion/graph/graph.h"          /* an animation graph over a controller */
+#include "motion/graph/graph_pack.h"     /* the same out of a pack, played by names */
+#include "motion/anim/clip_set.h"        /* the clips that controllers share: a set of your own, without a pack */
+#include "motion/anim/mask.h"            /* weights per joint: which of them a track moves */
+#include "motion/anim/root_motion.h"     /* root displacement of clips */
+#include "motion/anim/event_queue.h"     /* callback keys collected, to be read later */
+#include "motion/anim/ping_pong.h"       /* weights as functions of time: a ramp, a ping-pong */
+#include "deform/skin/dual_quaternion.h" /* skins that keep their volume where joints twist */
 
 /* ---- crowds: what is drawn and posed, how finely, how often ---- */
 
-#include "character/bounds.h"          /* where a character is */
-#include "character/lod.h"             /* LOD levels chosen by an error in pixels */
-#include "character/lod_pack.h"        /* the same, filled in from a pack */
-#include "character/lod_pools.h"       /* memory by LOD level, shared out among instances */
-#include "character/scheduler.h"       /* which characters are posed in a frame, within a budget */
-#include "character/time_lod.h"        /* posing less often than once a frame */
-#include "character/time_lod_points.h" /* what that moves vertices by */
-#include "character/joint_lod.h"       /* what posing fewer joints costs */
+#include "stage/character/bounds.h"          /* where a character is */
+#include "stage/character/lod.h"             /* LOD levels chosen by an error in pixels */
+#include "stage/character/lod_pack.h"        /* the same, filled in from a pack */
+#include "stage/character/lod_pools.h"       /* memory by LOD level, shared out among instances */
+#include "stage/character/scheduler.h"       /* which characters are posed in a frame, within a budget */
+#include "stage/character/time_lod.h"        /* posing less often than once a frame */
+#include "stage/character/time_lod_points.h" /* what that moves vertices by */
+#include "stage/character/joint_lod.h"       /* what posing fewer joints costs */
 
 /* ---- light ---- */
 
-#include "light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
-#include "light/reflection.h"  /* the same as a cube of texels, for surfaces that gloss */
-#include "light/transfer.h"    /* what light a vertex of a mesh receives, as it turns and morphs */
-#include "light/sh.h"          /* spherical harmonics: projected, convolved, turned */
+#include "gl/light/environment.h" /* light from all around, built in or your own, as spherical harmonics */
+#include "gl/light/reflection.h"  /* the same as a cube of texels, for surfaces that gloss */
+#include "gl/light/transfer.h"    /* what light a vertex of a mesh receives, as it turns and morphs */
+#include "gl/light/sh.h"          /* spherical harmonics: projected, convolved, turned */
 
 /* ---- faces ---- */
 
-#include "face/amplitude.h"   /* mouth shapes out of loudness alone */
-#include "face/corrective.h"  /* correctives and in-betweens: targets that follow from others */
-#include "face/ear.h"         /* live sound to mouth shapes */
-#include "face/face.h"        /* blinks, gaze, emotions, breath */
-#include "face/identity.h"    /* people by seed: weights of the targets that tell faces apart */
-#include "face/recipe.h"      /* what a face shows, as weights of the targets that it has */
-#include "face/speech.h"      /* phones to mouth shapes */
-#include "face/weight_rule.h" /* how far targets go, and which exclude each other */
+#include "life/face/amplitude.h"   /* mouth shapes out of loudness alone */
+#include "life/face/corrective.h"  /* correctives and in-betweens: targets that follow from others */
+#include "life/face/ear.h"         /* live sound to mouth shapes */
+#include "life/face/face.h"        /* blinks, gaze, emotions, breath */
+#include "life/face/identity.h"    /* people by seed: weights of the targets that tell faces apart */
+#include "life/face/recipe.h"      /* what a face shows, as weights of the targets that it has */
+#include "life/face/speech.h"      /* phones to mouth shapes */
+#include "life/face/weight_rule.h" /* how far targets go, and which exclude each other */
 
 /* ---- bodies ---- */
 
-#include "sim/feet.h"         /* feet that stand on the ground */
-#include "sim/gaze.h"         /* bodies that look at a point */
-#include "sim/hair.h"         /* control hairs of a head */
-#include "sim/haircut.h"      /* hair of a pack, and its strips */
-#include "sim/ik.h"           /* two bones that reach a point, a head that looks at one */
-#include "sim/ik_chain.h"     /* chains of any length, with limits */
-#include "sim/motion.h"       /* fixed steps, integrators, a distance that is kept */
-#include "sim/ragdoll.h"      /* bodies that fall */
-#include "sim/ragdoll_pose.h" /* between its bodies and a pose */
-#include "sim/ragdoll_rig.h"  /* a ragdoll out of a character */
-#include "sim/reach.h"        /* hands that reach for points that move */
-#include "sim/rigid.h"        /* a free rigid body, forces and torques at points */
-#include "sim/shape.h"        /* boxes, rays */
-#include "sim/spring.h"       /* chains that swing: hair, sleeves, tails */
-#include "sim/terrain.h"      /* the height field of a pack */
-#include "sim/terrain_lod.h"  /* its levels, as a picture needs them */
-#include "sim/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
+#include "life/reach/feet.h"           /* feet that stand on the ground */
+#include "life/reach/gaze.h"           /* bodies that look at a point */
+#include "life/hair/hair.h"            /* control hairs of a head */
+#include "life/hair/haircut.h"         /* hair of a pack, and its strips */
+#include "life/reach/ik.h"             /* two bones that reach a point, a head that looks at one */
+#include "life/reach/ik_chain.h"       /* chains of any length, with limits */
+#include "life/physics/motion.h"       /* fixed steps, integrators, a distance that is kept */
+#include "life/physics/ragdoll.h"      /* bodies that fall */
+#include "life/physics/ragdoll_pose.h" /* between its bodies and a pose */
+#include "life/physics/ragdoll_rig.h"  /* a ragdoll out of a character */
+#include "life/reach/reach.h"          /* hands that reach for points that move */
+#include "life/physics/rigid.h"        /* a free rigid body, forces and torques at points */
+#include "life/physics/shape.h"        /* boxes, rays */
+#include "life/physics/spring.h"       /* chains that swing: hair, sleeves, tails */
+#include "life/physics/terrain.h"      /* the height field of a pack */
+#include "life/physics/terrain_lod.h"  /* its levels, as a picture needs them */
+#include "life/physics/world.h"        /* what bodies collide with: planes, capsules, boxes, a height field */
 
 /* ---- many of them, on the ground ---- */
 
-#include "crowd/crowd.h"        /* agents that walk to their goals and stay out of each other's way */
-#include "crowd/flock.h"        /* rules of a flock, one by one */
-#include "crowd/smart_object.h" /* things that agents use, one at a time */
+#include "stage/crowd/crowd.h"        /* agents that walk to their goals and stay out of each other's way */
+#include "stage/crowd/flock.h"        /* rules of a flock, one by one */
+#include "stage/crowd/smart_object.h" /* things that agents use, one at a time */
 
 /* ---- parts, for tools and engines of your own ---- */
 
-#include "base/arena.h"      /* carve a block */
-#include "base/half.h"       /* 16-bit floats */
-#include "base/hash.h"       /* names as hashes, checksums */
-#include "base/quat.h"       /* quaternions */
-#include "base/trig.h"       /* trigonometry without libm, the same bits everywhere */
-#include "pose/blend.h"      /* poses mixed and added */
-#include "clip/clip_cache.h" /* decoded frames in a fixed block, and samples of them */
-#include "clip/clip_view.h"  /* a thread's own view of a clip cache */
-#include "clip/clip_codec.h" /* one compressed clip */
+#include "core/base/arena.h"        /* carve a block */
+#include "core/base/half.h"         /* 16-bit floats */
+#include "core/base/hash.h"         /* names as hashes, checksums */
+#include "core/base/quat.h"         /* quaternions */
+#include "core/base/trig.h"         /* trigonometry without libm, the same bits everywhere */
+#include "motion/pose/blend.h"      /* poses mixed and added */
+#include "motion/clip/clip_cache.h" /* decoded frames in a fixed block, and samples of them */
+#include "motion/clip/clip_view.h"  /* a thread's own view of a clip cache */
+#include "motion/clip/clip_codec.h" /* one compressed clip */
 
 /* Glossary: one word for one thing, in names, documents, the command line and messages.
  *

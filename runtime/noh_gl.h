@@ -32,35 +32,35 @@
 
 /* ---- what a game calls first ---- */
 
-#include "stage_gl/stage_gl.h"      /* a stage, drawn */
-#include "stage_gl/backdrop.h"      /* what is behind it, where it is lit */
-#include "stage_gl/stage_blob.h"    /* soft spots under them, where there is no shadow map */
-#include "stage_gl/stage_floor.h"   /* their shadow, where there is no mesh for it to fall on */
-#include "stage_gl/stage_decal.h"   /* marks on them */
-#include "stage_gl/stage_patch.h"   /* as triangles that were grown */
-#include "stage_gl/stage_hair.h"    /* hair of its actors */
-#include "stage_gl/stage_hairs.h"   /* hair of a crowd */
-#include "stage_gl/stage_terrain.h" /* a height field as their ground */
-#include "gl/gl_api.h"              /* the functions that noh calls */
-#include "gl/gl_caps.h"             /* what this GPU can do, found by trying it */
-#include "gl/gl_morph.h"            /* morph targets of many instances, accumulated on the GPU */
-#include "gl/gl_skin.h"             /* joint palettes of many instances on the GPU */
-#include "gl/gl_light.h"            /* light for it: an environment, a shadow map */
-#include "gl/gl_draw.h"             /* meshes on the GPU, and a plain renderer */
-#include "gl/gl_state.h"            /* what calls ask of GL's state and leave */
-#include "gl/gl_shader_text.h"      /* the library's GLSL, for your own shaders */
+#include "gl/stage/stage_gl.h"        /* a stage, drawn */
+#include "gl/stage/backdrop.h"        /* what is behind it, where it is lit */
+#include "gl/stage/stage_blob.h"      /* soft spots under them, where there is no shadow map */
+#include "gl/stage/stage_floor.h"     /* their shadow, where there is no mesh for it to fall on */
+#include "gl/stage/stage_decal.h"     /* marks on them */
+#include "gl/stage/stage_patch.h"     /* as triangles that were grown */
+#include "gl/stage/stage_hair.h"      /* hair of its actors */
+#include "gl/stage/stage_hairs.h"     /* hair of a crowd */
+#include "gl/stage/stage_terrain.h"   /* a height field as their ground */
+#include "gl/device/gl_api.h"         /* the functions that noh calls */
+#include "gl/device/gl_caps.h"        /* what this GPU can do, found by trying it */
+#include "gl/morph/gl_morph.h"        /* morph targets of many instances, accumulated on the GPU */
+#include "gl/draw/gl_skin.h"          /* joint palettes of many instances on the GPU */
+#include "gl/draw/gl_light.h"         /* light for it: an environment, a shadow map */
+#include "gl/draw/gl_draw.h"          /* meshes on the GPU, and a plain renderer */
+#include "gl/device/gl_state.h"       /* what calls ask of GL's state and leave */
+#include "gl/device/gl_shader_text.h" /* the library's GLSL, for your own shaders */
 
 /* ---- when a context is lost, a frame is slow, or a driver is odd ---- */
 
-#include "gl/gl_lost.h"   /* after a context was lost */
-#include "gl/gl_debug.h"  /* names for RenderDoc and apitrace */
-#include "gl/gl_quirks.h" /* what is known of a renderer by its name only */
-#include "gl/gl_timer.h"  /* how long the GPU took */
+#include "gl/device/gl_lost.h"   /* after a context was lost */
+#include "gl/device/gl_debug.h"  /* names for RenderDoc and apitrace */
+#include "gl/device/gl_quirks.h" /* what is known of a renderer by its name only */
+#include "gl/device/gl_timer.h"  /* how long the GPU took */
 
 /* ---- parts, for renderers of your own ---- */
 
-#include "gl/gl_memory.h"   /* GL objects, counted against a budget */
-#include "gl/gl_program.h"  /* shaders compiled and linked */
-#include "gl/gl_variants.h" /* the programs of the plain renderer */
+#include "gl/device/gl_memory.h"  /* GL objects, counted against a budget */
+#include "gl/device/gl_program.h" /* shaders compiled and linked */
+#include "gl/draw/gl_variants.h"  /* the programs of the plain renderer */
 
 #endif

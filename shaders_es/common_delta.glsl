@@ -1,4 +1,4 @@
-/* common_delta.glsl: how a delta texel is decoded (runtime/pack/format.h). It is three words, one per axis, each with
+/* common_delta.glsl: how a delta texel is decoded (format.h). It is three words, one per axis, each with
  * signed fields for position, normal and tangent, from the top bit down. A field is extracted by two shifts: left until
  * its sign is that of the word, then right, which copies the sign. */
 precision highp float;
@@ -7,7 +7,7 @@ precision highp usampler2D;
 
 /* The fourth word of an entry, whose first three are weight * scale of position, normal, tangent: the place of its tile
  * in blocks x | y << 9, the widths of the first two fields << 18 and << 23. That of the tangent is what they leave of a
- * word (runtime/gl/gl_morph_tiles.c). */
+ * word (gl_morph_tiles.c). */
 ivec2 entry_tile(uint entry)
 {
     return ivec2(entry << 2 & 2044u, entry >> 7 & 2044u);

@@ -98,7 +98,7 @@ vec4 noh_user()
 #endif
 }
 
-/* ---- influences: runtime/pack/format.h ---- */
+/* ---- influences: format.h ---- */
 
 #if NOH_INFLUENCES > 0
 #if NOH_INFLUENCES == 1

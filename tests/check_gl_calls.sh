@@ -1,6 +1,6 @@
 #!/bin/sh
 # check_gl_calls.sh: the GL functions that a port has to provide.
-#   - NOH_GL_REQUIRED (runtime/gl/gl_api.h) is what runtime/ calls: no more, no less
+#   - NOH_GL_REQUIRED (runtime/gl/device/gl_api.h) is what runtime/ calls: no more, no less
 #   - an optional function that runtime/ calls is compared with NULL somewhere
 #   - the list in platform/README.md is that list, and the page has each of them (platform/web/package/gl.js)
 set -u

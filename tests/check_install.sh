@@ -37,7 +37,7 @@ done
 [ ! -f tools/completion/noh.bash ] || check 'bash completion' test -s "$prefix/share/bash-completion/completions/noh"
 (cd "$prefix/include/noh" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
 check 'no private header' sh -c '! grep -E "_(internal|kernel)\.h$|(^|/)(check|lanes|skin_blend)\.h$" "$1"' - "$work/headers"
-version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/base/version.h)
+version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/core/base/version.h)
 (cd "$prefix" && find . -type f | sort) >"$work/before"
 mv "$prefix" "$work/moved"
 cp -r "$work/moved" "$prefix"
@@ -145,6 +145,25 @@ END
     sed 's/noh [0-9.]* REQUIRED/noh 99.0 REQUIRED/' "$work/cmake_smile/CMakeLists.txt" >"$work/CMakeLists.txt"
     mkdir "$work/cmake_new" && mv "$work/CMakeLists.txt" "$work/cmake_smile/"*.c* "$work/cmake_new"
     check 'CMake: another version is refused' sh -c '! cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2"' - "$work/cmake_new" "$prefix"
+
+    # From source, inside a game's own build.
+    from_source() { # WHAT FOLDER LINES OPTIONS...
+        what=$1 folder=$work/$2
+        mkdir "$folder"
+        cp "$work/smile.c" "$folder"
+        printf 'cmake_minimum_required(VERSION 3.18)\nproject(game C)\n%s\nadd_executable(smile smile.c)\ntarget_link_libraries(smile noh::noh)\n' \
+            "$3" >"$folder/CMakeLists.txt"
+        shift 3
+        check "CMake from source: $what builds" sh -c '
+            folder=$1
+            shift
+            cmake -S "$folder" -B "$folder/build" "$@" && cmake --build "$folder/build" -j2' - "$folder" "$@"
+        runs "CMake from source, $what" smile "$folder/build/smile"
+    }
+    from_source 'add_subdirectory' cmake_subdirectory "add_subdirectory($PWD/runtime noh)"
+    from_source 'FetchContent, without GL' cmake_fetch "include(FetchContent)
+FetchContent_Declare(noh SOURCE_DIR $PWD SOURCE_SUBDIR runtime)
+FetchContent_MakeAvailable(noh)" -DNOH_GL=OFF
 else
     skip 'CMake' 'no cmake here'
 fi

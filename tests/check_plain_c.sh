@@ -7,8 +7,8 @@
 . "$(dirname "$0")/cli/lib.sh"
 
 grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |
-    grep -v '^runtime/base/\(compiler\|math_internal\|processor_internal\)\.h:' >"$work/words"
-check 'what depends on the compiler is in base/compiler.h, math_internal.h and processor_internal.h' sh -c '! grep . "$1"' - "$work/words"
+    grep -v '^runtime/core/base/\(compiler\|math_internal\|processor_internal\)\.h:' >"$work/words"
+check 'what depends on the compiler is in compiler.h, math_internal.h and processor_internal.h' sh -c '! grep . "$1"' - "$work/words"
 
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'plain C gives the same bits' 'the build without sanitizers says it'
@@ -34,8 +34,8 @@ done
 if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! command -v nm >/dev/null 2>&1; then
     skip 'i386 without SSE asks for nothing of libm' "${CC:-gcc} does not build for i386 here, or nm is missing"
 else
-    for source in runtime/*/*.c; do
-        case $source in runtime/gl/*) continue ;; esac
+    for source in runtime/*/*/*.c; do
+        case $source in runtime/gl/device/* | runtime/gl/draw/* | runtime/gl/morph/*) continue ;; esac
         ${CC:-gcc} -std=c99 -O1 -m32 -march=i386 -mno-sse -DNOH_ALLOW_X87 -Iruntime "-I$build/gen" -c "$source" -o "$work/$(echo "$source" | tr / _).o" || exit 1
     done
     nm -u "$work"/*.o | awk 'NF == 2 { print $2 }' | sort -u | grep -v '^noh_' >"$work/asked"
@@ -44,7 +44,7 @@ else
         "$work/asked" >"$work/foreign"
     check 'i386 without SSE asks for nothing of libm' sh -c '! grep . "$1"' - "$work/foreign"
     check 'the list was read' grep -qx __udivdi3 "$work/asked"
-    check 'x87 without that word is refused' sh -c '! "$1" -std=c99 -m32 -march=i386 -mno-sse -Iruntime -fsyntax-only runtime/base/trig.c 2>"$2" && grep -q "mfpmath=sse" "$2"' - \
+    check 'x87 without that word is refused' sh -c '! "$1" -std=c99 -m32 -march=i386 -mno-sse -Iruntime -fsyntax-only runtime/core/base/trig.c 2>"$2" && grep -q "mfpmath=sse" "$2"' - \
         "${CC:-gcc}" "$work/refused"
 fi
 finish

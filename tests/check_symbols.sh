@@ -4,7 +4,6 @@
 #   - no writable and no uninitialised data: nothing mutable is global
 #   - asserts: none in libnoh.a, many in the library that the tests link
 #   - every global symbol begins with noh_
-#   - the folders of runtime/ have an order in which each includes only from those before it; only gl/ includes GL headers
 set -u
 . tests/cli/lib.sh
 archive=$build/libnoh.a
@@ -52,22 +51,4 @@ else
     skip 'asserts' 'their instructions are counted on x86-64, without sanitizers'
 fi
 
-# ---- folders ----
-
-# "FOLDER INCLUDED" for each include of another folder's header: a graph of folders, which has to have an order.
-grep -n '^ *# *include *"' runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null | sed 's|^runtime/\([^/]*\)/.*"\([^"]*\)".*|\1 \2|' | sort -u >"$work/includes"
-awk '$2 !~ "/" && $2 != "shaders.gen.h"' "$work/includes" >"$work/unnamed"
-check 'includes name their folder' sh -c '! grep . "$1"' - "$work/unnamed"
-awk '$2 ~ "/" { sub("/.*", "", $2); if ($1 != $2) print $2, $1 }' "$work/includes" | sort -u >"$work/folders"
-check 'the graph of folders was read' grep -q '^base gl$' "$work/folders"
-tsort "$work/folders" >"$work/order" 2>"$work/circles"
-check 'no folders include each other in a circle' sh -c '! grep . "$1"' - "$work/circles"
-echo "# folders, each including only from those before it: $(tr '\n' ' ' <"$work/order")"
-check 'base includes from no other folder' sh -c '! grep " base$" "$1"' - "$work/folders"
-# What is above gl/ runs without a GL.
-check 'only gl/ and stage_gl/ include from gl/' sh -c '! grep "^gl " "$1" | grep -v " stage_gl$"' - "$work/folders"
-# the compiler's own headers, memcpy's, and SIMD intrinsics
-grep -Hn '^ *# *include *<' runtime/*.h runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
-    grep -v '<\(stddef\|stdint\|float\|string\|emmintrin\|immintrin\|arm_neon\)\.h>' >"$work/system"
-check 'only gl/ includes GL headers, nothing else is included' sh -c '! grep -v "^runtime/gl/.*<GLES[23]*/" "$1"' - "$work/system"
 finish

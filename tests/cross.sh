@@ -33,8 +33,8 @@ count() { # NAME LOG EXIT_CODE
 
 # What takes more than half of the time under an emulator and depends on the processor the least: armv7 has it with
 # NOH_LONG alone. aarch64 runs it, and what these make is compared with other processors' bit by bit below.
-left_out_on_armv7='clip/test_clip_codec clip/test_clip_halved clip/test_clip_cache bank/test_threads bank/test_clip_packs
-    convert/test_morph_encode character/test_character crowd/test_crowd'
+left_out_on_armv7='motion/test_clip_codec motion/test_clip_halved motion/test_clip_cache motion/test_threads motion/test_clip_packs
+    convert/test_morph_encode stage/test_character stage/test_crowd'
 is_left_out() { # TARGET TEST
     [ "$1" = armv7 ] && [ -z "${NOH_LONG:-}" ] || return 1
     case " $(echo $left_out_on_armv7) " in *" ${2#unit/} "*) ;; *) return 1 ;; esac

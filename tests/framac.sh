@@ -44,7 +44,7 @@ END
 prove() {
     {
         cat <<'END'
-#include "pack/check_internal.h"
+#include "core/pack/check_internal.h"
 #include "__fc_builtin.h"
 #define SIZE 512
 static unsigned char bytes[SIZE] __attribute__((aligned(64)));
@@ -70,7 +70,7 @@ END
     } >"$work/$1.c"
     timeout 600 frama-c -eva -eva-precision 5 -eva-auto-loop-unroll 64 -eva-min-loop-unroll 30 -warn-special-float none \
         -cpp-extra-args='-Iruntime -U__SSE2__ -U__AVX2__ -U__SSE__' \
-        "$work/$1.c" "$2" runtime/pack/check.c runtime/base/result.c runtime/base/hash.c >"$work/$1.txt" 2>&1
+        "$work/$1.c" "$2" runtime/core/pack/check.c runtime/core/base/result.c runtime/core/base/hash.c >"$work/$1.txt" 2>&1
     if grep -q '^  0 alarms generated' "$work/$1.txt"; then
         passed=$((passed + 1))
         echo "$1: proven, $(sed -n 's/.*, \([0-9]* statements reached (out of [0-9]*)\).*/\1/p' "$work/$1.txt")"
@@ -89,9 +89,9 @@ END
     count_of noh_pack_ragdoll_header row_count
     offset_of noh_pack_ragdoll_header rows_offset 16
 } >"$work/ragdoll"
-prove noh_check_recipe runtime/pack/check_recipe.c <"$work/recipe"
-prove noh_check_ragdoll runtime/pack/check_ragdoll.c <"$work/ragdoll"
-prove noh_check_terrain runtime/pack/check_terrain.c </dev/null
-prove noh_check_materials runtime/pack/check_scene.c </dev/null
+prove noh_check_recipe runtime/core/pack/check_recipe.c <"$work/recipe"
+prove noh_check_ragdoll runtime/core/pack/check_ragdoll.c <"$work/ragdoll"
+prove noh_check_terrain runtime/core/pack/check_terrain.c </dev/null
+prove noh_check_materials runtime/core/pack/check_scene.c </dev/null
 echo "$passed passed, $failed failed, 0 skipped"
 [ $failed = 0 ]

@@ -68,8 +68,8 @@ count='
 
 # These begin first where no times are known; without sanitizers they take most of all.
 long='gl/view gl/view_figure gl/view_tools check_install gl/test_gl_load cli/graph cli/light check_stack check_headers cli/zoom cli/strip cli/lighting
-    gl/verify gl/matrix check_amalgam check_plain_c cli/crowd cli/springs cli/wrinkles unit/clip/test_clip_codec
-    unit/face/test_identity unit/stage/test_stage'
+    gl/verify gl/matrix check_amalgam check_plain_c cli/crowd cli/springs cli/wrinkles unit/motion/test_clip_codec
+    unit/life/test_identity unit/stage/test_stage'
 left_out_by_sanitizers() { # NAME
     [ -n "$NOH_SAN" ] && [ -z "${NOH_LONG:-}" ] || return 1
     case $1 in cli/* | gl/*) ;; *) return 1 ;; esac

@@ -1,6 +1,6 @@
 #!/bin/sh
-# tsan.sh [COMPILER...]: the library, tests/unit/bank/test_threads.c, tests/unit/stage/test_stage_threads.c and
-# tests/unit/crowd/test_crowd_threads.c built with ThreadSanitizer by clang (with NOH_LONG set, by gcc, too), and run:
+# tsan.sh [COMPILER...]: the library, tests/unit/motion/test_threads.c, tests/unit/stage/test_stage_threads.c and
+# tests/unit/stage/test_crowd_threads.c built with ThreadSanitizer by clang (with NOH_LONG set, by gcc, too), and run:
 # four threads pose the controllers of one clip bank, and run the jobs of one stage and of one crowd. Passes when every
 # test does and nothing is reported.
 # A compiler that is missing, or whose ThreadSanitizer does not run here, is skipped. Closes as tests/run.sh does.

@@ -4,8 +4,8 @@
 #define NOH_PLATFORM_WEB_CAST_H
 
 #include "noh_gl.h"
-#include "stage/fall.h"
-#include "stage_gl/stage_hair.h"
+#include "stage/cast/fall.h"
+#include "gl/stage/stage_hair.h"
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 

@@ -12,7 +12,7 @@
 
 #include "cast.h"
 #include "platform.h"
-#include "wire/wire.h"
+#include "core/wire/wire.h"
 
 /* A device that does all that any path needs, and draws in software as that of the tests does: which one it will be is
  * found in the browser. */

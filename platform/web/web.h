@@ -4,10 +4,10 @@
 
 #include "cast.h"
 #include "context.h"
-#include "stage_gl/backdrop.h"
-#include "stage_gl/stage_blob.h"
-#include "stage_gl/stage_floor.h"
-#include "wire/wire.h"
+#include "gl/stage/backdrop.h"
+#include "gl/stage/stage_blob.h"
+#include "gl/stage/stage_floor.h"
+#include "core/wire/wire.h"
 
 #define WEB_PARTS_MAX 128u
 #define WEB_CHARACTERS_MAX 16u

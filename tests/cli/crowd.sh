@@ -209,7 +209,7 @@ if [ -f "$assets/hero/body.glb" ]; then
     for row in cpu/1-pixel cpu/16-pixels gpu/1-pixel gpu/16-pixels; do
         check "it has rows crowd/$row" grep -q "\"crowd/$row\"" "$work/out"
     done
-    check 'feet of a captured walk that follows an agent do not slide' env NOH_WALKERS_PACK="$work/body.noh" "$build/tests/unit/actors/test_walkers"
+    check 'feet of a captured walk that follows an agent do not slide' env NOH_WALKERS_PACK="$work/body.noh" "$build/tests/unit/stage/test_walkers"
     noh bench "$work/body.noh" --only stage --quick --json
     expect 0 'a stage and its parts joined by hand come to the same palettes'
     check 'it has rows stage/cpu and stage/lod' awk '/"stage\/(cpu|lod)\/20-actors"/ { found++ } END { exit found != 2 }' "$work/out"

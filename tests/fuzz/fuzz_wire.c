@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "support/fuzz_replay.h"
-#include "base/hash.h"
+#include "core/base/hash.h"
 #include "noh.h"
 #include "support/pack_walk.h"
-#include "wire/wire_internal.h"
+#include "core/wire/wire_internal.h"
 
 #define BLOCK_MAX (16u << 20) /* a header may ask for 2 GB: that is its right, and not looked at here */
 

@@ -1,4 +1,4 @@
-/* The base of runtime/gl: halves, the function table, the capability probe, programs,
+/* The base of runtime/gl/draw: halves, the function table, the capability probe, programs,
  * counted objects, timers; and platform/, which it stands on.
  *
  *   test_gl_base                  the tests
@@ -22,13 +22,13 @@
 #include <unistd.h>
 
 #include "../../platform/platform.h"
-#include "gl/gl_api.h"
-#include "gl/gl_caps.h"
-#include "base/half.h"
-#include "gl/gl_memory.h"
-#include "gl/gl_program.h"
-#include "gl/gl_quirks.h"
-#include "gl/gl_timer.h"
+#include "gl/device/gl_api.h"
+#include "gl/device/gl_caps.h"
+#include "core/base/half.h"
+#include "gl/device/gl_memory.h"
+#include "gl/device/gl_program.h"
+#include "gl/device/gl_quirks.h"
+#include "gl/device/gl_timer.h"
 #include "shaders.gen.h"
 
 #define SWEEP 10000000u

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "gpu/canvas.h"
-#include "stage_gl/stage_blob.h"
+#include "gl/stage/stage_blob.h"
 
 #define SIDE 128u
 

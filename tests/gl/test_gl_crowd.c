@@ -10,7 +10,7 @@
 
 #include "convert/model/model_build.h"
 #include "crowd/crowd_bodies.h"
-#include "stage/stage_internal.h"
+#include "stage/cast/stage_internal.h"
 
 #define BODIES 60u
 #define FRAMES 300u

@@ -1,4 +1,4 @@
-/* Tests of runtime/gl/gl_draw.c and mesh.frag: how a material, a texture, colours and a mirrored world change a
+/* Tests of gl_draw.c and mesh.frag: how a material, a texture, colours and a mirrored world change a
  * pixel. */
 #include "support/gl_fixture.h"
 
@@ -155,8 +155,7 @@ static void vertex_colors_multiply_the_base(void **state)
         color[i] = one[i % 4];
     }
     rgba = drawn(&q, NOH_DRAW_OPAQUE);
-    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), encoded(0.25 * 0.8), encoded(0.6),
-                 encoded(0.5 * 0.4));
+    expect_color(lit_quad_at(rgba, LIT_QUAD_SIDE / 2u), encoded(0.25 * 0.8), encoded(0.6), encoded(0.5 * 0.4));
     free(rgba);
     q.alpha = MODEL_ALPHA_MASK;
     for (int below = 0; below < 2; below++) { /* alpha too: 0.75 of 1 against the cutoff */
@@ -182,8 +181,7 @@ static void blended_materials_have_a_pass_of_their_own(void **state)
     free(rgba);
     rgba = drawn(&q, NOH_DRAW_BLENDED);
     expect_color(lit_quad_at(rgba, 5), encoded(0.25 * 0.8 + 0.75 * background[0]),
-                 encoded(0.25 * 0.6 + 0.75 * background[1]),
-                 encoded(0.25 * 0.4 + 0.75 * background[2]));
+                 encoded(0.25 * 0.6 + 0.75 * background[1]), encoded(0.25 * 0.4 + 0.75 * background[2]));
     free(rgba);
     q.alpha = MODEL_ALPHA_OPAQUE;
     rgba = drawn(&q, NOH_DRAW_BLENDED);

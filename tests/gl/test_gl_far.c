@@ -9,11 +9,11 @@
 
 #include "file/pack_file.h"
 #include "gpu/canvas.h"
-#include "stage/view.h"
-#include "stage_gl/stage_blob.h"
-#include "stage_gl/stage_floor.h"
-#include "stage_gl/stage_gl.h"
-#include "stage_gl/stage_hairs.h"
+#include "stage/cast/view.h"
+#include "gl/stage/stage_blob.h"
+#include "gl/stage/stage_floor.h"
+#include "gl/stage/stage_gl.h"
+#include "gl/stage/stage_hairs.h"
 
 #define SIDE 256u
 #define ACTORS 3u

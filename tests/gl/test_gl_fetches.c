@@ -9,7 +9,7 @@
 
 #include <GLES3/gl32.h>
 
-#include "gl/gl_variants.h"
+#include "gl/draw/gl_variants.h"
 
 /* ---- a preprocessor: conditions, and defines without arguments ---- */
 

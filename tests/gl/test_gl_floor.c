@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "gpu/canvas.h"
-#include "stage_gl/stage_floor.h"
+#include "gl/stage/stage_floor.h"
 
 #define SIDE 64u
 #define SHADOW_PX 64u

@@ -2,7 +2,7 @@
  * the delta that is accumulated there, in float layers and in integer ones. */
 #include "support/gl_fixture.h"
 
-#include "gl/gl_program.h"
+#include "gl/device/gl_program.h"
 #include "tool_shaders.gen.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/math_internal.h"
+#include "core/base/math_internal.h"
 
 static void open_scene(scene *s, const noh_environment *environment, uint32_t shadow_px, const float values[4])
 {

@@ -4,7 +4,7 @@
 #include "support/gl_fixture.h"
 #include "support/renderer.h"
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 
 #include <math.h>
 #include <stdlib.h>

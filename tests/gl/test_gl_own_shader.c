@@ -3,7 +3,7 @@
  * and in a texture, with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 #include "support/skin_asset.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "support/renderer.h"
 
 #include "gpu/gpu.h"
-#include "gl/gl_timer.h"
+#include "gl/device/gl_timer.h"
 #include "null.h"
 
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 /* ---- scatter ---- */
 

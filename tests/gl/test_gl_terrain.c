@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/gl_lost.h"
+#include "gl/device/gl_lost.h"
 #include "gpu/canvas.h"
-#include "stage/view.h"
-#include "stage_gl/stage_terrain.h"
+#include "stage/cast/view.h"
+#include "gl/stage/stage_terrain.h"
 
 #define WIDTH 320u
 #define HEIGHT 200u

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "convert/light/pack_transfer.h"
-#include "deform/skin.h"
-#include "light/transfer.h"
-#include "stage_gl/stage_gl.h"
+#include "deform/skin/skin.h"
+#include "gl/light/transfer.h"
+#include "gl/stage/stage_gl.h"
 #include "support/lod_fixture.h"
 #include "support/skin_asset.h"
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "draw/figure.h"
-#include "gl/gl_program.h"
+#include "gl/device/gl_program.h"
 #include "gpu/canvas.h"
 #include "shaders.gen.h"
 

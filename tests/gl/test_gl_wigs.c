@@ -9,9 +9,9 @@
 
 #include "file/pack_file.h"
 #include "gpu/canvas.h"
-#include "stage/view.h"
-#include "stage_gl/stage_gl.h"
-#include "stage_gl/stage_hairs.h"
+#include "stage/cast/view.h"
+#include "gl/stage/stage_gl.h"
+#include "gl/stage/stage_hairs.h"
 
 #define SIDE 192u
 #define ACTORS_MAX 12u

@@ -4,7 +4,7 @@
 
 #include "convert/model/model.h"
 #include "convert/wrinkle/region_mask.h"
-#include "mesh/wrinkles.h"
+#include "core/mesh/wrinkles.h"
 #include "support/gl_fixture.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
  * error is put into the library or its shaders (tests/README.md lists them). */
 #include "support/gl_fixture.h"
 
-#include "base/math_internal.h"
-#include "gl/gl_program.h"
+#include "core/base/math_internal.h"
+#include "gl/device/gl_program.h"
 #include "gpu/canvas.h"
 #include "support/lit_quad.h"
 #include "support/parts_fixture.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "crowd/crowd.h"
+#include "stage/crowd/crowd.h"
 #include "platform.h"
 #include "replay/session.h"
 

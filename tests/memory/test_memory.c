@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/arena.h"
+#include "core/base/arena.h"
 #include "support/clip_bank_fixture.h"
 
 #define CANARY 256u

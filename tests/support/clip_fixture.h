@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clip/clip_cache.h"
+#include "motion/clip/clip_cache.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/clips/raw_set.h"
 

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/controller_pose.h"
-#include "anim/mask.h"
-#include "base/quat.h"
+#include "motion/anim/controller_pose.h"
+#include "motion/anim/mask.h"
+#include "core/base/quat.h"
 
 #define ALIGNED __attribute__((aligned(16)))
 #define JOINTS 24u

@@ -5,9 +5,9 @@
 #include "gl_fixture.h"
 #include "stage_fixture.h"
 
-#include "deform/pick.h"
+#include "deform/pick/pick.h"
 #include "gpu/canvas.h"
-#include "stage_gl/stage_patch.h"
+#include "gl/stage/stage_patch.h"
 
 #define WIDTH 240u
 #define HEIGHT 240u

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pose/local_to_model.h"
-#include "base/quat.h"
-#include "deform/dual_quaternion.h"
-#include "deform/skin.h"
+#include "motion/pose/local_to_model.h"
+#include "core/base/quat.h"
+#include "deform/skin/dual_quaternion.h"
+#include "deform/skin/skin.h"
 
 /* ---- packs ---- */
 

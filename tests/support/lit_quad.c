@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/math_internal.h"
+#include "core/base/math_internal.h"
 #include "convert/model/model_build.h"
 #include "support.h"
 #include "draw/camera.h"

@@ -8,7 +8,7 @@
 
 #include "gpu/gpu.h"
 #include "convert/model/model.h"
-#include "gl/gl_variants.h"
+#include "gl/draw/gl_variants.h"
 #include "support/srgb.h"
 
 #define LIT_QUAD_SIDE 33u  /* pixels of the picture's side */

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pose/blend.h"
-#include "anim/clip_set.h"
-#include "pose/skeleton.h"
+#include "motion/pose/blend.h"
+#include "motion/anim/clip_set.h"
+#include "motion/pose/skeleton.h"
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 

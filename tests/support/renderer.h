@@ -2,7 +2,7 @@
 #ifndef NOH_TEST_RENDERER_H
 #define NOH_TEST_RENDERER_H
 
-#include "gl/gl_draw.h"
+#include "gl/draw/gl_draw.h"
 
 #define RENDERERS_MAX 8u
 

@@ -1,11 +1,11 @@
 /* amalgam: the library as three files, noh.h, noh_gl.h and noh.c.
  *
- *   amalgam -o FOLDER -I FOLDER... FILE.c...      files are named from an -I folder, e.g. deform/morph.c
+ *   amalgam -o FOLDER -I FOLDER... FILE.c...      files are named from an -I folder, e.g. morph.c
  *
  * noh.h and noh_gl.h are those headers with all that they include from the library, each once. noh.c holds the rest:
  * first what needs no GL, then, inside #ifndef NOH_WITHOUT_GL, what does; private headers stand where they are first
  * included. In one translation unit the names that files keep to themselves would clash, so a file-scope name of a .c
- * file that occurs anywhere else gets its file's name in front (run in deform/morph.c: deform_morph_run), and the
+ * file that occurs anywhere else gets its file's name in front (run in morph.c: deform_morph_run), and the
  * macros that a .c file defines are undefined at its end. Names that begin with noh_ or NOH_ are kept.
  *
  * Names are found by a scan of tokens, not by a parser: it knows the shapes of declarations that the library uses, and
@@ -256,7 +256,7 @@ static void keep_shared_names(int own)
 
 /* ---- writing ---- */
 
-/* "deform/morph.c" -> "deform_morph_" */
+/* "deform/morph/morph.c" -> "deform_morph_" */
 static void write_prefix(FILE *out, const char *file)
 {
     const char *end = strrchr(file, '.');

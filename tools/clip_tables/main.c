@@ -1,7 +1,7 @@
 /* clip_tables: derives the prefix codes of the clip codec from raw clips.
  *
- *   clip_tables > runtime/clip/clip_tables.c                 flat codes, to start from
- *   clip_tables CLIP.rcl... > runtime/clip/clip_tables.c     codes for these clips
+ *   clip_tables > clip_tables.c                 flat codes, to start from
+ *   clip_tables CLIP.rcl... > clip_tables.c     codes for these clips
  *
  * Every clip is encoded at 0.01 cm with a 3 cm shell and at 0.1 cm with a 10 cm shell; clips
  * above 60 Hz also with every 4th frame. Symbols are counted per context, each clip weighted so
@@ -184,7 +184,7 @@ int main(int argc, char **argv)
     static totals t;
     int failed = 0;
     for (int i = 1; i < argc; i++) failed |= count_file(argv[i], &t);
-    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"clip/clip_coefs_internal.h\"\n\n",
+    printf("/* Made by tools/clip_tables; do not edit.%s */\n#include \"motion/clip/clip_coefs_internal.h\"\n\n",
            argc > 1 ? " From:" : " Flat codes.");
     for (int i = 1; i < argc; i++) {
         const char *name = strrchr(argv[i], '/');

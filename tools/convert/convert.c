@@ -16,15 +16,15 @@
 #include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
 #include "convert/pack/size_warn.h"
-#include "clip/pack_clip.h"
+#include "motion/clip/pack_clip.h"
 #include "convert/springs/springs_bind.h"
 #include "convert/texture/texture_trim.h"
-#include "pack/pack.h"
-#include "sim/ragdoll_rig.h"
+#include "core/pack/pack.h"
+#include "life/physics/ragdoll_rig.h"
 #include "sources.h"
 
 /* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
- * largest error in pixels (runtime/character/lod.h). */
+ * largest error in pixels (lod.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
 
 static int out_of_memory(model_error *error)

@@ -8,7 +8,7 @@
 #include "convert/clips/raw_turn.h"
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
-#include "pack/pack.h"
+#include "core/pack/pack.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
 #include "convert/skin/seam.h"
@@ -38,7 +38,7 @@ typedef struct convert_options {
     const char *targets;         /* a folder of .obj files: the targets of the first .obj model; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first's */
     uint32_t attached_count;
-    const char *attach_joint; /* that carries those without joints; NULL: the head */
+    const char *attach_joint;   /* that carries those without joints; NULL: the head */
     seam_mode seam;             /* of skinned meshes that go on as each other */
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */

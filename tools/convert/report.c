@@ -2,7 +2,7 @@
  * from their bytes per vertex and target, or per pair. */
 #include "convert.h"
 #include "convert/texture/texture_blocks.h"
-#include "mesh/mesh.h"
+#include "core/mesh/mesh.h"
 
 static double ratio(double a, double b)
 {

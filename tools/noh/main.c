@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/version.h"
+#include "core/base/version.h"
 #include "help/help.h"
 #include "cli/json.h"
 #include "cli/message.h"

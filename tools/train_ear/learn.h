@@ -2,7 +2,7 @@
 #ifndef NOH_TRAIN_EAR_LEARN_H
 #define NOH_TRAIN_EAR_LEARN_H
 
-#include "face/ear_internal.h"
+#include "life/face/ear_internal.h"
 
 /* Frames that follow each other: what is seen of each, and its shape (-1: not known). */
 typedef struct lesson {

@@ -1,4 +1,4 @@
-/* main.c: teaches the ear out of synthetic speech, and writes runtime/face/ear_tables.c.
+/* main.c: teaches the ear out of synthetic speech, and writes ear_tables.c.
  *
  *   train_ear SENTENCES.txt PHONES.txt >ear_tables.c
  *
@@ -193,7 +193,7 @@ static void write_tables(uint64_t hash)
 {
     printf("/* ear_tables.c: written by tools/train_ear (`make ear-tables`); sentences and phones %016llx. */\n",
            (unsigned long long)hash);
-    printf("/* clang-format off */\n#include \"face/ear_internal.h\"\n\nconst ear_tables noh_ear_tables = {\n");
+    printf("/* clang-format off */\n#include \"life/face/ear_internal.h\"\n\nconst ear_tables noh_ear_tables = {\n");
     put("window", tables.window, EAR_WINDOW / 2, 2);
     put("sine", tables.sine, EAR_FFT / 4 + 1, 2);
     put("mel", tables.mel, EAR_FFT / 2 + 1, 1);

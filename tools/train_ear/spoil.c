@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "face/ear_internal.h"
+#include "life/face/ear_internal.h"
 
 enum { ROOM = 2 * VOICE_SAMPLES_MAX, ECHOES = 50, ZEROS = 12 };
 

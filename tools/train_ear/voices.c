@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "face/recipe.h"
-#include "face/speech.h"
+#include "life/face/recipe.h"
+#include "life/face/speech.h"
 
 enum { LINES_MAX = 512, LINE_BYTES = 1024, SHAPES_MAX = 512, ESPEAK_RATE = 22050 };
 

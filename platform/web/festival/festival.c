@@ -7,7 +7,7 @@
 #include "cli/message.h"
 #include "context.h"
 #include "crowd/place_scene.h"
-#include "stage/view.h"
+#include "stage/cast/view.h"
 
 static struct {
     gpu g;

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "convert/obj/obj_read.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 static void save(const char *name, const char *text)
 {

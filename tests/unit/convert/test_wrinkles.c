@@ -13,7 +13,7 @@
 #include "convert/wrinkle/wrinkle_make.h"
 #include "convert/wrinkle/wrinkle_regions.h"
 #include "file/png_file.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 #define PI 3.14159265358979323846
 

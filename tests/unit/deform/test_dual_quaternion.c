@@ -1,4 +1,4 @@
-/* Tests of runtime/deform/dual_quaternion.c: matrices split into a rotation, a translation and a stretch. Meshes
+/* Tests of dual_quaternion.c: matrices split into a rotation, a translation and a stretch. Meshes
  * skinned by them are in test_skin. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/quat.h"
-#include "deform/dual_quaternion.h"
+#include "core/base/quat.h"
+#include "deform/skin/dual_quaternion.h"
 
 /* The matrix of a split transform: rows of 3 x 4. */
 static void matrix_of(const float q[4], const float scale[3], const float t[3], float m[12])

@@ -1,4 +1,4 @@
-/* Tests of runtime/deform/pick.c in closed form: a flat sheet and a folded one. Real bodies over their clips, against a
+/* Tests of pick.c in closed form: a flat sheet and a folded one. Real bodies over their clips, against a
  * search through all triangles, are in test_bounds_pick. */
 #include "support/skin_asset.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/math_internal.h"
+#include "core/base/math_internal.h"
 #include "convert/clips/model_clips.h"
 #include "convert/pack/pack_clips.h"
 

@@ -1,6 +1,6 @@
-/* Tests of runtime/deform/skin_list.c: vertices that more joints move than the GPU has room for, out of packs that are
+/* Tests of skin_list.c: vertices that more joints move than the GPU has room for, out of packs that are
  * whole, split into palettes, stripped of levels, and damaged. */
-#include "deform/skin_list.h"
+#include "deform/skin/skin_list.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 
 #include "convert/pack/pack_order.h"
 #include "convert/pack/pack_strip.h"
-#include "deform/skin.h"
+#include "deform/skin/skin.h"
 #include "support/lod_fixture.h"
 #include "support/pack_walk.h"
 #include "support/skin_asset.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/math_internal.h"
+#include "core/base/math_internal.h"
 #include "convert/skin/mesh_join.h"
 #include "convert/model/model_build.h"
 #include "convert/model/two_stream.h"

@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "convert/model/model_build.h"
-#include "deform/morph.h"
-#include "deform/skin.h"
+#include "deform/morph/morph.h"
+#include "deform/skin/skin.h"
 
 #define HALF_ROOT 0.70710678f
 

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/root_internal.h"
-#include "stage/stage_internal.h"
-#include "stage/stage_feet.h"
-#include "stage/stage_gaze.h"
-#include "stage/stage_ragdoll.h"
-#include "stage/view.h"
+#include "motion/anim/root_internal.h"
+#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_feet.h"
+#include "stage/cast/stage_gaze.h"
+#include "stage/cast/stage_ragdoll.h"
+#include "stage/cast/view.h"
 #include "support/stage_fixture.h"
 
 static const float places[] = { 100000.0f, -100000.0f, 1000000.0f };

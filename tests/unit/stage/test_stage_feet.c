@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "stage/stage_feet.h"
+#include "stage/cast/stage_feet.h"
 
 #define STEPS 14u
 #define FRAMES 420u

@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clip/pack_clip.h"
+#include "motion/clip/pack_clip.h"
 #include "platform.h"
-#include "stage/springs.h"
-#include "stage/stage_feet.h"
-#include "stage/stage_gaze.h"
-#include "stage/stage_ragdoll.h"
+#include "stage/cast/springs.h"
+#include "stage/cast/stage_feet.h"
+#include "stage/cast/stage_gaze.h"
+#include "stage/cast/stage_ragdoll.h"
 
 #define FRAMES 300u
 #define ACTORS 4u

@@ -2,8 +2,8 @@
  * many may fall, who is dead; states saved, put back and tampered with; the same bits for any number of jobs. */
 #include "support/stage_fixture.h"
 
-#include "stage/fall.h"
-#include "stage/stage_internal.h"
+#include "stage/cast/fall.h"
+#include "stage/cast/stage_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "support/look_part.h"
 #include "support/stage_fixture.h"
 
-#include "stage/stage_internal.h" /* what each job has done */
+#include "stage/cast/stage_internal.h" /* what each job has done */
 
 #include <pthread.h>
 #include <time.h>

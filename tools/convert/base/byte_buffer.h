@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 
 /* A growing block of bytes. */
 typedef struct byte_buffer {

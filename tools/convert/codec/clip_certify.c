@@ -2,8 +2,8 @@
  * same measure it is decided which segments are split. */
 #include <stdlib.h>
 
-#include "clip/clip_decode_internal.h"
-#include "clip/clip_sample_internal.h"
+#include "motion/clip/clip_decode_internal.h"
+#include "motion/clip/clip_sample_internal.h"
 #include "clip_encoder.h"
 
 typedef struct certifier {

@@ -12,9 +12,9 @@
 #ifndef NOH_CONVERT_CODEC_CLIP_ENCODER_H
 #define NOH_CONVERT_CODEC_CLIP_ENCODER_H
 
-#include "clip/clip_coefs_internal.h"
-#include "clip/clip_internal.h"
-#include "clip/clip_synth_internal.h"
+#include "motion/clip/clip_coefs_internal.h"
+#include "motion/clip/clip_internal.h"
+#include "motion/clip/clip_synth_internal.h"
 #include "clip_encode.h"
 #include "clip_space.h"
 

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clip/clip_cache.h"
-#include "anim/clip_set.h"
-#include "character/joint_lod.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/anim/clip_set.h"
+#include "stage/character/joint_lod.h"
 #include "convert/clips/joint_order.h"
 #include "convert/model/model_build.h"
 

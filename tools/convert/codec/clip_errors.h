@@ -1,11 +1,11 @@
 /* clip_errors.h: the error of an encoded clip that is posed with fewer joints, or at lower update rates. The runtime
- * chooses LOD levels by it (character/lod.h). */
+ * chooses LOD levels by it (lod.h). */
 #ifndef NOH_CONVERT_CODEC_CLIP_ERRORS_H
 #define NOH_CONVERT_CODEC_CLIP_ERRORS_H
 
-#include "character/time_lod_points.h"
+#include "stage/character/time_lod_points.h"
 #include "convert/base/byte_buffer.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 #include "convert/clips/raw_clip.h"
 
 /* In the skeleton's unit; as noh_clip_header has them. */

@@ -1,7 +1,7 @@
 /* clip_write.c: writes the bits of clip_format.h, in the order in which clip_open.c and clip_decode.c read them. */
 #include <stdlib.h>
 
-#include "base/hash.h"
+#include "core/base/hash.h"
 #include "clip_encoder.h"
 
 #define BYTE 8u

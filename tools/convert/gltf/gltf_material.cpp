@@ -6,10 +6,10 @@
 #include <cstring>
 #include <memory>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 #include "convert/base/webp_file.h"
 #include "convert/model/surface_kind.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 #include <stb/stb_image.h>
 

@@ -1,7 +1,7 @@
 /* gltf_scene.cpp: the node hierarchy. */
 #include "gltf_internal.h"
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 
 #include <cmath>
 #include <cstring>

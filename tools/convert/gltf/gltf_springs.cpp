@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 
 namespace gltf
 {

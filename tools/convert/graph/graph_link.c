@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "convert/base/nearest.h"
-#include "graph/blend_space.h"
+#include "motion/graph/blend_space.h"
 #include "graph_internal.h"
 
 #define LOOP_ONCE 1u /* noh_loop */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/time.h"
+#include "motion/anim/time.h"
 #include "convert/base/input_file.h"
 #include "graph_internal.h"
 
@@ -12,7 +12,7 @@ static const char *const curves[] = { "linear", "smooth", NULL };
 static const char *const entries[] = { "start", "keep", NULL };
 static const char *const yes_no[] = { "no", "yes", NULL };
 
-#define FLAG_INERTIAL 1u /* NOH_TRANSITION_* of graph/graph.h */
+#define FLAG_INERTIAL 1u /* NOH_TRANSITION_* of graph.h */
 #define FLAG_KEEP 2u
 
 static graph_ref ref_of(graph_word word)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/time.h"
+#include "motion/anim/time.h"
 #include "convert/base/nearest.h"
 
 int graph_fail(graph_reader *r, uint32_t line, const char *format, ...)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/trig.h"
+#include "core/base/trig.h"
 
 #define GOLDEN_TURN 1640531527u /* 2^32 (1 - 1 / golden ratio) */
 

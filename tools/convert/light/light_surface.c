@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "convert/model/affine.h"
-#include "deform/morph.h"
+#include "deform/morph/morph.h"
 
 static int blends(const noh_pack *pack, const noh_submesh *s)
 {

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "base/version.h"
+#include "core/base/hash.h"
+#include "core/base/version.h"
 
 typedef struct copier {
     const noh_pack *pack;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/octahedral_internal.h"
+#include "core/base/octahedral_internal.h"
 
 void transfer_axis(const float *transfer, const float fallback[3], float axis[3])
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "light/transfer.h"
+#include "gl/light/transfer.h"
 #include "transfer_fit.h"
 
 /* A vertex that is darker than this in the bind pose takes the form of its lobe from the target that opens it most: a

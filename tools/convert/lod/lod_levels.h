@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 #include "lod.h"
 #include "lod_frames.h"
 

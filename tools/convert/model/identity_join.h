@@ -1,5 +1,5 @@
 /* identity_join.h: the targets of another file's mesh, of the same vertices, as targets that make people
- * (runtime/face/identity.h): characters are often modelled with the expressions in one file and the people in another.
+ * (identity.h): characters are often modelled with the expressions in one file and the people in another.
  */
 #ifndef NOH_CONVERT_MODEL_IDENTITY_JOIN_H
 #define NOH_CONVERT_MODEL_IDENTITY_JOIN_H

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "convert/model/target_append.h"
-#include "face/recipe.h"
+#include "life/face/recipe.h"
 
 #define LINKS_MAX 512u
 #define RIM_MAX 512u

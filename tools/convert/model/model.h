@@ -63,7 +63,7 @@ typedef struct model_material {
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
     uint8_t wrinkle_codes;   /* 1: wrinkle_weights[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
-    uint32_t surface;        /* NOH_SURFACE_* of pack/format.h */
+    uint32_t surface;        /* NOH_SURFACE_* of format.h */
     float surface_values[4], surface_more[6];
     uint32_t specular_texture;  /* index into textures or MODEL_NONE */
     uint8_t specular_roughness; /* 1: its alpha is roughness, else the weight of f0 and f90 */

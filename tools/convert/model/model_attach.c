@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "affine.h"
-#include "base/name_internal.h"
+#include "core/base/name_internal.h"
 #include "model_build.h"
 
 static int fail_memory(model_error *error)
@@ -136,7 +136,7 @@ static int is_joint(const model *m, uint32_t node)
     return 0;
 }
 
-/* As gazes find it (sim/gaze.h). */
+/* As gazes find it (gaze.h). */
 static int is_head(const char *name)
 {
     static const char *const others[] = { "headtop", "headend", "headnub", "forehead", "headlight" };

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
 

@@ -2,7 +2,7 @@
  *
  * The encoder drops pairs that move nothing, orders vertices so that those that move together lie together in the
  * accumulation texture, covers each target's vertices by rectangles, and quantises the deltas (layouts in
- * runtime/pack/format.h). Microsoft's SparseMorphTargets sample has one rectangle per target, over vertices in the
+ * format.h). Microsoft's SparseMorphTargets sample has one rectangle per target, over vertices in the
  * order of the artist's tool; here the order is chosen, and a target may have many rectangles. The same mesh and
  * options give the same bytes on every machine: seeds are fixed, and nothing depends on addresses or on contraction of
  * floats. */

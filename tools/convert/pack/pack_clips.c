@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/time.h"
-#include "base/hash.h"
+#include "motion/anim/time.h"
+#include "core/base/hash.h"
 #include "convert/clips/joint_order.h"
 #include "convert/skin/joint_points.h"
 #include "convert/skin/joint_radius.h"
 #include "convert/clips/loop_check.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 #include "convert/clips/raw_set.h"
 
 static uint32_t float_count(const raw_clip *clip)

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "base/version.h"
+#include "core/base/hash.h"
+#include "core/base/version.h"
 
 void pack_copy_as_is(const noh_pack *pack, uint32_t index, byte_buffer *out)
 {

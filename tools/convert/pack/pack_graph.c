@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "base/hash.h"
-#include "graph/blend_space.h"
+#include "core/base/hash.h"
+#include "motion/graph/blend_space.h"
 
 typedef struct packer {
     const graph_def *g;

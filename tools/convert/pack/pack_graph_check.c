@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bank/clip_bank.h"
-#include "graph/graph_pack.h"
+#include "motion/bank/clip_bank.h"
+#include "motion/graph/graph_pack.h"
 #include "pack_graph.h"
 
 /* What of a graph is wrong. */

@@ -4,11 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/hash.h"
+#include "core/base/hash.h"
 #include "convert/morph/f16_bound.h"
 #include "convert/skin/influence_pack.h"
 #include "mesh_layout.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 #include "pack_skin.h"
 
 /* A unit vector as an octahedral pair in -1 to 1. */

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "deform/skin_list.h"
+#include "core/base/hash.h"
+#include "deform/skin/skin_list.h"
 
 #define EDGES 15u   /* that the filter can go on from */
 #define FIXED 0xffu /* of a texel under two rectangles of a target: it stays where it is */

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/mesh.h"
+#include "core/mesh/mesh.h"
 #include "pack_copy.h"
 
 typedef struct rounder {

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-#include "deform/skin_list.h"
-#include "mesh/mesh.h"
+#include "deform/skin/skin_list.h"
+#include "core/mesh/mesh.h"
 #include "pack_copy.h"
 
 /* ---- which levels ---- */

@@ -1,6 +1,6 @@
-/* pack_wire.c: runs the filters of runtime/wire/ over a finished pack, records what they code, and writes it in blocks.
+/* pack_wire.c: runs the filters of runtime/core/wire/ over a finished pack, records what they code, and writes it in blocks.
  *
- * The coder of runtime/wire/ decodes last what was coded first, so the symbols of a block are kept and coded backwards.
+ * The coder of runtime/core/wire/ decodes last what was coded first, so the symbols of a block are kept and coded backwards.
  * Where a filter has modes, each is tried and the shortest kept. */
 #include "pack_wire.h"
 
@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "mesh/mesh.h"
-#include "wire/wire.h"
-#include "wire/wire_internal.h"
+#include "core/base/hash.h"
+#include "core/mesh/mesh.h"
+#include "core/wire/wire.h"
+#include "core/wire/wire_internal.h"
 #include "wire_like.h"
 
 #define SYMBOLS_MAX (1u << 18) /* of a block: 16 KiB of bits, and what weighs next to nothing */

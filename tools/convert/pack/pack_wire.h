@@ -1,4 +1,4 @@
-/* pack_wire.h: the wire form of a pack: what runtime/wire/ reads. */
+/* pack_wire.h: the wire form of a pack: what runtime/core/wire/ reads. */
 #ifndef CONVERT_PACK_PACK_WIRE_H
 #define CONVERT_PACK_PACK_WIRE_H
 

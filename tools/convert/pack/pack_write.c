@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "base/version.h"
+#include "core/base/hash.h"
+#include "core/base/version.h"
 #include "convert/model/tint.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 #include "pack_clips.h"
 #include "pack_graph.h"
 #include "pack_mesh.h"

@@ -2,7 +2,7 @@
 #ifndef CONVERT_PACK_WIRE_LIKE_H
 #define CONVERT_PACK_WIRE_LIKE_H
 
-#include "wire/wire_internal.h"
+#include "core/wire/wire_internal.h"
 
 /* The order in which targets are written, and the one that each is told as a difference from: rows of a filter's plan,
  * for the mesh that the filter is about. Returns 1 when there is no memory. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "pack/format.h"
+#include "core/pack/format.h"
 
 uint32_t influence_count(const model_mesh *mesh, uint32_t vertex)
 {

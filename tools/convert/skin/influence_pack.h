@@ -1,9 +1,9 @@
 /* influence_pack.h (private to the pack writer): a vertex's joints and weights as the pack stores them
- * (runtime/pack/format.h). */
+ * (format.h). */
 #ifndef NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 #define NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 #include "convert/model/model.h"
 
 typedef struct influence_list {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 #include "springs_chain.h"

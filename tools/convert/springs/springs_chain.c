@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 
 #define SHORTEST 1e-5f /* bones below this have no direction, in the skeleton's unit */
 

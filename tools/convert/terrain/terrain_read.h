@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "convert/base/error.h"
-#include "sim/world.h"
+#include "life/physics/world.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -28,7 +28,7 @@ typedef struct etc2_texels {
 typedef struct etc2_best {
     uint64_t block;
     uint32_t error;
-    uint32_t bits; /* that it takes when it is sent (runtime/wire/wire_etc2.c), roughly */
+    uint32_t bits; /* that it takes when it is sent (wire_etc2.c), roughly */
 } etc2_best;
 
 /* A block of so many bits more has to be nearer by so much. */

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "etc2_block.h"
-#include "pack/etc2.h"
-#include "pack/pack.h"
+#include "core/pack/etc2.h"
+#include "core/pack/pack.h"
 
 static const uint8_t *texel_at(const texture_image *level, uint32_t x, uint32_t y)
 {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
-#include "pack/format.h"
+#include "core/base/hash.h"
+#include "core/pack/format.h"
 
 #define CELLS_MAX 64u          /* columns, and rows: bits of a word */
 #define MARGIN_TEXELS 4.0      /* of the smallest map */

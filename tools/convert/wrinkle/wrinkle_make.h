@@ -17,7 +17,7 @@ typedef struct wrinkle_settings {
     int automatic;      /* generate what is not painted */
     const char *map;    /* a painted normal map, tangent space, +y up; NULL: generated */
     const char *mask;   /* a painted region mask (region_mask.h); NULL: generated */
-    uint32_t models;    /* NOH_WRINKLE_BY_* of pack/format.h: what shows them, at least one */
+    uint32_t models;    /* NOH_WRINKLE_BY_* of format.h: what shows them, at least one */
     int by_pixel;       /* 1: pixels read a mask of codes, texel by texel; else vertices read its weights, filtered */
     uint32_t size;      /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
     uint32_t mask_size; /* side of a generated mask; 0: as it is read */

@@ -8,7 +8,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph_accumulate_internal.h"
+#include "deform/morph/morph_accumulate_internal.h"
 
 typedef struct before {
     bench_stage *stage;

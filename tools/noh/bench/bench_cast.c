@@ -1,4 +1,4 @@
-/* bench_cast.c: rows stage/: what a frame of a stage (runtime/stage) costs the CPU, on a GL that does nothing.
+/* bench_cast.c: rows stage/: what a frame of a stage (runtime/stage/cast) costs the CPU, on a GL that does nothing.
  *
  * stage/cpu/N-actors  against the same work joined by hand: a loop that does for one actor after another what the
  *                     library's parts do for it. The hand works on the parts of a second stage, from the state and with
@@ -15,9 +15,9 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "gl/gl_skin_internal.h"
-#include "stage/view.h"
-#include "stage_gl/stage_gl_internal.h"
+#include "gl/draw/gl_skin_internal.h"
+#include "stage/cast/view.h"
+#include "gl/stage/stage_gl_internal.h"
 
 #define SAMPLE_NS 2e7
 #define SETTLE_FRAMES 90u

@@ -41,7 +41,7 @@ typedef struct bench_cache {
 int bench_clip_set_open(bench_clip_set *set, const bench_job *job);
 void bench_clip_set_close(bench_clip_set *set);
 
-/* Another set, of the first clip alone, halved (clip/clip_codec.h) and without keys; count 0 where the clip has less
+/* Another set, of the first clip alone, halved (clip_codec.h) and without keys; count 0 where the clip has less
  * than 100 frames a second. */
 int bench_clip_set_halve(const bench_clip_set *set, bench_clip_set *halved);
 

@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "face/ear.h"
+#include "life/face/ear.h"
 
 #define SAMPLE_NS 1e7
 #define RATE 16000u

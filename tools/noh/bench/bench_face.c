@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "face/recipe.h"
+#include "life/face/recipe.h"
 
 #define SAMPLE_NS 5e6
 #define FACES 1000u

@@ -7,14 +7,14 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "sim/hair.h"
+#include "life/hair/hair.h"
 
 #define HAIRS 48u
 #define POINTS 12u
 #define WORKS 3u /* sets of instructions at most */
 #define SAMPLE_NS 5e6
 
-/* runtime/sim/hair_lanes.c built again (Makefile, KERNELS) */
+/* hair_lanes.c built again (Makefile, KERNELS) */
 typedef uint32_t step_fn(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
 step_fn noh_hair_step_scalar, noh_hair_step_sse2, noh_hair_step_avx2;
 typedef void hair_points(const noh_hair *hair, const noh_hair_desc *desc, float *points);

@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph_finish.h"
+#include "deform/morph/morph_finish.h"
 
 typedef struct path_method {
     bench_stage *stage;

@@ -12,11 +12,11 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "clip/pack_clip.h"
+#include "motion/clip/pack_clip.h"
 #include "crowd/crowd_scene.h"
 #include "crowd/place_people.h"
-#include "stage/view.h"
-#include "stage_gl/stage_gl.h"
+#include "stage/cast/view.h"
+#include "gl/stage/stage_gl.h"
 
 #define BODIES 1000u
 #define BODIES_QUICK 50u

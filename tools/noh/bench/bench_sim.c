@@ -7,7 +7,7 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "drop/drop_scene.h"
-#include "sim/ragdoll_internal.h"
+#include "life/physics/ragdoll_internal.h"
 
 #define DOLLS 16u
 #define STEPS 30u
@@ -16,7 +16,7 @@
 typedef void (*sim_step)(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                          uint32_t count, float *scratch);
 
-/* runtime/sim/ragdoll_lanes.c built again (Makefile, KERNELS) */
+/* ragdoll_lanes.c built again (Makefile, KERNELS) */
 #if defined(__x86_64__)
 void noh_ragdoll_step_dolls_sse2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                                  uint32_t count, float *scratch);

@@ -12,7 +12,7 @@
 #define OUT_FLOATS 10u /* position, normal, tangent */
 
 #if defined(__x86_64__)
-/* runtime/deform/skin.c built again for other instruction sets (Makefile, KERNELS) */
+/* skin.c built again for other instruction sets (Makefile, KERNELS) */
 void noh_skin_vertices_sse2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,
                             uint32_t count, float *positions, float *normals, float *tangents);
 void noh_skin_vertices_avx2(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t first,

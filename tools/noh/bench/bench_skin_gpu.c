@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pose/local_to_model.h"
-#include "clip/pack_clip.h"
-#include "base/quat.h"
+#include "motion/pose/local_to_model.h"
+#include "motion/clip/pack_clip.h"
+#include "core/base/quat.h"
 #include "bench_job.h"
-#include "deform/skin.h"
+#include "deform/skin/skin.h"
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7

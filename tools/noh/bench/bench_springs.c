@@ -7,8 +7,8 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "sim/ik.h"
-#include "sim/spring.h"
+#include "life/reach/ik.h"
+#include "life/physics/spring.h"
 
 #define CHARACTERS 10u
 #define CHAINS 10u /* of a character */
@@ -17,7 +17,7 @@
 #define WORKS 3u /* sets of instructions at most */
 #define SAMPLE_NS 5e6
 
-/* runtime/sim/spring_lanes.c built again (Makefile, KERNELS) */
+/* spring_lanes.c built again (Makefile, KERNELS) */
 typedef uint32_t spring_step(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch);
 typedef void spring_rotations(const noh_spring_move *moves, uint32_t count);
 spring_step noh_spring_step_scalar, noh_spring_step_sse2, noh_spring_step_avx2;

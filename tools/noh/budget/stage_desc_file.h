@@ -4,7 +4,7 @@
 
 #include "file/pack_file.h"
 #include "noh.h"
-#include "stage/stage_ragdoll.h"
+#include "stage/cast/stage_ragdoll.h"
 
 #define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
 #define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 2u))

@@ -11,7 +11,7 @@
 #include "convert/convert.h"
 #include "convert/mocap/clean.h"
 #include "cli/message.h"
-#include "pack/format.h"
+#include "core/pack/format.h"
 #include "platform.h"
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
@@ -498,7 +498,7 @@ static const option options[] = {
       .value = "N",
       .initial = "8",
       .what =
-          "joints per vertex at most, 1 to 32; the heaviest are kept. What is drawn has up to 8 of them; the CPU has a list of all (deform/skin_list.h)",
+          "joints per vertex at most, 1 to 32; the heaviest are kept. What is drawn has up to 8 of them; the CPU has a list of all (skin_list.h)",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--palette",

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "stage/view.h"
+#include "stage/cast/view.h"
 
 #define NEAREST_M 1.5f
 #define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */

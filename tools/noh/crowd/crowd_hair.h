@@ -9,7 +9,7 @@
 
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
-#include "stage_gl/stage_hairs.h"
+#include "gl/stage/stage_hairs.h"
 
 #define CROWD_HAIR_NEAR 16u /* bodies whose hair moves */
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/trig.h"
+#include "core/base/trig.h"
 #include "cli/message.h"
 #include "convert/base/nearest.h"
 #include "crowd_measure.h"

@@ -1,9 +1,9 @@
 /* crowd_scene.h: agents who cross a circle, leave through a door, walk about among each other, in a maze or from stall
- * to stall, and how well they do (crowd/crowd.h). Starts follow from a seed, and are the same on every processor. */
+ * to stall, and how well they do (crowd.h). Starts follow from a seed, and are the same on every processor. */
 #ifndef NOH_NOH_CROWD_CROWD_SCENE_H
 #define NOH_NOH_CROWD_CROWD_SCENE_H
 
-#include "crowd/crowd.h"
+#include "stage/crowd/crowd.h"
 
 typedef struct crowd_scene_options {
     const char *name; /* circle250, door200, dense1000, open10000, maze400, stalls600 */

@@ -7,7 +7,7 @@
 
 #include "cli/message.h"
 #include "gpu/canvas.h"
-#include "stage/view.h"
+#include "stage/cast/view.h"
 
 #define SHOWN_FRAMES 24u /* before the picture, so that feet and levels have settled */
 #define RADIAN 0.017453292519943295

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/hash.h"
+#include "core/base/hash.h"
 #include "cli/message.h"
 #include "place_people.h"
 

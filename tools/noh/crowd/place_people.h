@@ -6,8 +6,8 @@
 #include "file/pack_file.h"
 #include "noh.h"
 #include "place_file.h"
-#include "stage/stage_ragdoll.h"
-#include "actors/walkers.h"
+#include "stage/cast/stage_ragdoll.h"
+#include "stage/actors/walkers.h"
 
 #define PLACE_NEAR 48u     /* whose feet are put on the ground */
 #define PLACE_RAGDOLLS 16u /* who falls at once, where something makes them */

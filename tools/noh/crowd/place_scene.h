@@ -15,9 +15,9 @@
 #include "gpu/gpu.h"
 #include "place_life.h"
 #include "place_people.h"
-#include "stage_gl/backdrop.h"
-#include "stage_gl/stage_gl.h"
-#include "stage_gl/stage_terrain.h"
+#include "gl/stage/backdrop.h"
+#include "gl/stage/stage_gl.h"
+#include "gl/stage/stage_terrain.h"
 
 /* A push: who is within `radius` metres of x, z then falls, away from there. */
 typedef struct place_hit {

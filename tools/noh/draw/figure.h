@@ -27,12 +27,12 @@
 #include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
-#include "stage_gl/backdrop.h"
-#include "stage_gl/stage_blob.h"
-#include "stage_gl/stage_floor.h"
-#include "stage_gl/stage_decal.h"
-#include "stage_gl/stage_patch.h"
-#include "stage_gl/stage_hair.h"
+#include "gl/stage/backdrop.h"
+#include "gl/stage/stage_blob.h"
+#include "gl/stage/stage_floor.h"
+#include "gl/stage/stage_decal.h"
+#include "gl/stage/stage_patch.h"
+#include "gl/stage/stage_hair.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */

@@ -9,7 +9,7 @@
 #include "cli/args.h"
 #include "cli/message.h"
 #include "figure.h"
-#include "gl/gl_program.h"
+#include "gl/device/gl_program.h"
 #include "tool_shaders.gen.h"
 
 #define STEP_HEIGHT 0.17f /* metres */

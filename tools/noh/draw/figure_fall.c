@@ -4,7 +4,7 @@
 
 #include "cli/message.h"
 #include "figure.h"
-#include "stage/fall.h"
+#include "stage/cast/fall.h"
 
 #define STEP_TICKS (NOH_TICKS_PER_SECOND / 60u)
 #define PUSH_STEP 30 /* half a second */

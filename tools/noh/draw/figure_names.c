@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "clip/pack_clip.h"
+#include "motion/clip/pack_clip.h"
 #include "convert/base/nearest.h"
 #include "figure.h"
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "deform/dual_quaternion.h"
-#include "deform/skin.h"
+#include "deform/skin/dual_quaternion.h"
+#include "deform/skin/skin.h"
 #include "figure.h"
 
 /* ---- meshes and levels ---- */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "gl/gl_program.h"
+#include "gl/device/gl_program.h"
 #include "tool_shaders.gen.h"
 
 #define NEARER 1e-4f        /* of the depth range: edges in front of the surface that they bound */

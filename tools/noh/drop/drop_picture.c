@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 
 typedef struct pill {
     float from[3], to[3], radius;

@@ -8,13 +8,14 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/quat.h"
+#include "core/base/quat.h"
 #include "cli/message.h"
 
 #define FRICTION 0.6f
-#define HEIGHT 1.5f /* of the first body, metres; of characters that reach further from it, a tenth more than they do \
+#define HEIGHT \
+    1.5f           /* of the first body, metres; of characters that reach further from it, a tenth more than they do \
                      */
-#define SPEED 3.0f  /* metres per second, sideways */
+#define SPEED 3.0f /* metres per second, sideways */
 
 /* -1..1; xorshift */
 static float random_float(uint32_t *state)

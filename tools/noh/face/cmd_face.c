@@ -7,9 +7,9 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
-#include "face/corrective.h"
-#include "face/recipe.h"
-#include "face/weight_rule.h"
+#include "life/face/corrective.h"
+#include "life/face/recipe.h"
+#include "life/face/weight_rule.h"
 #include "file/pack_file.h"
 
 #define LINKS_MAX 4096u

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "wire/wire.h"
+#include "core/wire/wire.h"
 
 int pack_file_open(pack_file *file, const char *path)
 {

@@ -11,7 +11,7 @@
 
 #include <stddef.h>
 
-#include "base/limits.h"
+#include "core/base/limits.h"
 
 typedef enum weights_kind {
     WEIGHTS_END,

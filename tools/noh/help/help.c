@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/version.h"
+#include "core/base/version.h"
 #include "cli/message.h"
 #include "convert/base/nearest.h"
 #include "cli/verbs.h"

@@ -41,7 +41,7 @@ const char *const help_formats_text[] = {
     "                                      {\"time\": 0.25, \"name\": \"left\", \"marker\": true}]}",
     "# animation graphs (noh build --graph FILE)",
     "One statement a line, words separated by blanks, names with blanks in double quotes; # begins a comment. Options are KEY=VALUE, "
-    "times are seconds. A game sets the parameters and reads the states by name (graph/graph_pack.h).",
+    "times are seconds. A game sets the parameters and reads the states by name (graph_pack.h).",
     "   graph NAME                                  a graph; a file may hold several",
     "   number NAME LOW HIGH [initial=V]            a parameter; integer NAME ... : whole numbers",
     "   enum NAME VALUE... [initial=VALUE]          a parameter that is one of the values",
@@ -159,7 +159,7 @@ const char *const help_formats_text[] = {
     "(noh_mask_subtree, noh_mask_fill). Build clips that are played through masks with --for-masks, so that no joint relies on another's error.",
     "# stages (noh budget --desc FILE)",
     "One setting per line, words separated by blanks, what has blanks in double quotes; # begins a comment. Paths are relative to the "
-    "file's folder. Settings mean what the fields of noh_stage_desc and noh_kind_desc do (stage/stage.h), and may be left out except "
+    "file's folder. Settings mean what the fields of noh_stage_desc and noh_kind_desc do (stage.h), and may be left out except "
     "mesh and actor_count. Of the whole stage, before the first kind:",
     "   bytes_max N                                 bytes that it may take, CPU and GPU together",
     "   cpu_bytes_max N                             on the CPU",

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/version.h"
+#include "core/base/version.h"
 #include "help.h"
 #include "cli/verbs.h"
 

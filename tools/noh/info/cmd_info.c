@@ -14,7 +14,7 @@
 #include "verify/half_bound.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
-#include "deform/skin_list.h"
+#include "deform/skin/skin_list.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "stage_gl/stage_hair.h"
+#include "gl/stage/stage_hair.h"
 
 void info_print_hair(const noh_pack *pack)
 {

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/message.h"
-#include "stage/springs.h"
+#include "stage/cast/springs.h"
 
 void info_print_levels(const noh_pack *pack, uint32_t skeleton)
 {

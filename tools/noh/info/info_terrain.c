@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "sim/terrain.h"
+#include "life/physics/terrain.h"
 
 /* The lowest and the highest of its heights, metres. */
 static void range_of(const noh_field *f, double range[2])

@@ -7,7 +7,7 @@
 #include "convert/sources.h"
 #include "convert/wrinkle/wrinkle_make.h"
 #include "file/pack_file.h"
-#include "pack/etc2.h"
+#include "core/pack/etc2.h"
 
 static int ends_in(const char *path, const char *const *endings, size_t count)
 {

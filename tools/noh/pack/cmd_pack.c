@@ -13,7 +13,7 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
 #include "file/pack_file.h"
-#include "wire/wire.h"
+#include "core/wire/wire.h"
 
 typedef struct pack_args {
     const char *pack, *output;
@@ -286,7 +286,7 @@ const verb verb_pack = {
     .files = "PACK",
     .what = "the wire form of a pack: several times smaller, to be sent, unpacked while it arrives",
     .more =
-        "Every verb that reads a pack reads its wire form, too. A game unpacks it with noh_wire_push (wire/wire.h), in pieces as they come. A pack with LOD levels is preceded by one of its coarsest levels, which can be shown while the rest arrives.",
+        "Every verb that reads a pack reads its wire form, too. A game unpacks it with noh_wire_push (wire.h), in pieces as they come. A pack with LOD levels is preceded by one of its coarsest levels, which can be shown while the rest arrives.",
     .example = "head.noh -o head.nohz\nhead.noh -o head.nohz --error-um 10",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

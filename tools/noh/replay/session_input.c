@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "session.h"
-#include "stage/fall.h"
+#include "stage/cast/fall.h"
 
 const session_form session_forms[SESSION_WHATS] = {
     { "spawn", 0, 3 },     { "despawn", 0, 0 }, { "play", 1, 3 },   { "stop", 0, 2 }, { "graph", 1, 2 },

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "session.h"
-#include "stage/stage_face.h"
-#include "stage/stage_ragdoll.h"
-#include "stage/view.h"
+#include "stage/cast/stage_face.h"
+#include "stage/cast/stage_ragdoll.h"
+#include "stage/cast/view.h"
 
 #define VERTEX_FRAMES 30u /* one actor's vertices are hashed every so many frames */
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/ping_pong.h"
+#include "motion/anim/ping_pong.h"
 #include "cli/message.h"
 
 #define AROUND_S 0.3 /* shown before and after a transition */

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "face/recipe.h"
-#include "mesh/wrinkles.h"
+#include "life/face/recipe.h"
+#include "core/mesh/wrinkles.h"
 #include "sheet_lods.h"
 
 #define LINKS_MAX 1024u

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "face/speech.h"
+#include "life/face/speech.h"
 #include "warp.h"
 
 #define TOP_HZ 7600.0f
@@ -167,7 +167,7 @@ static void adapt(reference *r, const heard *h)
 
 /* ---- how well it fits ---- */
 
-#define TURN                                                                                                \
+#define TURN \
     0.38 /* of the states, which go from the beginning to the end: what repeats itself seldom does so there \
           */
 

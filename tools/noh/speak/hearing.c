@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "face/amplitude.h"
-#include "face/ear.h"
+#include "life/face/amplitude.h"
+#include "life/face/ear.h"
 
 #define RATE 16000u
 #define WINDOW_FRAMES (SPEECH_TRACK_RATE / NOH_AMPLITUDE_RATE) /* of a track, in a window of amplitude.h */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "face/speech.h"
+#include "life/face/speech.h"
 
 static int is_pause(const synthesis *s, size_t phone)
 {

@@ -2,12 +2,12 @@
 #ifndef NOH_NOH_VERIFY_HALF_BOUND_H
 #define NOH_NOH_VERIFY_HALF_BOUND_H
 
-#include "deform/morph.h"
+#include "deform/morph/morph.h"
 
 /* What is known of the weights, and of how sums are rounded. */
 typedef struct half_range {
     const float *low, *high; /* [target_count]: the range of each weight; both 0: the target is not there */
-    int once;                /* sums are rounded at the end alone, as paths do that sum in floats; else after each target,
+    int once;           /* sums are rounded at the end alone, as paths do that sum in floats; else after each target,
                               * in the targets' order */
     noh_half_mode mode; /* NOH_HALF_UNKNOWN: either way, and products may be rounded before they are added */
 } half_range;

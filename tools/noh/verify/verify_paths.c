@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "deform/morph_finish.h"
+#include "deform/morph/morph_finish.h"
 #include "gpu/readback.h"
 #include "half_bound.h"
 #include "verify.h"

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clip/clip_cache.h"
-#include "pose/local_to_model.h"
-#include "clip/pack_clip.h"
-#include "base/quat.h"
-#include "deform/dual_quaternion.h"
-#include "deform/skin.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/pose/local_to_model.h"
+#include "motion/clip/pack_clip.h"
+#include "core/base/quat.h"
+#include "deform/skin/dual_quaternion.h"
+#include "deform/skin/skin.h"
 #include "cli/message.h"
 #include "gpu/readback.h"
 

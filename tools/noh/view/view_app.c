@@ -1,8 +1,8 @@
 #include "view/view_app.h"
 #include "cli/message.h"
 #include "file/png_file.h"
-#include "gl/gl_lost.h"
-#include "stage/view.h"
+#include "gl/device/gl_lost.h"
+#include "stage/cast/view.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -28,7 +28,7 @@
 #include <stdio.h>
 
 #include "draw/framing.h"
-#include "gl/gl_timer.h"
+#include "gl/device/gl_timer.h"
 #include "view/view_compare.h"
 #include "view/view_export.h"
 #include "view/view_fall.h"

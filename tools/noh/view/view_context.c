@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "gl/gl_lost.h"
+#include "gl/device/gl_lost.h"
 #include "cli/message.h"
 #include "view/view_glfw.h"
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/message.h"
-#include "stage/view.h"
+#include "stage/cast/view.h"
 #include "view/view_app.h"
 
 /* ---- picking ---- */

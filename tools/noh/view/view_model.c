@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "anim/controller_pose.h"
-#include "gl/gl_lost.h"
+#include "motion/anim/controller_pose.h"
+#include "gl/device/gl_lost.h"
 #include "cli/message.h"
 
 /* ---- the file ---- */

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "stage/view.h"
+#include "stage/cast/view.h"
 
 /* The world from the joint that the point hangs on, or from its actor. */
 static void hook(const view_pick *p, const view_model *m, float matrix[12])

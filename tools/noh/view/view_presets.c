@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "face/recipe.h"
+#include "life/face/recipe.h"
 #include "file/weights_text.h"
 
 #define LINKS_MAX 1024u

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/gl_program.h"
+#include "gl/device/gl_program.h"
 #include "tool_shaders.gen.h"
 #include "cli/message.h"
 

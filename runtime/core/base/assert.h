@@ -1,0 +1,39 @@
+/* assert.h: checks for the caller's bugs, in two tiers; never for file bytes.
+ *
+ *   NOH_ASSERT         cheap: a null pointer, an index past a count
+ *   NOH_VALIDATE       costly: walks a whole structure
+ *   NOH_STATIC_ASSERT  at compile time
+ *
+ * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check
+ * calls NOH_ASSERT_FAILED(condition, file, line), which a build may define; the default traps, because the library
+ * links nothing that could print.
+ * Threads: no state; any thread. */
+#ifndef NOH_BASE_ASSERT_H
+#define NOH_BASE_ASSERT_H
+
+#include "core/base/compiler.h"
+
+#ifndef NOH_ASSERT_LEVEL
+#define NOH_ASSERT_LEVEL 0
+#endif
+
+#ifndef NOH_ASSERT_FAILED
+#define NOH_ASSERT_FAILED(condition, file, line) NOH_TRAP()
+#endif
+
+#if NOH_ASSERT_LEVEL >= 1
+#define NOH_ASSERT(condition) ((condition) ? (void)0 : NOH_ASSERT_FAILED(#condition, __FILE__, __LINE__))
+#else
+#define NOH_ASSERT(condition) ((void)0)
+#endif
+
+#if NOH_ASSERT_LEVEL >= 2
+#define NOH_VALIDATE(condition) NOH_ASSERT(condition)
+#else
+#define NOH_VALIDATE(condition) ((void)0)
+#endif
+
+/* A compile-time check that works in C99. */
+#define NOH_STATIC_ASSERT(condition, name) typedef char noh_static_assert_##name[(condition) ? 1 : -1]
+
+#endif

@@ -1,0 +1,69 @@
+#include "core/mesh/wrinkles.h"
+
+#include <string.h>
+
+#include "core/base/assert.h"
+#include "core/base/math_internal.h"
+
+noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_error *error)
+{
+    const noh_pack *pack;
+    NOH_ASSERT(mesh && mesh->pack && wrinkles);
+    pack = mesh->pack;
+    for (uint32_t i = 0; i < pack->wrinkles_count; i++) {
+        const uint8_t *bytes = pack->bytes + pack->chunks[pack->first_wrinkles + i].offset;
+        const noh_wrinkles_header *h = (const noh_wrinkles_header *)(const void *)bytes;
+        const uint8_t *first = (const uint8_t *)(mesh->header - (mesh->header->level - mesh->header->level_first));
+        if (pack->bytes + pack->chunks[pack->first_mesh + h->mesh].offset == first) {
+            wrinkles->target_count = h->target_count;
+            wrinkles->matrix = bytes + h->matrix_offset;
+            return NOH_OK;
+        }
+    }
+    return noh_fail(error, NOH_ERR_NOT_FOUND, "the mesh has no wrinkles: build its pack with --wrinkles auto", 0,
+                    pack->wrinkles_count);
+}
+
+void noh_wrinkles_weights(const noh_wrinkles *wrinkles, const float *weights, float *regions)
+{
+    NOH_ASSERT(wrinkles && weights && regions);
+    memset(regions, 0, NOH_WRINKLE_REGIONS * sizeof *regions);
+    for (uint32_t t = 0; t < wrinkles->target_count; t++) {
+        const uint8_t *row = wrinkles->matrix + (size_t)t * NOH_WRINKLE_REGIONS;
+        for (uint32_t r = 0; r < NOH_WRINKLE_REGIONS && weights[t] > 0.0f; r++) {
+            regions[r] += weights[t] * ((float)row[r] * (1.0f / 255.0f));
+        }
+    }
+    for (uint32_t r = 0; r < NOH_WRINKLE_REGIONS; r++) {
+        regions[r] = regions[r] < 1.0f ? regions[r] : 1.0f;
+    }
+}
+
+float noh_wrinkles_area(float area_at_rest, float area)
+{
+    const float shrunk = area_at_rest > 1e-18f ? (area_at_rest - area) / area_at_rest : 0.0f;
+    const float weight = 0.3f + (shrunk < 0.0f ? 0.005f * shrunk : shrunk);
+    return weight < 0.0f ? 0.0f : weight < 1.0f ? weight : 1.0f;
+}
+
+static void make_unit(float v[3])
+{
+    const float length = noh_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++) {
+        v[i] /= length;
+    }
+}
+
+void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, float *out)
+{
+    float t[3] = { base[0], base[1], base[2] + 1.0f };
+    float u[3] = { -wrinkle[0] * weight, -wrinkle[1] * weight, wrinkle[2] }, along;
+    NOH_ASSERT(base && wrinkle && out);
+    make_unit(u);
+    along = (t[0] * u[0] + t[1] * u[1] + t[2] * u[2]) / t[2];
+    for (int i = 0; i < 3; i++) {
+        t[i] = t[i] * along - u[i];
+    }
+    make_unit(t);
+    memcpy(out, t, sizeof t);
+}

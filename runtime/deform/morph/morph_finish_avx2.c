@@ -1,0 +1,13 @@
+/* morph_finish_avx2.c: noh_morph_finish with AVX2, where the compiler makes single functions of it. The processor is
+ * asked before it is called: noh_morph_kernel_find. */
+#include "deform/morph/morph_finish_wide_internal.h"
+
+#ifdef NOH_AVX2_AT_RUN_TIME
+
+NOH_TARGET_AVX2 void noh_morph_finish_wide(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first,
+                                           uint32_t count, void *out)
+{
+    wide_finish(mesh, layers, first, count, out);
+}
+
+#endif

@@ -1,0 +1,201 @@
+/* gl_api.c: filling the table of GL functions.
+ *
+ * Functions of three kinds are looked up. Those that the library calls must all be there. Those for renderers may be
+ * missing. Those beyond ES 3.0 depend on the context: eglGetProcAddress and its like return a pointer for a name that
+ * the context does not support, so the version and the extension strings decide, and they also decide the suffix under
+ * which a function is found. The table is built apart and copied once nothing can fail any more. */
+#include "gl/device/gl_api.h"
+#include "gl/device/gl_names_internal.h"
+
+#include <string.h>
+
+enum {
+    NOH_GL_GROUP_MAP,
+    NOH_GL_GROUP_GEOMETRY,
+    NOH_GL_GROUP_CLIP,
+    NOH_GL_GROUP_DEBUG,
+    NOH_GL_GROUP_TIMER,
+    NOH_GL_GROUP_COUNT
+};
+
+#define PROC_NAME_BYTES 48
+
+static int text_equal(const char *a, const char *b)
+{
+    while (*a && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
+static int text_starts(const char *text, const char *start)
+{
+    while (*start && *text == *start) {
+        text++;
+        start++;
+    }
+    return *start == 0;
+}
+
+GLenum noh_gl_error_take(const noh_gl_api *api)
+{
+    NOH_ASSERT(api && api->GetError);
+    GLenum first = api->GetError();
+    GLenum next = first;
+    for (int i = 1; i < 16 && next != GL_NO_ERROR; i++) next = api->GetError();
+    return first;
+}
+
+noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error)
+{
+    GLenum code = noh_gl_error_take(api);
+    if (code == GL_NO_ERROR) return NOH_OK;
+    return noh_fail(error, code == GL_OUT_OF_MEMORY ? NOH_ERR_MEMORY : NOH_ERR_GL, what, code, need);
+}
+
+int noh_gl_has_extension(const noh_gl_api *api, const char *name)
+{
+    NOH_ASSERT(api && name);
+    GLint count = 0;
+    api->GetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; i++) {
+        const GLubyte *extension = api->GetStringi(GL_EXTENSIONS, (GLuint)i);
+        if (extension && text_equal((const char *)extension, name)) return 1;
+    }
+    return 0;
+}
+
+/* Look up the function whose name is the first word of `sentence`. *missing keeps the sentence of the first failure. */
+static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sentence, const char **missing)
+{
+    char name[PROC_NAME_BYTES];
+    size_t length = 0;
+    noh_gl_proc proc;
+    while (sentence[length] != ' ' && length + 1 < sizeof name) {
+        name[length] = sentence[length];
+        length++;
+    }
+    name[length] = 0;
+    proc = get(user, name);
+    if (!proc && !*missing) *missing = sentence;
+    return proc;
+}
+
+/* Returns a sentence about the first required function that is missing, or NULL. */
+static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
+{
+    const char *missing = NULL;
+#define NOH_GL_TAKE(field, result, parameters) \
+    api->field = (result(NOH_GL_CALL *) parameters)get_required(get, user, "gl" #field " is missing", &missing);
+    NOH_GL_REQUIRED(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+#define NOH_GL_TAKE(field, result, parameters) api->field = (result(NOH_GL_CALL *) parameters)get(user, "gl" #field);
+    NOH_GL_EXTRA(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+    return missing;
+}
+
+static noh_result read_version(noh_gl_api *api, noh_error *error)
+{
+    const char *text = (const char *)api->GetString(GL_VERSION);
+    if (!text) return noh_fail(error, NOH_ERR_GL, "no current GL context", noh_gl_error_take(api), 0);
+    GLint major = 0, minor = 0;
+    api->GetIntegerv(GL_MAJOR_VERSION, &major);
+    api->GetIntegerv(GL_MINOR_VERSION, &minor);
+    api->is_es = text_starts(text, "OpenGL ES");
+    api->version = major * 100 + minor * 10;
+    /* ES 2.0 does not know GL_MAJOR_VERSION: it raises an error, and the zeros stay. */
+    if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version,
+                        300);
+    }
+    return NOH_OK;
+}
+
+/* WebGL 2 calls itself OpenGL ES 3.0. */
+static int is_webgl(const noh_gl_api *api)
+{
+    const char *text = (const char *)api->GetString(GL_VERSION);
+    for (; text && *text; text++) {
+        if (text_starts(text, "WebGL")) return 1;
+    }
+    return 0;
+}
+
+/* The suffix of each group's functions in this context; NULL: the context does not have them. */
+static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COUNT])
+{
+    memset(suffix, 0, sizeof(*suffix) * NOH_GL_GROUP_COUNT);
+    api->geometry_ext = 0;
+    if (!is_webgl(api)) suffix[NOH_GL_GROUP_MAP] = ""; /* its buffers cannot be mapped */
+    if (api->version >= 320) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "";
+    } else if (api->is_es && noh_gl_has_extension(api, "GL_EXT_geometry_shader")) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "EXT";
+        api->geometry_ext = 1;
+    } else if (api->is_es && noh_gl_has_extension(api, "GL_OES_geometry_shader")) {
+        suffix[NOH_GL_GROUP_GEOMETRY] = "OES";
+        api->geometry_ext = 2;
+    }
+    if (api->is_es ? noh_gl_has_extension(api, "GL_EXT_clip_control")
+                   : api->version >= 450 || noh_gl_has_extension(api, "GL_ARB_clip_control")) {
+        suffix[NOH_GL_GROUP_CLIP] = api->is_es ? "EXT" : "";
+    }
+    if (api->version >= (api->is_es ? 320 : 430)) {
+        suffix[NOH_GL_GROUP_DEBUG] = "";
+    } else if (noh_gl_has_extension(api, "GL_KHR_debug")) {
+        suffix[NOH_GL_GROUP_DEBUG] = api->is_es ? "KHR" : "";
+    }
+    if (!api->is_es && api->version >= 330) {
+        suffix[NOH_GL_GROUP_TIMER] = "";
+    } else if (noh_gl_has_extension(api, "GL_EXT_disjoint_timer_query")) {
+        suffix[NOH_GL_GROUP_TIMER] = "EXT";
+    }
+}
+
+static int has_etc2(const noh_gl_api *api)
+{
+    if (is_webgl(api)) {
+        return noh_gl_has_extension(api, "WEBGL_compressed_texture_etc") ||
+               noh_gl_has_extension(api, "GL_WEBGL_compressed_texture_etc");
+    }
+    return api->is_es || api->version >= 430 || noh_gl_has_extension(api, "GL_ARB_ES3_compatibility");
+}
+
+static noh_gl_proc get_suffixed(noh_gl_get_proc get, void *user, const char *name, const char *suffix)
+{
+    char full[PROC_NAME_BYTES];
+    size_t length = 0;
+    if (!suffix) return NULL;
+    while (*name && length < sizeof full - 4) full[length++] = *name++;
+    while (*suffix && length < sizeof full - 1) full[length++] = *suffix++;
+    full[length] = 0;
+    return get(user, full);
+}
+
+static void load_optional(noh_gl_api *api, noh_gl_get_proc get, void *user)
+{
+    const char *suffix[NOH_GL_GROUP_COUNT];
+    choose_suffixes(api, suffix);
+#define NOH_GL_TAKE(field, result, parameters, name, group) \
+    api->field = (result(NOH_GL_CALL *) parameters)get_suffixed(get, user, name, suffix[group]);
+    NOH_GL_OPTIONAL(NOH_GL_TAKE)
+#undef NOH_GL_TAKE
+}
+
+noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
+{
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "the GL table to fill is NULL", 0, 0);
+    if (!get) return noh_fail(error, NOH_ERR_ARG, "the lookup function is NULL", 0, 0);
+    noh_gl_api table;
+    memset(&table, 0, sizeof table);
+    const char *missing = load_required(&table, get, user);
+    if (missing) return noh_fail(error, NOH_ERR_UNSUPPORTED, missing, 0, 0);
+    noh_result result = read_version(&table, error);
+    if (result != NOH_OK) return result;
+    load_optional(&table, get, user);
+    table.etc2 = has_etc2(&table);
+    *api = table;
+    return NOH_OK;
+}

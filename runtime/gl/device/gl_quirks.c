@@ -1,0 +1,58 @@
+/* gl_quirks.c: the table of quirks. Each entry has a source, so that it can be checked again and removed. */
+#include "gl/device/gl_quirks.h"
+
+#define SOFTWARE_REASON "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work"
+
+static const noh_gl_quirk quirks[] = {
+    { "llvmpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON,
+      "noh bench, Mesa 22.3.6: runtime/gl/LOG.md; also names zink on lavapipe" },
+    { "softpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "Mesa's other software rasteriser" },
+    { "swrast", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "Mesa's classic software rasteriser, up to 21.3" },
+    { "SwiftShader", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON, "what browsers fall back to; gfx-rs/gfx#2962" },
+    { "Microsoft Basic Render", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON,
+      "Direct3D's WARP under ANGLE; simdsoft/x-studio#602" },
+    { "Mali", NOH_QUIRK_BLEND_DEAR,
+      "gather: this GPU's vendor advises against blending into float framebuffers; sums in registers need none",
+      "Arm GPU Best Practices Developer Guide (101897), Fragment shading, Blending" },
+    { "Mali", NOH_QUIRK_TILE_16, "tiles of full size have 128 bits a pixel",
+      "Arm GPU Best Practices Developer Guide (101897): reasoned, not measured here" },
+    { "Apple", NOH_QUIRK_TILE_32, "tile memory has 32 bytes a pixel from A8 on",
+      "Apple, Metal Feature Set Tables, maximum render target size per pixel: reasoned, not measured here" },
+    { "SwiftShader", NOH_QUIRK_HALF_UNSURE,
+      "halves below 2^-14 are rounded twice now and then, which no probe of a few texels shows",
+      "noh verify --seed 1 on the demo mask, ANGLE of Chromium 150: two of 365,646 values one step off" }
+};
+#define QUIRK_COUNT (sizeof quirks / sizeof quirks[0])
+
+static int contains(const char *text, const char *word)
+{
+    for (; *text; text++) {
+        const char *a = text, *b = word;
+        while (*b && *a == *b) {
+            a++;
+            b++;
+        }
+        if (!*b) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk)
+{
+    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_TILE_32);
+    for (uint32_t i = 0; i < QUIRK_COUNT; i++) {
+        if (quirks[i].quirk == quirk && contains(renderer, quirks[i].renderer)) {
+            return &quirks[i];
+        }
+    }
+    return NULL;
+}
+
+const noh_gl_quirk *noh_gl_quirk_table(uint32_t *count)
+{
+    NOH_ASSERT(count);
+    *count = (uint32_t)QUIRK_COUNT;
+    return quirks;
+}

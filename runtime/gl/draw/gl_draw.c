@@ -1,0 +1,529 @@
+/* gl_draw.c: the plain renderer's draws.
+ *
+ * Everything opaque is drawn first and writes depth. What is blended follows: it is hidden by opaque surfaces but does
+ * not write depth, so that two blended surfaces never hide each other, whatever their order.
+ *
+ * Triangles are not sorted: their places are on the GPU alone. Where the texture of what blends is as good as opaque,
+ * as along strands of hair, its core is drawn with the opaque surfaces and hides what is behind it, so only the fringe
+ * around it, thin and mostly of one colour, is blended in stored order. */
+#include "gl/draw/gl_draw.h"
+
+#include <string.h>
+
+#include "gl/device/gl_debug.h"
+#include "gl/draw/gl_material_internal.h"
+#include "gl/device/gl_names_internal.h"
+#include "gl/draw/gl_skin_internal.h"
+#include "gl/device/gl_state_internal.h"
+
+void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
+{
+    NOH_ASSERT(r && r->gl && camera);
+    noh_gl_group_begin(r->gl, "noh meshes", NULL);
+    noh_gl_tests_begin(r->gl, &r->raster);
+    noh_gl_samplers_none(r->gl, 0, NOH_UNIT_USER);
+    r->camera = *camera;
+    noh_gl_draw_tint(r, NULL);
+    noh_gl_draw_user(r, NULL);
+    r->priority = NOH_PRIORITY_ANY;
+    noh_gl_draw_wrinkles(r, NULL);
+    noh_gl_draw_triangles(r, NULL);
+    for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
+    noh_gl_draw_wrinkle_look(r, 0, 0);
+}
+
+void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
+{
+    static const uint8_t white[4] = { 255, 255, 255, 255 };
+    NOH_ASSERT(r);
+    memcpy(r->tint, tint ? tint : white, sizeof r->tint);
+}
+
+void noh_gl_draw_user(noh_gl_renderer *r, const float values[4])
+{
+    NOH_ASSERT(r);
+    memset(r->user, 0, sizeof r->user);
+    if (values) memcpy(r->user, values, sizeof r->user);
+}
+
+void noh_gl_draw_priority(noh_gl_renderer *r, int priority)
+{
+    NOH_ASSERT(r);
+    r->priority = priority;
+}
+
+int noh_gl_next_priority(const noh_mesh *mesh, int above)
+{
+    int lowest = NOH_PRIORITY_ANY;
+    NOH_ASSERT(mesh && mesh->header);
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const noh_material *m = noh_gl_material_of(mesh, &mesh->submeshes[i]);
+        if ((m->flags & NOH_MATERIAL_BLEND) && m->priority > above && m->priority < lowest) lowest = m->priority;
+    }
+    return lowest;
+}
+
+void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles)
+{
+    NOH_ASSERT(r);
+    r->triangles = triangles;
+}
+
+void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_REGIONS])
+{
+    NOH_ASSERT(r);
+    memset(r->wrinkles, 0, sizeof r->wrinkles);
+    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* by map, then by channel */
+        r->wrinkles[4u * (i % 3u) + i / 3u] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
+    }
+}
+
+void noh_gl_draw_wrinkle_look(noh_gl_renderer *r, uint32_t models, uint32_t smoothed)
+{
+    NOH_ASSERT(r && models <= 7u && smoothed <= 255u);
+    r->wrinkle_models = (uint8_t)models;
+    r->smoothed = (uint8_t)smoothed;
+}
+
+/* ---- uniforms, attributes, textures ---- */
+
+void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting)
+{
+    NOH_ASSERT(renderer && renderer->lit && light && lighting);
+    renderer->light = light;
+    renderer->lighting = lighting;
+}
+
+/* The array has as many elements as the transfer's order asks for. */
+static void set_rest(const noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    const uint32_t order = v->key.transfer & ~NOH_TRANSFER_ON_NORMAL;
+    float rows[NOH_SH_COUNT_MAX][4];
+    noh_lighting_pack_rest(r->lighting, rows);
+    r->gl->Uniform4fv(v->u_rest, (GLsizei)NOH_SH_COUNT(order), rows[0]);
+}
+
+static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    float rows[NOH_LIGHTING_ROWS][4];
+    NOH_ASSERT(r->light && r->lighting); /* noh_gl_renderer_light was called */
+    noh_lighting_pack(r->lighting, r->light->desc.shadow_px, rows);
+    r->gl->Uniform4fv(v->u_lighting, NOH_LIGHTING_ROWS, rows[0]);
+    r->gl->Uniform3fv(v->u_key, 1, r->lighting->key_direction);
+    if (v->key.transfer) set_rest(r, v);
+    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
+    r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, r->light->cube.name);
+    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);
+    r->gl->BindTexture(GL_TEXTURE_2D, r->light->shadow.name);
+}
+
+/* Use a variant's program, with the camera of this pass. */
+static void use_variant(const noh_gl_renderer *r, const noh_gl_variant *v)
+{
+    r->gl->UseProgram(v->program);
+    if (!v->has_camera) {
+        r->variants[v - r->variants].has_camera = 1;
+        r->gl->UniformMatrix4fv(v->u_view_projection, 1, GL_FALSE, r->camera.view_projection);
+        r->gl->Uniform3fv(v->u_camera, 1, r->camera.eye);
+        r->gl->Uniform3fv(v->u_key, 1, r->camera.key);
+        if (v->key.lit) set_lighting(r, v);
+    }
+}
+
+static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
+                     const noh_gl_morph_binding *morph)
+{
+    const noh_mesh_header *h = mesh->mesh.header;
+    const float uv[8] = { h->uv_offset[0], h->uv_offset[1], h->uv_scale[0], h->uv_scale[1], h->uv_per_unit };
+    r->gl->Uniform4fv(v->u_uv, v->key.uv_targets ? 2 : 1, uv);
+    r->gl->Uniform3f(v->u_bounds_min, h->bounds_min[0], h->bounds_min[1], h->bounds_min[2]);
+    r->gl->Uniform3f(v->u_bounds_size, h->bounds_max[0] - h->bounds_min[0], h->bounds_max[1] - h->bounds_min[1],
+                     h->bounds_max[2] - h->bounds_min[2]);
+    if (v->key.features & NOH_FEATURE_WRINKLES) {
+        r->gl->Uniform3f(v->u_center, 0.5f * (h->bounds_min[0] + h->bounds_max[0]),
+                         0.5f * (h->bounds_min[1] + h->bounds_max[1]), 0.5f * (h->bounds_min[2] + h->bounds_max[2]));
+    }
+    if (morph && morph->texture) {
+        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
+        r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
+    }
+    r->gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
+    r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
+    r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
+    noh_gl_mesh_bind(r->gl, mesh, morph);
+    if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);
+    if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
+}
+
+/* What the caller calls the front of a triangle, or, of a mirrored instance, the other side. */
+static void set_front(noh_gl_renderer *r, int mirrored)
+{
+    const GLenum kept = r->raster.front_face;
+    if (!mirrored && !(r->raster.kept & NOH_KEEP_FACE)) return;
+    if (!(r->raster.kept & NOH_KEEP_FACE)) {
+        noh_gl_raster_keep(r->gl, &r->raster, NOH_KEEP_FACE);
+    }
+    r->gl->FrontFace(mirrored ? (GLenum)(GL_CW + GL_CCW) - r->raster.front_face : kept);
+}
+
+/* What is set for one instance. Those of a crowd have it in rows of their own instead. */
+static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
+                         const noh_gl_morph_binding *morph)
+{
+    float rows[12], determinant = noh_gl_normal_rows(world, rows);
+    uint32_t tint[3];
+    set_front(r, determinant < 0.0f);
+    r->gl->Uniform4fv(v->u_world, 3, world);
+    r->gl->Uniform4fv(v->u_normal, 3, rows);
+    noh_gl_tint_bits(r->tint, tint);
+    if (v->u_user >= 0) r->gl->Uniform4fv(v->u_user, 1, r->user);
+    if (morph) {
+        r->gl->Uniform4i(v->u_morph, morph->tile_x | (GLint)tint[0], morph->tile_y | (GLint)tint[1],
+                         morph->width_log2 | (GLint)tint[2], morph->touched);
+    } else {
+        r->gl->Uniform4i(v->u_morph, (GLint)tint[0], (GLint)tint[1], (GLint)tint[2], 0);
+    }
+}
+
+static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t texture, const noh_gl_texture *pictures)
+{
+    const GLuint name = texture == NOH_NONE ? r->white.name : pictures[texture].name;
+    NOH_ASSERT(name); /* the picture was created */
+    r->gl->ActiveTexture(GL_TEXTURE0 + unit);
+    r->gl->BindTexture(GL_TEXTURE_2D, name);
+}
+
+/* Added to what kind of surface the shader is told of: base colours are over their alpha what is meant. */
+#define PREMULTIPLIED 0.25f
+static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
+                           const noh_gl_texture *pictures)
+{
+    const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core is cut by its own alpha */
+    const float kind = m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands;
+    const int premultiplied = m->base_color_texture != NOH_NONE && pictures[m->base_color_texture].premultiplied;
+    bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
+    r->gl->Uniform4fv(v->u_base_color, 1, m->base_color);
+    r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, premultiplied ? kind + PREMULTIPLIED : kind);
+}
+
+/* What the variant's features read. */
+static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                         const noh_gl_texture *pictures)
+{
+    const uint32_t features = v->key.features;
+    r->gl->Uniform3fv(v->u_f0, 1, m->f0);
+    r->gl->Uniform1f(v->u_f90, 1.0f - m->f90_loss);
+    if (features & NOH_FEATURE_SPECULAR_MAP) bind_picture(r, NOH_UNIT_SPECULAR, m->specular_texture, pictures);
+    if (features & NOH_FEATURE_NORMAL_MAP) bind_picture(r, NOH_UNIT_NORMAL, m->normal_texture, pictures);
+    if (features & NOH_FEATURE_SURFACE_MAP) bind_picture(r, NOH_UNIT_SURFACE, m->surface_texture, pictures);
+    if (features & (NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_SURFACE_MAP)) {
+        r->gl->Uniform4f(v->u_maps, m->normal_scale, m->occlusion_strength, 0.0f, 0.0f);
+    }
+    if (features & NOH_FEATURE_EMISSIVE) {
+        bind_picture(r, NOH_UNIT_EMISSIVE, m->emissive_texture, pictures);
+        r->gl->Uniform3fv(v->u_emissive, 1, m->emissive);
+    }
+}
+
+/* What skin, eyes, teeth and toons are told. Skin of no unit is of metres. */
+static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
+{
+    const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;
+    const int is_skin = m->surface == NOH_SURFACE_SKIN;
+    r->gl->Uniform4f(v->u_surface_values, is_skin ? mm : m->surface_values[0], m->surface_values[1],
+                     m->surface_values[2], m->surface_values[3]);
+    r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
+}
+
+/* Instances of a crowd have regions in rows of their own, of meshes that have any. */
+#define REGIONS_IN_ROWS 8
+static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, int in_rows,
+                         const noh_gl_texture *pictures)
+{
+    const GLint models = (GLint)(r->wrinkle_models ? r->wrinkle_models : m->wrinkle_models);
+    bind_picture(r, NOH_UNIT_WRINKLE, m->wrinkle_texture, pictures);
+    for (uint32_t k = 0; k < (v->key.features & NOH_FEATURE_WRINKLE_PIXEL ? 1u : 3u); k++) {
+        bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->wrinkle_weights[k], pictures);
+    }
+    if (!v->key.crowd) r->gl->Uniform4fv(v->u_wrinkle_regions, 3, r->wrinkles);
+    r->gl->Uniform2i(v->u_wrinkle_models, models | (in_rows ? REGIONS_IN_ROWS : 0), 255 - r->smoothed);
+}
+
+static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_mesh *mesh, const noh_material *m,
+                         float cutoff, const noh_gl_texture *pictures)
+{
+    if (!v->key.depth || v->key.cut) {
+        set_base_color(r, v, m, cutoff, pictures);
+    }
+    if (!v->key.depth) {
+        set_features(r, v, m, pictures);
+        if (v->key.features & NOH_FEATURE_WRINKLES) {
+            set_wrinkles(r, v, m, v->key.crowd && noh_gl_crowd_rows(mesh) > NOH_CROWD_ROWS, pictures);
+        }
+        if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m);
+    }
+    if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
+        r->gl->Disable(GL_CULL_FACE);
+    } else {
+        r->gl->Enable(GL_CULL_FACE);
+    }
+}
+
+/* ---- drawing ---- */
+
+static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
+
+/* What one call draws. */
+typedef struct draw_job {
+    noh_gl_renderer *r;
+    const noh_gl_mesh *mesh;
+    const float *world; /* NULL: a crowd */
+    const noh_gl_morph_binding *morph;
+    const noh_gl_skin_binding *skin;
+    uint32_t count;
+    const noh_gl_lod *lod;
+    const noh_gl_texture *pictures;
+} draw_job;
+
+/* The submeshes of a pass that one program draws. */
+typedef enum draw_part { PART_OPAQUE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_DEPTH } draw_part;
+
+static int is_in_part(const noh_material *m, draw_part part)
+{
+    const int blended = (m->flags & NOH_MATERIAL_BLEND) != 0, cut = (m->flags & NOH_MATERIAL_MASK) != 0;
+    switch (part) {
+    case PART_OPAQUE: return !blended || noh_gl_has_core(m);
+    case PART_BLENDED: return blended;
+    case PART_SOLID_DEPTH: return !blended && !cut;
+    default: return (!blended && cut) || noh_gl_has_core(m);
+    }
+}
+
+/* Below it a pixel is not drawn; -1: all are. */
+static float cutoff_of(const noh_material *m, draw_part part)
+{
+    if (part != PART_BLENDED && noh_gl_has_core(m)) {
+        return NOH_GL_CORE_ALPHA;
+    }
+    return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff : -1.0f;
+}
+
+static int is_in_depth(draw_part part)
+{
+    return part == PART_SOLID_DEPTH || part == PART_CUT_DEPTH;
+}
+
+/* NULL if the renderer's desc did not ask for this variant. */
+static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint16_t features)
+{
+    noh_gl_variant_key key = noh_gl_variant_key_of(&j->mesh->mesh, j->skin, !j->world, j->r->layers_uint, j->r->view);
+    key.fade = j->lod->from > 0.0f || j->lod->to < 1.0f;
+    key.features = features;
+    if (is_in_depth(part)) {
+        key = noh_gl_variant_key_depth(key, part == PART_CUT_DEPTH);
+    }
+    return noh_gl_renderer_variant(j->r, key);
+}
+
+/* The first of the renderer's own triangles that is not below a number. */
+static uint32_t first_from(const noh_gl_triangles *t, uint32_t number)
+{
+    uint32_t low = 0, high = t->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2u;
+        if (t->numbers[middle] < number) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* How many indices a submesh draws. *first: where they begin, of the renderer's own triangles */
+static uint32_t own_count(const noh_gl_triangles *t, const noh_submesh *s, uint32_t *first)
+{
+    const uint32_t end = first_from(t, (s->first_index + s->index_count) / 3u);
+    *first = first_from(t, s->first_index / 3u);
+    return 3u * (end - *first);
+}
+
+static int draws_nothing(const draw_job *j, const noh_submesh *s)
+{
+    uint32_t first;
+    return !s->index_count || (j->r->triangles && !own_count(j->r->triangles, s, &first));
+}
+
+static void draw_own(const draw_job *j, const noh_submesh *s)
+{
+    const noh_gl_triangles *t = j->r->triangles;
+    uint32_t first;
+    const uint32_t count = own_count(t, s, &first);
+    j->r->gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
+                           (const void *)((uintptr_t)(t->first + first) * 12u));
+}
+
+static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_first)
+{
+    const noh_gl_api *gl = j->r->gl;
+    const void *first = (const void *)(level_first + (uintptr_t)s->first_index * j->mesh->room->index_bytes);
+    if (j->r->triangles) {
+        draw_own(j, s);
+        return;
+    }
+    if (j->count == 1u) {
+        gl->DrawElements(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first);
+    } else {
+        gl->DrawElementsInstanced(GL_TRIANGLES, (GLsizei)s->index_count, j->mesh->index_type, first, (GLsizei)j->count);
+    }
+}
+
+/* Go on with another program. */
+static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t level)
+{
+    use_variant(j->r, v);
+    set_mesh(j->r, v, j->mesh, j->morph);
+    if (j->world) {
+        set_instance(j->r, v, j->world, j->morph);
+    } else {
+        set_front(j->r, 0);
+        if (v->u_user >= 0) j->r->gl->Uniform4f(v->u_user, (float)j->skin->user_row, 0.0f, 0.0f, 0.0f);
+    }
+    j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
+}
+
+/* noh_blends of the shader: what a tint changes. */
+#define TINT_ALPHA 1
+#define TINT_NO_COLOR 2
+
+static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,
+                          draw_part part)
+{
+    const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
+    j->r->gl->Uniform1i(v->u_blends, ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
+                                         ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));
+    if (j->r->shaders.bind) {
+        j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);
+    }
+    draw_submesh(j, s, first);
+}
+
+/* Of one priority, where blended; any otherwise. */
+static void draw_part_of(const draw_job *j, draw_part part, int priority)
+{
+    size_t first;
+    const noh_mesh level = noh_gl_mesh_lod(j->mesh, j->lod->level, &first);
+    const noh_gl_variant *v = NULL;
+    uint32_t palette = NOH_NONE;
+    for (uint32_t i = 0; i < level.header->submesh_count; i++) {
+        const noh_submesh *s = &level.submeshes[i];
+        const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+        const uint16_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
+        if (draws_nothing(j, s) || !is_in_part(m, part) || (part == PART_BLENDED && m->priority != priority)) {
+            continue;
+        }
+        if (!v || v->key.features != features) {
+            v = variant_of(j, part, features);
+            NOH_ASSERT(v); /* the renderer's desc asked for it */
+            if (!v) break;
+            begin_variant(j, v, level.header->level);
+            palette = NOH_NONE;
+        }
+        if (j->skin && s->palette != palette) {
+            palette = s->palette;
+            noh_gl_variant_skin(j->r->gl, v, &j->mesh->mesh, j->skin, palette);
+        }
+        draw_material(j, v, s, first, part);
+    }
+    if (v && j->r->triangles) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
+    if (v && j->morph && !j->morph->vertex_array && (j->morph->vertex_buffer || j->morph->stream_buffer)) {
+        noh_gl_mesh_unbind(j->r->gl, j->mesh, j->morph);
+    }
+}
+
+static void draw_blended(const draw_job *j)
+{
+    const noh_mesh *mesh = &j->mesh->mesh;
+    if (j->r->priority != NOH_PRIORITY_ANY) {
+        draw_part_of(j, PART_BLENDED, j->r->priority);
+        return;
+    }
+    for (int p = noh_gl_next_priority(mesh, -NOH_PRIORITY_ANY); p != NOH_PRIORITY_ANY;
+         p = noh_gl_next_priority(mesh, p)) {
+        draw_part_of(j, PART_BLENDED, p);
+    }
+}
+
+static void draw_pass(const draw_job *j, int pass)
+{
+    NOH_ASSERT(j->mesh->vertex_array && pass >= NOH_DRAW_OPAQUE && pass <= NOH_DRAW_DEPTH);
+    NOH_ASSERT(!j->morph || j->morph->is_uint == j->r->layers_uint);
+    NOH_ASSERT(!j->morph || pass == NOH_DRAW_DEPTH || (j->morph->layer_count == 2) == j->r->without_tangents);
+    if (!j->count || !(j->lod->from < j->lod->to)) {
+        return;
+    }
+    if (pass == NOH_DRAW_DEPTH) {
+        noh_gl_depth_only_begin(j->r->gl, &j->r->raster);
+        draw_part_of(j, PART_SOLID_DEPTH, 0);
+        draw_part_of(j, PART_CUT_DEPTH, 0);
+        noh_gl_depth_only_end(j->r->gl, &j->r->raster);
+    } else if (pass == NOH_DRAW_BLENDED) {
+        noh_gl_blend_begin(j->r->gl, &j->r->raster);
+        draw_blended(j);
+        noh_gl_blend_end(j->r->gl, &j->r->raster);
+    } else {
+        draw_part_of(j, PART_OPAQUE, 0);
+    }
+}
+
+void noh_gl_draw_mesh(noh_gl_renderer *r, const noh_gl_mesh *mesh, const float world[12],
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
+                      const noh_gl_texture *pictures, int pass)
+{
+    const draw_job job = { r, mesh, world, morph, skin, 1, lod ? lod : &whole, pictures };
+    NOH_ASSERT(world);
+    draw_pass(&job, pass);
+}
+
+void noh_gl_draw_crowd(noh_gl_renderer *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
+                       const noh_gl_texture *pictures, int pass)
+{
+    NOH_ASSERT(!morph || !(morph->stream_buffer || morph->vertex_buffer));
+    const draw_job job = { r, mesh, NULL, morph, first, count, lod ? lod : &whole, pictures };
+    NOH_ASSERT(!r->triangles);
+    draw_pass(&job, pass);
+}
+
+void noh_gl_draw_end(const noh_gl_renderer *r)
+{
+    NOH_ASSERT(r && r->gl);
+    static const GLuint units[] = { NOH_UNIT_WRINKLE,
+                                    NOH_UNIT_WRINKLE_WEIGHTS,
+                                    NOH_UNIT_WRINKLE_WEIGHTS + 1u,
+                                    NOH_UNIT_WRINKLE_WEIGHTS + 2u,
+                                    NOH_UNIT_PALETTES,
+                                    NOH_UNIT_NORMAL,
+                                    NOH_UNIT_SURFACE,
+                                    NOH_UNIT_EMISSIVE,
+                                    NOH_UNIT_SPECULAR,
+                                    NOH_UNIT_BASE_COLOR };
+    r->gl->BindVertexArray(0);
+    r->gl->UseProgram(0);
+    for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {
+        r->gl->ActiveTexture(GL_TEXTURE0 + units[i]);
+        r->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    if (r->lit) {
+        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
+        r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
+        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);
+        r->gl->BindTexture(GL_TEXTURE_2D, 0);
+    }
+    r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
+    r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
+    noh_gl_raster_put_back(r->gl, &r->raster);
+    noh_gl_group_end(r->gl);
+}

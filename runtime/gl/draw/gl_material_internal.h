@@ -1,0 +1,18 @@
+/* gl_material_internal.h (private to gl/): the material of a submesh. */
+#ifndef NOH_GL_GL_MATERIAL_INTERNAL_H
+#define NOH_GL_GL_MATERIAL_INTERNAL_H
+
+#include "core/mesh/mesh.h"
+
+/* glTF's default material for a submesh without one. */
+const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh);
+
+/* What blends has a core where its alpha is at least this, which is drawn as if it were opaque. */
+#define NOH_GL_CORE_ALPHA 0.9f
+
+static inline int noh_gl_has_core(const noh_material *m)
+{
+    return (m->flags & NOH_MATERIAL_BLEND) && m->base_color_texture != NOH_NONE;
+}
+
+#endif

@@ -1,0 +1,22 @@
+/* gl_renderer_internal.h: which variants a renderer compiles, for those who must know how many before there are meshes
+ * in a row. */
+#ifndef NOH_GL_GL_RENDERER_INTERNAL_H
+#define NOH_GL_GL_RENDERER_INTERNAL_H
+
+#include "gl/draw/gl_draw.h"
+
+typedef struct noh_gl_variant_list {
+    noh_gl_variant_key keys[NOH_GL_VARIANTS_MAX];
+    uint32_t count;
+} noh_gl_variant_list;
+
+/* Add every variant that a mesh may be drawn by; `meshes` of the desc is not read. Start with a count of 0.
+ * errors  LIMIT more than NOH_GL_VARIANTS_MAX */
+noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_gl_variant_list *list,
+                                noh_error *error);
+static inline size_t noh_gl_variants_size(const noh_gl_variant_list *list)
+{
+    return list->count * sizeof(noh_gl_variant);
+}
+
+#endif

@@ -1,0 +1,30 @@
+/* transfer_internal.h: what targets change of occlusion, in the one arithmetic of CPU and GPU. Threads: no state.
+ *
+ * Sums are of (delta * ratio) * (position_scale * weight): the last product is what accumulators multiply positions by,
+ * so the occlusion needs no weight of its own. */
+#ifndef NOH_LIGHT_TRANSFER_INTERNAL_H
+#define NOH_LIGHT_TRANSFER_INTERNAL_H
+
+#include "core/mesh/mesh.h"
+
+/* A target's scale of occlusion over that of its positions; 0 for targets that move nothing, or next to nothing. */
+static inline float noh_transfer_ratio(const noh_mesh *mesh, uint32_t target)
+{
+    const noh_transfer_header *h = mesh->transfer;
+    const float *scales = h ? (const float *)(const void *)((const uint8_t *)h + h->scales_offset) : NULL;
+    const float scale = mesh->targets[target].position_scale;
+    const float ratio = scales && scale > 0.0f ? scales[target] / scale : 0.0f;
+    return ratio < 1e30f ? ratio : 0.0f;
+}
+
+/* The stored difference at a delta texel; 0 where the target does not move the vertex: lists by vertex do not have it.
+ */
+static inline int32_t noh_transfer_delta(const noh_mesh *mesh, uint32_t texel)
+{
+    const noh_transfer_header *h = mesh->transfer;
+    const int8_t *deltas = h ? (const int8_t *)h + h->deltas_offset : NULL;
+    const uint32_t *words = mesh->texels + 3u * (size_t)texel;
+    return deltas && (words[0] | words[1] | words[2]) ? deltas[texel] : 0;
+}
+
+#endif

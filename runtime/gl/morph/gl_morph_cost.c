@@ -1,0 +1,84 @@
+/* gl_morph_cost.c: which path `auto` takes, by a model of what each costs on a GPU.
+ *
+ * The unit is one texel blended into three layers of RGBA32F. All terms are of one update of one instance of each mesh,
+ * with the expected share of its targets active.
+ *   mrt     its texels; a quad costs as much as 4 of them, or on a software rasteriser, which shades whole blocks, all
+ *           16 of each block instead; twice all that where the layers do not fit a known tile memory; a third of it
+ *           for halves, which GPUs blend at a higher rate; the clear
+ *   gather  16 texels of each block at a factor, and 0.3 for each that is written once; what is uploaded
+ *   cpu     pairs and vertices, and what is uploaded: sums, or finished vertices
+ * The factors for software were measured, those for GPUs on one, an NVIDIA H100 (runtime/gl/LOG.md has both); of other
+ * GPUs, tilers above all, they are reasoned: let a game calibrate (noh_gl_morph_calibrate). */
+#include <string.h>
+
+#include "gl/morph/gl_morph_internal.h"
+#include "gl/device/gl_quirks.h"
+
+#define QUAD_TEXELS 4.0f     /* a quad's vertices and setup */
+#define GATHER_SOFTWARE 0.9f /* of a texel that gather reads and adds, */
+#define GATHER_GPU 0.3f
+#define HALF_BLEND_GPU 0.35f /* of a texel of halves that is blended */
+#define WRITE 0.3f           /* of a texel that is written once */
+#define UPLOADED_BYTES 32.0f /* that cost as much as one texel; reasoned */
+#define CPU_PAIR 0.17f       /* 1.4 ns, where a blended texel is 8 on the same processor */
+#define CPU_VERTEX 0.12f     /* 1 ns: into the texture */
+
+/* Bytes that a pixel may take in the tile memory of a GPU without its tiles getting smaller or spilling; 0: it has no
+ * such memory, or it is not known. */
+static uint32_t tile_bytes(const char *renderer)
+{
+    const noh_gl_quirk *quirk = noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_32);
+    if (quirk) return 32;
+    return noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_16) ? 16 : 0;
+}
+
+/* What the path cpu uploads, bytes. */
+static float cpu_upload(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    const int finished = noh_gl_morph_finishes(desc, plan->accumulate);
+    float bytes = 0.0f;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const uint32_t sums = (plan->accumulate == NOH_ACCUMULATE_F16 ? 6u : 12u) * plan->layer_count;
+        const uint32_t stride = finished ? noh_morph_finished_stride(&desc->meshes[i]) : sums;
+        if (desc->instance_counts && !desc->instance_counts[i]) continue;
+        bytes += (float)stride * (float)desc->meshes[i].header->touched_count;
+    }
+    return bytes;
+}
+
+static uint32_t strips_of(const noh_gl_morph_desc *desc, uint32_t mesh)
+{
+    return desc->coarse ? desc->later_strips : noh_gl_morph_strips(&desc->meshes[mesh]);
+}
+
+void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan)
+{
+    const int software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) != NULL;
+    const float share = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
+    noh_gl_morph_costs *c = &plan->costs;
+    float uploaded;
+    memset(c, 0, sizeof *c);
+    c->tile_bytes = tile_bytes(caps->renderer);
+    c->pixel_bytes = (plan->accumulate == NOH_ACCUMULATE_F16 ? 8u : 16u) * plan->layer_count;
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        const noh_mesh_header *h = desc->meshes[i].header;
+        const float blocks = (float)(desc->coarse ? desc->later_blocks : noh_gl_morph_blocks(&desc->meshes[i]));
+        if (desc->instance_counts && !desc->instance_counts[i]) continue;
+        c->texels += share * (float)h->texel_count;
+        c->quads += share * (float)strips_of(desc, i);
+        c->blocks += share * blocks;
+        c->pairs += share * (float)h->pair_count;
+        c->touched += (float)h->touched_count;
+    }
+    c->mrt = software ? 16.0f * c->blocks : c->texels + QUAD_TEXELS * c->quads;
+    if (c->tile_bytes && c->pixel_bytes > c->tile_bytes) c->mrt *= 2.0f;
+    if (!software && plan->accumulate == NOH_ACCUMULATE_F16) c->mrt *= HALF_BLEND_GPU;
+    c->mrt += c->touched;
+    c->per_layer = c->mrt + (software ? 0.0f : QUAD_TEXELS * c->quads * (float)(plan->layer_count - 1u));
+    uploaded = 16.0f * c->blocks + 1.25f * c->touched; /* entries, and where lists begin */
+    c->gather = 16.0f * c->blocks * (software ? GATHER_SOFTWARE : GATHER_GPU) + WRITE * c->touched +
+                uploaded / UPLOADED_BYTES;
+    c->cpu = CPU_PAIR * c->pairs + CPU_VERTEX * c->touched +
+             (software ? 0.0f : cpu_upload(desc, plan) / UPLOADED_BYTES);
+    c->upload_bytes = 16.0f * c->blocks + 1.25f * c->touched;
+}

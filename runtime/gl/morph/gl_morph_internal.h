@@ -1,0 +1,192 @@
+/* gl_morph_internal.h (private to gl_morph*.c): how an accumulator is laid out. */
+#ifndef NOH_GL_GL_MORPH_INTERNAL_H
+#define NOH_GL_GL_MORPH_INTERNAL_H
+
+#include "core/base/arena.h"
+#include "deform/morph/morph_finish.h"
+#include "gl/morph/gl_morph.h"
+#include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_table_internal.h"
+
+#define NOH_TILE_CHUNK 64u       /* tiles of delta texels that are sent at once at load: at most 16 KiB */
+#define NOH_BATCH_QUADS 4096u    /* quads that the blended paths draw at once, 48 bytes each, */
+#define NOH_BATCH_POINTS 1536u   /* or points, 12 bytes each (gl_morph_blend.c) */
+#define NOH_BATCH_ENTRIES 16384u /* entries of lists that gather sends at once, more only if one instance has more */
+#define NOH_STREAM_STRIDE 12u    /* bytes of a vertex in a stream */
+#define NOH_STREAM_CHUNK 3072u   /* bytes of streams that are sent at once at load */
+#define NOH_VERTEX_CHUNK 1024u   /* finished vertices that are sent at once where buffers cannot be mapped */
+#define NOH_VERTEX_RING_MAX 3u
+
+/* One mesh of the desc. Its instances' tiles fill a band of the atlas, row by row. */
+typedef struct noh_gl_morph_mesh {
+    noh_mesh mesh;
+    uint32_t instance_count, first_instance;
+    uint32_t first_weight; /* into weights */
+    uint32_t columns, band_y;
+    uint32_t owner; /* the mesh of the desc whose part of the tables this one uses: itself, or a finer LOD level */
+    /* where an owner's part begins */
+    uint32_t first_tile, tile_count; /* of the delta tiles */
+    uint32_t first_target;           /* into target_tiles */
+    uint32_t first_byte;             /* of its instances' finished vertices, in each buffer of the ring */
+} noh_gl_morph_mesh;
+
+/* The blocks of 4 x 4 accumulation texels that a rectangle touches, of a tile's: x0..x1-1, y0..y1-1. */
+typedef struct noh_gl_blocks {
+    uint32_t x0, y0, x1, y1;
+} noh_gl_blocks;
+
+/* The most that is sent for one draw. */
+typedef struct noh_gl_batch {
+    uint32_t entries;              /* points, quads, or entries of gather's lists */
+    uint32_t positions, instances; /* gather: lists, and instances that they belong to */
+    uint64_t bytes;                /* blended paths: vertices of all batches of an update */
+} noh_gl_batch;
+
+struct noh_gl_morph {
+    const noh_gl_api *gl;
+    noh_gl_ledger *ledger;
+    noh_gl_morph_plan plan;
+    uint32_t mesh_count;
+    uint32_t table_count;      /* mesh_count, and 1 where there is desc.coarse: its tables are the last */
+    noh_gl_morph_mesh *meshes; /* [table_count] */
+    noh_mesh source;           /* with desc.coarse: the finest level that is accumulated, in the pack that has it */
+    uint32_t *instance_mesh;   /* [instance_count] */
+    uint8_t *dirty;            /* [instance_count] */
+    uint8_t *levels;           /* [instance_count] LOD level that is accumulated; none is finer than its mesh */
+    uint32_t dirty_count;
+    float *weights;    /* [weight_count], instance after instance */
+    uint32_t *records; /* [weight_count][4] of the active targets (blended paths): staging of the record table */
+    void *staging;     /* a batch of vertices, gather's lists, or the CPU's layers; at load, chunks of the tables */
+    size_t staging_bytes;
+    noh_morph_kernel kernel; /* of the path cpu */
+    noh_gl_batch batch;
+    uint32_t *target_tiles; /* of the owners, [target_count] each: a target's first tile, in the order of targets */
+    uint32_t *slots;        /* [block_count] (gather): where that tile lies, in the order of blocks: x | y << 9 */
+
+    /* Finished vertices (gl_morph_vertices.c). A slot is an instance's part of one buffer of the ring. */
+    float *slot_weights;   /* [ring][weight_count] by which it was written */
+    uint8_t *slot_levels;  /* [ring][instance_count] at which; NOH_SLOT_STALE: write all of it */
+    uint8_t *slot_drawn;   /* [instance_count] in the ring */
+    GLuint *vertex_arrays; /* [ring][instance_count]; 0: none */
+    uint8_t *groups;       /* of the largest mesh: 1: a group of texels is written now */
+    void *finished;        /* [NOH_VERTEX_CHUNK] vertices at most */
+    uint32_t update_count;
+    noh_gl_buffer ring[NOH_VERTEX_RING_MAX];
+    GLsync fences[NOH_VERTEX_RING_MAX - 1u];
+
+    noh_gl_texture layers;
+    noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
+    uint32_t tiles_across_log2;
+    noh_gl_table record_table;     /* of the active targets, or gather's lists */
+    noh_gl_table starts;           /* where gather's lists begin, by block */
+    noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */
+    GLuint vertex_array, program;
+    GLuint framebuffers[3];
+    GLuint a_stream; /* attribute of the stream */
+    int flushes;     /* draws of points are flushed (gl_morph_blend.c) */
+    GLint u_layer;
+};
+
+/* Place tiles and tables, and count. `meshes` NULL only counts. */
+noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
+                               noh_gl_morph_plan *plan, noh_error *error);
+
+/* Whether the path cpu writes finished vertices. */
+int noh_gl_morph_finishes(const noh_gl_morph_desc *desc, noh_accumulate accumulate);
+
+/* Fill plan->costs. The plan has accumulate and layer_count. */
+void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan);
+
+/* Carve everything behind the struct itself from an arena. `m` NULL only measures. */
+void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
+                        noh_gl_morph *m);
+
+noh_gl_blocks noh_gl_blocks_of(const noh_rect *rect);
+
+noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
+
+/* Blocks of an instance's place in the atlas. */
+uint32_t noh_gl_morph_positions(const noh_mesh_header *h);
+
+/* How many vertices targets may move: the first ones, where vertex n has texel n. */
+uint32_t noh_gl_morph_vertex_end(const noh_mesh_header *h);
+
+/* The texture of the delta tiles of a plan, which is `1 << *across_log2` tiles wide. */
+noh_gl_texture_desc noh_gl_morph_tiles_desc(const noh_gl_morph_plan *plan, uint32_t *across_log2);
+
+/* Rows from one tile to the next: a multiple of four. Rasterisers work in blocks of 2 x 2 to 4 x 4 pixels, and the
+ * converter cuts rectangles along those blocks, so every tile must be aligned to them (an eighth less work for mrt with
+ * 100 heads on llvmpipe). */
+uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
+
+/* Whether the tables of a mesh of the desc, or of desc.coarse behind them, are uploaded when they are made. */
+static inline int noh_gl_morph_is_there(const noh_gl_morph *m, uint32_t mesh)
+{
+    return m->meshes[mesh].owner == mesh && (m->table_count == m->mesh_count || mesh == m->mesh_count);
+}
+
+/* An instance's mesh at the LOD level that is accumulated. */
+noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
+/* The mesh of the desc whose part of the tables an instance uses. */
+const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance);
+
+void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
+/* Where an instance's weights begin. */
+uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
+
+/* Write the record of a target: weight * scale for each layer, and a last word that the paths use differently. */
+void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last);
+
+/* The widths of fields in an entry's fourth word (shaders_es/common_delta.glsl). */
+#define NOH_ENTRY_WIDTHS(position, normal) ((uint32_t)(position) << 18 | (uint32_t)(normal) << 23)
+
+uint32_t noh_gl_morph_target_bits(const noh_target *target);
+
+/* Set u_tables and u_atlas of the path's program. */
+void noh_gl_morph_constants(noh_gl_morph *m);
+
+/* Make the buffer of the draws and its vertex array: one attribute of so many uint32_t; `instanced` 1: each instance
+ * has one, else each vertex. */
+noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, uint64_t bytes,
+                               GLuint instanced, noh_error *error);
+
+/* Make the delta tiles, and fill those that are there. */
+noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error);
+
+/* As noh_gl_morph_fill. mesh: the one whose tiles an owner has. */
+int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at,
+                            uint32_t *bytes);
+
+/* Bind what a draw reads; leave the state that noh_gl_morph_update promises.
+ * kept  NULL at the end: nothing was drawn */
+void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept);
+void noh_gl_morph_end(const noh_gl_morph *m, const noh_gl_offscreen *kept);
+
+/* The paths: make their GL objects, and do one update. */
+noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
+noh_result noh_gl_morph_init_vertices(noh_gl_morph *m, noh_error *error);
+void noh_gl_morph_delete_vertices(noh_gl_morph *m, const noh_gl_api *gl);
+void noh_gl_morph_update_vertices(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_set_vertices(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
+noh_result noh_gl_morph_init_streams(noh_gl_morph *m, noh_error *error);
+void noh_gl_morph_update_streams(const noh_gl_morph *m, noh_gl_morph_stats *stats);
+uint64_t noh_gl_morph_stream_bytes(const noh_mesh_header *header);
+void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
+
+struct noh_gl_mesh;
+
+/* A vertex array like the mesh's own, but for what `morph` has finished; 0 where the driver makes none. */
+GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const struct noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
+
+#define NOH_SLOT_STALE 255u
+
+/* A framebuffer over the layers. which: 0 to 2 for one layer, or one of these. */
+#define NOH_LAYERS_ALL 3     /* all as draw buffers */
+#define NOH_LAYERS_LAYERED 4 /* all as a layered attachment */
+noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuffer, noh_error *error);
+
+#endif

@@ -1,0 +1,619 @@
+/* stage_gl.c: a stage's objects on the GPU: measured, made, deleted, made again. */
+#include <string.h>
+
+#include "stage/character/skin_palette.h"
+#include "gl/device/gl_lost.h"
+#include "gl/draw/gl_renderer_internal.h"
+#include "core/mesh/wrinkles.h"
+#include "motion/pose/local_to_model.h"
+#include "gl/stage/stage_gl_internal.h"
+
+/* ---- what it takes ---- */
+
+typedef struct measure {
+    const noh_stage_desc *desc;
+    const noh_stage_plan *plan;
+    const noh_gl_caps *caps;
+    noh_arena arena;      /* of the CPU's part */
+    noh_stage_gl *gl;     /* NULL: only measured */
+    noh_stage_list *list; /* NULL: not wanted */
+    uint64_t gpu_bytes;
+    uint32_t morph_path;
+} measure;
+
+#define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
+
+/* What was carved since `from` and is made on the GPU. */
+static void add(measure *m, const char *what, uint32_t kind, size_t from, uint64_t gpu_bytes)
+{
+    m->gpu_bytes += gpu_bytes;
+    noh_stage_add_part(m->list, what, kind, m->arena.used - from, gpu_bytes);
+}
+
+static uint32_t count_models(const measure *m)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t count = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
+        count += owner.kind == site.kind && owner.item == site.item;
+    }
+    return count;
+}
+
+/* The place of an owner's model among all. */
+static uint32_t model_index(const measure *m, noh_gl_site owner)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t index = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site) &&
+           (site.kind != owner.kind || site.item != owner.item)) {
+        const noh_gl_site of = noh_gl_owner(m->desc, m->plan, site);
+        index += of.kind == site.kind && of.item == site.item;
+    }
+    return index;
+}
+
+/* A model whose finer levels come later. */
+NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse,
+                                       void *room, noh_gl_model *model)
+{
+    const noh_kind_desc kind = noh_stage_kind_desc(m->desc, site.kind);
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    (void)noh_stage_items(&kind, items);
+    model->load_kind = noh_stage_load_kind(m->desc, site.kind);
+    model->mesh_index = items[site.item].mesh;
+    model->coarse = *coarse;
+    model->room = noh_gl_room_make(mesh, coarse, room);
+}
+
+static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model, noh_error *error)
+{
+    const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
+    const size_t from = m->arena.used;
+    noh_gl_tiles tiles;
+    noh_gl_morph_desc d;
+    noh_gl_morph_plan plan;
+    noh_result result = NOH_OK;
+    size_t targets;
+    void *memory;
+    noh_mesh coarse;
+    const int later = noh_gl_site_coarse(m->desc, m->plan, site, &coarse);
+    void *room = noh_arena_carve(&m->arena, later ? noh_gl_room_size(&mesh) : 0, 16);
+    add(m, "mesh buffers", site.kind, from, noh_gl_mesh_bytes(&mesh));
+    if (model) {
+        model->load_kind = NOH_NONE;
+        if (later) set_later(m, site, &mesh, &coarse, room, model);
+        result = later ? noh_gl_model_make_mesh(&m->gl->device, model, error)
+                       : noh_gl_mesh_create(m->gl->device.api, m->gl->device.ledger, &mesh, &model->mesh, error);
+    }
+    if (result != NOH_OK || mesh.header->touched_count == 0) {
+        return result;
+    }
+    noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
+    d = noh_gl_site_morph(m->desc, &tiles); /* counts blocks and strips, which the room below has not */
+    for (uint32_t i = 0; later && model && i < tiles.count; i++) {
+        tiles.meshes[i] = noh_mesh_at_lod(&model->room, tiles.meshes[i].header->level);
+    }
+    result = noh_gl_morph_plan_make(&d, m->caps, &plan, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    m->morph_path = (uint32_t)plan.path;
+    targets = m->arena.used;
+    memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
+    add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes);
+    add(m, plan.vertex_ring ? "morphed vertices" : "accumulators", site.kind, m->arena.used,
+        plan.layer_bytes + plan.vertex_bytes);
+    if (!model) return NOH_OK;
+    result = noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error);
+    model->part_count = d.mesh_count;
+    return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
+}
+
+/* The palettes, and the rows of places, of one kind's actors for one mesh. */
+static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
+{
+    const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
+    noh_mesh mesh;
+    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE, m->desc->user_values };
+    const size_t from = m->arena.used;
+    noh_gl_skin_plan plan;
+    noh_result result;
+    void *memory;
+    (void)noh_gl_site_coarse(m->desc, m->plan, site, &mesh); /* palettes are the same in all levels */
+    result = noh_gl_skin_plan_make(&d, m->caps, &plan, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
+    add(m, "palettes", site.kind, from, plan.gpu_bytes);
+    return item ? noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &item->skin, error) : NOH_OK;
+}
+
+/* ---- the arrays of objects ---- */
+
+static void carve_kinds(measure *m)
+{
+    noh_gl_kind *kinds = CARVE(m, m->desc->kind_count, noh_gl_kind);
+    for (uint32_t i = 0; i < m->desc->kind_count; i++) {
+        noh_gl_item *items = CARVE(m, m->plan->kinds[i].mesh_count, noh_gl_item);
+        const uint32_t count = noh_gl_pictures_count(&m->desc->kinds[i]);
+        noh_gl_texture *pictures = CARVE(m, count, noh_gl_texture);
+        if (!kinds) continue;
+        kinds[i].items = items;
+        kinds[i].pictures = pictures;
+        memset(items, 0, m->plan->kinds[i].mesh_count * sizeof *items);
+        memset(pictures, 0, count * sizeof *pictures);
+    }
+    if (m->gl) m->gl->kinds = kinds;
+}
+
+/* Whether a kind's detail may choose fewer influences (open_lod of stage_kind.c): it has one skinned mesh, with levels.
+ */
+static int may_drop_influences(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t skinned = 0, fewer = 0;
+    while (!desc->full_detail && noh_gl_next_site(plan, desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+        if (site.kind != kind || mesh.header->skin == NOH_NONE) continue;
+        skinned++;
+        fewer += mesh.header->level_count > 1u && mesh.header->influence_count > 1u;
+    }
+    return skinned == 1u && fewer == 1u;
+}
+
+/* What a stage's renderer and its shaders are made with, but for the meshes. */
+static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    noh_gl_renderer_desc d;
+    memset(&d, 0, sizeof d);
+    d.palettes = NOH_PALETTE_TEXTURE;
+    d.without_tangents = !desc->tangents;
+    d.encode_srgb = desc->encode_srgb;
+    d.lit = desc->light != NULL;
+    d.passes = desc->without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        d.crowds |= desc->kinds[i].actor_count > 1u;
+        d.fades |= plan->kinds[i].level_count > 1u && !desc->full_detail;
+        d.fewer_influences |= may_drop_influences(desc, plan, i);
+    }
+    return d;
+}
+
+/* Of the renderer of all meshes. Beyond the limit, its create says so. */
+NOH_NEVER_INLINE static size_t variants_size(const measure *m)
+{
+    const noh_gl_renderer_desc d = renderer_desc(m->desc, m->plan);
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    noh_gl_variant_list list;
+    list.count = 0;
+    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
+        (void)noh_gl_list_variants(&d, &mesh, &list, NULL);
+    }
+    return noh_gl_variants_size(&list);
+}
+
+static void carve_head(measure *m)
+{
+    const uint32_t models = count_models(m);
+    noh_stage_gl *gl = CARVE(m, 1, noh_stage_gl);
+    noh_gl_model *of = CARVE(m, models, noh_gl_model);
+    noh_mesh *meshes = CARVE(m, models, noh_mesh);
+    const size_t variants_bytes = variants_size(m);
+    noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
+    void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
+    if (m->gl) { /* carved for a real stage: init put the device into a copy */
+        gl->device = m->gl->device;
+        m->gl = gl;
+        gl->models = of;
+        gl->model_count = models;
+        gl->meshes = meshes;
+        gl->renderer = renderer;
+        gl->variants = variants;
+        gl->variants_bytes = variants_bytes;
+        memset(of, 0, models * sizeof *of);
+        memset(renderer, 0, sizeof *renderer);
+        gl->light = NULL;
+        gl->lighting = NULL;
+    }
+    carve_kinds(m);
+    add(m, "renderer", NOH_NONE, 0, m->desc->without_shader ? 0 : NOH_GL_RENDERER_BYTES);
+}
+
+static void carve_light(measure *m)
+{
+    const size_t from = m->arena.used;
+    noh_gl_light *light;
+    if (!m->desc->light) return;
+    light = CARVE(m, 1, noh_gl_light);
+    add(m, "light", NOH_NONE, from, noh_gl_light_bytes(m->desc->light));
+    if (!m->gl) return;
+    memset(light, 0, sizeof *light);
+    m->gl->light = light;
+}
+
+/* ---- all of it ---- */
+
+static noh_mesh mesh_for_renderers(const measure *m, noh_gl_site site, const noh_gl_model *model)
+{
+    return model->load_kind == NOH_NONE ? noh_gl_site_mesh(m->desc, m->plan, site) : model->room;
+}
+
+static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
+{
+    const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
+    const uint32_t index = model_index(m, owner);
+    noh_stage_gl *gl = m->gl;
+    noh_gl_model *model = gl ? &gl->models[index] : NULL;
+    noh_gl_item *item = gl ? &gl->kinds[site.kind].items[site.item] : NULL;
+    noh_result result = NOH_OK;
+    if (owner.kind == site.kind && owner.item == site.item) {
+        result = visit_model(m, site, model, error);
+        if (model) gl->meshes[index] = mesh_for_renderers(m, site, model);
+    }
+    if (item) {
+        item->model = model;
+        item->first_pool = noh_gl_first_pool(m->desc, m->plan, site);
+    }
+    return result == NOH_OK ? visit_item(m, site, item, error) : result;
+}
+
+static noh_result visit(measure *m, noh_error *error)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    noh_result result = NOH_OK;
+    carve_head(m);
+    carve_light(m);
+    if (m->gl && m->desc->light) {
+        result = noh_gl_light_create(&m->gl->device, m->desc->light, m->gl->light, error);
+    }
+    while (result == NOH_OK && noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        result = visit_site(m, site, error);
+    }
+    for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
+        const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i, m->caps->etc2);
+        if (bytes) add(m, "textures", i, m->arena.used, bytes);
+    }
+    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;
+}
+
+static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                                uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
+{
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0 };
+    const noh_result result = visit(&m, error);
+    *cpu_bytes = m.arena.used;
+    *gpu_bytes = m.gpu_bytes;
+    plan->morph_path = m.morph_path;
+    return result;
+}
+
+static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                       noh_stage_list *list)
+{
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0 };
+    (void)visit(&m, NULL);
+}
+
+/* ---- made, deleted, made again ---- */
+
+static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, const noh_gl_shader_desc *own,
+                                const noh_gl_device *device, void *memory, size_t bytes, noh_gl_renderer *out,
+                                noh_error *error)
+{
+    noh_gl_renderer_desc d = renderer_desc(&s->desc, s->plan);
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) d.layers_uint = noh_gl_morph_binding_of(gl->models[i].morph, 0).is_uint;
+    }
+    d.meshes = gl->meshes;
+    d.mesh_count = gl->model_count;
+    d.shaders = own;
+    return noh_gl_renderer_create(device, &d, memory, bytes, out, error);
+}
+
+static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
+    }
+}
+
+static void destroy(noh_stage *stage)
+{
+    noh_stage_gl *gl = stage->gpu;
+    if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
+    if (gl->light && gl->light->gl) noh_gl_light_delete(gl->light);
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        for (uint32_t m = 0; m < stage->kinds[i].plan->mesh_count; m++) {
+            if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
+        }
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_delete(gl->models[i].morph);
+    }
+    let_go_meshes(stage, &gl->device);
+}
+
+/* The context is gone, and with it the objects: only the ledger is told. */
+static void forget(noh_stage *stage)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_gl_device lost = gl->device;
+    lost.api = noh_gl_lost_api();
+    if (gl->renderer->gl) noh_gl_renderer_forget(gl->renderer);
+    if (gl->light) noh_gl_light_forget(gl->light);
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        for (uint32_t m = 0; m < stage->kinds[i].plan->mesh_count; m++) {
+            noh_gl_skin_forget(gl->kinds[i].items[m].skin);
+        }
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_forget(gl->models[i].morph);
+    }
+    let_go_meshes(stage, &lost);
+}
+
+static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        for (uint32_t m = 0; m < s->kinds[i].plan->mesh_count; m++) {
+            const noh_stage_mesh *mesh = &s->kinds[i].meshes[m];
+            float rows[12];
+            gl->kinds[i].items[m].mirrored = !mesh->skinned && mesh->node_world &&
+                                             noh_gl_normal_rows(mesh->node_world, rows) < 0.0f;
+        }
+    }
+}
+
+static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
+{
+    measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0 };
+    noh_stage_gl first;
+    noh_result result;
+    first.device = *(const noh_gl_device *)device;
+    NOH_ASSERT(first.device.api && first.device.caps && first.device.ledger);
+    m.caps = first.device.caps;
+    m.gl = &first;
+    result = visit(&m, error);
+    stage->gpu = m.gl;
+    if (result == NOH_OK) {
+        find_mirrored(m.gl, stage);
+        if (!stage->desc.without_shader) {
+            result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->variants, m.gl->variants_bytes,
+                                   m.gl->renderer, error);
+        }
+    }
+    if (result != NOH_OK) {
+        destroy(stage);
+        stage->gpu = NULL;
+    }
+    m.gl->device.log = NULL;
+    m.gl->device.log_bytes = 0;
+    return result;
+}
+
+static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *error)
+{
+    const noh_stage_gl *gl = s->gpu;
+    noh_result result = NOH_OK;
+    for (uint32_t m = 0; m < s->kinds[kind].plan->mesh_count && result == NOH_OK; m++) {
+        result = noh_gl_skin_restore(gl->kinds[kind].items[m].skin, error);
+    }
+    return result;
+}
+
+static noh_result restore_all(noh_stage *stage, noh_error *error)
+{
+    noh_stage_gl *gl = stage->gpu;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
+        noh_gl_model *model = &gl->models[i];
+        result = noh_gl_model_restore(stage, model, error);
+    }
+    for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
+        result = restore_kind(stage, i, error);
+    }
+    if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
+    if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
+    return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
+}
+
+/* All or nothing: where one object cannot be made, those before it are deleted, and no name of the old context is left
+ * to be deleted in the new one. */
+static noh_result restore(noh_stage *stage, noh_error *error)
+{
+    noh_result result;
+    forget(stage);
+    result = restore_all(stage, error);
+    if (result != NOH_OK) destroy(stage);
+    return result;
+}
+
+/* ---- upload ---- */
+
+int noh_gl_any_weight(const float *weights, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (weights[i] != 0.0f) return 1;
+    }
+    return 0;
+}
+
+/* What its expression wrinkles, for crowds; alone it is given by the draw. */
+static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
+{
+    float regions[NOH_WRINKLE_REGIONS];
+    noh_wrinkles wrinkles;
+    if (noh_wrinkles_of(&mesh->mesh, &wrinkles, NULL) == NOH_OK) {
+        noh_wrinkles_weights(&wrinkles, weights, regions);
+        (void)noh_gl_skin_set_wrinkles(item->skin, place, regions, NULL);
+    }
+}
+
+/* One actor's mesh: its weights and its place. */
+static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_actor *actor,
+                         const noh_stage_shown *shown, int has_user, const float *weights)
+{
+    noh_gl_morph_binding morph;
+    float world[12];
+    int moved = 0;
+    memcpy(world, shown->world, sizeof world);
+    if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
+    if (noh_gl_has_tile(item, shown)) {
+        const uint32_t tile = noh_gl_item_tile(item, shown);
+        moved = noh_gl_any_weight(weights, mesh->mesh.header->target_count);
+        (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
+        morph = noh_gl_morph_binding_of(item->model->morph, tile);
+    }
+    if (!noh_gl_is_mirrored(item, actor, shown)) {
+        (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
+        (void)noh_gl_skin_set_tint(item->skin, shown->place, noh_stage_tint_of(actor), NULL);
+        if (has_user) (void)noh_gl_skin_set_user(item->skin, shown->place, actor->look.user, NULL);
+        upload_regions(mesh, item, shown->place, weights);
+    }
+}
+
+/* Palettes of all meshes of one actor. Meshes of one skin take the same matrices. */
+static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrices)
+{
+    const noh_gl_item *items = ((const noh_stage_gl *)s->gpu)->kinds[k - s->kinds].items;
+    noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    const noh_skin_header *ready = NULL;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        if (!mesh->skinned) continue;
+        if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, matrices);
+        ready = mesh->skin.header;
+        if (noh_gl_skin_write_matrices(items[m].skin, shown->place, matrices)) shown->updates |= NOH_STAGE_MOVED;
+    }
+}
+
+static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_gl_item *items, uint32_t index)
+{
+    const noh_stage_shown *shown = &s->shown[k->first_actor + index];
+    const float *weights = k->weights + (size_t)index * k->weight_count;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        upload_place(mesh, &items[m], &k->actors[index], shown, s->desc.user_values, weights + mesh->first_weight);
+        if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
+    }
+}
+
+static void upload(noh_stage *s)
+{
+    noh_stage_gl *gl = s->gpu;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        const noh_stage_kind *k = &s->kinds[i];
+        for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_actor(s, k, gl->kinds[i].items, k->order[p]);
+        for (uint32_t m = 0; m < k->plan->mesh_count; m++) noh_gl_skin_update(gl->kinds[i].items[m].skin);
+    }
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) noh_gl_morph_update(gl->models[i].morph, NULL);
+    }
+}
+
+/* ---- what is on the GPU, for tools ---- */
+
+noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, const noh_stage_plan *plan,
+                                noh_gl_morph_plan *out, noh_error *error)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX }, first = { 0, 0 };
+    noh_stage_desc d = *desc;
+    noh_gl_tiles tiles;
+    noh_gl_morph_desc morph;
+    NOH_ASSERT(plan && caps && out);
+    noh_stage_desc_by_plan(&d, plan);
+    while (noh_gl_next_site(plan, d.kind_count, &site)) {
+        if (noh_gl_site_mesh(&d, plan, site).header->touched_count) {
+            first = noh_gl_owner(&d, plan, site);
+            break;
+        }
+    }
+    noh_gl_tiles_of(&d, plan, first, &tiles);
+    morph = noh_gl_site_morph(&d, &tiles);
+    return noh_gl_morph_plan_make(&morph, caps, out, error);
+}
+
+noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error)
+{
+    NOH_ASSERT(stage->gpu && out);
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_shown *shown;
+    const noh_gl_item *item;
+    if (!a) {
+        return noh_stage_gone(error, actor);
+    }
+    shown = &stage->shown[a - stage->actors];
+    if (index >= k->plan->mesh_count || shown->frame != stage->frame || !shown->views) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor has no such mesh, or no view saw it in the last frame",
+                        index, k->plan->mesh_count);
+    }
+    item = &((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].items[index];
+    memset(out, 0, sizeof *out);
+    out->mesh = &item->model->mesh;
+    out->pictures = ((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].pictures +
+                    (size_t)a->look.texture_set * k->desc->mesh->texture_count;
+    out->is_morphed = noh_gl_has_tile(item, shown);
+    if (out->is_morphed) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
+    out->is_skinned = k->meshes[index].skinned;
+    if (out->is_skinned) out->skin = noh_gl_skin_binding_of(item->skin, shown->place);
+    return NOH_OK;
+}
+
+const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init,        destroy,   restore,
+                                        pose,          upload,     noh_gl_load, noh_gl_use };
+
+/* ---- shaders of a game's own ---- */
+
+size_t noh_stage_shader_size(const noh_stage *stage)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    noh_arena arena = noh_arena_measure();
+    (void)noh_arena_carve(&arena, sizeof(noh_stage_shader), 16);
+    (void)noh_arena_carve(&arena, gl->variants_bytes, 16);
+    return arena.used;
+}
+
+noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
+                                   char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    noh_gl_device device;
+    noh_arena arena;
+    noh_stage_shader *made;
+    void *variants;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
+    NOH_ASSERT(gl && desc && shader);
+    if (result != NOH_OK) {
+        return result;
+    }
+    made = noh_arena_carve(&arena, sizeof *made, 16);
+    variants = noh_arena_carve(&arena, gl->variants_bytes, 16);
+    memset(made, 0, sizeof *made);
+    device = gl->device;
+    device.log = log;
+    device.log_bytes = log_bytes;
+    result = make_renderer(gl, stage, desc, &device, variants, gl->variants_bytes, &made->renderer, error);
+    if (result == NOH_OK) {
+        *shader = made;
+    }
+    return result;
+}
+
+void noh_stage_shader_delete(noh_stage_shader *shader)
+{
+    NOH_ASSERT(shader);
+    noh_gl_renderer_delete(&shader->renderer);
+}
+
+noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error)
+{
+    NOH_ASSERT(shader);
+    return noh_gl_renderer_restore(&shader->renderer, log, log_bytes, error);
+}

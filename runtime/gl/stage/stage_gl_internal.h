@@ -1,0 +1,178 @@
+/* stage_gl_internal.h (private to stage_gl/): a stage's objects on the GPU. */
+#ifndef NOH_STAGE_GL_STAGE_GL_INTERNAL_H
+#define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
+
+#include "stage/cast/stage_internal.h"
+#include "gl/stage/stage_gl.h"
+
+#define NOH_MODEL_POOLS_MAX 16u /* tiles of one mesh come in at most so many sizes */
+
+/* A mesh of a pack, with its accumulators for all kinds that draw it. */
+typedef struct noh_gl_model {
+    noh_gl_mesh mesh;
+    noh_gl_morph *morph; /* NULL: no targets */
+    uint32_t part_count; /* meshes of its desc */
+    uint32_t load_kind;  /* noh_stage_kind.load_kind where finer levels come later; else NOH_NONE, and the rest is 0 */
+    uint32_t mesh_index; /* in the packs */
+    int loaded;          /* 1: they are used */
+    noh_mesh coarse;     /* the finest level that the kind's own pack has */
+    noh_mesh room;       /* the finest of the plan: copies of its headers and its submeshes, and nothing else */
+    uint64_t mesh_at;    /* how far the upload is */
+    uint32_t morph_at;
+} noh_gl_model;
+
+/* What one kind draws by one node. */
+typedef struct noh_gl_item {
+    noh_gl_model *model;
+    uint32_t first_pool; /* of the kind's pools, among the meshes of model->morph */
+    noh_gl_skin *skin;
+    int mirrored; /* its node mirrors: a crowd cannot be drawn */
+} noh_gl_item;
+
+/* Whether an actor's item is mirrored, by its node or by the joint that the actor hangs on: it is drawn alone then,
+ * because one draw has one winding. Places of their own never mirror. */
+static inline int noh_gl_is_mirrored(const noh_gl_item *item, const noh_stage_actor *actor,
+                                     const noh_stage_shown *shown)
+{
+    float rows[12];
+    return item->mirrored || (actor->parent && noh_gl_normal_rows(shown->world, rows) < 0.0f);
+}
+
+/* Whether an actor has a slot, and the mesh targets: 0: it is drawn without them. */
+static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown *shown)
+{
+    return item->model->morph && shown->slot.pool != NOH_NONE;
+}
+
+/* 0: nothing of a mesh is morphed: its vertices need not look deltas up, which are 0. */
+int noh_gl_any_weight(const float *weights, uint32_t count);
+
+/* The instance of model->morph that an actor's slot is. */
+static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage_shown *shown)
+{
+    return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
+}
+
+typedef struct noh_gl_kind {
+    noh_gl_item *items;       /* [mesh_count] */
+    noh_gl_texture *pictures; /* [1 + texture_set_count][texture_count of the pack]: those that others own, too */
+} noh_gl_kind;
+
+typedef struct noh_stage_gl {
+    noh_gl_device device;
+    noh_gl_kind *kinds;
+    noh_gl_model *models;
+    uint32_t model_count;
+    noh_mesh *meshes; /* [model_count] full, for renderers */
+    noh_gl_renderer *renderer;
+    void *variants;        /* [variants_bytes] of the renderer, if there is one */
+    size_t variants_bytes; /* of any renderer of all meshes */
+    noh_gl_light *light;   /* NULL: none */
+    const noh_lighting *lighting;
+    noh_lighting lighting_less; /* `lighting`, its shadow's matrix less the origin of what is drawn */
+} noh_stage_gl;
+
+struct noh_stage_shader {
+    noh_gl_renderer renderer;
+};
+
+/* A pass of a view that is under way. */
+typedef struct noh_gl_drawing {
+    const noh_stage *s;
+    const noh_stage_gl *gl;
+    const noh_stage_kind *k;
+    const noh_gl_kind *on_gl;
+    noh_gl_renderer *renderer;
+    uint32_t view;
+    int pass;
+} noh_gl_drawing;
+
+/* A lighting whose shadow's matrix takes positions less `origin`. */
+void noh_gl_lighting_less(const noh_lighting *lighting, const float origin[3], noh_lighting *out);
+
+/* The opaque meshes of one actor, drawn by a renderer of all meshes of the stage. End it with noh_gl_draw_end.
+ * errors  as noh_stage_decals_draw: nothing has begun */
+typedef struct noh_gl_alone {
+    noh_gl_drawing drawing;
+    uint32_t place, mesh_count;
+} noh_gl_alone;
+noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view, noh_actor actor,
+                              noh_gl_alone *alone, noh_error *error);
+/* A level of an actor, and its share of the pixels (noh_gl_lod). */
+typedef struct noh_gl_share {
+    uint32_t level;
+    float from, to;
+} noh_gl_share;
+
+/* The index-th mesh: its number in the pack; the levels that it shows, 1, or 2 while it fades; the mesh at one of the
+ * actor's levels, as it is drawn; drawn, with whatever render state was set since. */
+uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index);
+uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_gl_share shares[2]);
+noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t level);
+void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share);
+
+/* Kinds of one actor are drawn by the programs of single instances. */
+static inline int noh_gl_is_crowd(const noh_stage_kind *kind)
+{
+    return kind->desc->actor_count > 1u;
+}
+
+/* ---- who shares what ---- */
+
+/* An item of a kind: numbered over all kinds of a desc. */
+typedef struct noh_gl_site {
+    uint32_t kind, item;
+} noh_gl_site;
+
+/* The next item after *site, over all kinds; 0 at the end. Begin with kind and item UINT32_MAX. */
+int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_site *site);
+/* The first site that draws the same mesh of the same pack from the same level on, and may share with this one. */
+noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
+
+/* ---- levels that come later ---- */
+
+/* The copy that noh_gl_model.room is of, in memory of so many bytes, aligned to 16. */
+size_t noh_gl_room_size(const noh_mesh *mesh);
+noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory);
+/* Make the mesh of a model, with what its own pack has. */
+noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error);
+/* Its mesh is what its accumulators' finished vertices are drawn by. */
+noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
+/* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
+noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
+int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
+void noh_gl_use(noh_stage *stage, uint32_t load_kind, int loaded);
+
+/* ---- textures ---- */
+
+/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes. */
+uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind, int etc2);
+uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
+/* Make, make again in a new context, delete the textures of all kinds. */
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                  noh_error *error);
+noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                   noh_error *error);
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds);
+
+/* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
+typedef struct noh_gl_tiles {
+    noh_mesh meshes[NOH_MODEL_POOLS_MAX];
+    uint32_t counts[NOH_MODEL_POOLS_MAX];
+    uint32_t count;
+    noh_mesh coarse; /* where `comes_later` */
+    int comes_later;
+    int vertices; /* 1: the path cpu finishes those of the whole stage */
+} noh_gl_tiles;
+
+void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);
+/* The index of a site's first pool in the tiles of its owner. */
+uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site);
+/* A level of a mesh, without its transfer where that is not drawn. */
+noh_mesh noh_gl_as_lit(const noh_stage_desc *desc, const noh_mesh *mesh, uint32_t level);
+noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site); /* finest level */
+/* The finest that is in the kind's own pack. Returns 0 where that is the finest of all: none comes later. */
+int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);
+noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
+
+#endif

@@ -1,0 +1,149 @@
+/* stage_gl_load.c: levels of a mesh that come later: room for them, their upload, and what is drawn meanwhile.
+ *
+ * Buffers and tables have the size of the finest level of the plan. Of a mesh, the coarse levels are a prefix, so that
+ * they are drawn while the rest arrives. Of targets they are not, where a level leaves targets out: the coarse level
+ * has tables of its own, and the accumulators change over to the fine ones once these are whole. */
+#include <string.h>
+
+#include "gl/device/gl_lost.h"
+#include "gl/stage/stage_gl_internal.h"
+
+/* ---- room ---- */
+
+static uint32_t levels_of(const noh_mesh *mesh)
+{
+    return mesh->header->level_count - mesh->header->level;
+}
+
+size_t noh_gl_room_size(const noh_mesh *mesh)
+{
+    return levels_of(mesh) * sizeof *mesh->header + mesh->header->submesh_count * sizeof *mesh->submeshes;
+}
+
+/* A chunk of a mesh with headers and the finest level's submeshes. All else would begin where the chunk does. */
+noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory)
+{
+    noh_mesh_header *headers = memory;
+    noh_mesh room = *coarse;
+    const uint32_t count = levels_of(mesh);
+    memcpy(headers, mesh->header, count * sizeof *headers);
+    memcpy(headers + count, mesh->submeshes, mesh->header->submesh_count * sizeof *mesh->submeshes);
+    for (uint32_t i = 0; i < count; i++) {
+        noh_mesh_header *h = &headers[i];
+        h->level_first = mesh->header->level;
+        h->positions_offset = h->attributes_offset = h->indices_offset = h->targets_offset = h->weights_offset = 0;
+        h->rects_offset = h->texels_offset = h->target_boxes_offset = h->influences_offset = h->palettes_offset = 0;
+        h->palette_joints_offset = h->joint_boxes_offset = 0;
+        h->submeshes_offset = count * (uint32_t)sizeof *headers;
+    }
+    room.header = headers;
+    return noh_mesh_at_lod(&room, mesh->header->level);
+}
+
+/* ---- uploading ---- */
+
+static void fill_mesh(const noh_gl_device *device, const noh_gl_model *model, const noh_mesh *from)
+{
+    uint64_t at = 0;
+    uint32_t bytes;
+    do {
+        bytes = UINT32_MAX;
+    } while (!noh_gl_mesh_fill(device->api, &model->mesh, from, &at, &bytes));
+}
+
+noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error)
+{
+    const noh_result result = noh_gl_mesh_create_empty(device->api, device->ledger, &model->room, &model->coarse,
+                                                       &model->mesh, error);
+    if (result == NOH_OK) fill_mesh(device, model, &model->coarse);
+    return result;
+}
+
+/* The finest level of the plan in the pack that was brought. Its materials and skin are those of the kind's own pack.
+ */
+static noh_mesh brought(const noh_stage *s, const noh_gl_model *model)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(s->kinds[model->load_kind].loaded, model->mesh_index, &mesh, NULL);
+    mesh.pack = model->coarse.pack;
+    return noh_gl_as_lit(&s->desc, &mesh, model->room.header->level);
+}
+
+static int load_model(const noh_stage *s, noh_gl_model *model, uint32_t *bytes)
+{
+    const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
+    const noh_mesh mesh = brought(s, model);
+    return noh_gl_mesh_fill(d->api, &model->mesh, &mesh, &model->mesh_at, bytes) &&
+           (!model->morph || noh_gl_morph_fill(model->morph, &mesh, &model->morph_at, bytes));
+}
+
+int noh_gl_load(noh_stage *s, uint32_t load_kind, int anew, uint32_t *bytes)
+{
+    noh_stage_gl *gl = s->gpu;
+    int done = 1;
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        noh_gl_model *model = &gl->models[i];
+        if (model->load_kind != load_kind) continue;
+        if (anew) {
+            model->mesh_at = 0;
+            model->morph_at = 0;
+            done = 0;
+        }
+        done = done && load_model(s, model, bytes);
+    }
+    return done;
+}
+
+static void use_model(const noh_stage *s, noh_gl_model *model, int loaded)
+{
+    const noh_mesh mesh = loaded ? brought(s, model) : model->coarse;
+    model->loaded = loaded;
+    model->mesh.mesh = mesh;
+    if (model->morph) noh_gl_morph_use(model->morph, &mesh);
+}
+
+void noh_gl_use(noh_stage *s, uint32_t load_kind, int loaded)
+{
+    noh_stage_gl *gl = s->gpu;
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].load_kind == load_kind) use_model(s, &gl->models[i], loaded);
+    }
+}
+
+/* ---- a new context ---- */
+
+static noh_result restore_mesh(const noh_gl_device *d, noh_gl_model *model, noh_error *error)
+{
+    if (model->load_kind == NOH_NONE) {
+        return noh_gl_mesh_restore(d->api, d->ledger, &model->mesh, error);
+    }
+    noh_gl_mesh_delete(noh_gl_lost_api(), d->ledger, &model->mesh);
+    return noh_gl_model_make_mesh(d, model, error);
+}
+
+noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < model->part_count && result == NOH_OK; i++) {
+        result = noh_gl_morph_set_mesh(model->morph, i, &model->mesh, error);
+    }
+    return result;
+}
+
+noh_result noh_gl_model_restore(const noh_stage *s, noh_gl_model *model, noh_error *error)
+{
+    const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
+    noh_result result = restore_mesh(d, model, error);
+    if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
+    if (result == NOH_OK && model->morph) result = noh_gl_model_set_mesh(model, error);
+    model->mesh_at = 0;
+    model->morph_at = 0;
+    if (result == NOH_OK && model->load_kind != NOH_NONE && model->loaded) {
+        uint32_t bytes;
+        do {
+            bytes = UINT32_MAX;
+        } while (!load_model(s, model, &bytes));
+        use_model(s, model, 1);
+    }
+    return result;
+}

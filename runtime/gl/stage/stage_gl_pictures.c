@@ -1,0 +1,125 @@
+/* stage_gl_pictures.c: the textures of all kinds and of their texture sets. One of a pack is on the GPU once: the first
+ * set that has it owns it, the others hold a copy of its name. */
+#include "gl/stage/stage_gl_internal.h"
+
+/* A texture of a kind's mesh pack, in one of the kind's sets. */
+typedef struct site {
+    uint32_t kind, set, texture;
+} site;
+
+uint32_t noh_gl_pictures_count(const noh_kind_desc *kind)
+{
+    return (1u + kind->texture_set_count) * kind->mesh->texture_count;
+}
+
+static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
+{
+    return &kinds[where.kind].pictures[where.set * desc->kinds[where.kind].mesh->texture_count + where.texture];
+}
+
+/* Whether a set has the texture of this index in a pack; *texture is then the one that it stands for. */
+static int has(const noh_kind_desc *kind, uint32_t set, const noh_pack *pack, uint32_t index, uint32_t *texture)
+{
+    const noh_pack *from = set && kind->texture_sets[set - 1u].pack ? kind->texture_sets[set - 1u].pack : kind->mesh;
+    *texture = index;
+    if (!set || from->bytes != pack->bytes) {
+        return !set && from->bytes == pack->bytes;
+    }
+    for (*texture = 0; *texture < kind->mesh->texture_count; ++*texture) {
+        const noh_pack *worn;
+        if (noh_stage_worn(kind, set, *texture, &worn) == index && worn->bytes == pack->bytes) return 1;
+    }
+    return 0;
+}
+
+/* The first site that has the texture of a site: that one, or one before it. */
+static site owner_of(const noh_stage_desc *desc, site where)
+{
+    const noh_pack *pack;
+    const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
+    site s = { 0, 0, 0 };
+    for (; s.kind < where.kind; s.kind++) {
+        for (s.set = 0; s.set <= desc->kinds[s.kind].texture_set_count; s.set++) {
+            if (has(&desc->kinds[s.kind], s.set, pack, index, &s.texture)) return s;
+        }
+    }
+    for (s.set = 0; s.set < where.set; s.set++) {
+        if (has(&desc->kinds[s.kind], s.set, pack, index, &s.texture)) return s;
+    }
+    (void)has(&desc->kinds[s.kind], s.set, pack, index, &s.texture); /* of two in one set, the first */
+    return s;
+}
+
+static int owns(const noh_stage_desc *desc, site where, noh_texture *texture)
+{
+    const site owner = owner_of(desc, where);
+    const noh_pack *pack;
+    const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
+    (void)noh_pack_texture_at(pack, index, texture, NULL);
+    return owner.kind == where.kind && owner.set == where.set && owner.texture == where.texture;
+}
+
+/* The next site of all kinds up to `end`; 0 at the end. Begin with texture UINT32_MAX. */
+static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
+{
+    where->texture++;
+    while (where->kind < end && where->texture >= desc->kinds[where->kind].mesh->texture_count) {
+        where->texture = 0;
+        if (++where->set > desc->kinds[where->kind].texture_set_count) {
+            where->set = 0;
+            where->kind++;
+        }
+    }
+    return where->kind < end;
+}
+
+uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind, int etc2)
+{
+    site where = { kind, 0, UINT32_MAX };
+    uint64_t bytes = 0;
+    while (next_site(desc, kind + 1u, &where)) {
+        noh_texture texture;
+        if (owns(desc, where, &texture)) bytes += noh_gl_picture_bytes(&texture, etc2);
+    }
+    return bytes;
+}
+
+static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_gl_kind *kinds, int again,
+                       noh_error *error)
+{
+    site where = { 0, 0, UINT32_MAX };
+    noh_result result = NOH_OK;
+    while (result == NOH_OK && next_site(desc, desc->kind_count, &where)) {
+        noh_gl_texture *to = at(kinds, desc, where);
+        noh_texture texture;
+        if (!owns(desc, where, &texture)) {
+            *to = *at(kinds, desc, owner_of(desc, where));
+        } else if (again) {
+            result = noh_gl_picture_restore(d->api, d->ledger, &texture, to, error);
+        } else {
+            result = noh_gl_picture_create(d->api, d->ledger, &texture, to, error);
+        }
+    }
+    return result;
+}
+
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                  noh_error *error)
+{
+    return make(desc, device, kinds, 0, error);
+}
+
+noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                   noh_error *error)
+{
+    return make(desc, device, kinds, 1, error);
+}
+
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds)
+{
+    site where = { 0, 0, UINT32_MAX };
+    while (next_site(desc, desc->kind_count, &where)) {
+        noh_texture texture;
+        if (owns(desc, where, &texture)) noh_gl_texture_delete(device->api, device->ledger, at(kinds, desc, where));
+    }
+}

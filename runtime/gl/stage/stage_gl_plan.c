@@ -1,0 +1,168 @@
+/* stage_gl_plan.c: what a stage takes on the GPU, and on the CPU for that; which kinds share a mesh. */
+#include <string.h>
+
+#include "gl/stage/stage_gl_internal.h"
+
+/* ---- sites ---- */
+
+int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_site *site)
+{
+    if (site->kind == UINT32_MAX) {
+        site->kind = site->item = 0;
+        return 1;
+    }
+    if (++site->item < plan->kinds[site->kind].mesh_count) {
+        return 1;
+    }
+    site->item = 0;
+    return ++site->kind < kind_count;
+}
+
+static noh_stage_item item_of(const noh_stage_desc *desc, noh_gl_site site)
+{
+    const noh_kind_desc kind = noh_stage_kind_desc(desc, site.kind);
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    (void)noh_stage_items(&kind, items);
+    return items[site.item];
+}
+
+static uint32_t finest_of(const noh_stage_plan *plan, noh_gl_site site)
+{
+    const noh_kind_plan *k = &plan->kinds[site.kind];
+    return k->levels[k->finest_level].mesh_levels[site.item];
+}
+
+noh_mesh noh_gl_as_lit(const noh_stage_desc *desc, const noh_mesh *mesh, uint32_t level)
+{
+    noh_mesh at = noh_mesh_at_lod(mesh, level);
+    if (!desc->light || desc->without_transfer) at.transfer = NULL;
+    return at;
+}
+
+noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    const noh_mesh mesh = noh_stage_whole_mesh(&desc->kinds[site.kind], item_of(desc, site).mesh);
+    return noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
+}
+
+int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, item_of(desc, site).mesh, &mesh, NULL);
+    *coarse = noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
+    return coarse->header->level > finest_of(plan, site) && desc->kinds[site.kind].finer;
+}
+
+static int same_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site a, noh_gl_site b)
+{
+    return desc->kinds[a.kind].mesh->bytes == desc->kinds[b.kind].mesh->bytes &&
+           noh_stage_load_kind(desc, a.kind) == noh_stage_load_kind(desc, b.kind) &&
+           item_of(desc, a).mesh == item_of(desc, b).mesh && finest_of(plan, a) == finest_of(plan, b);
+}
+
+static uint32_t pool_count(const noh_stage_plan *plan, uint32_t kind)
+{
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    return noh_stage_pools(&plan->kinds[kind], levels, slots);
+}
+
+/* Pools of all sites that draw a mesh: where there are too many, nobody shares it. */
+static uint32_t count_pools(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site of)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    uint32_t pools = 0;
+    while (noh_gl_next_site(plan, desc->kind_count, &site)) {
+        if (same_mesh(desc, plan, site, of)) pools += pool_count(plan, site.kind);
+    }
+    return pools;
+}
+
+noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    noh_gl_site other = { UINT32_MAX, UINT32_MAX };
+    if (count_pools(desc, plan, site) > NOH_MODEL_POOLS_MAX) {
+        return site;
+    }
+    while (noh_gl_next_site(plan, desc->kind_count, &other) && !same_mesh(desc, plan, other, site)) {}
+    return other;
+}
+
+static int is_same(noh_gl_site a, noh_gl_site b)
+{
+    return a.kind == b.kind && a.item == b.item;
+}
+
+/* ---- accumulators ---- */
+
+static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_gl_tiles *out)
+{
+    const noh_kind_plan *k = &plan->kinds[site.kind];
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    const uint32_t count = noh_stage_pools(k, levels, slots);
+    const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+    for (uint32_t i = 0; i < count; i++) {
+        NOH_ASSERT(out->count < NOH_MODEL_POOLS_MAX);
+        out->meshes[out->count] = noh_mesh_at_lod(&mesh, k->levels[levels[i]].mesh_levels[site.item]);
+        out->counts[out->count++] = slots[i];
+    }
+}
+
+/* Whether the path cpu may finish vertices. One renderer draws all of a stage, so it is all of them or none. */
+static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    int takes = !desc->morph_sums && desc->halves <= 0;
+    while (takes && noh_gl_next_site(plan, desc->kind_count, &site)) {
+        const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
+        noh_mesh coarse;
+        if (!mesh.header->touched_count) continue;
+        takes = !mesh.transfer && !(mesh.header->flags & NOH_MESH_UV_TARGETS) &&
+                desc->kinds[site.kind].actor_count == 1u && !noh_gl_site_coarse(desc, plan, site, &coarse);
+    }
+    return takes;
+}
+
+void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    out->count = 0;
+    out->vertices = takes_vertices(desc, plan);
+    out->comes_later = noh_gl_site_coarse(desc, plan, owner, &out->coarse);
+    while (noh_gl_next_site(plan, desc->kind_count, &site)) {
+        if (is_same(noh_gl_owner(desc, plan, site), owner)) add_tiles(desc, plan, site, out);
+    }
+}
+
+uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
+{
+    const noh_gl_site owner = noh_gl_owner(desc, plan, site);
+    noh_gl_site other = { UINT32_MAX, UINT32_MAX };
+    uint32_t first = 0;
+    while (noh_gl_next_site(plan, desc->kind_count, &other) && !is_same(other, site)) {
+        if (is_same(noh_gl_owner(desc, plan, other), owner)) first += pool_count(plan, other.kind);
+    }
+    return first;
+}
+
+noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles)
+{
+    noh_gl_morph_desc d;
+    memset(&d, 0, sizeof d);
+    d.meshes = tiles->meshes;
+    d.mesh_count = tiles->count;
+    d.instance_counts = tiles->counts;
+    d.coarse = tiles->comes_later ? &tiles->coarse : NULL;
+    if (tiles->comes_later) {
+        uint32_t finest = 0;
+        for (uint32_t i = 1; i < tiles->count; i++) {
+            if (tiles->meshes[i].header->level < tiles->meshes[finest].header->level) finest = i;
+        }
+        d.later_blocks = noh_gl_morph_blocks(&tiles->meshes[finest]);
+        d.later_strips = noh_gl_morph_strips(&tiles->meshes[finest]);
+    }
+    d.path = (noh_morph_path)desc->morph_path;
+    d.without_tangents = !desc->tangents;
+    d.vertices = tiles->vertices;
+    d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;
+    return d;
+}

@@ -1,0 +1,142 @@
+/* face_blink.c: when the eyes blink, and how the lids move.
+ *
+ * Intervals between spontaneous blinks are log-normal, about 17 a minute at rest, 26 in talk and 4.5 in reading
+ * (Bentivoglio and others, "Analysis of blink rate patterns in normal subjects", Movement Disorders 12, 1997). A blink
+ * that something else brings about, a large movement of the eyes or the end of a phrase, takes the place of the next
+ * spontaneous one, and the one after that is due when it would have been: so the rate stays what it is. */
+#include "core/base/trig.h"
+#include "life/face/face_internal.h"
+
+#define SIGMA 0.7f             /* of the logarithm of intervals */
+#define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by then */
+#define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two of a double blink */
+#define STRATA 32u
+#define DEBT_MAX 4.0f /* mean intervals that blinks taken in advance may put off the next one */
+
+static const float rates[NOH_ACTIVITY_COUNT] = { 17.0f, 26.0f, 4.5f };
+
+float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity)
+{
+    return 60.0f / noh_face_or(desc->blinks_per_minute[activity], rates[activity]);
+}
+
+/* Each of 0..STRATA-1 once, in an order by the key: every step of it can be undone. */
+static uint32_t shuffled(uint32_t i, uint32_t key)
+{
+    i = (i ^ key) % STRATA;
+    i = (i * 13u + (key >> 5)) % STRATA;
+    i ^= i >> 3;
+    i = i * (2u * (key >> 10) + 1u) % STRATA;
+    return i ^ i >> 2;
+}
+
+/* A uniform number, of each 32 in a row one in each of 32 parts of 0 to 1: so each person's rate is the rate within
+ * minutes, and not only the mean of many people's. */
+static float stratum(const noh_face *face, uint32_t blink)
+{
+    const float key = noh_face_uniform(face->seed, NOH_FACE_STRATA, blink / STRATA);
+    const float within = noh_face_uniform(face->seed, NOH_FACE_INTERVAL, blink);
+    return ((float)shuffled(blink % STRATA, (uint32_t)(key * 1048576.0f)) + within) / (float)STRATA;
+}
+
+static uint32_t interval(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
+{
+    const float u = stratum(face, blink);
+    if (noh_face_is_four(face)) return noh_face_four_wait(face, blink);
+    const float s = noh_face_log_normal(u, noh_face_blink_mean(desc, face->activity), SIGMA);
+    return noh_face_ticks(s < INTERVAL_MIN_S ? INTERVAL_MIN_S : s < 600.0f ? s : 600.0f);
+}
+
+/* Closing takes 75 to 100 ms, opening 150 to 200. */
+noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink)
+{
+    noh_face_lid lid;
+    lid.closing = noh_face_ticks(0.075f + 0.025f * noh_face_uniform(face->seed, NOH_FACE_SHAPE, 3u * blink));
+    lid.shut = noh_face_ticks(0.020f + 0.030f * noh_face_uniform(face->seed, NOH_FACE_SHAPE, 3u * blink + 1u));
+    lid.opening = noh_face_ticks(0.150f + 0.050f * noh_face_uniform(face->seed, NOH_FACE_SHAPE, 3u * blink + 2u));
+    return lid;
+}
+
+/* Down along a raised cosine; up fast at first and slower towards the end, as an exponential of 60 ms that is shifted
+ * to end at 0. */
+static float lid_at(const noh_face_lid *lid, uint32_t ticks)
+{
+    const float rate = 1.44269504f / 0.060f;
+    float sine, cosine, last;
+    if (ticks < lid->closing) {
+        noh_sin_cos((float)ticks / (float)lid->closing * 3.14159265f, &sine, &cosine);
+        return 0.5f - 0.5f * cosine;
+    }
+    ticks -= lid->closing;
+    if (ticks < lid->shut) {
+        return 1.0f;
+    }
+    ticks -= lid->shut;
+    if (ticks >= lid->opening) {
+        return 0.0f;
+    }
+    last = noh_exp2(-rate * noh_face_seconds(lid->opening));
+    return (noh_exp2(-rate * noh_face_seconds(ticks)) - last) / (1.0f - last);
+}
+
+static int is_double(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
+{
+    return noh_face_uniform(face->seed, NOH_FACE_DOUBLE, blink) < noh_face_or(desc->double_blinks, 0.02f);
+}
+
+/* Shut the lids at the face's clock. `due` is when the blink was due by itself, which may be later. A double blink
+ * counts as two. */
+static void begin(noh_face *face, const noh_face_desc *desc, uint32_t due)
+{
+    const uint32_t count = !noh_face_is_four(face) && is_double(face, desc, face->blinks) ? 2u : 1u;
+    face->blink_start = (uint32_t)face->clock;
+    face->blinking = (uint8_t)count;
+    face->next_blink = due;
+    for (uint32_t i = 0; i < count; i++) {
+        face->next_blink += interval(face, desc, face->blinks++);
+    }
+}
+
+void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc)
+{
+    begin(face, desc, face->next_blink);
+}
+
+float noh_face_blink_at(const noh_face *face)
+{
+    uint32_t ticks = (uint32_t)face->clock - face->blink_start;
+    if (noh_face_is_four(face)) return face->blinking ? noh_face_four_lid(ticks) : 0.0f;
+    for (uint32_t blink = face->blinks - face->blinking; blink != face->blinks; blink++) {
+        const noh_face_lid lid = noh_face_lid_of(face, blink);
+        const uint32_t whole = lid.closing + lid.shut + lid.opening;
+        if (ticks < whole) return lid_at(&lid, ticks);
+        if (ticks < whole + DOUBLE_GAP_TICKS) return 0.0f;
+        ticks -= whole + DOUBLE_GAP_TICKS;
+    }
+    return 0.0f;
+}
+
+/* One that is under way is enough. */
+static int is_blinking(const noh_face *face)
+{
+    return face->blinking && noh_face_seconds((uint32_t)face->clock - face->blink_start) < INTERVAL_MIN_S;
+}
+
+void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc)
+{
+    const uint32_t now = (uint32_t)face->clock;
+    const uint32_t most = noh_face_ticks(DEBT_MAX * noh_face_blink_mean(desc, face->activity));
+    const int by_itself = !(face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BLINK));
+    if (is_blinking(face)) {
+        return;
+    }
+    begin(face, desc, by_itself ? face->next_blink : now);
+    if (face->next_blink - now > most) {
+        face->next_blink = now + most;
+    }
+}
+
+void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc)
+{
+    face->next_blink = (uint32_t)face->clock + interval(face, desc, face->blinks++);
+}

@@ -1,0 +1,131 @@
+/* face_internal.h (private to face/): the parts of a face.
+ *
+ *   face.c         descs, calls, the order of events
+ *   face_random.c  numbers by seed
+ *   face_spring.c  what moves as a damped spring
+ *   face_blink.c   blinks
+ *   face_gaze.c    where the eyes look, and how far the head goes along
+ *   face_pose.c    what shows
+ *   face_four.c    the mode of four channels */
+#ifndef NOH_FACE_FACE_INTERNAL_H
+#define NOH_FACE_FACE_INTERNAL_H
+
+#include <stdint.h>
+
+#include "life/face/face.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NOH_DEGREE 0.0174532925f
+#define NOH_FACE_TICKS_PER_S 48000.0f
+
+/* ---- numbers by seed ---- */
+
+/* What a number is for. Each has a sequence of its own, so that the times of blinks do not depend on where it looks. */
+typedef enum noh_face_stream {
+    NOH_FACE_INTERVAL = 1,
+    NOH_FACE_SHAPE,
+    NOH_FACE_DOUBLE,
+    NOH_FACE_WITH_GAZE,
+    NOH_FACE_LATENCY,
+    NOH_FACE_GLANCE,
+    NOH_FACE_GLANCE_SIZE,
+    NOH_FACE_GLANCE_WAY,
+    NOH_FACE_TREMOR,
+    NOH_FACE_TREMOR_WAY,
+    NOH_FACE_BREATH,
+    NOH_FACE_PHRASE,
+    NOH_FACE_IDLE, /* three: yaw, pitch, roll */
+    NOH_FACE_MOOD = NOH_FACE_IDLE + 3,
+    NOH_FACE_STRATA
+} noh_face_stream;
+
+float noh_face_uniform(uint32_t seed, uint32_t stream, uint32_t index); /* above 0, below 1 */
+float noh_face_normal(float uniform);                                   /* the quantile of the normal distribution */
+/* Log-normal with this mean; sigma of the logarithm. */
+float noh_face_log_normal(float uniform, float mean, float sigma);
+
+/* ---- springs ---- */
+
+float noh_face_spring_at(const noh_face_spring *s, uint32_t tick);
+void noh_face_spring_to(noh_face_spring *s, uint32_t tick, float goal, float omega);
+float noh_face_omega(uint32_t ticks); /* of a spring that has gone 95 % of its way after so many ticks */
+void noh_face_spring_settle(noh_face_spring *s, uint32_t tick);
+
+/* ---- blinks ---- */
+
+typedef struct noh_face_lid {
+    uint32_t closing, shut, opening; /* ticks */
+} noh_face_lid;
+
+noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink);
+float noh_face_blink_at(const noh_face *face);                        /* 0 open .. 1 shut */
+void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* the one that is due */
+void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* the next one, now */
+void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc);
+float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* seconds between two */
+
+/* ---- the mode of four channels ---- */
+
+static inline int noh_face_is_four(const noh_face *face)
+{
+    return (face->flags & NOH_FACE_FOUR) != 0;
+}
+
+uint32_t noh_face_four_wait(const noh_face *face, uint32_t blink); /* from one blink to the next */
+float noh_face_four_lid(uint32_t ticks);
+void noh_face_mood_begin(noh_face *face, uint32_t emotion, float amount, uint32_t hold);
+void noh_face_mood_next(noh_face *face);
+uint32_t noh_face_mood_end(const noh_face *face); /* tick */
+float noh_face_mood_at(const noh_face *face);
+
+/* ---- gaze ---- */
+
+enum { NOH_GAZE_HOLD = 0, NOH_GAZE_WAIT, NOH_GAZE_MOVE };
+
+/* Yaw, pitch and 1 / distance from the middle of the eyes, as the head stands at the face's clock. */
+void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
+/* The same where the head's rotation is known. */
+void noh_face_gaze_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3]);
+void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
+/* Leave the gaze `from` for the target after a latency. */
+void noh_face_gaze_shift(noh_face *face, const float from[3], uint32_t latency);
+void noh_face_gaze_event(noh_face *face, const noh_face_desc *desc); /* a latency or a saccade has ended */
+void noh_face_glance(noh_face *face, const noh_face_desc *desc);
+void noh_face_glance_schedule(noh_face *face);
+void noh_face_tremor(noh_face *face);
+void noh_face_head_follow(noh_face *face, const noh_face_desc *desc);
+uint32_t noh_face_latency(const noh_face *face);
+float noh_face_angle(const float a[3], const float b[3]); /* between two gazes, radians */
+
+uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, uint32_t breath);
+
+/* ---- the head ---- */
+
+void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4]);
+/* The middle of the eyes, neck space. */
+void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float middle[3]);
+
+/* The desc's value, or the default where it is 0. */
+static inline float noh_face_or(float value, float other)
+{
+    return value > 0.0f ? value : other;
+}
+
+static inline float noh_face_seconds(uint32_t ticks)
+{
+    return (float)ticks / NOH_FACE_TICKS_PER_S;
+}
+
+static inline uint32_t noh_face_ticks(float seconds)
+{
+    return (uint32_t)(seconds * NOH_FACE_TICKS_PER_S + 0.5f);
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

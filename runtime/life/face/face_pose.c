@@ -1,0 +1,132 @@
+/* face_pose.c: what a face shows at its clock. */
+#include <string.h>
+
+#include "core/base/math_internal.h"
+#include "core/base/quat.h"
+#include "core/base/trig.h"
+#include "life/face/face_internal.h"
+
+/* ---- the head ---- */
+
+static float knot(const noh_face *face, uint32_t axis, uint32_t index)
+{
+    return 2.0f * noh_face_uniform(face->seed, NOH_FACE_IDLE + axis, index) - 1.0f;
+}
+
+/* Small motions of the head: random values at even times, joined by a Catmull-Rom curve. The three axes have periods
+ * that share no multiple, so they never turn round together. */
+static float idle(const noh_face *face, uint32_t axis)
+{
+    static const uint32_t periods[3] = { 62400u, 81600u, 100800u };
+    const uint64_t clock = (uint64_t)face->clock;
+    const uint32_t n = (uint32_t)(clock / periods[axis]);
+    const float t = (float)(uint32_t)(clock % periods[axis]) / (float)periods[axis];
+    const float a = knot(face, axis, n), b = knot(face, axis, n + 1u), c = knot(face, axis, n + 2u),
+                d = knot(face, axis, n + 3u);
+    const float square = t * t, cube = square * t;
+    return 0.5f * (2.0f * b + (c - a) * t + (2.0f * a - 5.0f * b + 4.0f * c - d) * square +
+                   (3.0f * b - a - 3.0f * c + d) * cube);
+}
+
+static void turn_about(uint32_t axis, float angle, float q[4])
+{
+    float sine, cosine;
+    noh_sin_cos(0.5f * angle, &sine, &cosine);
+    memset(q, 0, 3 * sizeof *q);
+    q[axis] = sine;
+    q[3] = cosine;
+}
+
+void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4])
+{
+    const float size = noh_face_or(desc->idle_rad, 0.8f * NOH_DEGREE);
+    const int still = (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_IDLE)) != 0;
+    float part[4];
+    for (uint32_t i = 0; i < 3; i++) {
+        angles[i] = (i < 2u ? noh_face_spring_at(&face->head[i], (uint32_t)face->clock) : 0.0f) +
+                    (still ? 0.0f : size * idle(face, i));
+    }
+    turn_about(1, angles[0], rotation);
+    turn_about(0, -angles[1], part);
+    noh_quat_mul(rotation, part, rotation);
+    turn_about(2, angles[2], part);
+    noh_quat_mul(rotation, part, rotation);
+}
+
+/* ---- the eyes ---- */
+
+static float clamped(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* The point that is looked at, seen from an eye, as the head holds it. */
+static void aim(const noh_face_desc *desc, const float rotation[4], const float point[3], int eye, float out[2])
+{
+    const float yaw_max = noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE);
+    float back[4], way[3];
+    noh_quat_conjugate(rotation, back);
+    noh_quat_rotate(back, point, way);
+    for (int i = 0; i < 3; i++) way[i] -= desc->eyes[eye][i];
+    out[0] = clamped(noh_atan2(way[0], way[2]), -yaw_max, yaw_max);
+    out[1] = clamped(noh_atan2(way[1], noh_sqrt(way[0] * way[0] + way[2] * way[2])),
+                     -noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), noh_face_or(desc->up_max, 25.0f * NOH_DEGREE));
+}
+
+static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose)
+{
+    float gaze[3], point[3], sy, cy, sp, cp;
+    noh_face_gaze_from(face, desc, pose->head, gaze);
+    noh_face_middle(desc, pose->head, point);
+    noh_sin_cos(gaze[0], &sy, &cy);
+    noh_sin_cos(gaze[1], &sp, &cp);
+    point[0] += sy * cp / gaze[2];
+    point[1] += sp / gaze[2];
+    point[2] += cy * cp / gaze[2];
+    aim(desc, pose->head, point, 0, pose->eyes[0]);
+    aim(desc, pose->head, point, 1, pose->eyes[1]);
+}
+
+/* ---- the rest ---- */
+
+/* In for two fifths of a breath, out for three. */
+float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
+{
+    float t, sine, cosine;
+    NOH_ASSERT(face && desc);
+    if (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BREATH)) {
+        return 0.0f;
+    }
+    t = (float)((uint32_t)face->clock - face->breath_start) / (float)noh_face_breath_ticks(face, desc, face->breaths);
+    noh_sin_cos(3.14159265f * (t < 0.4f ? t / 0.4f : 1.0f - (t - 0.4f) / 0.6f), &sine, &cosine);
+    return 0.5f - 0.5f * cosine;
+}
+
+static void show_feelings(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
+{
+    if (noh_face_is_four(face) && face->feelings[0].on) {
+        emotions[face->feelings[0].emotion] = clamped(noh_face_mood_at(face), 0.0f, 1.0f);
+        return;
+    }
+    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
+        const noh_face_feeling *f = &face->feelings[i];
+        if (f->on) {
+            emotions[f->emotion] = clamped(noh_face_spring_at(&f->amount, (uint32_t)face->clock), 0.0f, 1.0f);
+        }
+    }
+}
+
+void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose)
+{
+    float pitch;
+    NOH_ASSERT(face && desc && pose);
+    memset(pose, 0, sizeof *pose);
+    noh_face_head_rotation(face, desc, pose->head_angles, pose->head);
+    aim_both(face, desc, pose);
+    pitch = 0.5f * (pose->eyes[0][1] + pose->eyes[1][1]);
+    pose->lids_down = clamped(-pitch / noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), 0.0f, 1.0f);
+    pose->lids_up = clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
+    pose->blink = noh_face_blink_at(face);
+    pose->breath = noh_face_breath(face, desc);
+    show_feelings(face, pose->emotions);
+}

@@ -1,0 +1,102 @@
+/* recipe_pack.c: recipes that packs bring, and the names of channels. */
+#include <string.h>
+
+#include "core/base/assert.h"
+#include "core/base/name_internal.h"
+#include "life/face/recipe.h"
+
+static const char *const names[NOH_CHANNEL_COUNT] = {
+    "blink-left",
+    "blink-right",
+    "eye-left-up",
+    "eye-left-down",
+    "eye-left-out",
+    "eye-left-in",
+    "eye-right-up",
+    "eye-right-down",
+    "eye-right-out",
+    "eye-right-in",
+    "lids-up",
+    "lids-down",
+    "breath",
+    "joy-upper",
+    "sadness-upper",
+    "surprise-upper",
+    "fear-upper",
+    "anger-upper",
+    "disgust-upper",
+    "contempt-upper",
+    "joy-mouth",
+    "sadness-mouth",
+    "surprise-mouth",
+    "fear-mouth",
+    "anger-mouth",
+    "disgust-mouth",
+    "contempt-mouth",
+    "sil",
+    "PP",
+    "FF",
+    "TH",
+    "DD",
+    "kk",
+    "CH",
+    "SS",
+    "nn",
+    "RR",
+    "aa",
+    "E",
+    "ih",
+    "oh",
+    "ou",
+};
+
+const char *noh_face_channel_name(uint32_t channel)
+{
+    return channel < NOH_CHANNEL_COUNT ? names[channel] : "";
+}
+
+uint32_t noh_face_channel_find(const char *name)
+{
+    NOH_ASSERT(name);
+    for (uint32_t i = 0; i < NOH_CHANNEL_COUNT; i++) {
+        if (noh_names_equal(names[i], name)) return i;
+    }
+    return NOH_NONE;
+}
+
+noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack)
+{
+    noh_face_recipe recipe = { "pack", NULL, 0, NULL };
+    NOH_ASSERT(pack);
+    recipe.row_count = pack->recipe_row_count;
+    recipe.pack = pack;
+    return recipe;
+}
+
+noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
+                                   noh_error *error)
+{
+    uint32_t count = 0;
+    NOH_ASSERT(pack && recipe && (rows || !row_max));
+    if (!pack->recipe_row_count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "pack has no recipe of its own", 0, 0);
+    }
+    if (pack->recipe_row_count > row_max) {
+        return noh_fail(error, NOH_ERR_MEMORY, "more rows of a recipe than there is room for", row_max,
+                        pack->recipe_row_count);
+    }
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        const noh_recipe_row *from = &pack->recipe_rows[i];
+        const uint32_t channel = noh_face_channel_find(noh_pack_string(pack, from->channel));
+        if (channel == NOH_NONE) continue;
+        rows[count].target = noh_pack_string(pack, from->target);
+        rows[count].channel = (uint16_t)channel;
+        rows[count].weight = from->weight;
+        count++;
+    }
+    recipe->name = "pack";
+    recipe->rows = rows;
+    recipe->row_count = count;
+    recipe->pack = NULL;
+    return NOH_OK;
+}

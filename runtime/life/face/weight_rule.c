@@ -1,0 +1,156 @@
+/* weight_rule.c: rows of a pack's recipe that say how far targets go, to rules and to weights. The channel of such a
+ * row is `range-min` or `range-max`; '-' and the name of the opposite; or '=' and the name of its group's first target.
+ */
+#include "life/face/weight_rule.h"
+
+#include "core/base/assert.h"
+#include "core/base/name_internal.h"
+
+/* ---- binding ---- */
+
+static const char *channel_of(const noh_pack *pack, uint32_t row)
+{
+    return noh_pack_string(pack, pack->recipe_rows[row].channel);
+}
+
+static const char *target_of(const noh_pack *pack, uint32_t row)
+{
+    return noh_pack_string(pack, pack->recipe_rows[row].target);
+}
+
+static int is_corrective(const noh_pack *pack, const char *target)
+{
+    for (uint32_t row = 0; row < pack->recipe_row_count; row++) {
+        if (channel_of(pack, row)[0] == '+' && noh_names_equal(target_of(pack, row), target)) return 1;
+    }
+    return 0;
+}
+
+/* The mesh's target of a name; NOH_NONE: it has none, or one that follows from others. */
+static uint32_t find(const noh_mesh *mesh, const char *name)
+{
+    return is_corrective(mesh->pack, name) ? NOH_NONE : noh_mesh_find_target(mesh, name);
+}
+
+static int read_range(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
+{
+    const noh_pack *pack = mesh->pack;
+    const noh_recipe_row *low = &pack->recipe_rows[row];
+    uint32_t target;
+    if (row + 1u >= pack->recipe_row_count || !noh_names_equal(channel_of(pack, row), "range-min") ||
+        !noh_names_equal(channel_of(pack, row + 1u), "range-max") || low[1].target != low->target ||
+        !(low->weight <= 0.0f && low[1].weight >= 0.0f))
+        return 0;
+    target = find(mesh, target_of(pack, row));
+    if (target == NOH_NONE) return 0;
+    *rule = (noh_weight_rule){ NOH_WEIGHT_RANGE, (uint16_t)target, 0, 0, low->weight, low[1].weight };
+    return 1;
+}
+
+static int read_opposite(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
+{
+    const char *channel = channel_of(mesh->pack, row);
+    uint32_t target, other;
+    if (channel[0] != '-') return 0;
+    target = find(mesh, target_of(mesh->pack, row));
+    other = find(mesh, channel + 1);
+    if (target == NOH_NONE || other == NOH_NONE || target == other) return 0;
+    *rule = (noh_weight_rule){ NOH_WEIGHT_OPPOSE, (uint16_t)target, (uint16_t)other, 0, 0.0f, 0.0f };
+    return 1;
+}
+
+/* A group is named by its rows' channel, and known by the first of its targets that the mesh has. */
+static int read_share(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
+{
+    const noh_pack *pack = mesh->pack;
+    uint32_t target, first = NOH_NONE;
+    if (channel_of(pack, row)[0] != '=') return 0;
+    target = find(mesh, target_of(pack, row));
+    if (target == NOH_NONE) return 0;
+    for (uint32_t i = 0; i <= row && first == NOH_NONE; i++) {
+        if (noh_names_equal(channel_of(pack, i), channel_of(pack, row))) first = find(mesh, target_of(pack, i));
+    }
+    *rule = (noh_weight_rule){ NOH_WEIGHT_SHARE, (uint16_t)target, (uint16_t)first, 0, 0.0f, 0.0f };
+    return 1;
+}
+
+static int read_row(const noh_mesh *mesh, uint32_t row, noh_weight_rule_kind kind, noh_weight_rule *rule)
+{
+    return kind == NOH_WEIGHT_RANGE    ? read_range(mesh, row, rule)
+           : kind == NOH_WEIGHT_OPPOSE ? read_opposite(mesh, row, rule)
+                                       : read_share(mesh, row, rule);
+}
+
+uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max)
+{
+    uint32_t count = 0;
+    NOH_ASSERT(mesh && (rules || !rule_max));
+    for (uint32_t kind = NOH_WEIGHT_RANGE; kind <= NOH_WEIGHT_SHARE; kind++) {
+        for (uint32_t row = 0; row < mesh->pack->recipe_row_count; row++) {
+            noh_weight_rule rule;
+            if (!read_row(mesh, row, (noh_weight_rule_kind)kind, &rule)) continue;
+            if (count < rule_max) rules[count] = rule;
+            count++;
+        }
+    }
+    return count;
+}
+
+/* ---- weights ---- */
+
+static void keep_range(const noh_weight_rule *rule, float *weight)
+{
+    if (!(*weight >= rule->low)) {
+        *weight = rule->low;
+    } else if (*weight > rule->high) {
+        *weight = rule->high;
+    }
+}
+
+static void keep_apart(float *a, float *b)
+{
+    const float less = *a < *b ? *a : *b;
+    if (!(less > 0.0f)) return;
+    *a -= less;
+    *b -= less;
+}
+
+static int are_together(const noh_weight_rule *a, const noh_weight_rule *b)
+{
+    return b->kind == NOH_WEIGHT_SHARE && b->other == a->other;
+}
+
+/* Returns the rule behind the group's. */
+static uint32_t keep_shares(const noh_weight_rule *rules, uint32_t first, uint32_t rule_count, float *weights)
+{
+    float sum = 0.0f;
+    uint32_t end = first;
+    for (; end < rule_count && are_together(&rules[first], &rules[end]); end++) {
+        const float weight = weights[rules[end].target];
+        sum += weight > 0.0f ? weight : 0.0f;
+    }
+    for (uint32_t i = first; i < end && sum > 1.0f; i++) {
+        float *weight = &weights[rules[i].target];
+        if (*weight > 0.0f) *weight /= sum;
+    }
+    return end;
+}
+
+void noh_weight_rules_keep(const noh_weight_rule *rules, uint32_t rule_count, float *weights)
+{
+    uint32_t i = 0;
+    NOH_ASSERT((rules || !rule_count) && (weights || !rule_count));
+    while (i < rule_count) {
+        const noh_weight_rule *rule = &rules[i];
+        if (rule->kind == NOH_WEIGHT_SHARE) {
+            i = keep_shares(rules, i, rule_count, weights);
+            continue;
+        }
+        if (rule->kind == NOH_WEIGHT_RANGE) {
+            keep_range(rule, &weights[rule->target]);
+        } else {
+            keep_apart(&weights[rule->target], &weights[rule->other]);
+        }
+        i++;
+    }
+}

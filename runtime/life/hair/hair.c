@@ -1,0 +1,188 @@
+/* hair.c: control hairs at rest, hair from outside, and time. hair_lanes.c moves it. */
+#include "life/hair/hair.h"
+
+#include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "life/hair/hair_internal.h"
+#include "life/physics/vector_internal.h"
+
+/* ---- size and init ---- */
+
+size_t noh_hair_size(const noh_hair_desc *desc)
+{
+    NOH_ASSERT(desc);
+    if (!desc->hair_count || desc->hair_count > NOH_HAIRS_MAX || desc->point_count < 2u ||
+        desc->point_count > NOH_HAIR_POINTS_MAX || desc->sphere_count > NOH_HAIR_SPHERES_MAX) {
+        return 0;
+    }
+    const size_t bytes = sizeof(noh_hair) + (size_t)desc->hair_count * desc->point_count * sizeof(noh_hair_point);
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
+/* Numbers whose squares, and those of their differences, stay finite. */
+static int are_sound(const float *v, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!(v[i] > -1e15f && v[i] < 1e15f)) return 0;
+    }
+    return 1;
+}
+
+static int is_share(float x)
+{
+    return x >= 0.0f && x <= 1.0f;
+}
+
+static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
+{
+    if (!noh_hair_size(d)) {
+        return noh_fail(error, NOH_ERR_LIMIT, "hair has no hairs, too few points, or more than a limit", d->hair_count,
+                        NOH_HAIRS_MAX);
+    }
+    if (!is_share(d->pull) || !is_share(d->pull_at_tip) || !(d->damping >= 0.0f) || !(d->gravity >= 0.0f) ||
+        !are_sound(&d->damping, 1) || !are_sound(&d->gravity, 1)) {
+        return noh_fail(error, NOH_ERR_ARG, "hair: pull, damping or gravity is out of its range", 0, 0);
+    }
+    for (uint32_t i = 0; i < d->sphere_count; i++) {
+        if (!are_sound(d->spheres[i].centre, 3) || !are_sound(&d->spheres[i].radius, 1) ||
+            d->spheres[i].radius < 0.0f) {
+            return noh_fail(error, NOH_ERR_ARG, "hair: a sphere has a number out of its range", i, 0);
+        }
+    }
+    for (uint32_t i = 0; i < d->hair_count * d->point_count; i++) {
+        const float *p = d->rest + 3 * (size_t)i;
+        float way[3];
+        if (!are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "hair: a point at rest is not finite", i, 0);
+        if (i % d->point_count == 0) continue;
+        noh_sub3(p, p - 3, way);
+        if (!(noh_dot3(way, way) > 1e-12f)) {
+            return noh_fail(error, NOH_ERR_ARG, "hair: two points of a hair are at one place", i, 0);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, const noh_hair_carrier *carrier,
+                         noh_hair **hair, noh_error *error)
+{
+    noh_arena arena;
+    NOH_ASSERT(desc && carrier && hair);
+    noh_result result = check_desc(desc, error);
+    if (!result) result = noh_arena_open(&arena, memory, bytes, noh_hair_size(desc), error);
+    if (result) return result;
+    noh_hair *h = memory;
+    memset(h, 0, noh_hair_size(desc));
+    h->hair_count = desc->hair_count;
+    h->point_count = desc->point_count;
+    noh_hair_reset(h, desc, carrier);
+    *hair = h;
+    return NOH_OK;
+}
+
+/* ---- rest ---- */
+
+void noh_hair_shift(noh_hair *hair, const float by[3])
+{
+    noh_sub3(hair->last.position, by, hair->last.position);
+    noh_sub3(hair->stepped.position, by, hair->stepped.position);
+}
+
+void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier)
+{
+    NOH_ASSERT(hair && desc && carrier && desc->hair_count == hair->hair_count &&
+               desc->point_count == hair->point_count);
+    for (uint32_t i = 0; i < hair->hair_count * hair->point_count; i++) {
+        noh_hair_point *p = &noh_hair_points_of(hair)[i];
+        const float *rest = desc->rest + 3 * (size_t)i;
+        float way[3] = { 0.0f, 0.0f, 0.0f };
+        if (i % hair->point_count) noh_sub3(rest, rest - 3, way);
+        memset(p, 0, sizeof *p);
+        memcpy(p->now, rest, sizeof p->now);
+        memcpy(p->before, rest, sizeof p->before);
+        p->length = noh_length3(way);
+    }
+    hair->last = hair->stepped = *carrier;
+    hair->left = 0;
+}
+
+/* ---- time ---- */
+
+static noh_hair_motion motion_of(const noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *to)
+{
+    noh_hair_motion m;
+    float back[4], turn[4];
+    const float down[3] = { 0.0f, -d->gravity, 0.0f };
+    noh_quat_conjugate(to->rotation, back);
+    noh_quat_mul(back, h->stepped.rotation, turn);
+    noh_quat_normalize(turn);
+    memset(m.turn, 0, sizeof m.turn);
+    for (int c = 0; c < 3; c++) {
+        m.turn[c][c] = 1.0f;
+        noh_quat_rotate(turn, m.turn[c], m.turn[c]);
+    }
+    noh_sub3(h->stepped.position, to->position, m.moved);
+    noh_quat_rotate(back, m.moved, m.moved);
+    noh_quat_rotate(back, down, m.gravity);
+    noh_quat_rotate(back, to->wind, m.wind);
+    m.keep = 1.0f / (1.0f + d->damping * NOH_HAIR_STEP_SECONDS);
+    return m;
+}
+
+static void mix3(const float a[3], const float b[3], float t, float out[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
+}
+
+void noh_hair_carry(const noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *carrier, float t,
+                    noh_hair_carrier *at, noh_hair_motion *motion)
+{
+    mix3(h->last.position, carrier->position, t, at->position);
+    mix3(h->last.wind, carrier->wind, t, at->wind);
+    noh_quat_nlerp(h->last.rotation, carrier->rotation, t, at->rotation);
+    *motion = motion_of(h, d, at);
+}
+
+/* ---- from outside, and curves ---- */
+
+const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
+{
+    NOH_ASSERT(hair && desc);
+    if (hair->hair_count != desc->hair_count || hair->point_count != desc->point_count) {
+        return "hair is of another desc";
+    }
+    const noh_hair_carrier *carriers[2] = { &hair->last, &hair->stepped };
+    for (int i = 0; i < 2; i++) {
+        const float square = noh_quat_dot(carriers[i]->rotation, carriers[i]->rotation);
+        if (!are_sound(carriers[i]->position, 3) || !are_sound(carriers[i]->wind, 3) ||
+            !(square > 0.9f && square < 1.1f)) {
+            return "hair: the head is out of range";
+        }
+    }
+    if (hair->left >= NOH_HAIR_STEP_TICKS) return "hair: its time is out of range";
+    for (uint32_t i = 0; i < hair->hair_count * hair->point_count; i++) {
+        const noh_hair_point *p = &noh_hair_const_points_of(hair)[i];
+        const float *rest = desc->rest + 3 * (size_t)i;
+        float way[3] = { 0.0f, 0.0f, 0.0f };
+        if (i % hair->point_count) noh_sub3(rest, rest - 3, way);
+        if (!are_sound(p->now, 3) || !are_sound(p->before, 3) || !are_sound(p->velocity, 3) ||
+            p->length != noh_length3(way)) {
+            return "hair: a point is out of range";
+        }
+    }
+    return NULL;
+}
+
+void noh_hair_curve(const float *points, uint32_t count, float t, float out[3])
+{
+    NOH_ASSERT(points && count > 1u);
+    const float along = (t > 0.0f ? t < 1.0f ? t : 1.0f : 0.0f) * (float)(count - 1u);
+    const uint32_t whole = (uint32_t)along, at = whole < count - 2u ? whole : count - 2u;
+    const float u = along - (float)at;
+    const float *p1 = points + 3 * (size_t)at, *p2 = p1 + 3;
+    for (int c = 0; c < 3; c++) {
+        const float before = at ? p1[c - 3] : p1[c] - (p2[c] - p1[c]);
+        const float after = at + 2u < count ? p2[c + 3] : p2[c] + (p2[c] - p1[c]);
+        const float m1 = 0.5f * (p2[c] - before), m2 = 0.5f * (after - p1[c]), way = p2[c] - p1[c];
+        out[c] = p1[c] + u * (m1 + u * (3.0f * way - 2.0f * m1 - m2 + u * (m1 + m2 - 2.0f * way)));
+    }
+}

@@ -1,0 +1,63 @@
+/* hair_internal.h (private to sim/): hair's bytes, and its step. Threads: as hair.h. */
+#ifndef NOH_SIM_HAIR_INTERNAL_H
+#define NOH_SIM_HAIR_INTERNAL_H
+
+#include "core/base/assert.h"
+#include "life/hair/hair.h"
+
+#define NOH_HAIR_STEP_SECONDS ((float)NOH_HAIR_STEP_TICKS / 48000.0f)
+
+/* All in head space as of the step. */
+typedef struct noh_hair_point {
+    float now[3], before[3]; /* of the last two steps */
+    float velocity[3];       /* in the world, along the head's axes */
+    float length;            /* from the point before; of a root 0 */
+} noh_hair_point;
+
+/* Behind it noh_hair_point[hair_count][point_count]. */
+struct noh_hair {
+    uint32_t hair_count, point_count;
+    uint32_t left;            /* ticks since the last step */
+    uint32_t steps;           /* of all time, for gusts */
+    noh_hair_carrier last;    /* of the last call */
+    noh_hair_carrier stepped; /* of the last step */
+    uint32_t reserved[4];
+};
+NOH_STATIC_ASSERT(sizeof(noh_hair) == 112, hair);
+NOH_STATIC_ASSERT(sizeof(noh_hair_point) == 40, hair_point);
+
+/* What a step knows of the head: from its space in the last step to that in this one, and what pulls. */
+typedef struct noh_hair_motion {
+    float turn[3][3], moved[3]; /* columns */
+    float gravity[3], wind[3];  /* head space */
+    float keep;                 /* of a speed */
+} noh_hair_motion;
+
+static inline noh_hair_point *noh_hair_points_of(noh_hair *h)
+{
+    return (noh_hair_point *)(void *)(h + 1);
+}
+
+static inline const noh_hair_point *noh_hair_const_points_of(const noh_hair *h)
+{
+    return (const noh_hair_point *)(const void *)(h + 1);
+}
+
+/* The origin of its world moves by `by`, metres: so much less is where the head was. */
+void noh_hair_shift(noh_hair *hair, const float by[3]);
+
+/* Where the head is at a share `t` of a call's time, and what a step to there knows of it. */
+void noh_hair_carry(const noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, float t,
+                    noh_hair_carrier *at, noh_hair_motion *motion);
+
+/* noh_hair_step and noh_hair_points, for as many hairs at a time as the processor has lanes. hair_lanes.c can be
+ * compiled again under other names, for other instructions. */
+#if !defined(NOH_HAIR_STEP)
+#define NOH_HAIR_STEP noh_hair_step
+#define NOH_HAIR_POINTS noh_hair_points
+#else
+uint32_t NOH_HAIR_STEP(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
+void NOH_HAIR_POINTS(const noh_hair *hair, const noh_hair_desc *desc, float *points);
+#endif
+
+#endif

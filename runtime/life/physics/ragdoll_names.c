@@ -1,0 +1,249 @@
+/* ragdoll_names.c: bodies of a ragdoll by the pack's table, or by the names of joints. */
+#include "core/base/name_internal.h"
+#include "core/base/trig.h"
+#include "motion/clip/pack_clip.h"
+#include "life/physics/ragdoll_rig.h"
+
+/* A hip is a thigh, a shoulder an upper arm, where no joint below it is. */
+typedef enum part {
+    NONE,
+    HEAD,
+    UPPER_ARM,
+    FOREARM,
+    HAND,
+    THIGH,
+    SHIN,
+    FOOT,
+    PELVIS,
+    SPINE,
+    CHEST,
+    PARTS,
+    HIP,
+    SHOULDER
+} part;
+
+#define DEGREES(a) ((a) * (NOH_PI / 180.0f))
+
+/* As a row has them. */
+static const struct abilities {
+    uint32_t hinge, toward;
+    float bend_min, bend_max, side, twist, friction;
+} abilities[PARTS] = {
+    [HEAD] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-30.0f), DEGREES(35.0f), DEGREES(30.0f), DEGREES(40.0f), 3.0f },
+    [UPPER_ARM] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-50.0f), DEGREES(90.0f), DEGREES(60.0f), DEGREES(45.0f), 4.0f },
+    [FOREARM] = { 1, NOH_RAGDOLL_FORWARD, 0.0f, DEGREES(145.0f), 0.0f, 0.0f, 3.0f },
+    [HAND] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-40.0f), DEGREES(40.0f), DEGREES(20.0f), DEGREES(30.0f), 1.0f },
+    [THIGH] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-20.0f), DEGREES(95.0f), DEGREES(40.0f), DEGREES(30.0f), 5.0f },
+    [SHIN] = { 1, NOH_RAGDOLL_BACKWARD, 0.0f, DEGREES(140.0f), 0.0f, 0.0f, 5.0f },
+    [FOOT] = { 0, NOH_RAGDOLL_UPWARD, DEGREES(-35.0f), DEGREES(20.0f), DEGREES(15.0f), DEGREES(10.0f), 2.0f },
+    [PELVIS] = { 0, NOH_RAGDOLL_FORWARD, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f },
+    [SPINE] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-15.0f), DEGREES(25.0f), DEGREES(15.0f), DEGREES(15.0f), 5.0f },
+    [CHEST] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-15.0f), DEGREES(25.0f), DEGREES(15.0f), DEGREES(15.0f), 5.0f },
+};
+
+/* The first that a name has, as letters alone: 'upper_arm.L' has "upperarm". */
+static const struct word {
+    const char *text;
+    part means;
+} words[] = {
+    { "forearm", FOREARM },
+    { "lowerarm", FOREARM },
+    { "lowarm", FOREARM },
+    { "elbow", FOREARM },
+    { "upperarm", UPPER_ARM },
+    { "uparm", UPPER_ARM },
+    { "thigh", THIGH },
+    { "upperleg", THIGH },
+    { "upleg", THIGH },
+    { "lowerleg", SHIN },
+    { "lowleg", SHIN },
+    { "shin", SHIN },
+    { "calf", SHIN },
+    { "knee", SHIN },
+    { "toe", NONE },
+    { "foot", FOOT },
+    { "ankle", FOOT },
+    { "finger", NONE },
+    { "thumb", NONE },
+    { "hand", HAND },
+    { "wrist", HAND },
+    { "headtop", NONE },
+    { "head", HEAD },
+    { "neck", HEAD },
+    { "armature", NONE },
+    { "arm", UPPER_ARM },
+    { "leg", SHIN },
+    { "shoulder", SHOULDER },
+    { "hip", HIP },
+};
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static int is_letter(char c)
+{
+    return lower(c) >= 'a' && lower(c) <= 'z';
+}
+
+/* Does `name`, from here on and without all but its letters, begin with the word? */
+static int begins_with(const char *name, const char *word)
+{
+    while (*word && *name) {
+        if (is_letter(*name)) {
+            if (lower(*name) != *word) return 0;
+            word++;
+        }
+        name++;
+    }
+    return !*word;
+}
+
+static part part_of(const char *name)
+{
+    for (size_t w = 0; w < sizeof words / sizeof words[0]; w++) {
+        for (const char *at = name; *at; at++) {
+            if (is_letter(*at) && begins_with(at, words[w].text)) return words[w].means;
+        }
+    }
+    return NONE;
+}
+
+static part name_at(const noh_ragdoll_source *s, uint32_t joint)
+{
+    return part_of(noh_pack_joint_name(s->pack, s->skeleton, joint));
+}
+
+/* Is there a joint of `below` whose nearest one above, of the names `weak` and `means`, is this? So 'Hips' and collar
+ * bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee' is. */
+static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part weak, part means, part below)
+{
+    for (uint32_t i = joint + 1u; i < s->joints.joint_count; i++) {
+        uint32_t up = s->joints.parents[i];
+        if (name_at(s, i) != below) continue;
+        while (up != NOH_JOINT_ROOT && up > joint && name_at(s, up) != weak && name_at(s, up) != means) {
+            up = s->joints.parents[up];
+        }
+        if (up == joint) return 1;
+    }
+    return 0;
+}
+
+static part part_at(const noh_ragdoll_source *s, uint32_t joint)
+{
+    const part name = name_at(s, joint);
+    if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
+    if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
+    return name;
+}
+
+/* The topmost joint of its part in its chain: fingers' names have "hand" too. */
+static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means)
+{
+    uint32_t up = s->joints.parents[joint];
+    while (up != NOH_JOINT_ROOT && part_at(s, up) != means) up = s->joints.parents[up];
+    return up == NOH_JOINT_ROOT;
+}
+
+static int is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)
+{
+    while (below != NOH_JOINT_ROOT && below != joint) below = k->parents[below];
+    return below == joint;
+}
+
+/* The lowest joint above all first joints of a part; NOH_NONE where there are not two. */
+static uint32_t where_meet(const noh_ragdoll_source *s, part means)
+{
+    uint32_t meet = NOH_NONE, count = 0;
+    for (uint32_t i = 0; i < s->joints.joint_count; i++) {
+        if (part_at(s, i) != means || !is_first(s, i, means)) continue;
+        if (!count++) {
+            meet = s->joints.parents[i];
+            continue;
+        }
+        while (meet != NOH_NONE && meet != NOH_JOINT_ROOT && !is_above(&s->joints, meet, i)) {
+            meet = s->joints.parents[meet];
+        }
+    }
+    return count > 1 && meet != NOH_JOINT_ROOT ? meet : NOH_NONE;
+}
+
+/* The child of `from` on the way to `to`. */
+static uint32_t next_towards(const noh_skeleton *k, uint32_t from, uint32_t to)
+{
+    while (k->parents[to] != from) to = k->parents[to];
+    return to;
+}
+
+typedef struct trunk {
+    uint32_t pelvis, spine, chest;
+} trunk;
+
+static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
+{
+    if (joint == t->pelvis) return PELVIS;
+    if (joint == t->chest) return CHEST;
+    if (joint == t->spine) return SPINE;
+    const part means = part_at(s, joint);
+    return means != NONE && is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means : NONE;
+}
+
+/* ---- a table in the pack ---- */
+
+/* The first joint of that name; NOH_NONE: the skeleton has none. */
+static uint32_t joint_of(const noh_ragdoll_source *s, const noh_pack_ragdoll_row *row)
+{
+    const char *name = noh_pack_string(s->pack, row->joint);
+    for (uint32_t i = 0; i < s->joints.joint_count; i++) {
+        if (noh_names_equal(noh_pack_joint_name(s->pack, s->skeleton, i), name)) return i;
+    }
+    return NOH_NONE;
+}
+
+/* The pack's rows by rising joint. 0: it has none, or the skeleton lacks a joint. */
+static uint32_t rows_of_pack(const noh_ragdoll_source *s, noh_ragdoll_row *rows)
+{
+    for (uint32_t i = 0; i < s->pack->ragdoll_row_count; i++) {
+        const noh_pack_ragdoll_row *from = &s->pack->ragdoll_rows[i];
+        const uint32_t joint = joint_of(s, from);
+        uint32_t at = i;
+        if (joint == NOH_NONE) return 0;
+        while (at > 0 && rows[at - 1u].joint > joint) {
+            rows[at] = rows[at - 1u];
+            at--;
+        }
+        rows[at] = (noh_ragdoll_row){ joint,          from->hinge, from->toward, from->bend_min,
+                                      from->bend_max, from->side,  from->twist,  from->friction };
+    }
+    return s->pack->ragdoll_row_count;
+}
+
+noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_row *rows, uint32_t *count,
+                                 noh_error *error)
+{
+    trunk t;
+    *count = rows_of_pack(source, rows);
+    if (*count) return NOH_OK;
+    t = (trunk){ where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
+    if (t.pelvis == NOH_NONE) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "no two joints of this skeleton have names of thighs: its ragdoll "
+                        "needs a table",
+                        0, 0);
+    }
+    if (t.chest != NOH_NONE && (t.chest == t.pelvis || !is_above(&source->joints, t.pelvis, t.chest))) {
+        t.chest = NOH_NONE;
+    }
+    if (t.chest != NOH_NONE) t.spine = next_towards(&source->joints, t.pelvis, t.chest);
+    for (uint32_t i = 0; i < source->joints.joint_count && *count < NOH_RAGDOLL_BODIES_MAX; i++) {
+        const part means = part_in(source, &t, i);
+        if (means != NONE) {
+            const struct abilities *a = &abilities[means];
+            const noh_ragdoll_row row = { i,           a->hinge, a->toward, a->bend_min,
+                                          a->bend_max, a->side,  a->twist,  a->friction };
+            rows[(*count)++] = row;
+        }
+    }
+    return NOH_OK;
+}

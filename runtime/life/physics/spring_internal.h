@@ -1,0 +1,56 @@
+/* spring_internal.h (private to sim/): a spring's bytes, and its step. Threads: as spring.h. */
+#ifndef NOH_SIM_SPRING_INTERNAL_H
+#define NOH_SIM_SPRING_INTERNAL_H
+
+#include "core/base/assert.h"
+#include "life/physics/spring.h"
+
+/* The end of a joint. Positions count from where the first joint was in the last step, so that a character far from the
+ * origin loses no digits. */
+typedef struct noh_spring_point {
+    float now[3], before[3]; /* of the last two steps */
+    float length;
+} noh_spring_point;
+
+/* Behind it noh_spring_point[joint_count], then noh_spring_collider[collider_count] as of the last call. */
+struct noh_spring {
+    uint32_t joint_count, collider_count, collides;
+    uint32_t left;              /* ticks since the last step */
+    noh_spring_carrier last;    /* of the last call */
+    noh_spring_carrier stepped; /* of the last step */
+    float moved[3];             /* by which the carrier moved in the last step */
+    float turned[4];            /* its rotation in the step before */
+    uint32_t reserved;
+};
+NOH_STATIC_ASSERT(sizeof(noh_spring) == 104, spring);
+NOH_STATIC_ASSERT(sizeof(noh_spring_point) == 28, spring_point);
+
+/* The origin of its world moves by `by`: so much less is where all is. */
+void noh_spring_shift(noh_spring *spring, const float by[3]);
+
+static inline noh_spring_point *noh_spring_points(noh_spring *s)
+{
+    return (noh_spring_point *)(void *)(s + 1);
+}
+
+static inline const noh_spring_point *noh_spring_const_points(const noh_spring *s)
+{
+    return (const noh_spring_point *)(const void *)(s + 1);
+}
+
+static inline noh_spring_collider *noh_spring_colliders(noh_spring *s)
+{
+    return (noh_spring_collider *)(void *)(noh_spring_points(s) + s->joint_count);
+}
+
+/* noh_spring_step and noh_spring_rotations, for as many chains at a time as the processor has lanes. spring_lanes.c can
+ * be compiled again under other names, for other instructions. */
+#if !defined(NOH_SPRING_STEP)
+#define NOH_SPRING_STEP noh_spring_step
+#define NOH_SPRING_ROTATIONS noh_spring_rotations
+#else
+uint32_t NOH_SPRING_STEP(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch);
+void NOH_SPRING_ROTATIONS(const noh_spring_move *moves, uint32_t count);
+#endif
+
+#endif

@@ -1,0 +1,22 @@
+/* terrain.c: a pack's terrain as a height field. */
+#include "life/physics/terrain.h"
+
+#include <string.h>
+
+#include "core/base/assert.h"
+
+noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *error)
+{
+    NOH_ASSERT(pack && field);
+    const noh_pack_terrain_header *h = pack->terrain;
+    if (!h) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the pack has no terrain: build it with --terrain", 0, 0);
+    }
+    field->heights = (const uint16_t *)(const void *)((const uint8_t *)h + h->heights_offset);
+    field->width = h->width;
+    field->depth = h->depth;
+    memcpy(field->origin, h->origin, sizeof field->origin);
+    field->spacing = h->spacing;
+    field->scale = h->scale;
+    return NOH_OK;
+}

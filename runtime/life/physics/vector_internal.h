@@ -1,0 +1,87 @@
+/* vector_internal.h: vectors of three floats, as the solvers use them. Threads: no state; any thread. */
+#ifndef NOH_SIM_VECTOR_INTERNAL_H
+#define NOH_SIM_VECTOR_INTERNAL_H
+
+#include <string.h>
+
+#include "core/base/math_internal.h"
+#include "core/base/quat.h"
+
+static inline void noh_sub3(const float a[3], const float b[3], float out[3])
+{
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
+}
+
+/* a + s * b; out may be any of them. */
+static inline void noh_madd3(const float a[3], float s, const float b[3], float out[3])
+{
+    out[0] = a[0] + s * b[0];
+    out[1] = a[1] + s * b[1];
+    out[2] = a[2] + s * b[2];
+}
+
+static inline void noh_cross3(const float a[3], const float b[3], float out[3])
+{
+    const float x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+static inline float noh_length3(const float v[3])
+{
+    return noh_sqrt(noh_dot3(v, v));
+}
+
+/* v without its part along the unit vector `axis`; out may be v. */
+static inline void noh_reject3(const float v[3], const float axis[3], float out[3])
+{
+    noh_madd3(v, -noh_dot3(v, axis), axis, out);
+}
+
+/* A unit vector at right angles to the unit vector v: `hint` where it has such a part, else whichever is handy. */
+NOH_UNUSED static inline void noh_perpendicular3(const float v[3], const float hint[3], float out[3])
+{
+    static const float axes[3][3] = { { 1.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 1.0f } };
+    const float x = v[0] * v[0], y = v[1] * v[1], z = v[2] * v[2];
+    const float *least = axes[x <= y && x <= z ? 0 : y <= z ? 1 : 2]; /* has at least 0.8 at right angles to v */
+    float part[3];
+    noh_reject3(hint, v, part);
+    if (noh_dot3(part, part) > 1e-8f * noh_dot3(hint, hint)) {
+        noh_reject3(part, v, part); /* once more, because what was left may be small beside what was taken away */
+        noh_normalize3(part, least);
+    } else {
+        noh_reject3(least, v, part);
+        noh_normalize3(part, least);
+    }
+    memcpy(out, part, sizeof part);
+}
+
+/* The shortest rotation from direction a to b, of any lengths; the identity where one has none. `hint` says about which
+ * axis where they are opposed.
+ * Past a right angle it is taken in two steps, half a turn about the axis and then what is left: the sum of nearly
+ * opposed vectors has few digits, and the second step corrects what the axis lacks. */
+NOH_UNUSED static inline void noh_quat_between(const float a[3], const float b[3], const float hint[3], float q[4])
+{
+    static const float none[3] = { 0.0f, 0.0f, 0.0f };
+    const float cosine = noh_dot3(a, b), size = noh_sqrt(noh_dot3(a, a) * noh_dot3(b, b));
+    if (cosine >= 0.0f || !(size > 0.0f)) {
+        noh_cross3(a, b, q);
+        q[3] = size + cosine;
+        noh_quat_normalize(q);
+    } else {
+        float from[3] = { -a[0], -a[1], -a[2] }, axis[3], half[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+        noh_cross3(a, b, axis);
+        const float *about = noh_dot3(axis, axis) > 1e-12f * size * size ? axis : hint;
+        noh_cross3(from, b, q);
+        q[3] = size - cosine;
+        noh_quat_normalize(q);
+        noh_normalize3(from, none);
+        noh_perpendicular3(from, about, half);
+        noh_quat_mul(q, half, q);
+    }
+}
+
+#endif

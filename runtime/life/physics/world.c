@@ -1,0 +1,219 @@
+/* world.c: a world's numbers, and its height field. */
+#include "life/physics/world.h"
+
+#include "core/base/assert.h"
+#include "life/physics/vector_internal.h"
+#include "life/physics/world_internal.h"
+
+/* ---- checks ---- */
+
+static int is_unit(const float *v, int n)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < n; i++) sum += v[i] * v[i];
+    return sum > 0.99f && sum < 1.01f;
+}
+
+static int is_finite3(const float v[3])
+{
+    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
+}
+
+static int is_size(float x)
+{
+    return x >= 0.0f && noh_is_finite(x);
+}
+
+static int good_box(const noh_obb *b)
+{
+    return is_finite3(b->centre) && is_size(b->half[0]) && is_size(b->half[1]) && is_size(b->half[2]) &&
+           is_unit(b->rotation, 4);
+}
+
+static int good_field(const noh_field *f)
+{
+    return f->heights && f->width >= 2 && f->width <= 65536u && f->depth >= 2 && f->depth <= 65536u &&
+           is_finite3(f->origin) && f->spacing > 0.0f && noh_is_finite(f->spacing) && noh_is_finite(f->scale);
+}
+
+noh_result noh_world_check(const noh_world *w, noh_error *error)
+{
+    if (w->plane_count > NOH_OBSTACLES_MAX || w->capsule_count > NOH_OBSTACLES_MAX ||
+        w->box_count > NOH_OBSTACLES_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a world has more obstacles of a kind than the limit", 0,
+                        NOH_OBSTACLES_MAX);
+    }
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        if (!is_unit(w->planes[i].normal, 3) || !noh_is_finite(w->planes[i].distance)) {
+            return noh_fail(error, NOH_ERR_ARG, "a plane's normal is not unit, or its distance not finite", i, 0);
+        }
+    }
+    for (uint32_t i = 0; i < w->capsule_count; i++) {
+        const noh_capsule *c = &w->capsules[i];
+        if (!is_finite3(c->from) || !is_finite3(c->to) || !is_size(c->radius)) {
+            return noh_fail(error, NOH_ERR_ARG, "a capsule has a number that is not finite, or a radius below 0", i, 0);
+        }
+    }
+    for (uint32_t i = 0; i < w->box_count; i++) {
+        if (!good_box(&w->boxes[i])) {
+            return noh_fail(error, NOH_ERR_ARG, "a box has a number out of its range", i, 0);
+        }
+    }
+    if (w->field && !good_field(w->field)) {
+        return noh_fail(error, NOH_ERR_ARG, "a height field has no area, or a number that is not finite", 0, 0);
+    }
+    if (!is_size(w->friction)) return noh_fail(error, NOH_ERR_ARG, "friction is below 0 or not finite", 0, 0);
+    if (!(w->restitution >= 0.0f && w->restitution <= 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "restitution of a world is not in 0..1", 0, 0);
+    return NOH_OK;
+}
+
+/* ---- height field ---- */
+
+/* The four heights of a cell; base: of a height of 0. */
+static void corners_of(const noh_field *f, uint32_t column, uint32_t row, float base, float h[4])
+{
+    const uint16_t *at = f->heights + (size_t)row * f->width + column;
+    h[0] = (float)at[0] * f->scale + base;
+    h[1] = (float)at[1] * f->scale + base;
+    h[2] = (float)at[f->width] * f->scale + base;
+    h[3] = (float)at[f->width + 1u] * f->scale + base;
+}
+
+/* Which cell, and where in it. */
+static uint32_t cell_of(float at, uint32_t count, float *part)
+{
+    uint32_t cell = (uint32_t)at;
+    cell = cell > count - 2u ? count - 2u : cell;
+    *part = at - (float)cell;
+    return cell;
+}
+
+/* At u, v in a cell. */
+static void height_in_cell(const noh_field *f, const float h[4], float u, float v, float *height, float normal[3])
+{
+    static const float up[3] = { 0.0f, 1.0f, 0.0f };
+    *height = (h[0] + (h[1] - h[0]) * u) * (1.0f - v) + (h[2] + (h[3] - h[2]) * u) * v;
+    if (normal) {
+        normal[0] = -((h[1] - h[0]) * (1.0f - v) + (h[3] - h[2]) * v);
+        normal[1] = f->spacing;
+        normal[2] = -((h[2] - h[0]) * (1.0f - u) + (h[3] - h[1]) * u);
+        noh_normalize3(normal, up);
+    }
+}
+
+int noh_field_height(const noh_field *f, float x, float z, float *height, float normal[3])
+{
+    const float column = (x - f->origin[0]) / f->spacing, row = (z - f->origin[2]) / f->spacing;
+    float u, v, h[4];
+    if (!(column >= 0.0f && row >= 0.0f && column <= (float)(f->width - 1u) && row <= (float)(f->depth - 1u))) {
+        return 0;
+    }
+    const uint32_t c = cell_of(column, f->width, &u), r = cell_of(row, f->depth, &v);
+    corners_of(f, c, r, f->origin[1], h);
+    height_in_cell(f, h, u, v, height, normal);
+    return 1;
+}
+
+/* A double has the digits that a float far away lacks. */
+static double along_grid(const noh_field *f, const float origin[3], int axis, float at)
+{
+    return (((double)origin[axis] - (double)f->origin[axis]) + (double)at) / (double)f->spacing;
+}
+
+int noh_field_height_about(const noh_field *f, const float origin[3], float x, float z, float *height, float normal[3])
+{
+    const double column = along_grid(f, origin, 0, x), row = along_grid(f, origin, 2, z);
+    float h[4];
+    if (!(column >= 0.0 && row >= 0.0 && column <= (double)(f->width - 1u) && row <= (double)(f->depth - 1u))) {
+        return 0;
+    }
+    const uint32_t c = (uint32_t)column < f->width - 2u ? (uint32_t)column : f->width - 2u;
+    const uint32_t r = (uint32_t)row < f->depth - 2u ? (uint32_t)row : f->depth - 2u;
+    corners_of(f, c, r, f->origin[1] - origin[1], h);
+    height_in_cell(f, h, (float)(column - (double)c), (float)(row - (double)r), height, normal);
+    return 1;
+}
+
+float noh_plane_distance(const noh_plane *p, const float origin[3])
+{
+    double distance = (double)p->distance;
+    for (int i = 0; i < 3; i++) distance -= (double)p->normal[i] * (double)origin[i];
+    return (float)distance;
+}
+
+/* A ray in cells: x and z in spacings, y as it is. */
+typedef struct walk {
+    const noh_field *field;
+    float from[3], step[3];
+    float enter, leave; /* of the whole grid */
+} walk;
+
+/* The first t in t0..t1 at which the ray is at or below the cell's surface: its height above it is a parabola in t. */
+static float hit_in_cell(const walk *w, uint32_t column, uint32_t row, float t0, float t1)
+{
+    float h[4];
+    corners_of(w->field, column, row, w->field->origin[1], h);
+    const float a = h[1] - h[0], b = h[2] - h[0], c = h[3] - h[2] - a;
+    const float u = w->from[0] - (float)column + t0 * w->step[0], v = w->from[2] - (float)row + t0 * w->step[2];
+    const float du = w->step[0], dv = w->step[2];
+    const float g0 = w->from[1] + t0 * w->step[1] - (h[0] + a * u + b * v + c * u * v);
+    const float g1 = w->step[1] - (a * du + b * dv + c * (u * dv + v * du)), g2 = -c * du * dv;
+    float t;
+    if (g0 <= 0.0f) return t0;
+    const float square = g1 * g1 - 4.0f * g2 * g0;
+    if (square < 0.0f) return -1.0f;
+    const float root = noh_sqrt(square);
+    /* the smaller root above 0, in the form that does not cancel */
+    if (g1 < 0.0f) {
+        t = 2.0f * g0 / (-g1 + root);
+    } else {
+        t = g2 < 0.0f ? (-g1 - root) / (2.0f * g2) : -1.0f;
+    }
+    return t >= 0.0f && t <= t1 - t0 ? t0 + t : -1.0f;
+}
+
+static float walk_cells(const walk *w)
+{
+    const uint32_t limit = w->field->width + w->field->depth; /* a line crosses no more cells */
+    const float t0 = w->enter;
+    float t = t0, part;
+    float x = w->from[0] + t * w->step[0], z = w->from[2] + t * w->step[2];
+    int64_t column = cell_of(x > 0.0f ? x : 0.0f, w->field->width, &part);
+    int64_t row = cell_of(z > 0.0f ? z : 0.0f, w->field->depth, &part);
+    for (uint32_t i = 0; i < limit; i++) {
+        const float edge_x = (float)(column + (w->step[0] > 0.0f)), edge_z = (float)(row + (w->step[2] > 0.0f));
+        const float tx = w->step[0] != 0.0f ? (edge_x - w->from[0]) / w->step[0] : w->leave;
+        const float tz = w->step[2] != 0.0f ? (edge_z - w->from[2]) / w->step[2] : w->leave;
+        const float edge = tx < tz ? tx : tz, end = edge < w->leave ? edge : w->leave;
+        const float hit = hit_in_cell(w, (uint32_t)column, (uint32_t)row, t, end > t ? end : t);
+        if (hit >= 0.0f || edge >= w->leave) return hit;
+        if (tx < tz) {
+            column += w->step[0] > 0.0f ? 1 : -1;
+        } else {
+            row += w->step[2] > 0.0f ? 1 : -1;
+        }
+        if (column < 0 || row < 0 || column > (int64_t)w->field->width - 2 || row > (int64_t)w->field->depth - 2) {
+            return -1.0f;
+        }
+        t = end > t ? end : t;
+    }
+    return -1.0f;
+}
+
+float noh_field_ray(const noh_field *f, const noh_ray *ray)
+{
+    const float top = 65535.0f * (f->scale > 0.0f ? f->scale : 0.0f);
+    const float bottom = 65535.0f * (f->scale < 0.0f ? f->scale : 0.0f);
+    const noh_aabb grid = { { f->origin[0], f->origin[1] + bottom, f->origin[2] },
+                            { f->origin[0] + (float)(f->width - 1u) * f->spacing, f->origin[1] + top,
+                              f->origin[2] + (float)(f->depth - 1u) * f->spacing } };
+    walk w = { f, { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, noh_ray_aabb(ray, &grid), ray->distance_max };
+    if (w.enter < 0.0f) return -1.0f;
+    for (int i = 0; i < 3; i++) {
+        const float unit = i == 1 ? 1.0f : f->spacing;
+        w.from[i] = (ray->from[i] - (i == 1 ? 0.0f : f->origin[i])) / unit;
+        w.step[i] = ray->direction[i] / unit;
+    }
+    return walk_cells(&w);
+}

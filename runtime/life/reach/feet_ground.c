@@ -1,0 +1,85 @@
+/* feet_ground.c: what is straight below a point. */
+#include "core/base/assert.h"
+#include "life/reach/feet.h"
+#include "life/physics/vector_internal.h"
+
+static const float up[3] = { 0.0f, 1.0f, 0.0f };
+
+typedef struct nearest {
+    float distance; /* below 0: none yet */
+    float normal[3];
+} nearest;
+
+static void take(nearest *n, float distance, const float normal[3])
+{
+    if (distance > 0.0f && (n->distance < 0.0f || distance < n->distance)) {
+        n->distance = distance;
+        memcpy(n->normal, normal, sizeof n->normal);
+    }
+}
+
+static void take_plane(nearest *n, const noh_ray *ray, const noh_plane *p)
+{
+    const float above = noh_dot3(p->normal, ray->from) - p->distance;
+    const float distance = p->normal[1] > 1e-4f ? above / p->normal[1] : -1.0f;
+    if (distance <= ray->distance_max) take(n, distance, p->normal);
+}
+
+/* The side of the box on which a point of its surface lies: where it is farthest out, by the box's size. */
+static void take_box(nearest *n, const noh_ray *ray, const noh_obb *b)
+{
+    const float distance = noh_ray_obb(ray, b);
+    float at[3], back[4], side[3] = { 0.0f, 0.0f, 0.0f }, least = 1e30f;
+    int axis = 1;
+    if (!(distance > 0.0f)) return;
+    noh_madd3(ray->from, distance, ray->direction, at);
+    noh_sub3(at, b->centre, at);
+    noh_quat_conjugate(b->rotation, back);
+    noh_quat_rotate(back, at, at);
+    for (int i = 0; i < 3; i++) {
+        const float inside = b->half[i] - (at[i] < 0.0f ? -at[i] : at[i]);
+        if (inside < least) least = inside, axis = i;
+    }
+    side[axis] = at[axis] < 0.0f ? -1.0f : 1.0f;
+    noh_quat_rotate(b->rotation, side, side);
+    take(n, distance, side);
+}
+
+static void take_capsule(nearest *n, const noh_ray *ray, const noh_capsule *c)
+{
+    const float distance = noh_ray_capsule(ray, c->from, c->to, c->radius);
+    float at[3], along[2], axis[3], normal[3];
+    if (!(distance > 0.0f)) return;
+    noh_madd3(ray->from, distance, ray->direction, at);
+    noh_segments_closest(c->from, c->to, at, at, along);
+    noh_sub3(c->to, c->from, axis);
+    noh_madd3(c->from, along[0], axis, axis);
+    noh_sub3(at, axis, normal);
+    noh_normalize3(normal, up);
+    take(n, distance, normal);
+}
+
+static void take_field(nearest *n, const noh_ray *ray, const noh_field *f)
+{
+    float height, normal[3];
+    if (!noh_field_height(f, ray->from[0], ray->from[2], &height, normal)) return;
+    if (ray->from[1] - height <= ray->distance_max) take(n, ray->from[1] - height, normal);
+}
+
+float noh_ground_below(const noh_ground *ground, const float from[3], float depth, float normal[3])
+{
+    const noh_ray ray = { { from[0], from[1], from[2] }, { 0.0f, -1.0f, 0.0f }, depth };
+    nearest n = { -1.0f, { 0.0f, 1.0f, 0.0f } };
+    const noh_world *w = ground->world;
+    NOH_ASSERT(depth >= 0.0f);
+    if (ground->below) {
+        const float distance = ground->below(ground->user, from, depth, normal);
+        return distance >= 0.0f && distance <= depth ? distance : -1.0f;
+    }
+    for (uint32_t i = 0; w && i < w->plane_count; i++) take_plane(&n, &ray, &w->planes[i]);
+    for (uint32_t i = 0; w && i < w->box_count; i++) take_box(&n, &ray, &w->boxes[i]);
+    for (uint32_t i = 0; w && i < w->capsule_count; i++) take_capsule(&n, &ray, &w->capsules[i]);
+    if (w && w->field) take_field(&n, &ray, w->field);
+    memcpy(normal, n.normal, sizeof n.normal);
+    return n.distance;
+}

@@ -1,0 +1,49 @@
+/* rig_internal.h: joints of a pose, and skin in the bind pose, as rigs and solvers of whole bodies use them.
+ * Threads: no state; any thread. */
+#ifndef NOH_SIM_RIG_INTERNAL_H
+#define NOH_SIM_RIG_INTERNAL_H
+
+#include "life/physics/ragdoll_rig.h"
+#include "life/physics/vector_internal.h"
+
+NOH_UNUSED static inline int noh_rig_is_below(const noh_skeleton *k, uint32_t joint, uint32_t above)
+{
+    while (joint != above && joint != NOH_JOINT_ROOT) joint = k->parents[joint];
+    return joint == above;
+}
+
+/* Where its heaviest joint carries a vertex in the bind pose. */
+NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
+                                             uint32_t vertex, uint32_t slot, float point[3])
+{
+    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
+    float local[3], position[3], rotation[4];
+    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
+    noh_ragdoll_bind(k, skin->joints[slot], position, rotation);
+    noh_quat_rotate(rotation, local, local);
+    noh_madd3(position, 1.0f, local, point);
+}
+
+/* A joint in model space, as a pose has it. */
+NOH_UNUSED static inline void noh_rig_joint(const noh_skeleton *k, const noh_transform *local, uint32_t joint,
+                                            float position[3], float rotation[4])
+{
+    noh_skeleton posed = *k;
+    posed.bind_pose = local;
+    noh_ragdoll_bind(&posed, joint, position, rotation);
+}
+
+/* Turn a joint and what hangs on it, in model space. */
+NOH_UNUSED static inline void noh_rig_turn(const noh_skeleton *k, noh_transform *local, uint32_t joint,
+                                           const float by[4])
+{
+    float *own = local[joint].rotation, carrier[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, back[4], unused[3];
+    if (k->parents[joint] != NOH_JOINT_ROOT) noh_rig_joint(k, local, k->parents[joint], unused, carrier);
+    noh_quat_conjugate(carrier, back);
+    noh_quat_mul(carrier, own, own);
+    noh_quat_mul(by, own, own);
+    noh_quat_mul(back, own, own);
+    noh_quat_normalize(own);
+}
+
+#endif

@@ -1,0 +1,195 @@
+#include "motion/anim/events.h"
+
+/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so no more than this is
+ * needed of a passage in 1/65,536 ticks; which end is open is decided here, once. */
+typedef struct span {
+    int64_t low, high;
+} span;
+
+/* One leg of a passage: the clip ticks low..high, which lie at base + sign * tick of the position. */
+typedef struct leg {
+    int64_t low, high;
+    int64_t base, sign;
+    int descending; /* clip ticks fall as the passage goes on */
+} leg;
+
+typedef struct legs {
+    int64_t next, last; /* numbers of legs; `next` moves towards `last` */
+    int done;
+} legs;
+
+static span passage_span(const noh_passage *p)
+{
+    span s;
+    if (p->backward) {
+        s.low = noh_ceil_div(p->to, 65536);
+        s.high = p->placed ? noh_floor_div(p->from, 65536) : noh_ceil_div(p->from, 65536) - 1;
+    } else {
+        s.low = p->placed ? noh_ceil_div(p->from, 65536) : noh_floor_div(p->from, 65536) + 1;
+        s.high = noh_floor_div(p->to, 65536);
+    }
+    return s;
+}
+
+/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick
+ * between two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip.
+ */
+static legs passage_legs(const noh_passage *p, span s)
+{
+    int64_t d = (int64_t)p->duration_ticks;
+    /* placed on a seam: only the keys on the far side lie ahead */
+    int fresh = p->placed && p->from % 65536 == 0 && p->loop == NOH_LOOP_REPEAT;
+    legs l = { 0, 0, s.low > s.high };
+    if (p->loop == NOH_LOOP_ONCE || d == 0) {
+        return l;
+    }
+    if (p->backward) {
+        l.next = fresh ? noh_ceil_div(s.high, d) - 1 : noh_floor_div(s.high, d);
+        l.last = noh_ceil_div(s.low, d) - 1;
+        l.done = l.done || l.next < l.last;
+    } else {
+        l.next = fresh ? noh_floor_div(s.low, d) : noh_ceil_div(s.low, d) - 1;
+        l.last = noh_floor_div(s.high, d);
+        l.done = l.done || l.next > l.last;
+    }
+    return l;
+}
+
+static int64_t larger(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* The next leg of a passage; 0 when there is none. */
+static int next_leg(const noh_passage *p, span s, legs *l, leg *out)
+{
+    int64_t d = (int64_t)p->duration_ticks, number = l->next;
+    int way_back = p->loop == NOH_LOOP_PING_PONG && (number & 1);
+    if (l->done) {
+        return 0;
+    }
+    out->sign = way_back ? -1 : 1;
+    out->base = (number + way_back) * d;
+    if (way_back) {
+        /* the turning ticks belong to the legs before and after, once */
+        out->low = larger(out->base - s.high, 1);
+        out->high = smaller(out->base - s.low, d - 1);
+    } else {
+        out->low = larger(s.low - out->base, 0);
+        out->high = smaller(s.high - out->base, d);
+    }
+    out->descending = (p->backward != 0) != way_back;
+    l->done = number == l->last;
+    l->next += p->backward ? -1 : 1;
+    return 1;
+}
+
+/* How many keys lie before a tick. */
+static uint32_t keys_before(const noh_event_key *keys, uint32_t count, int64_t tick)
+{
+    uint32_t low = 0, high = count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if ((int64_t)keys[middle].tick < tick) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passage *passage, int64_t *position_tick)
+{
+    NOH_ASSERT(passage && position_tick && (keys || !count));
+    span s = passage_span(passage);
+    legs l = passage_legs(passage, s);
+    leg g;
+    /* Every whole leg forwards contains every key, so this ends after three legs at most. */
+    while (count && next_leg(passage, s, &l, &g)) {
+        uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
+        if (begin < end) {
+            *position_tick = g.base + g.sign * (int64_t)keys[g.descending ? end - 1 : begin].tick;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static uint32_t pass_ascending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit,
+                               noh_key_fn fn, void *user)
+{
+    uint32_t i = begin;
+    for (; i < end && i - begin < limit; i++) {
+        fn(user, i, g->base + g->sign * (int64_t)keys[i].tick);
+    }
+    return i - begin;
+}
+
+static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint32_t end, const leg *g, uint32_t limit,
+                                noh_key_fn fn, void *user)
+{
+    uint32_t passed = 0;
+    while (end > begin && passed < limit) {
+        uint32_t first = end - 1; /* of the keys at this tick: they keep their order */
+        while (first > begin && keys[first - 1].tick == keys[first].tick) {
+            first--;
+        }
+        passed += pass_ascending(keys, first, end, g, limit - passed, fn, user);
+        end = first;
+    }
+    return passed;
+}
+
+uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit,
+                         noh_key_fn fn, void *user)
+{
+    NOH_ASSERT(passage && fn && (keys || !count));
+    uint32_t passed = 0;
+    span s = passage_span(passage);
+    legs l = passage_legs(passage, s);
+    leg g;
+    while (count && passed < limit && next_leg(passage, s, &l, &g)) {
+        uint32_t begin = keys_before(keys, count, g.low), end = keys_before(keys, count, g.high + 1);
+        passed += (g.descending ? pass_descending : pass_ascending)(keys, begin, end, &g, limit - passed, fn, user);
+    }
+    return passed;
+}
+
+uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs)
+{
+    uint64_t duration = (uint64_t)duration_ticks * 65536u, passes = runs, most;
+    /* A comb of period c has at most floor(x / c) + 1 teeth in a closed stretch of length x. */
+    if (duration && loop == NOH_LOOP_REPEAT) {
+        passes += travel / duration;
+    } else if (duration && loop == NOH_LOOP_PING_PONG) {
+        passes = 2u * (passes + travel / (2u * duration)); /* there and back: two combs */
+    }
+    if (key_count == 0) {
+        return 0;
+    }
+    most = passes > UINT32_MAX ? UINT32_MAX : passes * key_count;
+    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
+}
+
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
+                                 uint32_t step_ticks_max)
+{
+    uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
+    NOH_ASSERT(set);
+    for (uint32_t i = 0; i < set->clip_count; i++) {
+        const noh_clip_entry *m = &set->clips[i];
+        /* the controller may play it in any mode: the worst of them */
+        uint64_t there = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_REPEAT, travel, 2);
+        uint64_t back = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_PING_PONG, travel, 2);
+        most = there > most ? there : most;
+        most = back > most ? back : most;
+    }
+    most *= track_count;
+    return most > NOH_STEP_EVENTS_MAX ? NOH_STEP_EVENTS_MAX : (uint32_t)most;
+}

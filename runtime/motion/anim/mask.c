@@ -1,0 +1,50 @@
+#include "motion/anim/mask.h"
+
+#include <string.h>
+
+void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value)
+{
+    NOH_ASSERT(mask || !count);
+    if (count) {
+        memset(mask, value, count);
+    }
+}
+
+/* Whether `joint` is `above` or one of its descendants. Parents come first, so this climbs no higher than `above`. */
+static int is_below(const noh_skeleton *s, uint32_t joint, uint32_t above)
+{
+    while (joint > above && s->parents[joint] != NOH_JOINT_ROOT) {
+        joint = s->parents[joint];
+    }
+    return joint == above;
+}
+
+void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value)
+{
+    NOH_ASSERT(joint < skeleton->joint_count);
+    for (uint32_t i = joint; i < skeleton->joint_count; i++) {
+        if (is_below(skeleton, i, joint)) {
+            mask[i] = value;
+        }
+    }
+}
+
+void noh_mask_invert(uint8_t *mask, uint32_t count)
+{
+    NOH_ASSERT(mask || !count);
+    for (uint32_t i = 0; i < count; i++) {
+        mask[i] = (uint8_t)(255 - mask[i]);
+    }
+}
+
+noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index)
+{
+    noh_mask_view view = { NULL, NULL };
+    NOH_ASSERT(set && index <= set->mask_count);
+    if (index) {
+        size_t stride = (size_t)set->joint_count + set->float_count;
+        view.joints = set->masks + (index - 1u) * stride;
+        view.floats = view.joints + set->joint_count;
+    }
+    return view;
+}

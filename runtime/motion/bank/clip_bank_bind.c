@@ -1,0 +1,243 @@
+#include "motion/bank/clip_bank_bind_internal.h"
+
+#include <string.h>
+
+#include "core/mesh/mesh.h"
+
+static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_error *error)
+{
+    if (skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
+        b->skeleton_index = NOH_NONE;
+        return NOH_OK;
+    }
+    b->skeleton_index = skeleton;
+    if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank: the mesh pack has fewer", skeleton,
+                        b->mesh->skeleton_count);
+    }
+    return NOH_OK;
+}
+
+/* Clips of this skeleton that were built in other units would be posed in the wrong size. */
+static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_error *error)
+{
+    for (uint32_t i = 0; b->header && i < b->packs[pack]->skeleton_count; i++) {
+        const noh_bank_place at = { pack, i };
+        noh_skeleton skeleton;
+        const noh_skeleton_header *h;
+        noh_pack_skeleton_at(b->packs[pack], i, &skeleton, &h, NULL);
+        if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
+            return noh_fail(
+                error, NOH_ERR_NOT_FOUND,
+                "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
+                noh_bank_where(at), 0);
+        }
+    }
+    return NOH_OK;
+}
+
+noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error)
+{
+    noh_result r;
+    memset(b, 0, sizeof *b);
+    b->packs = desc->clips ? &desc->clips : desc->clip_packs;
+    b->pack_count = desc->clips ? 1u : desc->clip_pack_count;
+    b->mesh = desc->mesh ? desc->mesh : b->packs[0];
+    b->sample_rate_enough = desc->sample_rate_enough;
+    r = bind_skeleton(desc->skeleton, b, error);
+    for (uint32_t i = 0; !r && i < b->pack_count; i++) {
+        r = check_units(b, i, error);
+    }
+    return r;
+}
+
+/* Whether the clip at found->at fits, and the desc that opens it. A clip without joints fits always. One with joints
+ * fits the skeleton of the same hash; in the mesh's own pack, which may hold equal skeletons, it fits the very one that
+ * it was built with. */
+static int fits(const noh_bank_binding *b, noh_bank_found *found)
+{
+    const noh_pack *pack = b->packs[found->at.pack];
+    noh_clip_desc *clip = &found->clip;
+    noh_skeleton built_with;
+    const noh_clip_header *h;
+    (void)noh_pack_clip_at(pack, found->at.index, &found->packed, NULL);
+    h = found->packed.header;
+    clip->bytes = found->packed.bytes;
+    clip->byte_count = h->clip_bytes;
+    clip->joint_count = h->joint_count;
+    clip->sample_rate_enough = b->sample_rate_enough;
+    clip->bind = NULL;
+    if (h->joint_count == 0) {
+        return 1;
+    }
+    if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
+        (b->mesh == pack && h->skeleton != b->skeleton_index)) {
+        return 0;
+    }
+    if (noh_pack_skeleton_at(pack, h->skeleton, &built_with, NULL, NULL)) return 0;
+    clip->bind = built_with.bind_pose;
+    return 1;
+}
+
+static uint32_t name_hash_at(const noh_bank_binding *b, noh_bank_place at)
+{
+    const noh_pack *pack = b->packs[at.pack];
+    return pack->chunks[pack->first_clip + at.index].name_hash;
+}
+
+/* The first clip of a pack that fits and has this name. Returns 0 when there is none. */
+static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
+{
+    noh_bank_place at = { pack, 0 };
+    for (; at.index < b->packs[pack]->clip_count; at.index++) {
+        if (name_hash_at(b, at) == name_hash) {
+            found->at = at;
+            if (fits(b, found)) return 1;
+        }
+    }
+    return 0;
+}
+
+/* A clip takes the place of the first pack's that has its name, so an added pack renumbers no clip: one that an earlier
+ * pack has too was handed out there. */
+static int resolve(const noh_bank_binding *b, noh_bank_place at, noh_bank_found *found)
+{
+    const uint32_t name_hash = name_hash_at(b, at);
+    for (uint32_t pack = 0; pack < at.pack; pack++) {
+        if (find_name(b, pack, name_hash, found)) return 0;
+    }
+    for (uint32_t pack = b->pack_count; pack-- > at.pack + 1u;) {
+        if (find_name(b, pack, name_hash, found)) return 1;
+    }
+    found->at = at;
+    return fits(b, found);
+}
+
+int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found)
+{
+    while (next->pack < b->pack_count) {
+        const noh_bank_place at = *next;
+        if (at.index >= b->packs[at.pack]->clip_count) {
+            next->pack++;
+            next->index = 0;
+            continue;
+        }
+        next->index++;
+        found->at = at;
+        if (fits(b, found) && resolve(b, at, found)) return 1;
+    }
+    return 0;
+}
+
+uint32_t noh_bank_count_fitting(const noh_bank_binding *b)
+{
+    noh_bank_found found;
+    uint32_t count = 0;
+    for (found.at.pack = 0; found.at.pack < b->pack_count; found.at.pack++) {
+        for (found.at.index = 0; found.at.index < b->packs[found.at.pack]->clip_count; found.at.index++) {
+            count += (uint32_t)fits(b, &found);
+        }
+    }
+    return count;
+}
+
+int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group)
+{
+    for (; *node < b->mesh->node_count; ++*node) {
+        const noh_node *n = &b->mesh->nodes[*node];
+        noh_mesh mesh;
+        if (n->mesh == NOH_NONE) {
+            continue;
+        }
+        (void)noh_pack_mesh_at(b->mesh, n->mesh, &mesh, NULL);
+        if (mesh.header->target_count) {
+            group->name_hash = n->name_hash;
+            group->node = (*node)++;
+            group->first = *first;
+            group->width = mesh.header->target_count;
+            *first += group->width;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Names may repeat among nodes: the node of the clip's index decides where it has the name, else the first that does.
+ */
+int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found)
+{
+    noh_clip_group group;
+    uint32_t node = 0, first = 0;
+    int any = 0;
+    while (noh_bank_next_node(b, &node, &first, &group)) {
+        if (noh_bank_same_group(&group, wanted) && (!any || group.node == wanted->node)) {
+            *found = group;
+            any = 1;
+        }
+    }
+    return any;
+}
+
+/* ---- named floats ---- */
+
+#define NAMES_AT_ONCE 128u
+
+/* Distinct named groups, a batch of the lowest keys at a time: counting them all at once wants memory, and comparing
+ * each with all before it the square of their number. */
+typedef struct names {
+    uint64_t after;               /* keys up to this one were counted in earlier batches */
+    uint64_t keys[NAMES_AT_ONCE]; /* rising: the name's hash above, the width below */
+    uint32_t count;
+} names;
+
+static void keep_name(names *n, uint64_t key)
+{
+    uint32_t at = 0, end = n->count;
+    while (at < end) {
+        const uint32_t middle = at + (end - at) / 2u;
+        if (n->keys[middle] < key) {
+            at = middle + 1u;
+        } else {
+            end = middle;
+        }
+    }
+    if (key <= n->after || at == NAMES_AT_ONCE || (at < n->count && n->keys[at] == key)) {
+        return;
+    }
+    if (n->count < NAMES_AT_ONCE) n->keys[n->count++] = key;
+    for (; at < n->count; at++) { /* those above move up; the highest falls out of a full batch */
+        const uint64_t next = n->keys[at];
+        n->keys[at] = key;
+        key = next;
+    }
+}
+
+static void collect_names(const noh_bank_binding *b, names *n)
+{
+    noh_bank_place next = { 0, 0 };
+    noh_bank_found found;
+    n->count = 0;
+    while (noh_bank_next_clip(b, &next, &found)) {
+        noh_clip_group_reader reader = noh_clip_groups_of(&found.clip);
+        noh_clip_group group;
+        while (noh_clip_next_group(&reader, &group)) {
+            if (noh_bank_is_named(&group) && group.width) {
+                keep_name(n, (uint64_t)group.name_hash << 32 | group.width);
+            }
+        }
+    }
+}
+
+void noh_bank_count_names(const noh_bank_binding *b, uint32_t *group_count, uint32_t *float_count)
+{
+    names n;
+    n.after = 0; /* below every key: no width is 0 */
+    do {
+        collect_names(b, &n);
+        for (uint32_t i = 0; i < n.count; i++) {
+            *float_count += (uint32_t)n.keys[i];
+        }
+        *group_count += n.count;
+        n.after = n.count ? n.keys[n.count - 1u] : n.after;
+    } while (n.count == NAMES_AT_ONCE);
+}

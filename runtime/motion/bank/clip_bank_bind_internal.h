@@ -1,0 +1,70 @@
+/* clip_bank_bind_internal.h (private to bank/): which clips of packs fit a skeleton and the nodes of a mesh pack.
+ * Reads only the packs' bytes, so that sizes are known before there is memory. */
+#ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
+#define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
+
+#include "motion/bank/clip_bank.h"
+#include "motion/clip/clip_internal.h"
+
+typedef struct noh_bank_binding {
+    const noh_pack *const *packs; /* [pack_count] of clips */
+    uint32_t pack_count;
+    const noh_pack *mesh;
+    noh_skeleton skeleton;             /* joint_count 0: none */
+    const noh_skeleton_header *header; /* NULL: none */
+    uint32_t skeleton_index;
+    uint32_t sample_rate_enough;
+} noh_bank_binding;
+
+/* A clip: its pack, and its index there. */
+typedef struct noh_bank_place {
+    uint32_t pack, index;
+} noh_bank_place;
+
+/* The place as errors tell it. */
+static inline uint64_t noh_bank_where(noh_bank_place at)
+{
+    return (uint64_t)at.pack << 32 | at.index;
+}
+
+/* A clip of the bank: where it lies, and the desc that opens it. */
+typedef struct noh_bank_found {
+    noh_bank_place at;
+    noh_pack_clip packed;
+    noh_clip_desc clip;
+} noh_bank_found;
+
+/* Bind the clips of desc's packs to its skeleton.
+ * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its place) */
+noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error);
+
+/* The next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 when there is none. A clip
+ * of which a later pack has one of the same name is replaced by that. */
+int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found);
+
+/* How many clips of all packs fit, the replaced ones too. */
+uint32_t noh_bank_count_fitting(const noh_bank_binding *b);
+
+/* The next node with targets, from *node on, as a group of floats at *first. Advances both; returns 0 when there is
+ * none. */
+int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group);
+
+/* The bank's group that a clip's group of weights moves: that of the node of the same index if it has the name and
+ * width, else the first of that name and width. Returns 0 when there is none. */
+int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
+
+/* Count the named groups of the bank's clips, those of one name and width as one, and their floats: added to both. The
+ * clips were checked. */
+void noh_bank_count_names(const noh_bank_binding *b, uint32_t *group_count, uint32_t *float_count);
+
+static inline int noh_bank_is_named(const noh_clip_group *g)
+{
+    return g->node == NOH_NONE;
+}
+
+static inline int noh_bank_same_group(const noh_clip_group *a, const noh_clip_group *b)
+{
+    return a->name_hash == b->name_hash && a->width == b->width;
+}
+
+#endif

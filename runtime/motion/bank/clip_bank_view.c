@@ -1,0 +1,109 @@
+/* clip_bank_view.c: how a bank's clips are sampled: through the bank's own cache, or through one thread's view of it.
+ */
+#include <string.h>
+
+#include "motion/bank/clip_bank_internal.h"
+#include "core/base/arena.h"
+
+/* Complete what a clip was sampled into: a clip without joints gives the bind pose, floats that it does not move have
+ * their defaults, and those that it moves go to their places among the bank's. */
+static void complete(const noh_clip_bank *bank, const struct noh_bank_clip *clip, const float *sampled,
+                     uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
+{
+    if (!clip->joint_count && joint_count) {
+        memcpy(pose, bank->skeleton.bind_pose, joint_count * sizeof *pose);
+    }
+    if (float_count) {
+        memcpy(floats, bank->clips.float_defaults, float_count * sizeof *floats);
+    }
+    for (uint32_t i = 0; float_count && i < clip->float_runs; i++) {
+        const noh_bank_floats *run = &clip->floats[i];
+        memcpy(floats + run->to, sampled + run->from, run->width * sizeof *floats);
+    }
+}
+
+static void check_request(const noh_clip_bank *bank, uint32_t index, uint32_t joint_count, uint32_t float_count)
+{
+    NOH_ASSERT(index < bank->clips.clip_count);
+    NOH_ASSERT(joint_count <= bank->clips.joint_count);
+    NOH_ASSERT(float_count == 0u || float_count == bank->clips.float_count);
+    (void)bank, (void)index, (void)joint_count, (void)float_count;
+}
+
+static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
+                         uint32_t float_count, float *floats)
+{
+    const noh_clip_bank *bank = user;
+    const struct noh_bank_clip *clip = &bank->bound[index];
+    const int moves_floats = float_count && clip->float_runs;
+    check_request(bank, index, joint_count, float_count);
+    if (clip->joint_count || moves_floats) {
+        noh_clip_sample(bank->cache, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
+                        moves_floats ? bank->sampled : NULL);
+    }
+    complete(bank, clip, bank->sampled, joint_count, pose, float_count, floats);
+}
+
+static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
+                        uint32_t float_count, float *floats)
+{
+    const noh_clip_bank_view *view = user;
+    const struct noh_bank_clip *clip = &view->bank->bound[index];
+    const int moves_floats = float_count && clip->float_runs;
+    check_request(view->bank, index, joint_count, float_count);
+    if (clip->joint_count || moves_floats) {
+        noh_clip_view_sample(view->samples, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
+                             moves_floats ? view->sampled : NULL);
+    }
+    complete(view->bank, clip, view->sampled, joint_count, pose, float_count, floats);
+}
+
+void noh_clip_bank_sample_cache(noh_clip_bank *bank)
+{
+    bank->clips.sample = sample_cache;
+    bank->clips.user = bank;
+}
+
+/* ---- views ----
+ *
+ * A view holds a copy of the set whose `sample` and `user` are its own. So calls that take a set need not know of
+ * views, and threads share everything else. */
+
+static size_t carve(noh_arena *arena, const noh_clip_bank *bank, noh_clip_bank_view **view, void **clips,
+                    float **sampled)
+{
+    *view = noh_arena_carve(arena, sizeof **view, 16u);
+    *clips = noh_arena_carve(arena, noh_clip_view_size(bank->cache), 16u);
+    *sampled = noh_arena_carve(arena, bank->sampled_count * sizeof **sampled, 4u);
+    return arena->used;
+}
+
+size_t noh_clip_bank_view_size(const noh_clip_bank *bank)
+{
+    noh_arena arena = noh_arena_measure();
+    noh_clip_bank_view *view;
+    void *clips;
+    float *sampled;
+    return carve(&arena, bank, &view, &clips, &sampled);
+}
+
+noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_bank *bank, noh_clip_bank_view **view,
+                                   noh_error *error)
+{
+    noh_arena arena;
+    noh_clip_bank_view *made;
+    void *clips;
+    float *sampled;
+    noh_result r = noh_arena_open(&arena, memory, bytes, noh_clip_bank_view_size(bank), error);
+    if (r) return r;
+    (void)carve(&arena, bank, &made, &clips, &sampled);
+    r = noh_clip_view_init(clips, noh_clip_view_size(bank->cache), bank->cache, &made->samples, error);
+    if (r) return r;
+    made->clips = bank->clips;
+    made->clips.sample = sample_view;
+    made->clips.user = made;
+    made->bank = bank;
+    made->sampled = sampled;
+    *view = made;
+    return NOH_OK;
+}

@@ -1,0 +1,117 @@
+/* clip_cache_internal.h (private to clip/): what a cache and its views share. */
+#ifndef NOH_CLIP_CLIP_CACHE_INTERNAL_H
+#define NOH_CLIP_CLIP_CACHE_INTERNAL_H
+
+#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_decode_internal.h"
+#include "motion/clip/clip_sample_internal.h"
+
+#define NOH_CLIP_NOT_CACHED 0xffffu
+
+/* The entries of one size, least recently touched first: a list through the entries' `older` and `newer`. */
+typedef struct noh_clip_size_class {
+    uint32_t bytes, count;
+    uint16_t oldest, newest;
+} noh_clip_size_class;
+
+/* An entry of the cache: one cached segment, or room for one. */
+typedef struct noh_cached_segment {
+    noh_clip_cursor cursor;
+    uint8_t *frames;
+    uint32_t clip;
+    uint32_t stamp;         /* the frame of the game in which it was last touched */
+    uint32_t wanted;        /* decode up to this track */
+    uint32_t glimpsed;      /* tracks that are decoded at the frames that `skipped` leaves, beside the cursor's ... */
+    uint32_t skipped;       /* ... as noh_clip_basis.skip */
+    uint16_t older, newer;  /* in its size's list */
+    uint16_t before, after; /* in the list of wants, while it is in it */
+    uint8_t size;           /* index of its noh_clip_size_class */
+    uint8_t used, waits;    /* 1: holds a segment; is in the list of wants */
+} noh_cached_segment;
+
+/* A clip of the cache. */
+typedef struct noh_cached_clip {
+    const noh_clip *clip;
+    uint32_t first; /* place of its first segment in `cached_of` */
+    uint32_t size;  /* index of the smallest noh_clip_size_class that its segments fit in */
+    uint32_t frame; /* the frame of the sample before */
+} noh_cached_clip;
+
+struct noh_clip_cache {
+    noh_cached_clip *clips;     /* [clip_count] */
+    uint16_t *cached_of;        /* [segments of all clips] the entry that holds each, or NOH_CLIP_NOT_CACHED */
+    noh_cached_segment *cached; /* [cached_count] */
+    noh_clip_size_class *sizes; /* [size_count], largest first */
+    uint32_t clip_count, cached_count, size_count;
+    uint32_t segment_bytes; /* of the largest segment of any clip */
+    uint32_t stamp;
+    uint32_t samples_begun, samples_before; /* stats.samples when this frame began; samples of the frame before */
+    uint16_t first_want, last_want;
+    noh_clip_cache_stats stats;
+    /* by transform and by frames of a segment; only those that the clips have */
+    const float *rows[NOH_CLIP_BASES][NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
+};
+
+/* Where a sample lies in its clip. */
+typedef struct noh_clip_place {
+    const noh_clip *clip;
+    uint32_t joints, tracks; /* to be sampled, and to be decoded for that */
+    uint32_t segment, frame; /* frame: in the segment */
+    uint32_t slot, slots;    /* where it is decoded, and how many the segment has */
+    float fraction;          /* towards the next slot */
+    int crosses;             /* 1: the next frame is the first of the next segment */
+} noh_clip_place;
+
+static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t ticks, uint32_t joint_count)
+{
+    noh_clip_place p;
+    const uint32_t frame = noh_clip_frame_at(clip, ticks, &p.fraction), halved = clip->info.halved;
+    uint32_t frames;
+    p.clip = clip;
+    p.joints = joint_count < clip->info.joint_count ? joint_count : clip->info.joint_count;
+    p.tracks = clip->prefixes[p.joints].tracks;
+    p.segment = noh_clip_segment_of(clip, frame);
+    p.frame = frame - noh_clip_segment_first(clip, p.segment);
+    p.crosses = p.fraction > 0.0f && frame + 1u == noh_clip_segment_first(clip, p.segment + 1u);
+    frames = noh_clip_segment_frames(clip, p.segment);
+    p.slots = noh_clip_slots(frames, halved);
+    p.slot = noh_clip_slot_of(p.frame, frames, halved);
+    if (halved && p.slot + 1u < p.slots) {
+        const uint32_t here = noh_clip_slot_frame(p.slot, frames, 1);
+        p.fraction = ((float)(p.frame - here) + p.fraction) /
+                     (float)(noh_clip_slot_frame(p.slot + 1u, frames, 1) - here);
+    }
+    return p;
+}
+
+/* Blend two slots. `next`: the frames of the next segment, read only where the place crosses into it. */
+static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next,
+                                        noh_transform *out, float *floats)
+{
+    const uint8_t *a = frames + (size_t)p->slot * p->clip->frame_bytes;
+    const uint8_t *b = p->crosses ? next : p->fraction > 0.0f ? a + p->clip->frame_bytes : a;
+    noh_clip_blend_frames(p->clip, a, b, p->fraction, p->joints, out, floats);
+}
+
+static inline noh_clip_basis noh_clip_cache_basis(const noh_clip_cache *cache, const noh_clip *clip, uint32_t segment,
+                                                  uint32_t skip)
+{
+    const uint32_t frames = noh_clip_segment_frames(clip, segment);
+    const noh_clip_basis basis = { frames, noh_clip_basis_half(frames),
+                                   cache->rows[noh_clip_basis_of(&clip->info)][frames], skip, clip->info.halved };
+    return basis;
+}
+
+/* Decode a segment from where its cursor stands up to a track. Returns how many track-frames that was. */
+static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor,
+                                             uint32_t track_end, uint8_t *out)
+{
+    const noh_clip_basis basis = noh_clip_cache_basis(cache, clip, cursor->segment, 0);
+    const uint32_t before = cursor->track;
+    if (track_end > before) {
+        noh_clip_decode(clip, &basis, cursor, track_end, out);
+    }
+    return (cursor->track - before) * noh_clip_slots(basis.frames, basis.halved);
+}
+
+#endif

@@ -1,0 +1,157 @@
+/* walkers_fall.c: walkers who fall, lie and get up, and where their agents are meanwhile. */
+#include <string.h>
+
+#include "core/base/math_internal.h"
+#include "core/base/quat.h"
+#include "stage/cast/fall.h"
+#include "stage/actors/walkers_internal.h"
+
+#define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the clip that it got up by */
+
+/* ---- pushed ---- */
+
+/* The nearest that stands, farther off than `beyond` or, as far, later in order; NOH_NONE: none. *square: how far */
+static uint32_t next_nearest(noh_walkers *w, noh_stage *stage, const float point[3], float most, float beyond,
+                             uint32_t last, float *square)
+{
+    uint32_t nearest = NOH_NONE;
+    for (uint32_t i = 0; i < w->walker_max; i++) {
+        walker *r = noh_walker_at(w, i);
+        noh_place place;
+        if (!r->actor || r->fallen || noh_actor_body(stage, (noh_actor){ r->actor }) != NOH_BODY_STANDS) continue;
+        if (noh_actor_place(stage, (noh_actor){ r->actor }, &place, NULL)) continue;
+        const float x = place.position[0] - point[0], z = place.position[2] - point[2], away = x * x + z * z;
+        if (!(away <= most) || away < beyond || (away == beyond && last != NOH_NONE && i <= last)) continue;
+        if (nearest != NOH_NONE && away >= *square) continue;
+        nearest = i;
+        *square = away;
+    }
+    return nearest;
+}
+
+static noh_result push(noh_stage *stage, const walker *r, const float point[3], float impulse)
+{
+    noh_place place;
+    float away[3];
+    const noh_result found = noh_actor_place(stage, (noh_actor){ r->actor }, &place, NULL);
+    if (found) return found;
+    const float at[3] = { place.position[0], point[1], place.position[2] };
+    noh_push_away(point, at, impulse, away);
+    if (away[0] == 0.0f && away[2] == 0.0f) {
+        away[0] = impulse * r->heading[0];
+        away[2] = impulse * r->heading[1];
+    }
+    return noh_actor_push(stage, (noh_actor){ r->actor }, at, away, NULL);
+}
+
+uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float point[3], float radius, float impulse)
+{
+    NOH_ASSERT(walkers && stage && point);
+    float beyond = -1.0f;
+    uint32_t fell = 0, last = NOH_NONE;
+    if (stage->phase != NOH_STAGE_IDLE || !stage->kinds[walkers->kind].ragdoll) return 0;
+    for (;;) {
+        float square = 0.0f;
+        last = next_nearest(walkers, stage, point, radius * radius, beyond, last, &square);
+        if (last == NOH_NONE) return fell;
+        const noh_result result = push(stage, noh_walker_at(walkers, last), point, impulse);
+        if (result == NOH_ERR_LIMIT) return fell;
+        fell += result == NOH_OK;
+        beyond = square;
+    }
+}
+
+/* ---- tended ---- */
+
+/* As it lies or stands: its agent and what is known of where it is. */
+static void bring(walker *r, noh_crowd *crowd, const noh_stage_actor *a)
+{
+    const float at[2] = { a->place.position[0], a->place.position[2] };
+    noh_crowd_move(crowd, r->agent, at);
+    for (int i = 0; i < 2; i++) {
+        r->body[i] = (float)((double)at[i] + (double)a->rest[2 * i] - crowd->home[i]);
+        r->at[i] = r->body[i];
+    }
+}
+
+/* It goes on from where it has got up, facing as it does, without a leap. */
+static void stand_up(const noh_walkers *w, walker *r, const noh_place *place)
+{
+    const float ahead[3] = { w->forward[0], 0.0f, w->forward[1] };
+    float faced[3];
+    noh_quat_rotate(place->rotation, ahead, faced);
+    const float length = noh_sqrt(faced[0] * faced[0] + faced[2] * faced[2]);
+    if (length > 1e-6f) {
+        r->heading[0] = faced[0] / length;
+        r->heading[1] = faced[2] / length;
+    }
+    memset(r->velocity, 0, sizeof r->velocity);
+    r->height = place->position[1];
+    r->climb = r->even = r->goes = r->runs = 0.0f;
+    r->begun = WALKER_STANDS_UP;
+}
+
+/* Its agent, as it falls. */
+static void fall_down(walker *r, noh_crowd *crowd)
+{
+    noh_crowd_agent agent;
+    r->pace = noh_crowd_agent_stepped(crowd, r->agent, &agent) ? agent.speed : 0.0f;
+    noh_crowd_pace(crowd, r->agent, 0.0f);
+    memset(&r->fall, 0, sizeof r->fall);
+    r->fallen = 1;
+}
+
+static int is_down(const noh_stage *stage, noh_actor actor)
+{
+    const noh_body_state body = noh_actor_body(stage, actor);
+    return body == NOH_BODY_FALLS || body == NOH_BODY_LIES;
+}
+
+/* returns whether it is not on its feet */
+static int tend(noh_walkers *w, walker *r, noh_crowd *crowd, noh_stage *stage, uint32_t layer, uint32_t ticks,
+                noh_error *error)
+{
+    const noh_actor actor = { r->actor };
+    const int was_down = is_down(stage, actor);
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const int is_dead = noh_stage_body_of(k, noh_stage_index(k, a))->dead;
+    if (was_down && !r->fallen) fall_down(r, crowd);
+    if (!r->fallen) return 0;
+    if (!(is_dead && was_down)) (void)noh_fall_step(&r->fall, stage, actor, layer, ticks, error);
+    if (was_down || !r->begun) bring(r, crowd, a);
+    if (!r->begun && !is_down(stage, actor)) stand_up(w, r, &a->place);
+    if (noh_fall_lasts(&r->fall, stage, actor)) return 1;
+    (void)noh_actor_stop(stage, actor, layer, FADE_TICKS, NULL);
+    noh_crowd_pace(crowd, r->agent, r->pace);
+    r->fallen = 0;
+    return 0;
+}
+
+uint32_t noh_walkers_tend(noh_walkers *walkers, noh_crowd *crowd, noh_stage *stage, uint32_t layer, uint32_t ticks,
+                          noh_error *error)
+{
+    uint32_t down = 0;
+    NOH_ASSERT(walkers && crowd && stage);
+    if (!stage->kinds[walkers->kind].ragdoll) return 0;
+    if (stage->phase != NOH_STAGE_IDLE || layer == walkers->layer) {
+        (void)noh_fail(error, NOH_ERR_ARG,
+                       "walkers are tended outside of steps and frames, and get up on another layer than they walk on",
+                       layer, 0);
+        return 0;
+    }
+    for (uint32_t i = 0; i < walkers->walker_max; i++) {
+        walker *r = noh_walker_at(walkers, i);
+        noh_stage_kind *k;
+        if (!r->actor || !noh_stage_actor_of(stage, (noh_actor){ r->actor }, &k)) continue;
+        down += (uint32_t)tend(walkers, r, crowd, stage, layer, ticks, error);
+    }
+    return down;
+}
+
+int noh_walkers_is_down(const noh_walkers *walkers, uint32_t index)
+{
+    NOH_ASSERT(walkers && index < walkers->walker_max);
+    const walker *r = (const walker *)(const void *)((const char *)walkers + sizeof *walkers) + index;
+    return r->actor && r->fallen;
+}

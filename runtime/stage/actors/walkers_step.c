@@ -1,0 +1,367 @@
+/* walkers_step.c: places and clips that follow agents. */
+#include <string.h>
+
+#include "motion/anim/root_internal.h"
+#include "core/base/math_internal.h"
+#include "core/base/quat.h"
+#include "core/base/trig.h"
+#include "stage/actors/walkers_internal.h"
+
+#define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */
+#define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */
+#define GOES 0.12f             /* of the walk's speed: slower ones have no direction */
+#define BLEND_PER_S 4.0f       /* how fast the run comes and goes */
+#define ABOUT_M 0.08f          /* of a foot from the axis that it turns about: turning is stepping */
+#define BACK 0.8f              /* of the walk's speed: who wants to go back faster turns */
+#define CATCH_PER_S 3.0f       /* of the way to its agent */
+#define SLACK_M 0.06f          /* of that way: it stands */
+#define STANDING_M 0.2f        /* likewise, of one who stands: it does not set out for less */
+#define LOOKING_M 0.35f        /* likewise, of one who stands and looks somewhere: it turns there, not back */
+#define SLOW 0.12f             /* of the walk's speed: whose agent is slower goes no farther than to it */
+#define LAG_M 0.7f             /* no body is farther from its agent */
+#define RATE_MAX 2.5f          /* of the walk: faster than that is a stumble that does not end */
+#define CLIMB_RATE 14.0f       /* of the spring that follows the ground, 1/s */
+#define LEAP_M 1.0f            /* in a step: not a way that is walked */
+
+typedef struct step {
+    noh_walkers *w;
+    noh_stage *stage;
+    noh_stage_kind *k;
+    const noh_ground *ground;
+    const double *home; /* [2] x, z of the crowd: where agents and walkers count from */
+    uint32_t ticks;
+    float seconds;
+} step;
+
+static float within(float x, float low, float high)
+{
+    return x >= low ? x <= high ? x : high : low;
+}
+
+static float dot2(const float a[2], const float b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/* ---- heading ---- */
+
+/* Turn to a unit vector, by an angle at most. returns the angle that there was */
+static float turn(float heading[2], const float to[2], float most)
+{
+    const float cross = heading[0] * to[1] - heading[1] * to[0];
+    const float angle = noh_atan2(cross, dot2(heading, to)), by = within(angle, -most, most);
+    float sine, cosine;
+    noh_sin_cos(by, &sine, &cosine);
+    const float x = heading[0] * cosine - heading[1] * sine, z = heading[0] * sine + heading[1] * cosine;
+    const float per = 1.0f / noh_sqrt(x * x + z * z);
+    heading[0] = x * per;
+    heading[1] = z * per;
+    return angle < 0.0f ? -angle : angle;
+}
+
+/* Where it wants to go, or, standing, where it is asked to look. wish[2]: model units a second.
+ */
+static void find_heading(const step *s, walker *r, const float wish[2], walker_speed *g)
+{
+    const float square = dot2(wish, wish), walk = g->walk, least = GOES * walk, ahead = dot2(wish, r->heading);
+    const float free = s->w->knows_steps ? (float)r->free * (1.0f / 255.0f) : 1.0f;
+    const float most = s->w->turn_speed * s->seconds * free;
+    const int turns_back = ahead < 0.0f && ahead * ahead > (r->goes_back ? 0.25f : 0.75f) * square &&
+                           square < BACK * BACK * walk * walk;
+    if (r->gait != WALKER_CLOSES) r->goes_back = (uint8_t)turns_back; /* the last step ends as it began */
+    g->wants_to_go = square > least * least;
+    if (g->wants_to_go) {
+        const float per = (r->goes_back ? -1.0f : 1.0f) / noh_sqrt(square), to[2] = { wish[0] * per, wish[1] * per };
+        g->angle = turn(r->heading, to, most);
+    } else if (r->face[0] != 0.0f || r->face[1] != 0.0f) {
+        g->angle = turn(r->heading, r->face, most);
+    }
+}
+
+/* ---- clips ---- */
+
+/* What its clips show after the step: each at its share of a pass. */
+typedef struct played {
+    float before[WALKER_CLIPS], weights[WALKER_CLIPS], shares[WALKER_CLIPS];
+    float way;     /* that they lead on in the step */
+    float sway[2]; /* that the root sways about that, likewise: model units */
+} played;
+
+static float speed_of(const walker_clip *c)
+{
+    return c->clip == NOH_NONE ? 0.0f : c->stride * (float)NOH_TICKS_PER_SECOND / (float)c->ticks;
+}
+
+/* How far it runs. Clips that are not in step are not blended but for the change. */
+static float runs_of(const noh_walkers *w, const walker *r, const walker_speed *g)
+{
+    if (!(g->run > g->walk)) return 0.0f;
+    const float part = within((g->even - g->walk) / (g->run - g->walk), 0.0f, 1.0f);
+    if (w->in_step) return part;
+    return part > (r->runs > 0.5f ? 0.3f : 0.6f) ? 1.0f : 0.0f;
+}
+
+/* Passes in a second at which the blend of the clips leads as far as the agent goes; way: model units that they lead.
+ */
+static float pace(const step *s, const walker *r, const walker_speed *g, float share, float *way)
+{
+    const walker_clip *walk = &s->w->clips[WALKER_WALK], *run = &s->w->clips[WALKER_RUN];
+    const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
+    const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* of the run, too */
+    const float wanted = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
+    const float rate = noh_walkers_pace(s->w, r, g, wanted, share, s->seconds);
+    *way = rate * stride * s->seconds;
+    return rate;
+}
+
+/* The share of a pass at which a track is, and will be after the step. */
+static float share_of(const walker_clip *c, const noh_track *track, int64_t speed, uint32_t ticks)
+{
+    const int64_t pass = noh_position_of(c->ticks);
+    const int64_t at = pass ? (track->position + speed * (int64_t)ticks) % pass : 0;
+    return pass ? (float)(at < 0 ? at + pass : at) / (float)pass : 0.0f;
+}
+
+/* One who walks to an agent that stands stops where its last step brings it next to it. */
+static void find_end(const step *s, const walker *r, const noh_controller *c, float scale, walker_speed *g)
+{
+    const walker_clip *walk = &s->w->clips[WALKER_WALK];
+    const float slow = SLOW * g->walk, off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] };
+    const float ahead = (r->goes_back ? -1.0f : 1.0f) * dot2(off, r->heading);
+    if (!s->w->knows_steps || r->gait != WALKER_WALKS || dot2(r->velocity, r->velocity) > slow * slow) return;
+    const uint32_t track = s->k->layers[s->w->layer].first_track;
+    const float share = share_of(walk, noh_controller_track(c, track), 0, 0);
+    g->wants_to_go = ahead > (noh_walkers_until_passing(s->w, r, share, NULL) + 0.25f) * walk->stride * scale;
+}
+
+/* It stands, steps on the spot or walks. */
+static float find_gait(const step *s, walker *r, noh_controller *c, const walker_speed *g)
+{
+    const uint32_t track = s->k->layers[s->w->layer].first_track;
+    const walker_clip *walk = &s->w->clips[WALKER_WALK];
+    const float share = share_of(walk, noh_controller_track(c, track), 0, 0);
+    const float to = noh_walkers_gait(s->w, r, g, s->seconds, share);
+    r->runs = noh_walker_towards(r->runs, runs_of(s->w, r, g), BLEND_PER_S * s->seconds);
+    if (to < 0.0f) return share;
+    (void)noh_controller_seek(c, &s->k->set, track, (int64_t)(to * (float)walk->ticks), NOH_SEEK_SKIP, NULL);
+    return to;
+}
+
+/* What a root sways about its straight way, in model units. */
+static void add_sway(const walker_clip *c, float share, float weight, float sway[2])
+{
+    const float at = share * (float)WALKER_SWAY;
+    const uint32_t i = at < (float)(WALKER_SWAY - 1u) ? (uint32_t)at : WALKER_SWAY - 1u;
+    const float part = at - (float)i;
+    for (int k = 0; k < 2; k++) sway[k] += weight * (c->sway[i][k] + part * (c->sway[i + 1u][k] - c->sway[i][k]));
+}
+
+/* Weights and speeds of the tracks for this step. */
+static void play(const step *s, const walker *r, noh_controller *c, float passes, played *p)
+{
+    const float weights[WALKER_CLIPS] = { r->goes * (1.0f - r->runs), 1.0f - r->goes, r->goes * r->runs };
+    uint32_t track = s->k->layers[s->w->layer].first_track;
+    memset(p->before, 0, sizeof p->before); /* clips that are not there weigh nothing */
+    memset(p->sway, 0, sizeof p->sway);
+    memset(p->shares, 0, sizeof p->shares);
+    memcpy(p->weights, weights, sizeof weights);
+    for (uint32_t i = 0; i < WALKER_CLIPS; i++) {
+        const walker_clip *clip = &s->w->clips[i];
+        int32_t speed = 65536;
+        if (clip->clip == NOH_NONE) continue;
+        if (i != WALKER_IDLE) {
+            const float rate = passes * (float)clip->ticks * (65536.0f / (float)NOH_TICKS_PER_SECOND);
+            speed = (int32_t)within(rate, -(float)NOH_SPEED_MAX, (float)NOH_SPEED_MAX);
+        }
+        p->before[i] = noh_controller_track(c, track)->weight;
+        (void)noh_controller_set_weight(c, track, weights[i]);
+        (void)noh_controller_set_speed(c, track, speed);
+        const float was = share_of(clip, noh_controller_track(c, track), 0, 0);
+        p->shares[i] = share_of(clip, noh_controller_track(c, track), speed, s->ticks);
+        add_sway(clip, was, -weights[i], p->sway);
+        add_sway(clip, p->shares[i], weights[i], p->sway);
+        track++;
+    }
+}
+
+/* ---- place ---- */
+
+static float ground_at(const step *s, const walker *r)
+{
+    const float up = 2.0f;
+    const float from[3] = { (float)(s->home[0] + (double)r->at[0]), r->height + up,
+                            (float)(s->home[1] + (double)r->at[1]) };
+    float normal[3];
+    if (!s->ground || !(s->ground->world || s->ground->below)) return 0.0f;
+    const float distance = noh_ground_below(s->ground, from, 1e3f, normal);
+    return distance < 0.0f ? r->height : from[1] - distance;
+}
+
+/* Critically damped, exact for steps of any length. */
+static void climb(const step *s, walker *r)
+{
+    const float goal = ground_at(s, r), off = r->height - goal;
+    const float part = (r->climb + CLIMB_RATE * off) * s->seconds;
+    const float shrink = noh_exp2(-1.44269504f * CLIMB_RATE * s->seconds);
+    r->height = r->begun ? goal + (off + part) * shrink : goal;
+    r->climb = r->begun ? (r->climb - CLIMB_RATE * part) * shrink : 0.0f;
+}
+
+/* The rotation about y that takes the walk's way to the heading. */
+static void rotation_of(const noh_walkers *w, const float heading[2], float rotation[4])
+{
+    const float cosine = dot2(w->forward, heading);
+    const float sine = w->forward[1] * heading[0] - w->forward[0] * heading[1];
+    const float half = noh_sqrt(within(0.5f - 0.5f * cosine, 0.0f, 1.0f));
+    memset(rotation, 0, 4 * sizeof *rotation);
+    rotation[1] = sine < 0.0f ? -half : half;
+    rotation[3] = noh_sqrt(within(0.5f + 0.5f * cosine, 0.0f, 1.0f));
+}
+
+/* From model space, about the root. */
+static void turned_by(const float rotation[4], float scale, float x, float z, float out[2])
+{
+    const float local[3] = { x, 0.0f, z };
+    float turned[3];
+    noh_quat_rotate(rotation, local, turned);
+    out[0] = scale * turned[0];
+    out[1] = scale * turned[2];
+}
+
+static void put(const step *s, const walker *r, noh_stage_actor *a, const noh_place *was, const float rotation[4])
+{
+    noh_place place = *was;
+    float rest[2];
+    memcpy(place.rotation, rotation, sizeof place.rotation);
+    for (int i = 0; i < 2; i++) noh_split(s->home[i] + (double)r->body[i], &place.position[2 * i], &rest[i]);
+    place.position[1] = r->height;
+    if (!noh_actor_set_place(s->stage, (noh_actor){ r->actor }, &place, NULL)) {
+        a->rest[0] = rest[0];
+        a->rest[2] = rest[1];
+    }
+    if (!r->begun) (void)noh_actor_cut(s->stage, (noh_actor){ r->actor }, NULL);
+}
+
+/* It goes on as its clips do. The foot that it stands on stays where it is while clips come and go, and is what it
+ * turns about. */
+static void go_on(const step *s, walker *r, const noh_place *was, const float rotation[4], const played *p)
+{
+    const uint32_t leg = r->stands / WALKER_PARTS, part = r->stands % WALKER_PARTS;
+    walker_feet blended, feet;
+    float on[2], from[2], to[2];
+    noh_walkers_soles_at(s->w, p->shares, p->before, &blended);
+    noh_walkers_soles_at(s->w, p->shares, p->weights, &feet);
+    const float *b = blended.at[leg][part], *f = feet.at[leg][part];
+    turned_by(was->rotation, was->scale, s->w->forward[0] * p->way + p->sway[0], s->w->forward[1] * p->way + p->sway[1],
+              on);
+    turned_by(was->rotation, was->scale, b[0], b[2], from);
+    turned_by(rotation, was->scale, f[0], f[2], to);
+    for (int i = 0; i < 2 && r->begun == 1u; i++) r->body[i] += on[i] + from[i] - to[i];
+    r->stands = noh_walkers_stand(s->w, &feet, r->stands);
+    r->free = s->w->knows_steps ? (uint8_t)(255.0f * noh_walkers_free(s->w, &feet, r->stands)) : 255u;
+}
+
+/* ---- a step ---- */
+
+/* How fast it wants to go: as its agent does, and to where that is. Model units a second. */
+static void find_wish(const noh_walkers *w, const walker *r, float scale, float wish[2])
+{
+    const float off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] }, length = noh_sqrt(dot2(off, off));
+    const int looks = r->face[0] != 0.0f || r->face[1] != 0.0f;
+    const int stands = w->knows_steps ? r->gait != WALKER_WALKS : looks;
+    const float slack = !stands ? SLACK_M : looks ? LOOKING_M : STANDING_M;
+    const float catch = length > slack ? CATCH_PER_S * (length - slack) / (length * scale) : 0.0f;
+    for (int i = 0; i < 2; i++) wish[i] = r->velocity[i] + catch * off[i];
+}
+
+/* No farther from its agent than that. */
+static void keep_near(walker *r)
+{
+    const float off[2] = { r->body[0] - r->at[0], r->body[1] - r->at[1] }, square = dot2(off, off);
+    const float by = square > LAG_M * LAG_M ? 1.0f - LAG_M / noh_sqrt(square) : 0.0f;
+    for (int i = 0; i < 2; i++) r->body[i] -= by * off[i];
+}
+
+/* From standing. */
+static void begin(walker *r)
+{
+    r->gait = WALKER_STANDS;
+    r->goes = r->runs = 0.0f;
+    r->free = 0;
+}
+
+static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[2])
+{
+    const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] }, scale = a->place.scale;
+    const float per = 1.0f / (s->seconds * scale); /* model units a second */
+    const float keep = noh_exp2(-s->seconds / TURN_HALF_LIFE_S);
+    walker_speed g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f, 0.0f, 0 };
+    noh_controller *c = noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a)));
+    float wish[2], rotation[4];
+    played p;
+    noh_place was;
+    if (dot2(way, way) > LEAP_M * LEAP_M) r->begun = 0;
+    memcpy(r->at, to, sizeof r->at);
+    if (!r->begun) memcpy(r->body, to, sizeof r->body);
+    if (r->begun != 1u) begin(r);
+    for (int i = 0; i < 2 && r->begun; i++) {
+        r->velocity[i] = per * way[i] + keep * (r->velocity[i] - per * way[i]);
+    }
+    find_wish(s->w, r, scale, wish);
+    find_heading(s, r, wish, &g);
+    const float turns = within(g.angle, 0.0f, s->w->turn_speed * s->seconds), steps = ABOUT_M * turns * per;
+    const float ahead = dot2(wish, r->heading);
+    g.now = !r->begun ? 0.0f : r->goes_back ? ahead : ahead > steps ? ahead : steps;
+    const float fast = g.now < 0.0f ? -g.now : g.now;
+    r->even = fast + noh_exp2(-s->seconds / EVEN_HALF_LIFE_S) * (r->even - fast);
+    g.even = r->even;
+    find_end(s, r, c, scale, &g);
+    const float share = find_gait(s, r, c, &g);
+    play(s, r, c, pace(s, r, &g, share, &p.way), &p);
+    climb(s, r);
+    (void)noh_actor_place(s->stage, (noh_actor){ r->actor }, &was, NULL);
+    rotation_of(s->w, r->heading, rotation);
+    go_on(s, r, &was, rotation, &p);
+    keep_near(r);
+    noh_walkers_tell_leg(s->w, s->stage, r);
+    put(s, r, a, &was, rotation);
+    r->begun = 1;
+}
+
+static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
+{
+    float at[2];
+    noh_stage_kind *k;
+    noh_stage_actor *a = noh_stage_actor_of(s->stage, (noh_actor){ r->actor }, &k);
+    if (!a) {
+        r->actor = 0;
+        return;
+    }
+    if (k->ragdoll && noh_stage_is_carried(noh_stage_body_of(k, noh_stage_index(k, a)))) {
+        r->begun = 0;
+        return;
+    }
+    if (!noh_crowd_shown(crowd, r->agent, at)) memcpy(at, r->at, sizeof at); /* without its agent it stops */
+    follow(s, r, a, at);
+}
+
+noh_result noh_walkers_step(noh_walkers *walkers, const noh_crowd *crowd, noh_stage *stage, const noh_ground *ground,
+                            uint32_t ticks, noh_error *error)
+{
+    NOH_ASSERT(walkers && crowd && stage);
+    const step s = { walkers,
+                     stage,
+                     &stage->kinds[walkers->kind],
+                     ground,
+                     crowd->home,
+                     ticks,
+                     (float)ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) };
+    if (stage->phase != NOH_STAGE_IDLE) {
+        return noh_fail(error, NOH_ERR_ARG, "walkers go on outside of steps and frames", 0, 0);
+    }
+    for (uint32_t i = 0; i < walkers->walker_max && ticks; i++) {
+        walker *r = noh_walker_at(walkers, i);
+        if (r->actor) step_walker(&s, crowd, r);
+    }
+    return NOH_OK;
+}

@@ -1,0 +1,103 @@
+/* fall.c: pushes, and when and how who lies gets up. */
+#include "stage/cast/fall.h"
+
+#include <string.h>
+
+#include "core/base/assert.h"
+#include "core/base/math_internal.h"
+#include "core/base/name_internal.h"
+#include "stage/cast/stage_internal.h"
+
+#define CHEST 0.75f /* of the way up */
+
+void noh_push_away(const float eye[3], const float point[3], float strength, float impulse[3])
+{
+    const float x = point[0] - eye[0], z = point[2] - eye[2], length = noh_sqrt(x * x + z * z);
+    const float along = length > 1e-6f ? strength / length : 0.0f;
+    impulse[0] = along * x;
+    impulse[1] = 0.0f;
+    impulse[2] = along * z;
+}
+
+static noh_result find_chest(const noh_stage *stage, noh_actor actor, const noh_stage_kind *k, float point[3],
+                             noh_error *error)
+{
+    noh_place place;
+    float top = 0.0f;
+    noh_result result = noh_actor_place(stage, actor, &place, error);
+    for (uint32_t i = 0; i < k->plan->joint_count && result == NOH_OK; i++) {
+        float matrix[12];
+        result = noh_actor_joint(stage, actor, i, matrix, error);
+        if (result == NOH_OK && matrix[7] - place.position[1] > top) top = matrix[7] - place.position[1];
+    }
+    if (result != NOH_OK) return result;
+    memcpy(point, place.position, sizeof place.position);
+    point[1] += CHEST * top;
+    return NOH_OK;
+}
+
+noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
+                          noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    float at[3] = { 0.0f, 0.0f, 0.0f };
+    NOH_ASSERT(impulse);
+    if (!b) return result;
+    if (point) memcpy(at, point, sizeof at);
+    if (!point) result = find_chest(stage, actor, k, at, error);
+    if (result != NOH_OK) return result;
+    for (int i = 0; i < 3; i++) at[i] *= k->ragdoll->metres;
+    return noh_actor_hit(stage, actor, at, impulse, error);
+}
+
+noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t *ticks, noh_error *error)
+{
+    const char *clips[NOH_RISE_CLIPS_MAX], *name;
+    noh_get_up how = { .clips = clips, .layer = layer };
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    const noh_clip_set *set;
+    uint32_t chosen;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (!b) return result;
+    const uint32_t kind = (uint32_t)(k - stage->kinds);
+    for (uint32_t i = 0; how.clip_count < NOH_RISE_CLIPS_MAX; i++) {
+        name = noh_stage_name(stage, kind, NOH_NAME_CLIP, i);
+        if (!name) break;
+        if (noh_name_begins(name, NOH_RISE_CLIPS)) clips[how.clip_count++] = name;
+    }
+    result = noh_actor_get_up(stage, actor, &how, &chosen, error);
+    if (result != NOH_OK || !ticks) return result;
+    *ticks = noh_actor_body(stage, actor) == NOH_BODY_GETS_UP ? b->rise_ticks : 0;
+    if (chosen != NOH_NONE && noh_actor_controller(stage, actor, &set)) {
+        const uint32_t clip = noh_stage_find(stage, kind, NOH_NAME_CLIP, clips[chosen]);
+        if (set->clips[clip].duration_ticks > *ticks) *ticks = set->clips[clip].duration_ticks;
+    }
+    return NOH_OK;
+}
+
+noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t ticks,
+                         noh_error *error)
+{
+    const noh_body_state body = noh_actor_body(stage, actor);
+    if (body != NOH_BODY_FALLS && body != NOH_BODY_LIES) {
+        fall->down_ticks = fall->still_ticks = 0;
+        fall->rise_ticks -= fall->rise_ticks < ticks ? fall->rise_ticks : ticks;
+        return NOH_OK;
+    }
+    fall->rise_ticks = 0;
+    fall->down_ticks += ticks;
+    fall->still_ticks = body == NOH_BODY_LIES ? fall->still_ticks + ticks : 0;
+    if (fall->still_ticks < NOH_FALL_STAY_TICKS && fall->down_ticks < NOH_FALL_WAIT_TICKS) return NOH_OK;
+    fall->down_ticks = fall->still_ticks = 0;
+    return noh_actor_rise(stage, actor, layer, &fall->rise_ticks, error);
+}
+
+int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor)
+{
+    return fall->rise_ticks || noh_actor_body(stage, actor) != NOH_BODY_STANDS;
+}

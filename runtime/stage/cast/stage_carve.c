@@ -1,0 +1,426 @@
+/* stage_carve.c: how a stage lies in its block. The code that lays it out also measures it. */
+#include <string.h>
+
+#include "deform/pick/pick.h"
+#include "stage/cast/stage_internal.h"
+
+/* ---- what a kind needs ---- */
+
+/* A clip bank with counts alone, for sizes that depend on nothing else. */
+static size_t lod_bytes(const noh_clip_bank_desc *bank_desc, const noh_stage_needs *n, const noh_mesh *mesh)
+{
+    noh_clip_bank counts;
+    noh_lod_pack_desc desc;
+    if (!n->has_clips) {
+        return 0;
+    }
+    memset(&counts, 0, sizeof counts);
+    memset(&desc, 0, sizeof desc);
+    counts.clips = n->shape;
+    counts.skeleton.joint_count = n->shape.joint_count;
+    desc.set = &counts;
+    desc.set_desc = bank_desc;
+    desc.mesh = mesh;
+    return noh_lod_pack_size(&desc);
+}
+
+/* Without clips there is a set of one clip, the bind pose; a set without joints has a float. Where parts are, it has
+ * those of the meshes, for them to set. */
+static void shape_without_clips(const noh_kind_desc *d, uint32_t weight_count, noh_clip_set *shape)
+{
+    noh_skeleton skeleton;
+    memset(shape, 0, sizeof *shape);
+    shape->clip_count = 1;
+    if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) == NOH_OK) {
+        shape->joint_count = skeleton.joint_count;
+    }
+    shape->float_count = noh_stage_has_parts(d) && weight_count ? weight_count : shape->joint_count ? 0 : 1;
+}
+
+noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                   noh_kind_clips *clips, noh_error *error)
+{
+    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, kind);
+    noh_error said = { NOH_OK, "", 0, 0 };
+    noh_clip_bank_needs needs;
+    const int none = bank.clip_packs && !bank.clip_pack_count;
+    const noh_result result = none ? NOH_ERR_NOT_FOUND : noh_clip_bank_measure(&bank, &needs, &said);
+    memset(clips, 0, sizeof *clips);
+    clips->asked = plan->kinds[kind].cached_segment_count;
+    if (result == NOH_ERR_NOT_FOUND) {
+        return NOH_OK;
+    }
+    if (result != NOH_OK) {
+        return noh_fail(error, result, said.what, said.where, said.need);
+    }
+    clips->bank_bytes = needs.bytes;
+    clips->view_bytes = needs.view_bytes;
+    clips->clip_count = needs.shape.clip_count;
+    clips->event_count = needs.shape.event_count;
+    clips->marker_count = needs.shape.marker_count;
+    clips->joint_count = needs.shape.joint_count;
+    clips->float_count = needs.shape.float_count;
+    clips->cached_segment_count = needs.cached_segment_count;
+    clips->segment_count = needs.segment_count;
+    return NOH_OK;
+}
+
+static void take_clips(const noh_kind_clips *clips, const noh_kind_desc *d, int owns, noh_stage_needs *n)
+{
+    if (!clips->bank_bytes) {
+        shape_without_clips(d, n->weight_count, &n->shape);
+        return;
+    }
+    n->has_clips = 1;
+    n->shape.clip_count = clips->clip_count;
+    n->shape.event_count = clips->event_count;
+    n->shape.marker_count = clips->marker_count;
+    n->shape.joint_count = clips->joint_count;
+    n->shape.float_count = clips->float_count;
+    n->cached_segment_count = clips->cached_segment_count;
+    n->segment_count = clips->segment_count;
+    n->bank_bytes = owns ? (size_t)clips->bank_bytes : 0;
+    n->view_bytes = owns ? (size_t)clips->view_bytes : 0;
+}
+
+/* Masks: one for each layer that names joints or floats. */
+static uint32_t count_masks(const noh_kind_desc *d)
+{
+    uint32_t masks = 0;
+    for (uint32_t i = 0; i < d->layer_count; i++) {
+        masks += d->layers[i].joints || d->layers[i].floats;
+    }
+    return masks;
+}
+
+static void measure_meshes(const noh_kind_desc *d, noh_stage_needs *n, noh_mesh *skinned)
+{
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    n->mesh_count = noh_stage_items(d, items);
+    skinned->header = NULL;
+    for (uint32_t i = 0; i < n->mesh_count; i++) {
+        noh_mesh mesh;
+        noh_skin skin;
+        size_t pick;
+        (void)noh_pack_mesh_at(d->mesh, items[i].mesh, &mesh, NULL);
+        n->weight_count += mesh.header->target_count;
+        n->corrective_count += noh_correctives_bind(&mesh, NULL, 0);
+        n->weight_rule_count += d->weight_rules ? noh_weight_rules_bind(&mesh, NULL, 0) : 0;
+        pick = d->unpickable ? 0 : noh_stage_pick_bytes(&mesh, NULL);
+        n->pick_bytes = pick > n->pick_bytes ? pick : n->pick_bytes;
+        if (noh_pack_skin_at(d->mesh, mesh.header->skin, &skin, NULL) != NOH_OK) {
+            continue;
+        }
+        if (!skinned->header) *skinned = mesh;
+        n->skin_joints = skin.header->joint_count > n->skin_joints ? skin.header->joint_count : n->skin_joints;
+    }
+}
+
+static void measure_actors(const noh_kind_desc *d, noh_stage_needs *n)
+{
+    noh_character_desc character;
+    memset(&character, 0, sizeof character);
+    n->shape.mask_count = n->mask_count;
+    character.controller.set = &n->shape;
+    character.controller.track_count = noh_stage_track_count(d);
+    character.controller.change_count = d->change_count;
+    character.controller.flags = noh_stage_controller_flags(d);
+    n->inertia_bytes = d->inertia ? noh_pose_scratch_size(&n->shape, 1) : 0;
+    n->character_bytes = noh_character_size(&character);
+    n->scratch_bytes = noh_character_scratch_size(&character);
+}
+
+static size_t pools_bytes(const noh_stage_plan *plan, const noh_kind_desc *d, uint32_t kind)
+{
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    noh_lod_pools_desc desc = { d->actor_count, 0, levels, slots, d->seen_max };
+    desc.pool_count = noh_stage_pools(&plan->kinds[kind], levels, slots);
+    return noh_lod_pools_size(&desc);
+}
+
+noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                  noh_stage_needs *needs, noh_error *error)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    const uint32_t owner = noh_stage_bank_kind(desc, kind);
+    const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
+    noh_mesh skinned;
+    noh_result result;
+    size_t springs_state;
+    memset(needs, 0, sizeof *needs);
+    measure_meshes(&d, needs, &skinned);
+    take_clips(&plan->kinds[kind].clips, &d, owner == kind, needs);
+    needs->mask_count = count_masks(&d);
+    needs->float_count = (needs->has_clips ? needs->shape.float_count : 0) +
+                         (needs->has_clips && d.mesh->node_count ? 0 : needs->weight_count);
+    needs->lod_bytes = desc->full_detail ? 0 : lod_bytes(&bank, needs, skinned.header ? &skinned : NULL);
+    measure_actors(&d, needs);
+    result = noh_stage_measure_graphs(&d, kind, needs, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    needs->part_bytes = noh_stage_part_bytes(&d);
+    needs->springs_bytes = noh_stage_springs_bytes(&d, &springs_state, &needs->part_scratch_bytes);
+    needs->face_link_max = d.face ? noh_stage_face_links(&d) : 0;
+    for (uint32_t i = 0; i < d.part_count; i++) {
+        const size_t bytes = d.parts[i].scratch_bytes;
+        needs->part_scratch_bytes = bytes > needs->part_scratch_bytes ? bytes : needs->part_scratch_bytes;
+    }
+    needs->pools_bytes = pools_bytes(plan, &d, kind);
+    if (!needs->character_bytes || !needs->pools_bytes) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a kind has more clips, joints, tracks or slots than a character can",
+                        kind, 0);
+    }
+    return NOH_OK;
+}
+
+uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots)
+{
+    uint32_t count = 0;
+    for (uint32_t l = 0; l < plan->level_count; l++) {
+        if (plan->levels[l].slot_count) {
+            levels[count] = l;
+            slots[count++] = plan->levels[l].slot_count;
+        }
+    }
+    return count;
+}
+
+/* ---- the block ---- */
+
+#define CARVE(arena, count, type) ((type *)noh_arena_carve(arena, (size_t)(count) * sizeof(type), 16))
+
+void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, uint64_t cpu_bytes, uint64_t gpu_bytes)
+{
+    if (list && list->count < list->capacity) {
+        noh_stage_bytes *part = &list->parts[list->count];
+        part->what = what;
+        part->kind = kind;
+        part->cpu_bytes = cpu_bytes;
+        part->gpu_bytes = gpu_bytes;
+    }
+    if (list) {
+        list->count++;
+        list->cpu_bytes += cpu_bytes;
+    }
+}
+
+/* Everything that was carved since *from. */
+static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh_arena *arena, size_t *from)
+{
+    noh_stage_add_part(list, what, kind, arena->used - *from, 0);
+    *from = arena->used;
+}
+
+/* What the other functions need to know of all kinds together. */
+typedef struct widest {
+    size_t scratch_bytes, graph_scratch_bytes, part_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
+    uint32_t skin_joints, actors;
+} widest;
+
+static size_t aligned(size_t bytes)
+{
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
+static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const noh_stage_needs *n)
+{
+    if (n->scratch_bytes > most->scratch_bytes) most->scratch_bytes = n->scratch_bytes;
+    if (n->graph_scratch_bytes > most->graph_scratch_bytes) most->graph_scratch_bytes = n->graph_scratch_bytes;
+    if (n->part_scratch_bytes > most->part_scratch_bytes) most->part_scratch_bytes = n->part_scratch_bytes;
+    if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
+    if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
+    if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
+    most->views_bytes += aligned(n->view_bytes);
+    most->actors += desc->kinds[kind].actor_count;
+}
+
+static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stage_needs *n, noh_stage_kind *k,
+                        void **pools)
+{
+    k->character_bytes = (uint32_t)n->character_bytes;
+    k->characters = noh_arena_carve(arena, d->actor_count * n->character_bytes, 16);
+    k->held = CARVE(arena, d->actor_count * (size_t)d->held_float_count, noh_stage_held);
+    k->graph_slots = noh_arena_carve(arena, d->actor_count * n->slot_bytes, 16);
+    k->slot_bytes = (uint32_t)n->slot_bytes;
+    k->part_states = noh_arena_carve(arena, d->actor_count * n->part_bytes, 16);
+    k->part_bytes = n->part_bytes;
+    k->dolls = noh_arena_carve(arena, noh_stage_doll_bytes(d), 16);
+    *pools = noh_arena_carve(arena, n->pools_bytes, 16);
+}
+
+static void carve_shared(noh_arena *arena, const noh_kind_desc *d, const noh_kind_plan *plan, const noh_stage_needs *n,
+                         noh_stage_kind *k)
+{
+    k->layers = CARVE(arena, d->layer_count, noh_stage_layer);
+    k->parts = CARVE(arena, d->part_count, noh_stage_part);
+    k->meshes = CARVE(arena, n->mesh_count, noh_stage_mesh);
+    k->sources = CARVE(arena, n->float_count, uint32_t);
+    k->name_hashes = CARVE(arena, n->float_count, uint32_t);
+    k->defaults = CARVE(arena, n->float_count, float);
+    k->target_radii = CARVE(arena, n->weight_count, float);
+    k->correctives = CARVE(arena, n->corrective_count, noh_corrective_term);
+    k->weight_rules = CARVE(arena, n->weight_rule_count, noh_weight_rule);
+    k->masks = CARVE(arena, n->mask_count * (size_t)(n->shape.joint_count + n->shape.float_count), uint8_t);
+    k->levels = CARVE(arena, plan->level_count, noh_lod_mesh);
+    k->joint_radii = CARVE(arena, n->shape.joint_count, float);
+}
+
+static void carve_frame(noh_arena *arena, const noh_kind_desc *d, const noh_stage_needs *n, noh_stage_kind *k)
+{
+    k->floats = CARVE(arena, (size_t)d->actor_count * n->float_count, float);
+    k->weights = CARVE(arena, (size_t)d->actor_count * n->weight_count, float);
+    k->order = CARVE(arena, d->seen_max, uint32_t);
+}
+
+/* Once for the stage, after the state. */
+static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const widest *most, noh_stage_blocks *b)
+{
+    b->stage = CARVE(arena, 1, noh_stage);
+    b->kinds = CARVE(arena, filled->kind_count, noh_stage_kind);
+    b->kind_descs = CARVE(arena, filled->kind_count, noh_kind_desc);
+    b->shown = CARVE(arena, most->actors, noh_stage_shown);
+    b->todo = CARVE(arena, most->actors, uint32_t);
+    b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);
+    b->pick_bytes = most->pick_bytes;
+    b->pick_scratch = noh_arena_carve(arena, most->pick_bytes, 16);
+    b->inertia_bytes = most->inertia_bytes;
+    b->inertia_scratch = noh_arena_carve(arena, most->inertia_bytes, 16);
+}
+
+static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const widest *most, noh_stage_blocks *b)
+{
+    b->jobs = CARVE(arena, filled->job_count, noh_stage_job_part);
+    b->views_bytes = most->views_bytes;
+    b->views = noh_arena_carve(arena, filled->job_count * most->views_bytes, 16);
+    b->scratch_bytes = aligned(most->scratch_bytes);
+    b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
+    b->graph_scratch_bytes = aligned(most->graph_scratch_bytes);
+    b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
+    b->part_scratch_bytes = aligned(most->part_scratch_bytes);
+    b->part_scratch = noh_arena_carve(arena, filled->job_count * b->part_scratch_bytes, 16);
+    b->matrices_floats = 12u * (size_t)most->skin_joints;
+    b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
+}
+
+/* The state of one kind, whose pointers are not wanted yet. Not inlined: what measures a kind has deep stacks, and a
+ * noh_stage_kind need not lie below them. */
+static NOH_NEVER_INLINE void measure_state(noh_arena *arena, const noh_stage_desc *desc, uint32_t i,
+                                           const noh_stage_needs *n, noh_stage_blocks *b)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+    noh_stage_kind kind;
+    carve_state(arena, &d, n, &kind, &b->pools[i]);
+}
+
+/* What of a kind's state is for ragdolls: the pool of those that fall at once, and what each actor remembers. */
+static void list_ragdolls(noh_stage_list *list, const noh_kind_desc *d, uint32_t i, size_t *from)
+{
+    const size_t pool = aligned(noh_stage_doll_bytes(d)), states = d->actor_count * sizeof(noh_stage_body);
+    if (!d->ragdoll) return;
+    noh_stage_add_part(list, "ragdoll pool", i, pool, 0);
+    noh_stage_add_part(list, "ragdoll states", i, states, 0);
+    *from += pool + states;
+}
+
+/* The first pass: the state, and what it takes to know how large the rest is. */
+static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                               noh_stage_blocks *b, noh_stage_list *list, widest *most, noh_error *error)
+{
+    size_t from = arena->used;
+    memset(most, 0, sizeof *most);
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        most->actors += desc->kinds[i].actor_count;
+    }
+    b->head = CARVE(arena, 1, noh_stage_head);
+    b->actors = CARVE(arena, most->actors, noh_stage_actor);
+    most->actors = 0;
+    add(list, "actors", NOH_NONE, arena, &from);
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        noh_stage_needs needs;
+        const noh_result result = noh_stage_measure_kind(desc, plan, i, &needs, error);
+        if (result != NOH_OK) {
+            return result;
+        }
+        measure_state(arena, desc, i, &needs, b);
+        widen(most, desc, i, &needs);
+        if (list) list_ragdolls(list, &desc->kinds[i], i, &from);
+        add(list, "characters", i, arena, &from);
+    }
+    (void)noh_arena_carve(arena, 0, 16);
+    b->state_bytes = arena->used;
+    return NOH_OK;
+}
+
+/* The pointers into the state, once there are kinds to hold them. */
+static void point_at_state(const noh_stage_desc *desc, const noh_stage_needs *n, uint32_t i, uint8_t **at,
+                           noh_stage_kind *k)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+    noh_arena arena = noh_arena_over(*at, SIZE_MAX);
+    void *pools;
+    carve_state(&arena, &d, n, k, &pools);
+    *at += aligned(arena.used);
+}
+
+/* What is not state of one kind.
+ * state  where its state lies; NULL: only measured */
+static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                                        uint32_t i, const noh_stage_needs *n, noh_stage_blocks *b, noh_stage_list *list,
+                                        uint8_t **state)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+    noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
+    size_t from = arena->used;
+    noh_face_link *face_links;
+    memset(k, 0, sizeof *k);
+    carve_shared(arena, &d, &plan->kinds[i], n, k);
+    b->lods[i] = noh_arena_carve(arena, n->lod_bytes, 16);
+    carve_frame(arena, &d, n, k);
+    add(list, "kind", i, arena, &from);
+    if (d.face) {
+        k->face = CARVE(arena, 1, noh_stage_face_kind);
+        face_links = CARVE(arena, n->face_link_max, noh_face_link);
+        if (k->face) k->face->links = face_links;
+        add(list, "faces", i, arena, &from);
+    }
+    if (d.ragdoll) {
+        k->ragdoll = CARVE(arena, 1, noh_stage_ragdoll_kind);
+        k->doll_scratch = noh_arena_carve(arena, noh_stage_doll_scratch_bytes(&d), 16);
+        add(list, "ragdolls", i, arena, &from);
+    }
+    b->springs[i] = noh_arena_carve(arena, n->springs_bytes, 16);
+    if (n->springs_bytes) add(list, "springs", i, arena, &from);
+    b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
+    if (n->graph_count) add(list, "graphs", i, arena, &from);
+    b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);
+    add(list, "clips", i, arena, &from);
+    if (*state) point_at_state(desc, n, i, state, k);
+}
+
+noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                           noh_stage_blocks *b, noh_stage_list *list, noh_error *error)
+{
+    const noh_stage_desc filled = noh_stage_desc_filled(desc);
+    widest most;
+    size_t from;
+    uint8_t *state;
+    noh_result result = carve_states(arena, desc, plan, b, list, &most, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    state = b->actors ? (uint8_t *)b->actors + aligned(most.actors * sizeof *b->actors) : NULL;
+    from = arena->used;
+    carve_stage(arena, &filled, &most, b);
+    add(list, "stage", NOH_NONE, arena, &from);
+    b->events = CARVE(arena, filled.event_count, noh_stage_event);
+    add(list, "events", NOH_NONE, arena, &from);
+    carve_jobs(arena, &filled, &most, b);
+    add(list, "jobs", NOH_NONE, arena, &from);
+    for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
+        noh_stage_needs needs;
+        result = noh_stage_measure_kind(desc, plan, i, &needs, error);
+        if (result == NOH_OK) carve_kind(arena, desc, plan, i, &needs, b, list, &state);
+    }
+    return result;
+}

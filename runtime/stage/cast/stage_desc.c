@@ -1,0 +1,335 @@
+/* stage_desc.c: what is wrong with a desc, and its defaults. */
+#include <string.h>
+
+#include "core/base/name_internal.h"
+#include "stage/cast/stage_internal.h"
+
+const noh_layer_desc noh_stage_default_layers[3] = {
+    { "body", NOH_LAYER_BASE, NULL, NULL, 0 },
+    { "face", NOH_LAYER_OVER, "", NULL, 0 },
+    { "add", NOH_LAYER_ADD, NULL, NULL, 0 },
+};
+
+uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer)
+{
+    return layer->track_count ? layer->track_count : 2u;
+}
+
+uint32_t noh_stage_track_count(const noh_kind_desc *kind)
+{
+    uint32_t tracks = 0;
+    for (uint32_t i = 0; i < kind->layer_count; i++) {
+        tracks += noh_stage_layer_tracks(&kind->layers[i]);
+    }
+    return tracks;
+}
+
+uint32_t noh_stage_controller_flags(const noh_kind_desc *kind)
+{
+    return NOH_CONTROLLER_COVERS | (kind->inertia ? NOH_CONTROLLER_INERTIAL : 0u);
+}
+
+noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
+{
+    noh_kind_desc d = desc->kinds[kind];
+    noh_springs_desc springs;
+    if (!d.name) d.name = "";
+    if (!d.seen_max) d.seen_max = d.actor_count;
+    if (!d.layers) {
+        d.layers = noh_stage_default_layers;
+        d.layer_count = 3;
+    }
+    if (!d.clips && !d.clip_packs) d.clips = d.mesh;
+    if (d.mesh->skeleton_count == 0) d.skeleton = NOH_NONE;
+    d.without_springs = d.without_springs || !noh_springs_of_pack(d.mesh, d.skeleton, &springs);
+    if (!d.change_count) d.change_count = 3u * noh_stage_track_count(&d);
+    d.held_float_count = d.held_float_count == NOH_NONE ? 0 : d.held_float_count ? d.held_float_count : 8u;
+    return d;
+}
+
+noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc)
+{
+    noh_stage_desc d = *desc;
+    uint32_t actors = 0;
+    for (uint32_t i = 0; i < d.kind_count; i++) {
+        actors += d.kinds[i].actor_count;
+    }
+    if (!d.height_px) d.height_px = 1080;
+    if (!d.job_count) d.job_count = 1;
+    if (!d.event_count) d.event_count = 64u + actors;
+    if (!d.update_budget_ns) d.update_budget_ns = UINT64_MAX;
+    if (!d.slot_moves) d.slot_moves = UINT32_MAX;
+    if (!(d.lod.pixels > 0.0f)) d.lod.pixels = 1.0f;
+    d.load_bytes = !d.load_bytes ? 65536u : d.load_bytes < 256u ? 256u : d.load_bytes;
+    return d;
+}
+
+/* ---- meshes ---- */
+
+/* Whether a kind draws a mesh: its skeleton moves it, or none does. */
+static int is_drawn(const noh_kind_desc *kind, uint32_t mesh)
+{
+    noh_mesh m;
+    noh_skin skin;
+    if (noh_pack_mesh_at(kind->mesh, mesh, &m, NULL) != NOH_OK) {
+        return 0;
+    }
+    return noh_pack_skin_at(kind->mesh, m.header->skin, &skin, NULL) != NOH_OK ||
+           skin.header->skeleton == kind->skeleton;
+}
+
+/* Whether a kind draws a node, or in a pack without nodes a mesh, as far as its own list says. */
+static int is_listed(const noh_kind_desc *kind, uint32_t node)
+{
+    for (uint32_t i = 0; kind->nodes && i < kind->node_count; i++) {
+        if (kind->nodes[i] == node) return 1;
+    }
+    return !kind->nodes;
+}
+
+uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items)
+{
+    const noh_pack *pack = kind->mesh;
+    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
+        if (mesh == NOH_NONE || !is_listed(kind, i) || !is_drawn(kind, mesh)) {
+            continue;
+        }
+        if (items && found < NOH_STAGE_MESHES_MAX) {
+            items[found].node = pack->node_count ? i : NOH_NONE;
+            items[found].mesh = mesh;
+        }
+        found++;
+    }
+    return found;
+}
+
+/* ---- textures ---- */
+
+static int is_namesake(const char *name, const char *of, const char *suffix)
+{
+    while (*of && *name == *of) name++, of++;
+    return !*of && noh_names_equal(name, suffix);
+}
+
+uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack)
+{
+    const noh_texture_set *s = set ? &kind->texture_sets[set - 1u] : NULL;
+    const noh_pack *from = s && s->pack ? s->pack : kind->mesh;
+    noh_texture own, other;
+    *pack = kind->mesh;
+    if (!s || noh_pack_texture_at(kind->mesh, texture, &own, NULL) != NOH_OK) {
+        return texture;
+    }
+    for (uint32_t i = 0; noh_pack_texture_at(from, i, &other, NULL) == NOH_OK; i++) {
+        if (is_namesake(other.name, own.name, s->suffix ? s->suffix : "")) {
+            *pack = from;
+            return i;
+        }
+    }
+    return texture;
+}
+
+static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
+{
+    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+        const noh_pack *pack;
+        if (noh_stage_worn(kind, set, t, &pack) != t || pack->bytes != kind->mesh->bytes) return 0;
+    }
+    return 1;
+}
+
+/* Texture coordinates are those of the kind's own textures. */
+static int is_laid_out_otherwise(const noh_kind_desc *kind, uint32_t set)
+{
+    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+        const noh_pack *pack;
+        noh_texture own, worn;
+        const uint32_t at = noh_stage_worn(kind, set, t, &pack);
+        if (noh_pack_texture_at(kind->mesh, t, &own, NULL) != NOH_OK) continue;
+        if (noh_pack_texture_at(pack, at, &worn, NULL) != NOH_OK) continue;
+        if (own.header->trim != worn.header->trim) return 1;
+    }
+    return 0;
+}
+
+/* ---- what is wrong ---- */
+
+static const char *bad_texture_sets(const noh_kind_desc *d)
+{
+    if (d->texture_set_count > NOH_TEXTURE_SETS_MAX) return "texture_set_count of a kind is above NOH_TEXTURE_SETS_MAX";
+    if (!d->texture_sets && d->texture_set_count)
+        return "texture_sets of a kind is NULL, and texture_set_count is not 0";
+    for (uint32_t i = 1; i <= d->texture_set_count; i++) {
+        if (replaces_nothing(d, i)) return "a texture set of a kind replaces no texture of its mesh: see the names";
+        if (is_laid_out_otherwise(d, i))
+            return "a texture of a set has other parts trimmed than the one it stands in for: build their packs with "
+                   "--whole-textures";
+    }
+    return NULL;
+}
+
+static const char *bad_layer(const noh_layer_desc *layer)
+{
+    if (!layer->name) return "a layer of a kind: name is NULL";
+    if ((unsigned)layer->mode > NOH_LAYER_ADD) return "a layer of a kind: mode is not a noh_layer_mode";
+    return layer->track_count > NOH_LAYER_TRACKS_MAX ? "a layer of a kind: track_count is above NOH_LAYER_TRACKS_MAX"
+                                                     : NULL;
+}
+
+static const char *bad_parts(const noh_kind_desc *d)
+{
+    if (d->part_count > NOH_STAGE_PARTS_MAX) return "part_count of a kind is above NOH_STAGE_PARTS_MAX";
+    if (!d->parts && d->part_count) return "parts of a kind is NULL, and part_count is not 0";
+    for (uint32_t i = 0; i < d->part_count; i++) {
+        if (!d->parts[i].modify) return "a part of a kind: modify is NULL";
+        if (d->parts[i].state_bytes > NOH_STAGE_PART_BYTES_MAX || d->parts[i].scratch_bytes > NOH_STAGE_PART_BYTES_MAX)
+            return "a part of a kind: more bytes than NOH_STAGE_PART_BYTES_MAX";
+    }
+    return NULL;
+}
+
+static const char *bad_springs(const noh_kind_desc *d)
+{
+    noh_springs_desc springs;
+    size_t state_bytes, scratch_bytes;
+    if (d->without_springs || !noh_springs_of_pack(d->mesh, d->skeleton, &springs)) return NULL;
+    noh_springs_measure(&springs, &state_bytes, &scratch_bytes);
+    return state_bytes > NOH_STAGE_PART_BYTES_MAX
+               ? "springs of a kind's mesh: more bytes than NOH_STAGE_PART_BYTES_MAX: take without_springs"
+               : NULL;
+}
+
+static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
+{
+    const noh_kind_desc *d = &desc->kinds[number];
+    noh_kind_desc filled;
+    if (!d->mesh) return "mesh of a kind is NULL";
+    if (d->actor_count == 0 || d->actor_count > NOH_STAGE_ACTORS_MAX)
+        return "actor_count of a kind is not in 1..NOH_STAGE_ACTORS_MAX";
+    if (d->seen_max > d->actor_count) return "seen_max of a kind is above its actor_count";
+    if (d->layer_count > NOH_LAYERS_MAX) return "layer_count of a kind is above NOH_LAYERS_MAX";
+    if (!d->layers && d->layer_count) return "layers of a kind is NULL, and layer_count is not 0";
+    for (uint32_t i = 0; i < d->layer_count; i++) {
+        const char *what = bad_layer(&d->layers[i]);
+        if (what) return what;
+    }
+    if (d->clips && d->clip_packs) return "a kind has clips and clip_packs";
+    for (uint32_t i = 0; d->nodes && i < d->node_count; i++) {
+        if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->mesh_count))
+            return "nodes of a kind: one is none of its mesh pack's";
+    }
+    if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y)) return "root_axes of a kind has unknown bits";
+    if (d->root_axes && d->root_up > 2u) return "root_up of a kind is not 0, 1 or 2";
+    if (d->change_count > NOH_CHANGES_MAX) return "change_count of a kind is above NOH_CHANGES_MAX";
+    if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
+        return "held_float_count of a kind is above NOH_FLOATS_MAX";
+    if (bad_texture_sets(d)) return bad_texture_sets(d);
+    if (bad_parts(d)) return bad_parts(d);
+    if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
+    filled = noh_stage_kind_desc(desc, number);
+    if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
+        return "skeleton of a kind is none of its mesh pack's";
+    if (filled.ragdoll && noh_stage_bad_ragdoll(&filled)) return noh_stage_bad_ragdoll(&filled);
+    if (filled.face && noh_stage_bad_face(&filled)) return noh_stage_bad_face(&filled);
+    if (bad_springs(&filled)) return bad_springs(&filled);
+    return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;
+}
+
+static const char *bad_desc(const noh_stage_desc *d)
+{
+    if (!d->kinds || d->kind_count == 0 || d->kind_count > NOH_STAGE_KINDS_MAX)
+        return "kinds of a stage: NULL, or kind_count is not in 1..NOH_STAGE_KINDS_MAX";
+    if (d->job_count > NOH_STAGE_JOBS_MAX) return "job_count of a stage is above NOH_STAGE_JOBS_MAX";
+    return d->event_count > NOH_STEP_EVENTS_MAX ? "event_count of a stage is above NOH_STEP_EVENTS_MAX" : NULL;
+}
+
+noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error)
+{
+    const char *what = bad_desc(desc);
+    uint64_t actors = 0;
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        noh_kind_desc kind;
+        what = bad_kind(desc, i);
+        if (what) {
+            return noh_fail(error, NOH_ERR_ARG, what, i, 0);
+        }
+        kind = noh_stage_kind_desc(desc, i);
+        if (noh_stage_items(&kind, NULL) > NOH_STAGE_MESHES_MAX) {
+            return noh_fail(error, NOH_ERR_LIMIT, "a kind draws more meshes than NOH_STAGE_MESHES_MAX", i,
+                            noh_stage_items(&kind, NULL));
+        }
+        actors += kind.actor_count;
+    }
+    if (actors > NOH_STAGE_ACTORS_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a stage has more actors than NOH_STAGE_ACTORS_MAX", 0, actors);
+    }
+    return noh_lod_settings_check(&desc->lod, error);
+}
+
+/* ---- what kinds share ---- */
+
+static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
+{
+    const uint32_t count = a->clip_packs ? a->clip_pack_count : 1u;
+    if ((b->clip_packs ? b->clip_pack_count : 1u) != count) return 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const noh_pack *of_a = a->clip_packs ? a->clip_packs[i] : a->clips;
+        const noh_pack *of_b = b->clip_packs ? b->clip_packs[i] : b->clips;
+        if (of_a->bytes != of_b->bytes) return 0;
+    }
+    return 1;
+}
+
+static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
+{
+    return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
+           a->sample_rate_enough == b->sample_rate_enough;
+}
+
+uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
+{
+    const noh_kind_desc own = noh_stage_kind_desc(desc, kind);
+    for (uint32_t i = 0; i < kind; i++) {
+        const noh_kind_desc other = noh_stage_kind_desc(desc, i);
+        if (other.mesh->bytes == own.mesh->bytes && other.skeleton == own.skeleton && same_clips(&own, &other) &&
+            same_play(&own, &other)) {
+            return i;
+        }
+    }
+    return kind;
+}
+
+noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    noh_clip_bank_desc bank;
+    memset(&bank, 0, sizeof bank);
+    bank.mesh = d.mesh;
+    bank.clips = d.clips;
+    bank.clip_packs = d.clip_packs;
+    bank.clip_pack_count = d.clip_pack_count;
+    bank.skeleton = d.skeleton;
+    bank.root_axes = d.root_axes;
+    bank.root_up = d.root_up;
+    bank.sample_rate_enough = d.sample_rate_enough;
+    bank.cached_segment_count = plan->kinds[kind].cached_segment_count;
+    if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
+        bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;
+    }
+    for (uint32_t i = kind; i < desc->kind_count; i++) {
+        if (noh_stage_bank_kind(desc, i) == kind) {
+            const noh_kind_desc other = noh_stage_kind_desc(desc, i);
+            const uint32_t tracks = noh_stage_track_count(&other);
+            bank.instance_count += other.actor_count;
+            bank.track_count = tracks > bank.track_count ? tracks : bank.track_count;
+        }
+    }
+    if (!bank.track_count) bank.track_count = 1;
+    return bank;
+}

@@ -1,0 +1,257 @@
+/* stage_face.c: an actor's face in a job: time, where it looks, joints and targets.
+ *
+ * The space of a neck has its origin in the joint that turns the head and the axes of the model at rest, and goes along
+ * with what clips do to that joint. What the face turns is added to that: part of it in the neck, so that it bends, and
+ * the rest in the head, whose eyes are then aimed from where the neck has taken them. */
+#include "stage/cast/stage_face.h"
+
+#include <string.h>
+
+#include "core/base/math_internal.h"
+#include "core/base/quat.h"
+#include "core/base/trig.h"
+#include "stage/cast/stage_internal.h"
+
+#define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
+#define NECK_SHARE 0.4f
+#define CHEST_RAD 0.012f /* of a breath */
+#define REACH_MAX 1e5f   /* model units: what is further off is looked at as if it were there */
+#define NEAREST_M 0.06f
+
+/* ---- where it looks ---- */
+
+/* A point, counted from the actor's home, in its model space. */
+static void to_model(const noh_part_work *w, const float point[3], float out[3])
+{
+    float back[4];
+    for (int i = 0; i < 3; i++) out[i] = point[i] - w->near_place[i];
+    noh_quat_conjugate(w->place.rotation, back);
+    noh_quat_rotate(back, out, out);
+    for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
+}
+
+/* Where another actor is looked at, or what hangs on it, counted from `home`. */
+static void eyes_of(const noh_stage_kind *k, const noh_stage_actor *on, const double home[3], float out[3])
+{
+    const float *rest = k->face ? k->face->middle : k->reach;
+    for (int i = 0; i < 3; i++) out[i] = rest[i] * on->place.scale;
+    noh_quat_rotate(on->place.rotation, out, out);
+    for (int i = 0; i < 3; i++) out[i] += (float)((double)on->place.position[i] - home[i] + (double)on->rest[i]);
+}
+
+/* Counted from `home`. 0: it looks at nothing, but ahead. */
+static int target_of(const noh_stage *s, const noh_stage_face *f, const double home[3], float point[3])
+{
+    noh_stage_kind *of;
+    const noh_stage_actor *other;
+    for (int i = 0; i < 3; i++) point[i] = (float)((double)f->point[i] - home[i]);
+    if (f->looks != NOH_LOOKS_AT_ACTOR) return f->looks == NOH_LOOKS_AT_POINT;
+    other = noh_stage_actor_of(s, (noh_actor){ f->target }, &of);
+    if (other) {
+        eyes_of(of, noh_stage_root_of(s, other), home, point);
+    }
+    return other != NULL;
+}
+
+/* As far as it can be looked at: not within the head, not at infinity. */
+static void hold_point(const noh_face_desc *desc, float point[3])
+{
+    float middle[3], way[3], length;
+    for (int i = 0; i < 3; i++) middle[i] = 0.5f * (desc->eyes[0][i] + desc->eyes[1][i]);
+    for (int i = 0; i < 3; i++) way[i] = point[i] - middle[i];
+    for (int i = 0; i < 3; i++) way[i] = way[i] > REACH_MAX ? REACH_MAX : way[i] < -REACH_MAX ? -REACH_MAX : way[i];
+    length = noh_sqrt(noh_dot3(way, way));
+    if (!(length > 1e-6f)) way[0] = way[1] = 0.0f, way[2] = length = NEAREST_M;
+    for (int i = 0; i < 3; i++) point[i] = middle[i] + way[i] * (length < NEAREST_M ? NEAREST_M / length : 1.0f);
+}
+
+/* ---- joints ---- */
+
+/* The neck's space as clips have posed it: its rotation and origin in model space. */
+typedef struct neck_space {
+    float rotation[4], origin[3];
+} neck_space;
+
+static int turns(const noh_part_work *w, const noh_stage_face_joint *j)
+{
+    return j->joint != NOH_NONE && j->joint < w->joint_count;
+}
+
+static void neck_space_of(const noh_stage_kind *k, const noh_part_work *w, neck_space *n)
+{
+    const noh_stage_face_joint *head = &k->face->head;
+    memset(n, 0, sizeof *n);
+    n->rotation[3] = 1.0f;
+    memcpy(n->origin, head->at, sizeof n->origin);
+    if (head->joint != NOH_NONE) {
+        noh_stage_joint_at(k, w->local, head->joint, n->rotation, n->origin);
+        noh_quat_mul(n->rotation, head->axes, n->rotation);
+    }
+}
+
+/* Turn a joint by a rotation along axes that it knows: local * axes * turn * axes^-1. */
+static void turn(noh_part_work *w, const noh_stage_face_joint *j, const float rotation[4])
+{
+    float *own = w->local[j->joint].rotation, back[4], by[4];
+    noh_quat_conjugate(j->axes, back);
+    noh_quat_mul(j->axes, rotation, by);
+    noh_quat_mul(by, back, by);
+    noh_quat_mul(own, by, own);
+    noh_quat_normalize(own);
+}
+
+static void breathe(noh_part_work *w, const noh_stage_face_kind *f, float breath)
+{
+    float rotation[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    if (!turns(w, &f->chest)) return;
+    noh_sin_cos(-0.5f * CHEST_RAD * breath, &rotation[0], &rotation[3]);
+    turn(w, &f->chest, rotation);
+}
+
+/* The neck's share, about its own joint, and what that moves the head by, in the neck's space. */
+static void turn_neck(const noh_stage_kind *k, noh_part_work *w, const neck_space *n, const float share[4],
+                      float moved[3])
+{
+    const uint32_t joint = k->face->neck.joint;
+    float own[4], at[3], in_model[4], back[4], way[3];
+    noh_stage_joint_at(k, w->local, joint, own, at);
+    noh_quat_conjugate(n->rotation, back);
+    noh_quat_mul(n->rotation, share, in_model);
+    noh_quat_mul(in_model, back, in_model);
+    for (int i = 0; i < 3; i++) way[i] = n->origin[i] - at[i];
+    noh_quat_rotate(in_model, way, moved);
+    for (int i = 0; i < 3; i++) moved[i] -= way[i];
+    noh_quat_rotate(back, moved, moved);
+    noh_quat_conjugate(own, back);
+    noh_quat_mul(back, in_model, in_model);
+    noh_quat_mul(in_model, own, in_model);
+    noh_quat_mul(w->local[joint].rotation, in_model, w->local[joint].rotation);
+    noh_quat_normalize(w->local[joint].rotation);
+}
+
+static void turn_head(const noh_stage_kind *k, noh_part_work *w, const neck_space *n, const float head[4],
+                      float moved[3])
+{
+    static const float none[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    float share[4], rest[4];
+    memset(moved, 0, 3 * sizeof *moved);
+    memcpy(rest, head, sizeof rest);
+    if (turns(w, &k->face->neck)) {
+        noh_quat_nlerp(none, head, NECK_SHARE, share);
+        turn_neck(k, w, n, share, moved);
+        noh_quat_conjugate(share, rest);
+        noh_quat_mul(rest, head, rest);
+    }
+    turn(w, &k->face->head, rest);
+}
+
+/* Eyes are the face's: what clips do to them is not kept. */
+static void turn_eyes(const noh_stage_kind *k, noh_part_work *w, const noh_face_pose *pose)
+{
+    for (int e = 0; e < 2; e++) {
+        const noh_stage_face_joint *j = &k->face->eyes[e];
+        float yaw[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, pitch[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+        if (!turns(w, j)) continue;
+        noh_sin_cos(0.5f * pose->eyes[e][0], &yaw[1], &yaw[3]);
+        noh_sin_cos(-0.5f * pose->eyes[e][1], &pitch[0], &pitch[3]);
+        noh_quat_mul(yaw, pitch, yaw);
+        memcpy(w->local[j->joint].rotation, k->skeleton.bind_pose[j->joint].rotation, sizeof yaw);
+        turn(w, j, yaw);
+    }
+}
+
+/* ---- targets ---- */
+
+static float float_of(const noh_part_work *w, uint32_t at)
+{
+    const float value = at == NOH_NONE ? 0.0f : w->floats[at];
+    return value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
+}
+
+/* A person's lids are shut at more or less than others'. */
+static void shut_lids(const noh_stage_face_kind *k, const noh_stage_face *f, const float *channels, float *floats)
+{
+    for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) {
+        const float more = f->shut[i] ? (float)(f->shut[i] - 1) / NOH_STAGE_SHUT - 1.0f : 0.0f;
+        if (more == 0.0f) continue;
+        for (uint32_t l = 0; l < k->link_count; l++) {
+            const noh_face_link *link = &k->links[l];
+            if (link->channel <= NOH_CHANNEL_BLINK_RIGHT && link->target == k->lids[i])
+                floats[link->target] += more * link->weight * channels[link->channel];
+        }
+    }
+}
+
+static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_part_work *w, const noh_face_pose *pose)
+{
+    float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
+    const float *says = f->says ? f->visemes : NULL;
+    if (says && f->face.flags & NOH_FACE_FOUR) {
+        noh_face_four four;
+        noh_face_four_of(pose, says, &four);
+        noh_face_four_visemes(&four, two);
+        says = two;
+    }
+    noh_face_channels(pose, &k->face->desc, says, NOH_MOUTH_NONE, channels);
+    if (turns(w, &k->face->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    noh_face_share(&k->face->rules, float_of(w, k->face->speech), float_of(w, k->face->lips_shut), channels);
+    noh_face_apply(k->face->links, k->face->link_count, channels, w->floats);
+    shut_lids(k->face, f, channels, w->floats);
+}
+
+/* ---- all of it ---- */
+
+static void live(const noh_stage_kind *k, noh_stage_face *f, int64_t clock)
+{
+    const int64_t ticks = clock - f->clock;
+    if (ticks <= 0) return;
+    f->clock = clock;
+    if (ticks > SKIP_TICKS) {
+        noh_face_skip(&f->face, &k->face->desc, ticks);
+    } else {
+        noh_face_step(&f->face, &k->face->desc, (uint32_t)ticks);
+    }
+}
+
+static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, const noh_part_work *w,
+                 const neck_space *n)
+{
+    float point[3], back[4];
+    if (!target_of(s, f, w->home, point)) {
+        if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &k->face->desc, NULL, NULL);
+        f->looks = NOH_LOOKS_AHEAD; /* whom it looked at may be gone */
+        f->fresh = 0;
+        return;
+    }
+    to_model(w, point, point);
+    for (int i = 0; i < 3; i++) point[i] -= n->origin[i];
+    noh_quat_conjugate(n->rotation, back);
+    noh_quat_rotate(back, point, point);
+    hold_point(&k->face->desc, point);
+    if (f->fresh) {
+        (void)noh_face_look_at(&f->face, &k->face->desc, point, NULL);
+    } else {
+        (void)noh_face_follow(&f->face, &k->face->desc, point, NULL);
+    }
+    f->fresh = 0;
+}
+
+void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, noh_part_work *w)
+{
+    noh_face_pose pose;
+    neck_space n;
+    float moved[3];
+    live(k, f, w->clock);
+    breathe(w, k->face, noh_face_breath(&f->face, &k->face->desc));
+    neck_space_of(k, w, &n);
+    look(s, k, f, w, &n);
+    noh_face_pose_of(&f->face, &k->face->desc, &pose);
+    if (turns(w, &k->face->head)) {
+        noh_face aimed = f->face;
+        turn_head(k, w, &n, pose.head, moved);
+        for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i];
+        noh_face_pose_of(&aimed, &k->face->desc, &pose);
+    }
+    turn_eyes(k, w, &pose);
+    move_targets(k, f, w, &pose);
+}

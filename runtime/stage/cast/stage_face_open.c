@@ -1,0 +1,474 @@
+/* stage_face_open.c: the joints and targets of a kind's faces, and the calls that tell a face what to do. */
+#include <string.h>
+
+#include "core/base/hash.h"
+#include "core/base/math_internal.h"
+#include "core/base/name_internal.h"
+#include "core/base/quat.h"
+#include "stage/cast/stage_internal.h"
+
+/* ---- joints ---- */
+
+#define NAME_BYTES 40u
+
+/* Letters and digits alone, in lower case, behind the last ':' ("mixamorig:LeftEye"); "" where it is too long. */
+static void plain_name(const char *name, char out[NAME_BYTES])
+{
+    uint32_t n = 0;
+    for (; *name; name++) {
+        const char c = *name >= 'A' && *name <= 'Z' ? (char)(*name + 32) : *name;
+        if (c == ':') n = 0;
+        if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))) continue;
+        if (n + 1u >= NAME_BYTES) {
+            n = 0;
+            break;
+        }
+        out[n++] = c;
+    }
+    out[n] = '\0';
+}
+
+/* What tools put before names of joints: VRM's, 3ds Max's, Rigify's, Character Creator's, Mixamo's. */
+static const char *without_prefix(const char *plain)
+{
+    static const char *const prefixes[] = { "jbipc", "jbip", "jadj", "bip01", "bip001", "def", "ccbase", "mixamorig" };
+    for (uint32_t p = 0; p < sizeof prefixes / sizeof prefixes[0]; p++) {
+        uint32_t n = 0;
+        while (prefixes[p][n] && plain[n] == prefixes[p][n]) n++;
+        if (!prefixes[p][n] && plain[n]) return plain + n;
+    }
+    return plain;
+}
+
+static const char *const heads[] = { "head", NULL };
+static const char *const necks[] = { "neck", "neck1", "neck01", NULL };
+static const char *const chests[] = { "upperchest", "chest", "spine2", "spine03", "spine3", NULL };
+static const char *const left_eyes[] = { "lefteye", "eyeleft", "eyel", "leye", "lfaceeye", NULL };
+static const char *const right_eyes[] = { "righteye", "eyeright", "eyer", "reye", "rfaceeye", NULL };
+
+/* The first of a list of usual names that a joint has. */
+static uint32_t find_usual(const noh_kind_desc *d, uint32_t joint_count, const char *const *usual)
+{
+    char plain[NAME_BYTES];
+    for (; *usual; usual++) {
+        for (uint32_t j = 0; j < joint_count; j++) {
+            const char *name = noh_pack_joint_name(d->mesh, d->skeleton, j);
+            if (!name) continue;
+            plain_name(name, plain);
+            if (noh_names_equal(plain, *usual) || noh_names_equal(without_prefix(plain), *usual)) return j;
+        }
+    }
+    return NOH_NONE;
+}
+
+/* Where a joint stands in model space. Scales are taken along, shear is not. */
+static void chain(const noh_skeleton *skeleton, const noh_transform *local, uint32_t joint, float rotation[4],
+                  float at[3])
+{
+    memcpy(rotation, local[joint].rotation, 4 * sizeof *rotation);
+    memcpy(at, local[joint].translation, 3 * sizeof *at);
+    for (uint32_t up = skeleton->parents[joint]; up != NOH_JOINT_ROOT; up = skeleton->parents[up]) {
+        for (int i = 0; i < 3; i++) at[i] *= local[up].scale[i];
+        noh_quat_rotate(local[up].rotation, at, at);
+        for (int i = 0; i < 3; i++) at[i] += local[up].translation[i];
+        noh_quat_mul(local[up].rotation, rotation, rotation);
+    }
+}
+
+void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+                        float at[3])
+{
+    chain(&k->skeleton, local, joint, rotation, at);
+}
+
+/* *out: the joint of that name, or of a usual one. 0: there is none of that name. */
+static int open_joint(const noh_kind_desc *d, const noh_skeleton *skeleton, const char *name, const char *const *usual,
+                      noh_stage_face_joint *out)
+{
+    float rotation[4];
+    memset(out, 0, sizeof *out);
+    out->joint = NOH_NONE;
+    if (!skeleton->joint_count || (name && !name[0])) return 1;
+    if (name) {
+        for (uint32_t j = 0; j < skeleton->joint_count && out->joint == NOH_NONE; j++) {
+            const char *own = noh_pack_joint_name(d->mesh, d->skeleton, j);
+            if (own && noh_names_equal(own, name)) out->joint = j;
+        }
+    } else {
+        out->joint = find_usual(d, skeleton->joint_count, usual);
+    }
+    if (out->joint == NOH_NONE) return !name;
+    chain(skeleton, skeleton->bind_pose, out->joint, rotation, out->at);
+    noh_quat_conjugate(rotation, out->axes);
+    return 1;
+}
+
+static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
+{
+    while (joint != above && joint != NOH_JOINT_ROOT) joint = skeleton->parents[joint];
+    return joint == above;
+}
+
+/* A neck that the head does not hang on, or eyes that do not hang on the head, are left alone. Without a head eyes turn
+ * by themselves. */
+static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
+{
+    noh_stage_face_joint *others[] = { &f->neck, &f->chest, &f->eyes[0], &f->eyes[1] };
+    const uint32_t head = f->head.joint;
+    for (int i = 0; i < 4; i++) {
+        const uint32_t other = others[i]->joint;
+        const int is_eye = i >= 2;
+        int hangs = is_eye;
+        if (other == NOH_NONE) continue;
+        if (head != NOH_NONE) hangs = is_eye ? is_below(skeleton, other, head) : is_below(skeleton, head, other);
+        if (!hangs || other == head) others[i]->joint = NOH_NONE;
+    }
+    if (f->eyes[0].joint == NOH_NONE || f->eyes[1].joint == NOH_NONE) f->eyes[0].joint = f->eyes[1].joint = NOH_NONE;
+}
+
+/* ---- the desc ---- */
+
+/* The eyes from model space to that of the neck: from where the head turns, or, where none does, as far below and
+ * behind them as in people, measured by the distance of the eyes. */
+static void place_eyes(noh_stage_face_kind *f)
+{
+    float from[3], apart = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        const float way = f->desc.eyes[0][i] - f->desc.eyes[1][i];
+        f->middle[i] = 0.5f * (f->desc.eyes[0][i] + f->desc.eyes[1][i]);
+        apart += way * way;
+    }
+    memcpy(from, f->middle, sizeof from);
+    from[1] -= 1.4f * noh_sqrt(apart);
+    from[2] -= 1.25f * noh_sqrt(apart);
+    if (f->head.joint != NOH_NONE) memcpy(from, f->head.at, sizeof from);
+    for (int i = 0; i < 3; i++) {
+        f->desc.eyes[0][i] -= from[i];
+        f->desc.eyes[1][i] -= from[i];
+    }
+    memcpy(f->head.at, from, sizeof from);
+}
+
+static const char *bad_rules(const noh_face_rules *r)
+{
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        if (r->mouth[i] > NOH_MOUTH_NONE || r->lids[i] > NOH_OVERRIDE_BLEND || r->eyes[i] > NOH_OVERRIDE_BLEND ||
+            r->speech[i] > NOH_OVERRIDE_BLEND)
+            return "rules of a kind's face: a value is none of its enumeration";
+    }
+    return NULL;
+}
+
+/* 0: one that is named is not there. */
+static int open_joints(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
+{
+    const noh_kind_face *from = d->face;
+    return open_joint(d, skeleton, from ? from->head : NULL, heads, &f->head) &&
+           open_joint(d, skeleton, from ? from->neck : NULL, necks, &f->neck) &&
+           open_joint(d, skeleton, from ? from->chest : NULL, chests, &f->chest) &&
+           open_joint(d, skeleton, from ? from->eyes[0] : NULL, left_eyes, &f->eyes[0]) &&
+           open_joint(d, skeleton, from ? from->eyes[1] : NULL, right_eyes, &f->eyes[1]);
+}
+
+int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3])
+{
+    noh_skeleton skeleton;
+    noh_stage_face_kind f;
+    if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &skeleton, NULL, NULL) != NOH_OK ||
+        !open_joints(kind, &skeleton, &f))
+        return 0;
+    drop_strays(&skeleton, &f);
+    for (int e = 0; e < 2 && f.eyes[0].joint != NOH_NONE; e++) memcpy(eyes[e], f.eyes[e].at, sizeof f.eyes[e].at);
+    return f.eyes[0].joint != NOH_NONE;
+}
+
+/* All but links and floats. Returns what is wrong. */
+static const char *open_shared(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
+{
+    const noh_kind_face *from = d->face;
+    noh_face face;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    float square = 0.0f;
+    f->desc = from->face;
+    f->rules = from->rules;
+    f->flags = from->flags;
+    if (!open_joints(d, skeleton, f)) return "face of a kind: its skeleton has no joint of a name that is given";
+    drop_strays(skeleton, f);
+    for (int i = 0; i < 6; i++) square += f->desc.eyes[i / 3][i % 3] * f->desc.eyes[i / 3][i % 3];
+    if (square == 0.0f && f->eyes[0].joint == NOH_NONE)
+        return "face of a kind: its skeleton has no joints for the eyes, so give their centres (noh_kind_face.face.eyes)";
+    for (int e = 0; square == 0.0f && e < 2; e++) memcpy(f->desc.eyes[e], f->eyes[e].at, sizeof f->desc.eyes[e]);
+    place_eyes(f);
+    if (f->head.joint == NOH_NONE) f->desc.head_yaw_max = f->desc.head_pitch_max = 1e-6f;
+    if (noh_face_init(&face, &f->desc, 0, f->flags, &error) != NOH_OK) return error.what;
+    return bad_rules(&f->rules);
+}
+
+const char *noh_stage_bad_face(const noh_kind_desc *d)
+{
+    noh_skeleton skeleton;
+    noh_stage_face_kind f;
+    if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) != NOH_OK) skeleton.joint_count = 0;
+    return open_shared(d, &skeleton, &f);
+}
+
+uint32_t noh_stage_hash_face(const noh_kind_desc *d)
+{
+    uint32_t hash = 2166136261u;
+    const uint8_t *bytes = (const uint8_t *)&d->face->face;
+    for (size_t i = 0; i < sizeof d->face->face; i++) hash = (hash ^ bytes[i]) * 16777619u;
+    return hash;
+}
+
+/* ---- targets ---- */
+
+/* Of the kind's meshes, the nth that has the target. */
+static uint32_t find_in_pack(const void *user, const char *name, uint32_t nth)
+{
+    const noh_kind_desc *d = user;
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+    const uint32_t count = noh_stage_items(d, items);
+    for (uint32_t i = 0; i < count && i < NOH_STAGE_MESHES_MAX; i++) {
+        noh_mesh mesh;
+        if (noh_pack_mesh_at(d->mesh, items[i].mesh, &mesh, NULL) != NOH_OK) continue;
+        if (noh_mesh_find_target(&mesh, name) != NOH_NONE && nth-- == 0) return i;
+    }
+    return NOH_NONE;
+}
+
+uint32_t noh_stage_face_bind(const noh_kind_desc *d, noh_face_find_fn find, const void *user, noh_face_link *links,
+                             uint32_t link_max)
+{
+    const noh_face_recipe own = noh_face_recipe_in_pack(d->mesh);
+    const noh_face_recipe *const usual[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
+                                              &noh_face_recipe_units };
+    const int given = d->face && d->face->recipes;
+    return noh_face_recipe_bind_by(given ? d->face->recipes : usual, given ? d->face->recipe_count : 4u, find, user,
+                                   links, link_max);
+}
+
+uint32_t noh_stage_face_links(const noh_kind_desc *d)
+{
+    return noh_stage_face_bind(d, find_in_pack, d, NULL, 0);
+}
+
+/* Floats of the set that the name moves, each once: one that takes its value from a namesake is the namesake. */
+static uint32_t find_in_kind(const void *user, const char *name, uint32_t nth)
+{
+    const noh_stage_kind *k = user;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        const uint32_t target = noh_mesh_find_target(&mesh->mesh, name), at = mesh->first_float + target;
+        if (target == NOH_NONE || at >= k->set.float_count || k->sources[at] != at) continue;
+        if (nth-- == 0) return at;
+    }
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) { /* one that no clip moves stands for itself, or a namesake */
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        const uint32_t target = noh_mesh_find_target(&mesh->mesh, name);
+        const uint32_t source = target == NOH_NONE ? NOH_NONE : k->sources[mesh->first_float + target];
+        if (source == NOH_NONE || source == mesh->first_float + target || source >= k->set.float_count) continue;
+        for (uint32_t other = 0; other < k->plan->mesh_count; other++) {
+            const uint32_t own = source - k->meshes[other].first_float;
+            if (own < k->meshes[other].mesh.header->target_count) return NOH_NONE; /* it was found above */
+        }
+        return nth == 0 ? source : NOH_NONE;
+    }
+    return NOH_NONE;
+}
+
+static uint32_t find_float(const noh_stage_kind *k, const char *name)
+{
+    const uint32_t hash = noh_hash_name(name);
+    for (uint32_t f = 0; k->bank && f < k->set.float_count; f++) {
+        if (k->name_hashes[f] == hash && k->sources[f] == f) return f;
+    }
+    return NOH_NONE;
+}
+
+static void find_lids(noh_stage_face_kind *f)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) f->lids[i] = NOH_NONE;
+    for (uint32_t l = 0; l < f->link_count && count < NOH_IDENTITY_CLOSINGS; l++) {
+        uint32_t known = 0;
+        if (f->links[l].channel > NOH_CHANNEL_BLINK_RIGHT) continue;
+        while (known < count && f->lids[known] != f->links[l].target) known++;
+        if (known == count) f->lids[count++] = f->links[l].target;
+    }
+}
+
+void noh_stage_open_face(noh_stage_kind *k)
+{
+    noh_stage_face_kind *f = k->face;
+    noh_face_link *links = f->links;
+    const uint32_t most = noh_stage_face_links(k->desc);
+    const char *what;
+    memset(f, 0, sizeof *f);
+    what = open_shared(k->desc, &k->skeleton, f);
+    NOH_ASSERT(!what); /* the plan was made of it */
+    (void)what;
+    f->links = links;
+    f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, links, most);
+    f->link_count = f->link_count < most ? f->link_count : most;
+    find_lids(f);
+    f->speech = find_float(k, "speech");
+    f->lips_shut = find_float(k, "lips-shut");
+}
+
+/* ---- a face ---- */
+
+void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed)
+{
+    noh_stage_face *f = noh_stage_face_of(k, index);
+    memset(f, 0, sizeof *f);
+    (void)noh_face_init(&f->face, &k->face->desc, seed, k->face->flags, NULL);
+    f->clock = s->head->clock;
+    f->begun = 1;
+}
+
+/* What the arithmetic of a face cannot stand: counts and enumerations out of range, values that are not finite. */
+static int is_sound(const noh_face *f)
+{
+    float sum = f->head[0].from + f->head[0].speed + f->head[0].goal + f->head[1].from + f->head[1].speed +
+                f->head[1].goal;
+    for (int i = 0; i < 3; i++) sum += f->from[i] + f->target[i] + (i < 2 ? f->away[i] + f->tremor[i] : 0.0f);
+    for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
+        const noh_face_feeling *e = &f->feelings[i];
+        sum += e->amount.from + e->amount.speed + e->amount.goal + e->amount.omega + e->fade_omega;
+        if (e->emotion >= NOH_EMOTION_COUNT || e->on > 1u || e->holds > 1u) return 0;
+    }
+    return noh_is_finite(sum) && noh_is_finite(f->head[0].omega + f->head[1].omega) && f->clock >= 0 &&
+           f->activity < NOH_ACTIVITY_COUNT && f->flags <= NOH_FACE_FLAGS && f->gaze <= 2u && f->blinking <= 2u &&
+           (f->gaze != 2u || f->gaze_ticks);
+}
+
+const char *noh_stage_check_face(const noh_stage_face *f)
+{
+    float sum = f->point[0] + f->point[1] + f->point[2];
+    for (int i = 0; i < NOH_VISEME_COUNT; i++) sum += f->visemes[i];
+    return !noh_is_finite(sum) || f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||
+                   !is_sound(&f->face)
+               ? "state: bad face of an actor"
+               : NULL;
+}
+
+/* ---- calls ---- */
+
+/* The face of an actor for a change; NULL after *result. */
+static noh_stage_face *face_for(noh_stage *s, noh_actor actor, noh_stage_kind **kind, noh_result *result,
+                                noh_error *error)
+{
+    noh_stage_actor *a;
+    *result = noh_stage_change(s, actor, &a, kind, error);
+    if (*result != NOH_OK) return NULL;
+    if (!(*kind)->face) {
+        *result = noh_fail(error, NOH_ERR_ARG, "the kind has no face (noh_kind_desc.face)", 0, 0);
+        return NULL;
+    }
+    return noh_stage_face_of(*kind, noh_stage_index(*kind, a));
+}
+
+noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float point[3], noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (!f) return result;
+    if (point && !noh_is_finite(point[0] + point[1] + point[2])) {
+        return noh_fail(error, NOH_ERR_ARG, "point to look at: not finite", 0, 0);
+    }
+    f->looks = point ? NOH_LOOKS_AT_POINT : NOH_LOOKS_AHEAD;
+    f->fresh = 1;
+    for (int i = 0; i < 3; i++) f->point[i] = point ? point[i] : 0.0f;
+    return NOH_OK;
+}
+
+noh_result noh_actor_look_at_actor(noh_stage *stage, noh_actor actor, noh_actor other, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (!f) return result;
+    if (!noh_stage_actor_of(stage, other, NULL)) return noh_stage_gone(error, other);
+    f->fresh = f->fresh || f->looks != NOH_LOOKS_AT_ACTOR || f->target != other.id;
+    f->looks = NOH_LOOKS_AT_ACTOR;
+    f->target = other.id;
+    return NOH_OK;
+}
+
+noh_result noh_actor_feel(noh_stage *stage, noh_actor actor, const char *emotion, float amount, uint32_t onset_ticks,
+                          uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    NOH_ASSERT(emotion);
+    return f ? noh_face_feel(&f->face, noh_emotion_of_name(emotion), amount, onset_ticks, hold_ticks, fade_ticks, error)
+             : result;
+}
+
+noh_result noh_actor_set_activity(noh_stage *stage, noh_actor actor, noh_activity activity, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (!f) return result;
+    if ((unsigned)activity >= NOH_ACTIVITY_COUNT) return noh_fail(error, NOH_ERR_ARG, "no such activity", activity, 0);
+    noh_face_set_activity(&f->face, &k->face->desc, activity);
+    return NOH_OK;
+}
+
+noh_result noh_actor_set_visemes(noh_stage *stage, noh_actor actor, const float *visemes, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (!f) return result;
+    for (uint32_t i = 0; visemes && i < NOH_VISEME_COUNT; i++) {
+        if (!(visemes[i] >= 0.0f && visemes[i] <= 1.0f))
+            return noh_fail(error, NOH_ERR_ARG, "a viseme is not in 0..1", i, 0);
+    }
+    f->says = visemes != NULL;
+    for (uint32_t i = 0; i < NOH_VISEME_COUNT; i++) f->visemes[i] = visemes ? visemes[i] : 0.0f;
+    return NOH_OK;
+}
+
+noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t flags, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (!f) return result;
+    if (flags > NOH_FACE_FLAGS) return noh_fail(error, NOH_ERR_ARG, "flags of a face: unknown bits", 0, 0);
+    noh_face_set_flags(&f->face, &k->face->desc, flags);
+    return NOH_OK;
+}
+
+noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (f) noh_stage_begin_face(stage, k, noh_stage_index(k, noh_stage_actor_of(stage, actor, NULL)), seed);
+    return result;
+}
+
+noh_result noh_actor_blink(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_kind *k;
+    noh_result result;
+    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    if (f) noh_face_blink(&f->face, &k->face->desc);
+    return result;
+}
+
+noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose *pose, noh_error *error)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    NOH_ASSERT(pose);
+    if (!a) return noh_stage_gone(error, actor);
+    if (!k->face) return noh_fail(error, NOH_ERR_ARG, "the kind has no face (noh_kind_desc.face)", 0, 0);
+    noh_face_pose_of(&noh_stage_face_of(k, noh_stage_index(k, a))->face, &k->face->desc, pose);
+    return NOH_OK;
+}

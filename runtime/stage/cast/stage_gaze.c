@@ -1,0 +1,100 @@
+/* stage_gaze.c: gazes and hands as parts of a kind. */
+#include "stage/cast/stage_gaze.h"
+
+#include <string.h>
+
+#include "core/base/assert.h"
+#include "core/base/quat.h"
+#include "life/physics/vector_internal.h"
+#include "stage/cast/stage_internal.h"
+
+#define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
+
+/* A point of the world in model space. */
+static void to_model(const noh_part_work *w, const float point[3], float out[3])
+{
+    float back[4];
+    for (int i = 0; i < 3; i++) out[i] = (float)((double)point[i] - w->home[i]) - w->near_place[i];
+    noh_quat_conjugate(w->place.rotation, back);
+    noh_quat_rotate(back, out, out);
+    for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
+}
+
+static float seconds_of(const noh_part_work *w)
+{
+    return (float)w->ticks / (float)NOH_TICKS_PER_SECOND;
+}
+
+/* ---- gazes ---- */
+
+static void look(noh_part_work *w)
+{
+    const noh_kind_gaze *shared = w->user;
+    const noh_stage_kind *k = w->kind;
+    noh_gaze *g = w->state;
+    float target[3];
+    if (k->face || shared->rig.last >= w->joint_count) return;
+    to_model(w, g->point, target);
+    noh_gaze_step(g, &shared->rig, &shared->head, w->skeleton, w->local, g->looks ? target : NULL, seconds_of(w),
+                  w->cut || w->ticks > SKIP_TICKS);
+}
+
+static const char *check_gaze(const void *user, const void *state)
+{
+    (void)user;
+    return noh_gaze_check(state);
+}
+
+noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze)
+{
+    noh_stage_part part;
+    NOH_ASSERT(gaze);
+    memset(&part, 0, sizeof part);
+    part.name = "gaze";
+    part.modify = look;
+    part.check = check_gaze;
+    part.user = gaze;
+    part.state_bytes = sizeof(noh_gaze);
+    return part;
+}
+
+/* ---- hands ---- */
+
+static void reach_out(noh_part_work *w)
+{
+    const noh_reach_rig *rig = w->user;
+    noh_reach *r = w->state;
+    float points[NOH_REACH_ARMS_MAX][3];
+    if (rig->last >= w->joint_count) return;
+    for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) to_model(w, r->hands[i].point, points[i]);
+    noh_reach_step(r, rig, w->skeleton, w->local, points, seconds_of(w), w->cut || w->ticks > SKIP_TICKS);
+}
+
+static const char *check_reach(const void *user, const void *state)
+{
+    (void)user;
+    return noh_reach_check(state);
+}
+
+noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig)
+{
+    noh_stage_part part;
+    NOH_ASSERT(rig);
+    memset(&part, 0, sizeof part);
+    part.name = "hands";
+    part.modify = reach_out;
+    part.check = check_reach;
+    part.user = rig;
+    part.state_bytes = sizeof(noh_reach);
+    return part;
+}
+
+void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3])
+{
+    if (part->modify == look) {
+        noh_sub3(((noh_gaze *)state)->point, by, ((noh_gaze *)state)->point);
+    } else if (part->modify == reach_out) {
+        noh_reach_hand *hands = ((noh_reach *)state)->hands;
+        for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) noh_sub3(hands[i].point, by, hands[i].point);
+    }
+}

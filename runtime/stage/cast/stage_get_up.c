@@ -1,0 +1,290 @@
+/* stage_get_up.c: actors that get up: the clip, the place under the ragdoll, and what is left of the ragdoll's pose.
+ *
+ * What is left is taken when the next pose is made, after all that changes poses, so that nothing leaps whatever plays:
+ * for each body's joint the rotation between the two poses, as a vector, and its speed. It ends by a quintic whose
+ * position, speed and acceleration are 0 in the end, and whose first two are what the ragdoll has to begin with. */
+#include <string.h>
+
+#include "motion/anim/clock_internal.h"
+#include "motion/anim/controller_pose.h"
+#include "core/base/assert.h"
+#include "core/base/quat.h"
+#include "life/physics/vector_internal.h"
+#include "life/physics/world_internal.h"
+#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_ragdoll.h"
+
+#define BLEND_TICKS 19200u
+#define SPEED_SECONDS 0.005f /* speeds are differences over so long */
+#define PI 3.14159265f
+
+/* ---- which clip ---- */
+
+/* Its bodies as a pose of the clip's begins, or as what plays now has them, from where b's count. */
+static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, const noh_stage_body *b,
+                            uint32_t clip, noh_ragdoll_pose *bodies, noh_error *error)
+{
+    const noh_character_desc desc = noh_stage_character_desc(k, 0);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
+    noh_character_scratch scratch;
+    noh_clip_set set = k->set;
+    noh_stage_sampler sampler;
+    const noh_result result = noh_character_scratch_init(s->jobs[0].scratch, s->scratch_bytes, &desc, &scratch, error);
+    if (result != NOH_OK) return result;
+    if (clip != NOH_NONE) {
+        set.sample(set.user, clip, 0, set.joint_count, scratch.local, set.float_count, scratch.floats);
+    } else {
+        const uint32_t index = noh_stage_index(k, a);
+        if (k->graph_count) {
+            sampler = k->sampler;
+            noh_stage_pose_graph(s, &s->jobs[0], k, index, 0, 0, &sampler);
+            set.user = &sampler;
+        }
+        noh_controller_pose(noh_character_controller(noh_stage_character(k, index)), &set, &scratch.pose, scratch.local,
+                            scratch.floats);
+    }
+    noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, scratch.local, &frame, bodies);
+    return NOH_OK;
+}
+
+/* The clip that begins most like the ragdoll lies, and its bodies then. */
+static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, const noh_stage_body *b,
+                              const noh_get_up *how, uint32_t *chosen, noh_ragdoll_pose *bodies, noh_error *error)
+{
+    noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
+    float best = 0.0f;
+    *chosen = NOH_NONE;
+    memset(tried, 0, sizeof tried);
+    memset(bodies, 0, sizeof tried);
+    if (!how->clips || !how->clip_count) return bodies_of(s, k, a, b, NOH_NONE, bodies, error);
+    for (uint32_t i = 0; i < how->clip_count; i++) {
+        const uint32_t clip = noh_stage_find(s, (uint32_t)(k - s->kinds), NOH_NAME_CLIP, how->clips[i]);
+        noh_result result;
+        if (clip == NOH_NONE)
+            return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name to get up by", i, 0);
+        result = bodies_of(s, k, a, b, clip, tried, error);
+        if (result != NOH_OK) return result;
+        const float like = noh_ragdoll_likeness(tried, b->bodies[0]);
+        if (i && !(like > best)) continue;
+        best = like;
+        *chosen = i;
+        memcpy(bodies, tried, sizeof tried);
+    }
+    return NOH_OK;
+}
+
+/* ---- where it stands ---- */
+
+/* The highest ground at a place that is not above `top`; 0: there is none. All from the origin. */
+static int ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
+{
+    const noh_ray down = { { at[0], top, at[2] }, { 0.0f, -1.0f, 0.0f }, 1e30f };
+    float found = -1e30f, y;
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        const float *n = w->planes[i].normal;
+        if (n[1] < 0.1f) continue;
+        y = (noh_plane_distance(&w->planes[i], origin) - n[0] * at[0] - n[2] * at[2]) / n[1];
+        if (y <= top && y > found) found = y;
+    }
+    if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &y, NULL) && y <= top && y > found) {
+        found = y;
+    }
+    for (uint32_t i = 0; i < w->box_count; i++) {
+        noh_obb box = w->boxes[i];
+        noh_sub3(box.centre, origin, box.centre);
+        const float far = noh_ray_obb(&down, &box);
+        if (far > 0.0f && top - far > found) found = top - far;
+    }
+    for (uint32_t i = 0; i < w->capsule_count; i++) {
+        const noh_capsule *c = &w->capsules[i];
+        float from[3], to[3];
+        noh_sub3(c->from, origin, from);
+        noh_sub3(c->to, origin, to);
+        const float far = noh_ray_capsule(&down, from, to, c->radius);
+        if (far > 0.0f && top - far > found) found = top - far;
+    }
+    *height = found;
+    return found > -1e29f;
+}
+
+/* Under its ragdoll, headed as that lies: on the ground, or where its first bodies meet. */
+static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_stage_body *b,
+                        const noh_ragdoll_pose *bodies)
+{
+    noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
+    const noh_ragdoll_pose *first = &b->bodies[0][0];
+    float ground;
+    noh_ragdoll_place_under(bodies, b->bodies[0], k->ragdoll->rig.body_count, &frame);
+    if (!k->ragdoll->world || !ground_below(k->ragdoll->world, b->origin, first->position,
+                                            first->position[1] + k->ragdoll->rig.bodies[0].radius, &ground)) {
+        ground = frame.position[1] + first->position[1] - bodies[0].position[1];
+    }
+    frame.position[1] = ground;
+    for (int i = 0; i < 3; i++) {
+        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) / (double)k->ragdoll->metres);
+    }
+    memcpy(a->place.rotation, frame.rotation, sizeof frame.rotation);
+    a->before = a->place;
+    a->on_its_way = 0;
+}
+
+/* ---- what is left of the ragdoll's pose ---- */
+
+/* The bodies after some seconds more, as they move. */
+static void advanced(const noh_stage_body *b, uint32_t count, float seconds, noh_ragdoll_pose *out)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        float turn[3], q[4];
+        out[i] = b->bodies[0][i];
+        noh_madd3(out[i].position, seconds, b->motions[i].velocity, out[i].position);
+        for (int n = 0; n < 3; n++) turn[n] = b->motions[i].spin[n] * seconds;
+        noh_quat_from_rotation(turn, q);
+        noh_quat_mul(q, out[i].rotation, out[i].rotation);
+        noh_quat_normalize(out[i].rotation);
+    }
+}
+
+/* What the ragdoll's pose differs by from the work's, which becomes the ragdoll's. */
+typedef struct differences {
+    float turns[NOH_RAGDOLL_BODIES_MAX][3], offset[3];
+} differences;
+
+static void differ(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds,
+                   differences *d)
+{
+    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
+    noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
+    float weights[NOH_RAGDOLL_BODIES_MAX], before[NOH_RAGDOLL_BODIES_MAX][4], from[3];
+    advanced(b, fit->body_count, seconds, bodies);
+    noh_stage_ragdoll_weights(k, b, weights);
+    for (uint32_t i = 0; i < fit->body_count; i++) {
+        noh_quat_conjugate(w->local[fit->joints[i]].rotation, before[i]);
+    }
+    memcpy(from, w->local[fit->joints[0]].translation, sizeof from);
+    noh_ragdoll_to_pose(fit, w->skeleton, &frame, bodies, weights, w->local);
+    for (uint32_t i = 0; i < fit->body_count; i++) {
+        float turn[4];
+        noh_quat_mul(w->local[fit->joints[i]].rotation, before[i], turn);
+        noh_quat_to_rotation(turn, d->turns[i]);
+    }
+    noh_sub3(w->local[fit->joints[0]].translation, from, d->offset);
+}
+
+/* A rotation's vector next to another one: there are two within a turn. */
+static void unwrap(const float near[3], float v[3])
+{
+    const float length = noh_sqrt(noh_dot3(v, v));
+    if (noh_dot3(near, v) < 0.0f && length > 0.5f * PI) noh_madd3(v, -2.0f * PI / length, v, v);
+}
+
+static void keep_joints(const noh_ragdoll_fit *fit, const noh_transform *local, noh_transform *kept)
+{
+    for (uint32_t i = 0; i < fit->body_count; i++) kept[i] = local[fit->joints[i]];
+}
+
+static void begin(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w, float seconds)
+{
+    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    noh_transform kept[NOH_RAGDOLL_BODIES_MAX];
+    differences now, then;
+    keep_joints(fit, w->local, kept);
+    differ(k, b, w, seconds + SPEED_SECONDS, &then);
+    for (uint32_t i = 0; i < fit->body_count; i++) w->local[fit->joints[i]] = kept[i];
+    differ(k, b, w, seconds, &now);
+    for (uint32_t i = 0; i < fit->body_count; i++) {
+        noh_ragdoll_motion *m = &b->motions[i];
+        unwrap(now.turns[i], then.turns[i]);
+        memcpy(m->velocity, now.turns[i], sizeof m->velocity);
+        for (int n = 0; n < 3; n++) m->spin[n] = (then.turns[i][n] - now.turns[i][n]) / SPEED_SECONDS;
+    }
+    memcpy(b->offset, now.offset, sizeof b->offset);
+    for (int n = 0; n < 3; n++) b->speed[n] = (then.offset[n] - now.offset[n]) / SPEED_SECONDS;
+}
+
+/* How much of an offset and of its speed is left. */
+static void shares(float seconds, float duration, float share[2])
+{
+    const float s = seconds / duration, s3 = s * s * s;
+    share[0] = 1.0f - s3 * (10.0f - s * (15.0f - 6.0f * s));
+    share[1] = duration * (s - s3 * (6.0f - s * (8.0f - 3.0f * s)));
+}
+
+static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds)
+{
+    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    float share[2];
+    shares(seconds, (float)b->rise_ticks / (float)NOH_TICKS_PER_SECOND, share);
+    for (uint32_t i = 0; i < fit->body_count; i++) {
+        noh_transform *t = &w->local[fit->joints[i]];
+        float turn[3], q[4];
+        for (int n = 0; n < 3; n++) turn[n] = share[0] * b->motions[i].velocity[n] + share[1] * b->motions[i].spin[n];
+        noh_quat_from_rotation(turn, q);
+        noh_quat_mul(q, t->rotation, t->rotation);
+        for (int n = 0; n < 3 && !i; n++) t->translation[n] += share[0] * b->offset[n] + share[1] * b->speed[n];
+    }
+}
+
+void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w)
+{
+    int64_t since = noh_clock_since(w->clock, b->rise_clock);
+    if (since < 0) since = 0;
+    if (w->cut || since >= (int64_t)b->rise_ticks) {
+        b->rise = NOH_RISE_NOT;
+        return;
+    }
+    const float seconds = (float)since / (float)NOH_TICKS_PER_SECOND;
+    if (b->rise == NOH_RISE_GOES_ON) {
+        go_on(k, b, w, seconds);
+        return;
+    }
+    begin(k, b, w, seconds);
+    b->rise = NOH_RISE_GOES_ON;
+    b->rise_ticks -= (uint32_t)since;
+    b->rise_clock = w->clock;
+}
+
+/* ---- the call ---- */
+
+/* From its doll, or from where it lies without one. */
+static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_body *b, uint32_t ticks)
+{
+    memset(b->motions, 0, sizeof b->motions);
+    if (b->doll) noh_ragdoll_motions(k->dolls, b->doll - 1u, b->motions);
+    b->doll = 0;
+    b->state = NOH_BODY_STANDS;
+    b->rise = NOH_RISE_BEGINS;
+    b->rise_ticks = ticks;
+    b->rise_clock = b->clocks[0] = s->head->clock;
+    b->poses = 1;
+    b->goals = 0;
+}
+
+noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *chosen,
+                            noh_error *error)
+{
+    static const noh_get_up plain;
+    noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    uint32_t choice;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (!how) how = &plain;
+    if (chosen) *chosen = NOH_NONE;
+    if (!b || b->state == NOH_BODY_STANDS) return result;
+    if (b->dead) return noh_fail(error, NOH_ERR_ARG, "the actor is dead: noh_actor_revive lets it get up", 0, 0);
+    const uint32_t ticks = how->blend_ticks ? how->blend_ticks : BLEND_TICKS;
+    result = choose_clip(stage, k, a, b, how, &choice, bodies, error);
+    if (result == NOH_OK && choice != NOH_NONE) {
+        const uint32_t clip = noh_stage_find(stage, (uint32_t)(k - stage->kinds), NOH_NAME_CLIP, how->clips[choice]);
+        result = noh_stage_leap_to(stage, actor, how->layer, clip, ticks, k->ragdoll->fit.joints,
+                                   k->ragdoll->fit.body_count, error);
+    }
+    if (result != NOH_OK) return result;
+    if (noh_stage_is_carried(b)) stand_under(k, a, b, bodies);
+    leave_doll(stage, k, b, ticks);
+    if (chosen) *chosen = choice;
+    noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
+    return NOH_OK;
+}

@@ -1,0 +1,726 @@
+/* stage_internal.h: what a stage is made of.
+ *
+ *   stage_desc.c     a desc with its defaults filled in; what is wrong with one
+ *   stage_levels.c   the levels of an actor, and how many slots each has
+ *   stage_carve.c    the block laid out
+ *   stage_plan.c     bytes, and what is given up to keep a bound
+ *   stage.c          made in its block, and deleted
+ *   stage_kind.c     what the actors of a kind share
+ *   stage_layers.c   layers and their masks
+ *   stage_names.c    clips, layers, floats and joints by name
+ *   stage_actor.c    actors come and go, and stand somewhere
+ *   stage_play.c     layers
+ *   stage_graph.c    which graphs a kind plays, and their bytes
+ *   stage_graph_play.c  the graph of an actor
+ *   stage_part.c     what changes a pose before it is shown
+ *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
+ *   stage_ragdoll.c  actors that fall; stage_get_up.c: and get up again
+ *   stage_step.c     time, callback keys, root motion
+ *   stage_bounds.c   where an actor may be, and where and how near it is
+ *   stage_look.c     phase 1: who is seen, how finely
+ *   stage_share.c    between the phases: slots, updates, decoding, order
+ *   stage_pose.c     phase 2: poses and floats
+ *   stage_frame.c    the phases of a frame
+ *   stage_ask.c      joints, spheres, floats
+ *   stage_pick.c     a ray
+ *   stage_load.c     levels that come later
+ *   stage_state.c    state out and in
+ *   view.c           cameras
+ *
+ * The block has three parts. The state comes first: all that time or the game changes, without pointers. What is
+ * derived from desc and packs follows, then what a frame writes for its own use. */
+#ifndef NOH_STAGE_STAGE_INTERNAL_H
+#define NOH_STAGE_STAGE_INTERNAL_H
+
+#include "motion/bank/clip_bank.h"
+#include "core/base/arena.h"
+#include "stage/character/character.h"
+#include "stage/character/lod_pack.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "life/face/corrective.h"
+#include "life/face/weight_rule.h"
+#include "motion/graph/graph_pack.h"
+#include "core/mesh/mesh.h"
+#include "stage/cast/part.h"
+#include "life/physics/ragdoll_pose.h"
+#include "life/physics/ragdoll_rig.h"
+#include "stage/cast/springs.h"
+#include "stage/cast/stage_face.h"
+#include "stage/cast/stage_ragdoll.h"
+#include "stage/cast/stage.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- state ---- */
+
+typedef struct noh_stage_held {
+    uint32_t index;      /* of the float */
+    float value, amount; /* amount 0: free */
+} noh_stage_held;
+
+typedef struct noh_stage_actor {
+    noh_root_pose moved; /* by the last step */
+    noh_place place;     /* normalised */
+    noh_place before;    /* at the end of the step before the last one */
+    noh_look look;
+    uint32_t generation;
+    uint32_t alive;
+    uint32_t next_free;  /* index + 1; 0: the last */
+    uint32_t parent;     /* id; 0: hangs on nothing */
+    uint32_t joint;      /* of the parent */
+    uint16_t was_seen;   /* in how many of the last frames, at most 3 */
+    uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
+    uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
+    /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
+    float rest[3], rest_before[3], rotation_rest[4];
+    double home[3]; /* near it: what its parts keep of the world counts from there */
+} noh_stage_actor;
+
+/* [4] as it is drawn; NULL: white. */
+static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
+{
+    const uint8_t *t = a->look.tint;
+    return t[0] | t[1] | t[2] | t[3] ? t : NULL;
+}
+
+/* The graph that an actor plays: its instance follows, in as many bytes as the largest of the kind takes. A track of
+ * the actor's controller stands for it: graph g plays while one is on the set's clip first_graph_clip + g. */
+typedef struct noh_stage_graph_slot {
+    uint32_t graph; /* 1 + index in the kind's; 0: none was played yet */
+    uint32_t reserved[3];
+} noh_stage_graph_slot;
+
+/* Before the states of an actor's parts. */
+typedef struct noh_stage_part_head {
+    int64_t posed_clock; /* of the pose that they are at */
+    uint32_t was_posed;
+    uint32_t reserved;
+} noh_stage_part_head;
+
+#define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
+
+typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;
+
+/* Before the states of its parts, of a kind with faces. */
+typedef struct noh_stage_face {
+    noh_face face;
+    int64_t clock; /* tick of the stage's clock that it is at */
+    float point[3];
+    uint32_t target; /* id of an actor */
+    float visemes[NOH_VISEME_COUNT];
+    uint8_t looks, says, begun; /* noh_stage_looks */
+    uint8_t fresh;              /* 1: what it looks at is new: reached by a saccade */
+    uint16_t
+        shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
+} noh_stage_face;
+
+typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_ON } noh_stage_rise;
+
+/* After it, of a kind with ragdolls. */
+typedef struct noh_stage_body {
+    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* metres from `origin`: of the last pose, and of the one
+                                                         * before; while it falls those of its ragdoll, and where its
+                                                         * clips have them */
+    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX]; /* RISE_BEGINS: of bodies[0]. RISE_GOES_ON: of each body's joint
+                                                         * how far it is turned from its clips, and how fast: radians */
+    float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit; while
+                                                         * it falls offset: from its first body to its place, metres */
+    float hertz[NOH_RAGDOLL_BODIES_MAX], animated[NOH_RAGDOLL_BODIES_MAX]; /* noh_body_hold */
+    uint32_t held;                                                         /* bit i: body i */
+    uint32_t rise_ticks;                                                   /* for how long it gets up */
+    int64_t rise_clock;                                                    /* since then */
+    int64_t clocks[2];                                                     /* of the two poses */
+    uint32_t doll;                                                         /* 1 + index in the kind's set; 0: none */
+    uint32_t poses;                                                        /* how many of the two there are */
+    uint8_t state;                                                         /* noh_body_state, of the first three */
+    uint8_t rise;                                                          /* noh_stage_rise */
+    uint8_t dead;
+    uint8_t goals;   /* 1: bodies[1] is where its clips have them */
+    float origin[3]; /* world, metres: near to its bodies, so that floats have as many digits everywhere */
+} noh_stage_body;
+
+typedef struct noh_stage_free {
+    uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
+    uint32_t count;       /* actors that are there */
+    uint32_t reserved;
+} noh_stage_free;
+
+typedef struct noh_stage_head {
+    uint32_t magic, hash;
+    int64_t clock;
+    uint32_t step_ticks;   /* of the last step */
+    uint32_t behind_ticks; /* what the last frame shows lies so far behind the clock */
+    noh_stage_free kinds[NOH_STAGE_KINDS_MAX];
+} noh_stage_head;
+
+NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
+NOH_STATIC_ASSERT(sizeof(noh_look) == 48, look);
+NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 240, stage_actor);
+NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
+NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
+NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
+NOH_STATIC_ASSERT(sizeof(noh_stage_body) == NOH_ACTOR_RAGDOLL_BYTES, stage_body);
+NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
+
+NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
+
+#define NOH_STAGE_MAGIC 0x53484f4eu /* "NOHS" */
+
+/* ---- kinds ---- */
+
+/* A mesh that a kind draws, and the node that places it. */
+typedef struct noh_stage_item {
+    uint32_t node, mesh; /* node: NOH_NONE in a pack without nodes */
+} noh_stage_item;
+
+typedef struct noh_stage_mesh {
+    noh_mesh mesh; /* the full one */
+    noh_skin skin; /* where `skinned` */
+    noh_stage_item item;
+    float bind_stretch;      /* where `skinned`: the most that an inverse bind matrix stretches what a target adds */
+    uint32_t finer_hash;     /* of the levels of noh_kind_desc.finer that the plan has: see noh_stage_hash_levels */
+    const float *node_world; /* [12] of a rigid mesh */
+    const float *defaults;   /* [target_count] weights */
+    uint32_t first_float;    /* of its targets, among the kind's floats */
+    uint32_t first_weight;   /* of its targets, among the kind's weights */
+    int skinned;
+} noh_stage_mesh;
+
+typedef struct noh_stage_layer {
+    const char *name;
+    uint32_t mode, first_track, track_count;
+    uint32_t mask;    /* 1 + index in the set; 0: none */
+    int moves_joints; /* 0: its mask has no joint */
+} noh_stage_layer;
+
+/* A set some of whose clips stand for graphs: these have the poses that were made of an actor's. */
+typedef struct noh_stage_sampler {
+    noh_clip_sample_fn sample; /* of all other clips */
+    void *user;
+    uint32_t first_graph_clip;
+    uint32_t tick;                 /* of the first pose, where there are two */
+    const noh_transform *poses[2]; /* NULL: none */
+    const float *floats[2];
+    const noh_transform *bind_pose; /* where there is none */
+    const float *float_defaults;
+} noh_stage_sampler;
+
+typedef enum noh_stage_load {
+    NOH_STAGE_DROPPED = 0, /* or never brought */
+    NOH_STAGE_LOADING,
+    NOH_STAGE_LOADED
+} noh_stage_load;
+
+/* A joint that a face turns. */
+typedef struct noh_stage_face_joint {
+    uint32_t joint; /* NOH_NONE: none */
+    float axes[4];  /* from model space at rest to the joint's own axes */
+    float at[3];    /* at rest, model space */
+} noh_stage_face_joint;
+
+/* What the faces of a kind have in common. */
+typedef struct noh_stage_face_kind {
+    noh_face_desc desc; /* neck space */
+    noh_face_rules rules;
+    noh_stage_face_joint head, neck, chest, eyes[2];
+    float middle[3]; /* between the eyes at rest, model space */
+    uint32_t flags;
+    uint32_t speech, lips_shut;           /* floats of clips; NOH_NONE: no clip has them */
+    noh_face_link *links;                 /* to floats of the set */
+    uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
+    uint32_t link_count;
+} noh_stage_face_kind;
+
+/* What the ragdolls of a kind have in common. */
+typedef struct noh_stage_ragdoll_kind {
+    noh_ragdoll_rig rig;
+    noh_ragdoll_fit fit;
+    const noh_world *world;
+    float metres; /* of one unit of the world */
+} noh_stage_ragdoll_kind;
+
+typedef struct noh_stage_kind {
+    noh_kind_desc *desc; /* defaults filled in; `layers` is NULL afterwards */
+    const noh_kind_plan *plan;
+    uint32_t first_actor;
+    uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
+    noh_clip_bank_desc bank_desc;
+    noh_clip_bank *bank; /* NULL: no clip fits */
+    int holds_all;       /* of bank_kind: 1: its cache has all segments of all clips decoded */
+    noh_clip_set set;    /* with the kind's masks; samples through the bank's own cache */
+    noh_skeleton skeleton;
+    noh_stage_layer *layers; /* [layer_count] */
+    uint32_t layer_count;
+    uint32_t slot_bytes;
+    noh_stage_mesh *meshes; /* [plan->mesh_count] */
+    uint32_t float_count;   /* those of the set, then, where the pack has no nodes, one for each target */
+    uint32_t weight_count;  /* targets of all meshes */
+    uint32_t *sources;      /* [float_count] the float whose value it takes: itself, or one of the same name that a clip
+                             * moves */
+    uint32_t first_renamed; /* the first whose source is another; float_count: none */
+    uint32_t *name_hashes;  /* [float_count] */
+    float *defaults;        /* [float_count] */
+    float *target_radii;    /* [weight_count] */
+    uint8_t *masks;         /* [set.mask_count][joints + floats of the set] */
+    noh_lod_pack lod;       /* of the first skinned mesh */
+    noh_lod_mesh *levels;   /* [plan->level_count] */
+    noh_lod_table table;
+    uint32_t first_there;   /* the finest level that `desc.mesh` has, and the plan */
+    uint32_t load_kind;     /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
+    noh_stage_load loading; /* of load_kind */
+    const noh_pack *loaded; /* the pack they come from; NULL: none */
+    float *joint_radii;     /* [joint_count] with all weights 0; NULL: rigid */
+    float reach[4];         /* centre and radius in model space: holds the actor in any pose of its clips, with their
+                             * weights, and all of 0..1 */
+    float rest[6];          /* a box: what joints move in the bind pose; its smallest above its largest: nothing */
+    uint32_t character_bytes;
+    uint32_t graph_count;        /* 0: the rest is not used */
+    noh_graph_pack **graphs;     /* [graph_count] */
+    noh_clip_entry *graph_clips; /* [set.clip_count] those of the bank, then one for each graph */
+    noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
+    float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
+    noh_stage_part *parts;       /* [desc.part_count] */
+    noh_stage_part springs;      /* of the pack, after these; modify NULL: none */
+    size_t part_bytes;
+    noh_stage_face_kind *face;       /* NULL: none */
+    noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
+    uint8_t *doll_scratch;
+    noh_corrective_term *correctives; /* [corrective_count] to the kind's floats */
+    noh_weight_rule *weight_rules;    /* [weight_rule_count] to the kind's floats */
+    uint32_t corrective_count, weight_rule_count;
+    noh_stage_sampler sampler; /* of `set` */
+    noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
+    noh_transform rest_pose;
+    /* state */
+    uint8_t *characters; /* [actor_count][character_bytes] */
+    noh_stage_actor *actors;
+    noh_stage_held *held; /* [actor_count][held_float_count] */
+    uint8_t *graph_slots; /* [actor_count][slot_bytes] */
+    uint8_t *part_states; /* [actor_count][part_bytes] */
+    noh_ragdolls *dolls;  /* of `ragdoll` */
+    noh_lod_pools *pools; /* NULL: nothing is drawn */
+    uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
+    /* a frame's own */
+    float *floats;   /* [actor_count][float_count] as shown, or as they would be */
+    float *weights;  /* [actor_count][weight_count] the same, without targets too small to see */
+    uint32_t *order; /* [seen_max] seen actors by run; fading ones last */
+    /* where each run begins in `order`. A run has one level and one number of influences; the last one fades */
+    uint32_t runs[NOH_LOD_LEVELS_MAX * 4u + 2u];
+} noh_stage_kind;
+
+/* ---- a frame ---- */
+
+typedef struct noh_stage_shown {
+    float world[12];
+    float scale;    /* pixels per unit of the world, at its nearest point, in the view that is nearest */
+    float distance; /* of its sphere's centre from the eye, in the view in which that is nearest */
+    uint16_t views; /* a bit for each view that sees it */
+    uint16_t place; /* in its kind's order */
+    uint32_t frame; /* the number of the last frame in which it was shown: its floats and pose are of then */
+    noh_lod_slot slot;
+    uint8_t due;                 /* noh_due, or NOH_STAGE_DUE_LONG */
+    uint8_t updates;             /* 1: is posed in this frame; NOH_STAGE_MOVED: its palettes changed */
+    uint8_t level, level_before; /* drawn */
+} noh_stage_shown;
+
+#define NOH_STAGE_MOVED 2u
+#define NOH_STAGE_DUE_LONG 3u /* at once, as the frame was long; it was in view in the one before, so parts go on */
+#define NOH_STAGE_CARRIES 4u  /* something is attached to it: from the beginning of a frame until updates are chosen */
+
+typedef struct noh_stage_job_part {
+    noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
+    void *scratch, *graph_scratch, *part_scratch;
+    float *matrices; /* [joints of the largest skin][12] */
+    uint64_t decoded_late;
+    uint32_t updated;
+    float error_pixels;
+} noh_stage_job_part;
+
+typedef enum noh_stage_phase {
+    NOH_STAGE_IDLE = 0,
+    NOH_STAGE_STEPPING,
+    NOH_STAGE_BEGUN, /* the look phase is next */
+    NOH_STAGE_LOOKING,
+    NOH_STAGE_POSING,
+    NOH_STAGE_POSED /* no phase is left */
+} noh_stage_phase;
+
+typedef struct noh_view_planes {
+    float planes[4]
+                [4]; /* left, right, bottom, top: inside where the dot product with (x, y, z, 1) is at least 0; unit */
+    float eye_plane[4];   /* w of clip space, its gradient's length in `w_slope` */
+    float w_slope, scale; /* scale / w is pixels per unit */
+    float eye[3];         /* of a parallel view the game's */
+    float near_w;         /* w of the near plane, above 0: nothing nearer is drawn */
+    float corner;         /* the cosine of the angle between the middle of the picture and its farthest corner */
+    int is_light;
+} noh_view_planes;
+
+struct noh_stage {
+    noh_stage_desc desc;       /* defaults filled in; `kinds` are those below */
+    noh_kind_desc *kind_descs; /* [desc.kind_count] */
+    const noh_stage_plan *plan;
+    noh_stage_kind *kinds; /* [desc.kind_count] */
+    uint32_t actor_count;  /* of all kinds */
+    /* state */
+    noh_stage_head *head;
+    uint8_t *state;
+    size_t state_bytes;
+    noh_stage_actor *actors; /* [actor_count], kind after kind */
+    /* a frame's own */
+    noh_stage_shown *shown; /* [actor_count] */
+    uint32_t *todo;         /* [actor_count] those that a pose job looks at */
+    uint32_t todo_count;
+    noh_stage_event *events;
+    uint32_t events_held;
+    noh_schedule schedule;
+    noh_stage_job_part *jobs; /* [job_count] */
+    size_t scratch_bytes, graph_scratch_bytes;
+    uint32_t phase, frame, callback_actor; /* id while on_key runs, else 0 */
+    int callback_of_graph;                 /* the key is one of the actor's graph */
+    int graph_begun;                       /* by a callback of this step */
+    noh_stage_event_fn on_key;
+    void *on_key_user;
+    noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
+    float origin[3];                           /* of the last frame: noh_view_origin */
+    double shifted[3];                         /* by all noh_stage_shift_origin so far */
+    noh_view_planes planes[NOH_STAGE_VIEWS_MAX];
+    uint32_t view_count;
+    int cut;
+    noh_stage_stats stats;
+    void *pick_scratch, *inertia_scratch;
+    size_t pick_bytes, inertia_bytes;
+    void *gpu; /* of desc.gpu; NULL without */
+};
+
+/* Whether an actor's level is given, not chosen, and all else is in full. */
+static inline int noh_stage_is_full(const noh_stage *s, const noh_stage_actor *a)
+{
+    return s->desc.full_detail || a->look.level;
+}
+
+typedef struct noh_stage_list noh_stage_list;
+
+/* ---- what draws ---- */
+
+/* The functions that make a stage drawable. There is one such table, noh_stage_on_gl; a program that does not name it
+ * links no GL code. */
+struct noh_stage_gpu {
+    noh_result (*measure)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                          uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error); /* writes plan->morph_path */
+    void (*parts)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                  noh_stage_list *list);
+    noh_result (*init)(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error);
+    void (*destroy)(noh_stage *stage);
+    noh_result (*restore)(noh_stage *stage, noh_error *error);
+    void (*pose)(noh_stage *stage, noh_stage_kind *kind, uint32_t index,
+                 float *matrices); /* of an actor that is seen, in a job: its palettes into memory of its own */
+    void (*upload)(noh_stage *stage);
+    /* Levels that come later, of all meshes of the kinds whose load_kind it is: upload a piece, from the beginning
+     * where `anew`, and subtract what was sent, returning 1 once all is there; draw with them from now on, or without.
+     */
+    int (*load)(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
+    void (*use)(noh_stage *stage, uint32_t load_kind, int loaded);
+};
+
+/* ---- private calls ---- */
+
+/* A desc's kind with its defaults filled in; the number of its drawn meshes into items[NOH_STAGE_MESHES_MAX] (NULL:
+ * only count). */
+noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
+uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
+/* The texture that stands for one of the kind's mesh pack in a set, 0 its own: its pack, and its index there. */
+uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack);
+/* Of a pack's mesh, with the levels that the plan may have: noh_kind_desc.finer, else `mesh`. */
+noh_mesh noh_stage_whole_mesh(const noh_kind_desc *kind, uint32_t mesh);
+/* What is wrong with the `finer` of a kind; NULL: nothing. */
+const char *noh_stage_bad_finer(const noh_kind_desc *kind);
+/* The kind whose finer levels a kind shares, itself or an earlier one. */
+uint32_t noh_stage_load_kind(const noh_stage_desc *desc, uint32_t kind);
+/* A hash of what sizes depend on in a level of a mesh and all coarser ones: equal wherever they lie. */
+uint32_t noh_stage_hash_levels(const noh_mesh *mesh, uint32_t level);
+void noh_stage_open_load(const noh_stage *s, const noh_stage_desc *desc, uint32_t kind);
+void noh_stage_load_piece(noh_stage *s); /* in a frame, after all else was handed over */
+noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
+noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
+uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);
+uint32_t noh_stage_track_count(const noh_kind_desc *kind);
+uint32_t noh_stage_controller_flags(const noh_kind_desc *kind);
+extern const noh_layer_desc noh_stage_default_layers[3];
+
+/* The kind whose bank, or whose meshes on the GPU, a kind shares: itself or an earlier one. */
+uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind);
+noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
+
+#define NOH_STAGE_VIEW_RAD 0.69813f /* of the view that plans count for: 40 degrees */
+
+/* The levels of a kind's actors, and their slots by an even spread. */
+noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan, noh_error *error);
+void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_plan *plan);
+float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level);
+
+/* What a kind's objects need, by the counts of its clips. */
+typedef struct noh_stage_needs {
+    noh_clip_set shape; /* counts only */
+    size_t bank_bytes;  /* 0: it shares another kind's, or no clip fits */
+    size_t view_bytes;  /* of that bank */
+    size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes, inertia_bytes;
+    size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
+    uint32_t graph_count;
+    size_t part_bytes, part_scratch_bytes; /* 0 without parts */
+    size_t springs_bytes;                  /* 0 without springs of the pack */
+    uint32_t face_link_max;                /* 0 without faces */
+    uint32_t corrective_count, weight_rule_count;
+    uint32_t cached_segment_count, segment_count;
+    uint32_t mesh_count, float_count, weight_count, mask_count;
+    uint32_t skin_joints; /* of its largest skin */
+    size_t pick_bytes;
+    int has_clips;
+} noh_stage_needs;
+
+/* Read the clips of a kind that has a bank of its own. */
+noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                   noh_kind_clips *clips, noh_error *error);
+/* By what the plan says of its clips. */
+noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                  noh_stage_needs *needs, noh_error *error);
+
+/* Where everything lies; what an arena that only measures gives is NULL. */
+typedef struct noh_stage_blocks {
+    noh_stage *stage;
+    noh_stage_kind *kinds;
+    noh_kind_desc *kind_descs;
+    noh_stage_head *head;
+    size_t state_bytes;
+    noh_stage_actor *actors;
+    noh_stage_shown *shown;
+    uint32_t *todo;
+    noh_stage_event *events;
+    noh_stage_job_part *jobs;
+    uint8_t *views;   /* of all jobs, of all banks, one after another */
+    uint8_t *scratch; /* of all jobs */
+    uint8_t *graph_scratch, *part_scratch;
+    size_t graph_scratch_bytes, part_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
+    float *matrices; /* of all jobs */
+    size_t matrices_floats;
+    void *pick_scratch, *inertia_scratch, *schedule;
+    void *graphs[NOH_STAGE_KINDS_MAX], *springs[NOH_STAGE_KINDS_MAX];
+    void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
+} noh_stage_blocks;
+
+/* Lay a stage out, without what draws it. parts[capacity] receives the bytes by part (capacity 0: not wanted); *count
+ * how many there are. */
+struct noh_stage_list {
+    noh_stage_bytes *parts;
+    uint32_t capacity, count;
+    uint64_t cpu_bytes; /* of all, those past the capacity too */
+};
+
+noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
+                           noh_stage_blocks *blocks, noh_stage_list *list, noh_error *error);
+void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, uint64_t cpu_bytes, uint64_t gpu_bytes);
+void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan); /* without what the plan gave up */
+uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots); /* returns how many */
+
+noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);
+noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
+                               noh_error *error);
+noh_result noh_stage_open_layers(noh_stage_kind *k, uint32_t kind, noh_error *error);
+
+/* An actor that is there, and its kind; NULL: gone. */
+noh_stage_actor *noh_stage_actor_of(const noh_stage *s, noh_actor actor, noh_stage_kind **kind);
+/* The same for a change: also refuses others within a callback. */
+noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, noh_stage_kind **kind,
+                            noh_error *error);
+noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an actor's index in the stage */
+/* What an actor is attached to; NULL: nothing. From one to the next at most NOH_ATTACH_DEPTH_MAX times. */
+noh_stage_actor *noh_stage_parent_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind);
+/* The one at the end of its attachments: itself, where it has none. */
+const noh_stage_actor *noh_stage_root_of(const noh_stage *s, const noh_stage_actor *a);
+noh_result noh_stage_gone(noh_error *error, noh_actor actor);
+/* Its own place as the last frame shows it, its position less `origin`; the place of an attached actor is relative to
+ * the joint, and stays so. */
+void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, const float origin[3], noh_place *out);
+void noh_stage_keep_before(noh_stage_actor *a); /* where it is becomes where it was */
+void noh_stage_shift_actor(noh_stage_actor *a, const float by[3]);
+/* Where an actor is drawn, less the stage's origin: its place, or that on its parent's joint, and so on, as they were
+ * posed last. */
+void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
+/* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
+noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);
+noh_result noh_stage_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
+noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
+noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
+uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
+void noh_place_matrix(const noh_place *place, float matrix[12]);
+
+uint32_t noh_stage_behind(const noh_stage *s, float alpha); /* ticks behind the last step */
+/* ---- graphs ---- */
+
+/* One word of a list of names. */
+typedef struct noh_stage_word {
+    const char *text;
+    size_t length;
+    int takes_out; /* began with '-' */
+    int any_rest;  /* ended with '*' */
+} noh_stage_word;
+
+int noh_stage_next_word(const char **list, noh_stage_word *word); /* 0 at the end */
+int noh_stage_word_matches(const noh_stage_word *word, const char *name);
+
+noh_result noh_stage_measure_graphs(const noh_kind_desc *kind, uint32_t number, noh_stage_needs *needs,
+                                    noh_error *error);
+noh_result noh_stage_open_graphs(noh_stage_kind *k, uint32_t number, void *memory, const noh_stage_needs *needs,
+                                 noh_error *error);
+uint32_t noh_stage_graph_names(const noh_stage_kind *k, noh_name what); /* how many */
+const char *noh_stage_graph_name(const noh_stage_kind *k, noh_name what, uint32_t index);
+/* Which graph an index of a parameter or machine belongs to; *index becomes that in the graph. 0: past the last. */
+int noh_stage_in_graph(const noh_stage_kind *k, noh_name what, uint32_t *index, uint32_t *graph);
+uint32_t noh_stage_clip_count(const noh_stage_kind *k); /* of clips that have a name */
+
+/* What an actor plays. graph NULL: none. */
+typedef struct noh_stage_playing {
+    const noh_graph_pack *graph;
+    noh_graph_state *state;
+    const noh_track *track; /* of the actor's controller */
+} noh_stage_playing;
+
+noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index);
+
+/* From now on a set samples through `sampler`: what it sampled before, and the poses that are made for graphs. */
+void noh_stage_wrap(const noh_stage_kind *k, noh_clip_set *set, noh_stage_sampler *sampler);
+
+/* The pose of an actor's graph `ahead` ticks from now, and with `ago` that of so many ticks before, into the scratch of
+ * a job, for its sampler; none where no graph plays. */
+void noh_stage_pose_graph(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, uint32_t index,
+                          int64_t ahead, int64_t ago, noh_stage_sampler *sampler);
+void noh_stage_begin_graph(noh_stage_kind *k, uint32_t index, uint32_t graph);
+void noh_stage_follow_lod(const noh_stage_kind *k, uint32_t index); /* so that as many joints are decoded ahead */
+noh_due noh_stage_look_graph(noh_stage_kind *k, uint32_t index, const noh_lod_settings *settings,
+                             float pixels_per_metre);
+uint32_t noh_stage_graph_work(const noh_stage_kind *k, uint32_t index); /* joints times clips in its pose */
+noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_error *error);
+
+/* ---- parts ---- */
+
+size_t noh_stage_part_bytes(const noh_kind_desc *kind); /* of an actor's states */
+/* Bytes of the springs of a kind's pack, of what each actor and each job has of them; 0: it has none. */
+size_t noh_stage_springs_bytes(const noh_kind_desc *kind, size_t *state_bytes, size_t *scratch_bytes);
+noh_result noh_stage_open_springs(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error);
+noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error);
+/* Whether something changes poses before they are shown. */
+static inline int noh_stage_has_parts(const noh_kind_desc *kind)
+{
+    return kind->part_count || kind->face || kind->ragdoll || !kind->without_springs;
+}
+
+const char *noh_stage_bad_ragdoll(const noh_kind_desc *d);
+size_t noh_stage_doll_bytes(const noh_kind_desc *d);
+size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d);
+noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error);
+noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index);
+void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
+void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks);
+void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3]); /* the world's units; places are not moved */
+/* *b stays as it is where the result is not NOH_OK. */
+noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
+                               noh_stage_body **b, noh_error *error);
+/* A place as bodies that count from `origin` have it. */
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
+void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
+void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
+/* Whether a ragdoll moves its place. */
+static inline int noh_stage_is_carried(const noh_stage_body *b)
+{
+    return b->state != NOH_BODY_STANDS && !(b->held & 1u);
+}
+/* A clip alone on a layer from now on; with room for inertia what leaps decays, but for some joints. */
+noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t clip, uint32_t ticks,
+                             const uint32_t *but, uint32_t but_count, noh_error *error);
+const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
+
+/* What picking a mesh takes: dual quaternions, from *behind on where they draw it (NULL: not wanted), after what
+ * noh_pick needs. */
+size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind);
+
+/* Bind those of all meshes; k->correctives has room for term_max, k->weight_rules for rule_max. */
+void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
+void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);
+void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
+
+/* What is wrong with the face of a kind; NULL: nothing. */
+const char *noh_stage_bad_face(const noh_kind_desc *kind);
+/* Links by the recipes of the kind's face, or else (face NULL, too) the pack's own and those that are built in. */
+uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, const void *user, noh_face_link *links,
+                             uint32_t link_max);
+/* Where the joints of its eyes are at rest, model space; 0: there are none. */
+int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
+uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
+uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
+void noh_stage_open_face(noh_stage_kind *k);
+/* Where a joint of a local pose stands in model space. */
+void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+                        float at[3]);
+/* The state of an actor's face; the kind has one. */
+noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index);
+void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed);
+const char *noh_stage_check_face(const noh_stage_face *face);
+/* Over the pose and the floats of the work. */
+void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
+/* What parts are given, between the halves of an update of a character for a tick of the stage's clock; then the kind's
+ * own parts, and the springs of its pack. */
+/* Points of the world that parts of stage_gaze.h have been told. */
+void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3]);
+void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3]);
+struct noh_kind_feet;
+struct noh_feet;
+/* A pose is put on the ground: noh_feet_step, from the actor's home. */
+void noh_part_feet(noh_part_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds, int cut);
+int noh_part_home_moved(const noh_part_work *w);
+void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                           int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
+void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
+void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
+
+/* After the radii of joints, floats and meshes are there. */
+void noh_stage_open_bounds(noh_stage_kind *k, noh_character_scratch *scratch);
+/* In model space, of what an actor of the kind shows: its last pose and its floats; before it was posed, at rest. */
+void noh_stage_sphere(const noh_stage_kind *k, uint32_t index, float sphere[4]);
+/* In model space: where it may be, given its sphere. */
+void noh_stage_reach(const noh_stage_kind *k, const float sphere[4], float reach[4]);
+void noh_stage_widen(float reach[4], const float sphere[4]); /* about its centre, until it holds the sphere */
+void noh_stage_sphere_in_world(const float world[12], const float own[4], float out[4]);
+/* Set the scale and the distance of `shown` by its views, its matrix and the actor's sphere.
+ * shapes  matrices as in a job */
+void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t index, const float own[4],
+                       float *matrices);
+/* The same by what this frame shows, for what is told of it: a look goes by the frame before. */
+void noh_stage_measure_shown(const noh_stage *s, const noh_stage_kind *k, uint32_t index, float *matrices);
+/* The error that an actor shows; 0 where no view sees it, or where it is posed for the game. */
+float noh_stage_error_pixels(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
+/* Units of the world in one of the actor's model. */
+float noh_stage_size(const noh_stage *s, const noh_stage_actor *a);
+/* An actor's floats as its last pose, the game, the pack's rules and correctives have them. */
+void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index);
+
+void noh_stage_look_at(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
+void noh_stage_share(noh_stage *s);
+void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
+uint32_t noh_stage_influence_levels(const noh_stage_kind *k); /* at least 1: a run is a level and one of these */
+uint32_t noh_stage_run_count(const noh_stage_kind *k);        /* without that of fading actors */
+uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in `order` */
+void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
+/* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix is
+ * what noh_lighting_shadow takes too. */
+void noh_view_origin(const noh_stage_view *view, float origin[3]);
+void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out);
+void noh_projection_less(float view_projection[16], const float origin[3], const float rest[4]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,549 @@
+/* stage_plan.c: every byte of a stage before there is one, and what is given up to keep a bound. */
+#include <string.h>
+
+#include "core/base/hash.h"
+#include "stage/cast/stage_internal.h"
+
+/* ---- measuring ---- */
+
+void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    desc->halves = plan->halves ? 1 : desc->halves < 0 ? -1 : 0;
+    desc->morph_sums |= plan->sums != 0;
+}
+
+typedef struct planner {
+    const noh_stage_desc *desc; /* with its defaults filled in */
+    const struct noh_gl_caps *caps;
+    noh_stage_plan *plan;
+} planner;
+
+/* Read clips where another number of cached segments is asked for than they were read for, and tell those that share
+ * them. */
+static noh_result read_clips(const planner *p, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        const uint32_t owner = noh_stage_bank_kind(p->desc, i);
+        if (owner != i) {
+            k->clips = p->plan->kinds[owner].clips;
+        } else if (k->clips.asked != k->cached_segment_count) {
+            result = noh_stage_measure_clips(p->desc, p->plan, i, &k->clips, error);
+        }
+    }
+    return result;
+}
+
+static noh_result measure(const planner *p, noh_error *error)
+{
+    noh_stage_plan *plan = p->plan;
+    noh_stage_blocks blocks;
+    noh_arena arena = noh_arena_measure();
+    uint64_t cpu_bytes = 0, gpu_bytes = 0;
+    noh_stage_desc desc = *p->desc;
+    noh_result result = read_clips(p, error);
+    memset(&blocks, 0, sizeof blocks);
+    noh_stage_desc_by_plan(&desc, plan);
+    if (result == NOH_OK) result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
+    if (result == NOH_OK && desc.gpu) {
+        result = desc.gpu->measure(&desc, p->caps, plan, &cpu_bytes, &gpu_bytes, error);
+        (void)noh_arena_carve(&arena, (size_t)cpu_bytes, 16);
+    }
+    plan->cpu_bytes = arena.used;
+    plan->gpu_bytes = gpu_bytes;
+    plan->state_bytes = blocks.state_bytes;
+    return result;
+}
+
+uint32_t noh_stage_plan_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
+                              noh_stage_bytes *parts, uint32_t capacity)
+{
+    noh_stage_list list = { NULL, 0, 0, 0 };
+    noh_stage_blocks blocks;
+    noh_arena arena = noh_arena_measure();
+    noh_stage_desc d = *desc;
+    NOH_ASSERT(plan && (parts || !capacity));
+    memset(&blocks, 0, sizeof blocks);
+    list.parts = parts;
+    list.capacity = capacity;
+    noh_stage_desc_by_plan(&d, plan);
+    if (noh_stage_carve(&arena, &d, plan, &blocks, &list, NULL) == NOH_OK && d.gpu) {
+        d.gpu->parts(&d, caps, plan, &list);
+    }
+    noh_stage_add_part(&list, "alignment", NOH_NONE, plan->cpu_bytes - list.cpu_bytes, 0);
+    return list.count;
+}
+
+static int fits(const noh_stage_desc *d, const noh_stage_plan *plan)
+{
+    return (!d->cpu_bytes_max || plan->cpu_bytes <= d->cpu_bytes_max) &&
+           (!d->gpu_bytes_max || plan->gpu_bytes <= d->gpu_bytes_max) &&
+           (!d->bytes_max || plan->cpu_bytes + plan->gpu_bytes <= d->bytes_max);
+}
+
+/* ---- giving up ---- */
+
+/* Note what was given up; the same thing again only changes the row. */
+static void concede(noh_stage_plan *plan, const char *what, uint32_t kind, uint32_t value, uint64_t cpu_before,
+                    uint64_t gpu_before, float loss_pixels)
+{
+    noh_concession *row = NULL;
+    for (uint32_t i = 0; i < plan->concession_count && !row; i++) {
+        if (plan->concessions[i].what == what && plan->concessions[i].kind == kind) row = &plan->concessions[i];
+    }
+    if (!row) {
+        row = &plan->concessions[plan->concession_count < NOH_CONCESSIONS_MAX ? plan->concession_count++
+                                                                              : NOH_CONCESSIONS_MAX - 1u];
+        memset(row, 0, sizeof *row);
+    }
+    row->what = what;
+    row->kind = kind;
+    row->value = value;
+    row->loss_pixels = loss_pixels > row->loss_pixels ? loss_pixels : row->loss_pixels;
+    row->cpu_bytes += cpu_before > plan->cpu_bytes ? cpu_before - plan->cpu_bytes : 0;
+    row->gpu_bytes += gpu_before > plan->gpu_bytes ? gpu_before - plan->gpu_bytes : 0;
+}
+
+static const char *const sums_text = "finished vertices", *const halves_text = "half-float accumulators",
+                         *const segments_text = "cached segments", *const slots_text = "slots",
+                         *const finest_text = "finest level";
+
+/* Measure again, and note what this change of one thing has won. */
+static noh_result changed(const planner *p, const char *what, uint32_t kind, uint32_t value, float loss_pixels,
+                          noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    const noh_result result = measure(p, error);
+    if (result == NOH_OK) {
+        concede(p->plan, what, kind, value, cpu, gpu, loss_pixels);
+    }
+    return result;
+}
+
+/* Sums in their place are smaller. Where there are no finished vertices, that changes nothing. */
+static noh_result give_up_vertices(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->desc->gpu || p->desc->morph_sums || fits(p->desc, p->plan)) {
+        return NOH_OK;
+    }
+    p->plan->sums = 1;
+    result = measure(p, error);
+    if (result == NOH_OK && p->plan->cpu_bytes + p->plan->gpu_bytes >= cpu + gpu) {
+        p->plan->sums = 0;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) concede(p->plan, sums_text, NOH_NONE, 1, cpu, gpu, 0.0f);
+    return result;
+}
+
+static noh_result give_up_halves(const planner *p, noh_error *error)
+{
+    if (!p->desc->gpu || p->desc->halves || p->plan->halves || fits(p->desc, p->plan)) {
+        return NOH_OK;
+    }
+    p->plan->halves = 1;
+    return changed(p, halves_text, NOH_NONE, 1, 0.0f, error);
+}
+
+/* Halve the segments of the bank that holds the most, again and again, while they are above a share of all. */
+static noh_result give_up_segments(const planner *p, uint32_t share, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    while (result == NOH_OK && !fits(p->desc, p->plan)) {
+        noh_kind_plan *most = NULL;
+        uint32_t kind = 0;
+        for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+            noh_kind_plan *k = &p->plan->kinds[i];
+            const uint32_t least = share ? k->segment_count / share : NOH_CLIP_CACHE_SEGMENTS_MIN;
+            if (noh_stage_bank_kind(p->desc, i) == i && k->cached_segment_count > least &&
+                k->cached_segment_count > NOH_CLIP_CACHE_SEGMENTS_MIN &&
+                (!most || k->cached_segment_count > most->cached_segment_count)) {
+                most = k;
+                kind = i;
+            }
+        }
+        if (!most) {
+            return NOH_OK;
+        }
+        most->cached_segment_count -= (most->cached_segment_count + 7u) / 8u;
+        if (most->cached_segment_count < NOH_CLIP_CACHE_SEGMENTS_MIN)
+            most->cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;
+        result = changed(p, segments_text, kind, most->cached_segment_count, 0.0f, error);
+    }
+    return result;
+}
+
+/* The error in pixels of the next level, at the distance where the spread has the last actor that keeps a slot. */
+static float slot_loss(const planner *p, const noh_kind_plan *k, uint32_t level)
+{
+    const float now = k->levels[level + 1u].error_m, was = k->levels[level].error_m;
+    return was > 0.0f && now / was < 1e6f ? p->desc->lod.pixels * 0.3f * now / was : p->desc->lod.pixels;
+}
+
+static uint32_t promised(const noh_kind_desc *d, const noh_kind_plan *k, uint32_t level)
+{
+    return level == k->finest_level ? d->near_count : level == k->finest_level + 1u ? d->middle_count : 0;
+}
+
+/* One step: a third of the slots of the finest level that has more than it was promised move on to the next. Returns 0
+ * when there is none left. */
+static int drop_slots(const planner *p, uint32_t kind, uint32_t *level_out)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(p->desc, kind);
+    noh_kind_plan *k = &p->plan->kinds[kind];
+    for (uint32_t l = k->finest_level; l + 1u < k->level_count; l++) {
+        const uint32_t keep = promised(&d, k, l), have = k->levels[l].slot_count;
+        uint32_t move = have > keep ? (have - keep + 2u) / 3u : 0;
+        if (move == have && move && l == k->finest_level && !keep) move--; /* one stays: somebody is always near */
+        if (move) {
+            k->levels[l].slot_count -= move;
+            k->levels[l + 1u].slot_count += move;
+            *level_out = l;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static noh_result give_up_slots(const planner *p, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        uint32_t level = 0;
+        while (result == NOH_OK && !fits(p->desc, p->plan) && drop_slots(p, i, &level)) {
+            result = changed(p, slots_text, i, k->levels[k->finest_level].slot_count, slot_loss(p, k, level), error);
+        }
+    }
+    return result;
+}
+
+/* The slots of the finest level go to the next. */
+static void drop_finest(noh_kind_plan *k)
+{
+    k->levels[k->finest_level + 1u].slot_count += k->levels[k->finest_level].slot_count;
+    k->levels[k->finest_level].slot_count = 0;
+    k->finest_level++;
+}
+
+/* Kinds of one pack share its meshes on the GPU: nothing is won until all of them have left a level out. */
+static void drop_with_others(const planner *p, uint32_t kind)
+{
+    const uint32_t level = p->plan->kinds[kind].finest_level;
+    for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        if (p->desc->kinds[i].mesh->bytes == p->desc->kinds[kind].mesh->bytes && k->finest_level <= level &&
+            k->finest_level + 1u < k->level_count) {
+            drop_finest(k);
+        }
+    }
+}
+
+/* Leave out the finest level of the kind that loses the least. */
+static noh_result give_up_finest(const planner *p, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    while (result == NOH_OK && !fits(p->desc, p->plan)) {
+        noh_kind_plan *best = NULL;
+        uint32_t kind = 0;
+        for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+            noh_kind_plan *k = &p->plan->kinds[i];
+            if (k->finest_level + 1u < k->level_count &&
+                (!best || k->levels[k->finest_level + 1u].error_m < best->levels[best->finest_level + 1u].error_m)) {
+                best = k;
+                kind = i;
+            }
+        }
+        if (!best) {
+            return NOH_OK;
+        }
+        drop_with_others(p, kind);
+        result = changed(p, finest_text, kind, best->finest_level, 0.0f, error);
+    }
+    return result;
+}
+
+/* ---- giving back ---- */
+
+/* Take a concession out of the list, or state what it is now. */
+static void taken_back(noh_stage_plan *plan, const char *what, uint32_t kind, uint32_t value, int whole, uint64_t cpu,
+                       uint64_t gpu)
+{
+    for (uint32_t i = 0; i < plan->concession_count; i++) {
+        noh_concession *row = &plan->concessions[i];
+        if (row->what != what || row->kind != kind) continue;
+        row->value = value;
+        row->cpu_bytes -= cpu < row->cpu_bytes ? cpu : row->cpu_bytes;
+        row->gpu_bytes -= gpu < row->gpu_bytes ? gpu : row->gpu_bytes;
+        if (whole) {
+            plan->concession_count--;
+            for (uint32_t k = i; k < plan->concession_count; k++) { /* exchanged: see drop in stage_levels.c */
+                const noh_concession gone = plan->concessions[k];
+                plan->concessions[k] = plan->concessions[k + 1u];
+                plan->concessions[k + 1u] = gone;
+            }
+            memset(&plan->concessions[plan->concession_count], 0, sizeof *row);
+        }
+        return;
+    }
+}
+
+/* Whether a number of cached segments fits; the plan then has it. */
+static noh_result try_segments(const planner *p, uint32_t kind, uint32_t count, int *does, noh_error *error)
+{
+    noh_result result;
+    p->plan->kinds[kind].cached_segment_count = count;
+    result = measure(p, error);
+    *does = result == NOH_OK && fits(p->desc, p->plan);
+    return result;
+}
+
+/* As many cached segments as still fit, by halving the distance. */
+static noh_result give_back_segments(const planner *p, uint32_t kind, uint32_t most, noh_error *error)
+{
+    noh_kind_plan *k = &p->plan->kinds[kind];
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    uint32_t good = k->cached_segment_count, bad = most + 1u;
+    noh_result result = NOH_OK;
+    int does;
+    while (result == NOH_OK && bad - good > 1u) {
+        const uint32_t middle = bad == most + 1u ? most : good + (bad - good) / 2u;
+        result = try_segments(p, kind, middle, &does, error);
+        if (does) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    if (result == NOH_OK) result = try_segments(p, kind, good, &does, error);
+    if (result == NOH_OK) {
+        taken_back(p->plan, segments_text, kind, good, good == most, p->plan->cpu_bytes - cpu,
+                   p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
+static noh_result give_back_halves(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->plan->halves || p->desc->halves) {
+        return NOH_OK;
+    }
+    p->plan->halves = 0;
+    result = measure(p, error);
+    if (result == NOH_OK && !fits(p->desc, p->plan)) {
+        p->plan->halves = 1;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) {
+        taken_back(p->plan, halves_text, NOH_NONE, 0, 1, p->plan->cpu_bytes - cpu, p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
+static noh_result give_back_vertices(const planner *p, noh_error *error)
+{
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
+    noh_result result;
+    if (!p->plan->sums || p->plan->halves) {
+        return NOH_OK;
+    }
+    p->plan->sums = 0;
+    result = measure(p, error);
+    if (result == NOH_OK && !fits(p->desc, p->plan)) {
+        p->plan->sums = 1;
+        return measure(p, error);
+    }
+    if (result == NOH_OK) {
+        taken_back(p->plan, sums_text, NOH_NONE, 0, 1, p->plan->cpu_bytes - cpu, p->plan->gpu_bytes - gpu);
+    }
+    return result;
+}
+
+/* What was given up first may fit again, once more was won than was needed. */
+static noh_result give_back(const planner *p, noh_error *error)
+{
+    noh_result result = p->plan->concession_count ? give_back_halves(p, error) : NOH_OK;
+    for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
+        noh_kind_plan *k = &p->plan->kinds[i];
+        const uint32_t now = k->cached_segment_count;
+        noh_kind_clips most;
+        if (noh_stage_bank_kind(p->desc, i) != i) continue;
+        k->cached_segment_count = 0;
+        result = noh_stage_measure_clips(p->desc, p->plan, i, &most, error);
+        k->cached_segment_count = now;
+        if (result == NOH_OK && most.cached_segment_count > now) {
+            result = give_back_segments(p, i, most.cached_segment_count, error);
+        }
+    }
+    if (result == NOH_OK && p->plan->concession_count) result = give_back_vertices(p, error);
+    return result;
+}
+
+/* The error of a finest level that is above 0 shows to whoever comes as near as the camera's own distance: in pixels at
+ * three metres, where a figure of two metres fills the picture. */
+static void state_losses(const planner *p)
+{
+    for (uint32_t i = 0; i < p->plan->concession_count; i++) {
+        noh_concession *c = &p->plan->concessions[i];
+        if (c->what == finest_text && c->kind < p->desc->kind_count) {
+            const noh_kind_plan *k = &p->plan->kinds[c->kind];
+            c->loss_pixels = k->levels[k->finest_level].error_m *
+                             noh_lod_scale(3.0f, NOH_STAGE_VIEW_RAD, p->desc->height_px);
+        }
+    }
+}
+
+/* ---- making a plan ---- */
+
+static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
+{
+    noh_kind_plan *k = &p->plan->kinds[kind];
+    const noh_kind_desc d = noh_stage_kind_desc(p->desc, kind);
+    const uint32_t owner = noh_stage_bank_kind(p->desc, kind);
+    noh_stage_needs needs;
+    noh_result result = noh_stage_find_levels(p->desc, kind, k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    noh_stage_share_slots(p->desc, kind, k);
+    k->clips = p->plan->kinds[owner].clips;
+    if (owner == kind) result = noh_stage_measure_clips(p->desc, p->plan, kind, &k->clips, error);
+    if (result == NOH_OK) result = noh_stage_measure_kind(p->desc, p->plan, kind, &needs, error);
+    if (result == NOH_OK) {
+        k->track_count = noh_stage_track_count(&d);
+        k->joint_count = needs.shape.joint_count;
+        k->float_count = needs.float_count;
+        k->segment_count = needs.segment_count;
+        k->graph_count = needs.graph_count;
+        k->cached_segment_count = needs.cached_segment_count;
+    }
+    return result;
+}
+
+/* Kinds of the same clips have one bank, whose number is kept with the first of them. */
+static void state_segments(const planner *p)
+{
+    for (uint32_t i = 0; i < p->desc->kind_count; i++) {
+        const uint32_t owner = noh_stage_bank_kind(p->desc, i);
+        p->plan->kinds[i].cached_segment_count = p->plan->kinds[owner].cached_segment_count;
+    }
+}
+
+/* Of the packs of a kind's texture sets, each once. */
+static uint64_t count_set_packs(const noh_kind_desc *d)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < d->texture_set_count; i++) {
+        const noh_pack *pack = d->texture_sets[i].pack;
+        int seen = !pack || pack->bytes == d->mesh->bytes;
+        for (uint32_t k = 0; k < i && !seen; k++) {
+            seen = d->texture_sets[k].pack && d->texture_sets[k].pack->bytes == pack->bytes;
+        }
+        bytes += seen ? 0 : pack->byte_count;
+    }
+    return bytes;
+}
+
+static uint64_t count_packs(const noh_stage_desc *desc)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+        int seen = 0;
+        for (uint32_t k = 0; k < i; k++) {
+            seen |= desc->kinds[k].mesh->bytes == d.mesh->bytes;
+        }
+        bytes += seen ? 0 : d.mesh->byte_count;
+        bytes += seen ? 0 : count_set_packs(&d);
+        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += d.clips->byte_count;
+        for (uint32_t c = 0; !seen && d.clip_packs && c < d.clip_pack_count; c++) {
+            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? d.clip_packs[c]->byte_count : 0;
+        }
+    }
+    return bytes;
+}
+
+static uint32_t mix(uint32_t hash, uint64_t value)
+{
+    for (int i = 0; i < 8; i++) {
+        hash = (hash ^ (uint32_t)(value >> 8 * i & 255u)) * 16777619u;
+    }
+    return hash;
+}
+
+/* Of what the layout and the meaning of a state depend on. */
+static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan)
+{
+    uint32_t hash = mix(2166136261u, plan->state_bytes);
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        const noh_kind_plan *k = &plan->kinds[i];
+        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+        hash = mix(mix(mix(mix(hash, d.actor_count), d.seen_max), d.held_float_count), d.mesh->byte_count);
+        hash = mix(hash, d.texture_set_count);
+        hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
+        hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
+        hash = mix(mix(hash, k->graph_count), d.part_count);
+        hash = mix(hash, d.face ? noh_stage_hash_face(&d) : 0);
+        hash = mix(hash, d.ragdoll ? d.ragdoll->count : 0);
+        if (!d.without_springs) hash = mix(hash, 1);
+        if (d.weight_rules) hash = mix(hash, 2);
+        for (uint32_t p = 0; p < d.part_count; p++) hash = mix(hash, d.parts[p].state_bytes);
+        for (uint32_t l = 0; l < k->level_count; l++) {
+            hash = mix(hash, k->levels[l].slot_count);
+        }
+    }
+    return hash;
+}
+
+static noh_result find_fit(const planner *p, noh_error *error)
+{
+    noh_result result = give_up_vertices(p, error);
+    if (result == NOH_OK) result = give_up_halves(p, error);
+    if (result == NOH_OK) result = give_up_segments(p, 2, error);
+    if (result == NOH_OK) result = give_up_slots(p, error);
+    if (result == NOH_OK) result = give_up_finest(p, error);
+    if (result == NOH_OK) result = give_up_segments(p, 0, error);
+    if (result == NOH_OK && fits(p->desc, p->plan)) result = give_back(p, error);
+    if (result == NOH_OK && !fits(p->desc, p->plan)) {
+        return noh_fail(error, NOH_ERR_MEMORY,
+                        "no choice of levels, slots and cached segments keeps the bounds of a stage", 0,
+                        p->plan->cpu_bytes + p->plan->gpu_bytes);
+    }
+    return result;
+}
+
+noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                               noh_error *error)
+{
+    noh_stage_desc filled;
+    planner p = { &filled, caps, plan };
+    noh_result result;
+    NOH_ASSERT(desc && plan);
+    result = noh_stage_check_desc(desc, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    if (desc->gpu && !caps) {
+        return noh_fail(error, NOH_ERR_ARG, "a stage that draws needs the capabilities of a GPU", 0, 0);
+    }
+    filled = noh_stage_desc_filled(desc);
+    memset(plan, 0, sizeof *plan);
+    plan->halves = desc->halves > 0;
+    for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
+        result = begin(&p, i, error);
+    }
+    if (result == NOH_OK) result = measure(&p, error);
+    if (result == NOH_OK) result = find_fit(&p, error);
+    if (result == NOH_OK) {
+        state_losses(&p);
+        state_segments(&p);
+        plan->pack_bytes = count_packs(desc);
+        plan->hash = hash_plan(desc, plan);
+    }
+    return result;
+}

@@ -1,0 +1,167 @@
+/* stage_pose.c: the second phase of a frame: poses of those that are due, floats and palettes of all that are shown, of
+ * one actor after another, while its pose is in the nearest cache. Each job takes actors of its own, samples through
+ * its own view of the clips, and writes palettes where the order of drawing has put its actors. */
+#include <string.h>
+
+#include "stage/cast/stage_internal.h"
+
+/* The set of a kind, sampled by a job's own view; through `sampler` where some clips stand for graphs. */
+static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind, noh_stage_sampler *sampler)
+{
+    noh_clip_set set = kind->set;
+    if (kind->bank) {
+        set.sample = job->views[kind->bank_kind]->clips.sample;
+        set.user = job->views[kind->bank_kind]->clips.user;
+    }
+    if (kind->graph_count) {
+        noh_stage_wrap(kind, &set, sampler);
+    }
+    return set;
+}
+
+/* What the clips say: the set's floats as shown, then the defaults of those behind them. A float that no clip moves has
+ * the value of its namesake. */
+static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
+{
+    const uint32_t own = k->bank || (noh_stage_has_parts(k->desc) && k->float_count) ? k->set.float_count : 0;
+    if (!ch->time.posed) {
+        memcpy(floats, k->defaults, k->float_count * sizeof *floats);
+        return;
+    }
+    if (own) {
+        const float *shown = noh_character_floats(ch, floats);
+        if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
+    }
+    memcpy(floats + own, k->defaults + own, (k->float_count - own) * sizeof *floats);
+    for (uint32_t f = k->first_renamed; f < k->float_count; f++) floats[f] = floats[k->sources[f]];
+}
+
+static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
+{
+    const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
+    for (uint32_t h = 0; h < k->desc->held_float_count; h++) {
+        if (!(held[h].amount > 0.0f)) continue;
+        for (uint32_t f = 0; f < k->float_count; f++) {
+            if (f == held[h].index || (k->name_hashes[f] == k->name_hashes[held[h].index] && k->name_hashes[f])) {
+                floats[f] = floats[f] * (1.0f - held[h].amount) + held[h].value * held[h].amount;
+            }
+        }
+    }
+}
+
+void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
+{
+    float *floats = k->floats + (size_t)index * k->float_count;
+    take_floats(k, noh_stage_character(k, index), floats);
+    hold(k, index, floats); /* the game's word is over clips, faces and parts */
+    noh_weight_rules_keep(k->weight_rules, k->weight_rule_count, floats);
+    if (k->corrective_count) noh_stage_correct(k, index, floats);
+}
+
+/* The weights of all meshes, one after another, without targets whose effect is too small to see. */
+static void take_weights(noh_stage *s, const noh_stage_kind *k, noh_stage_actor *a, noh_character *ch,
+                         const float *floats, float *weights)
+{
+    noh_lod_settings settings = s->desc.lod;
+    if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        memcpy(weights + mesh->first_weight, floats + mesh->first_float,
+               mesh->mesh.header->target_count * sizeof *weights);
+    }
+    if (k->weight_count && !noh_stage_is_full(s, a)) {
+        (void)noh_lod_targets(&ch->lod, &settings, weights, k->target_radii, k->weight_count, weights);
+    }
+}
+
+static uint64_t late_of(const noh_stage *s, const noh_stage_job_part *job)
+{
+    uint64_t late = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (job->views[i]) late += noh_clip_view_stats_of(job->views[i]->samples).decoded_late;
+    }
+    return late;
+}
+
+/* What the actors of a kind are posed with, one after another. */
+typedef struct poser {
+    noh_stage_kind *k;
+    noh_clip_set set;
+    noh_stage_sampler sampler;
+    noh_character_scratch scratch;
+} poser;
+
+static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, poser *p)
+{
+    const noh_character_desc desc = noh_stage_character_desc(k, 0);
+    p->k = k;
+    p->set = job_set(job, k, &p->sampler);
+    (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &p->scratch, NULL);
+}
+
+/* ---- the order of a frame ----
+ *
+ * Before these, for all actors: noh_stage_step (time, callback keys, root motion, ragdolls' bodies), the game's places
+ * (crowd/, walkers.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
+ * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
+
+/* The pose: joints and the floats that go with them. */
+static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
+{
+    noh_stage_kind *k = p->k;
+    noh_character *ch = noh_stage_character(k, i);
+    const int64_t clock = noh_character_pose_clock(ch);
+    const int64_t ahead = clock - noh_character_clock(ch);
+    if (k->graph_count) noh_stage_pose_graph(s, job, k, i, ahead, 0, &p->sampler);
+    noh_character_update_begin(ch, &p->set, &p->scratch); /* local poses of clips and graphs, blended */
+    if (noh_stage_has_parts(k->desc)) {
+        noh_part_work w;
+        noh_stage_begin_parts(s, job, k, i, clock, &p->scratch, &w);
+        if (k->face) noh_stage_run_face(s, k, noh_stage_face_of(k, i), &w); /* eyes, blinks, breath, speech */
+        noh_stage_run_parts(k, i, &w); /* the kind's own order: look-at, feet, hands, hair */
+        if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, i), &w); /* over them, who falls */
+        if (k->springs.modify) noh_stage_run_springs(k, i, &w);
+    }
+    noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
+}
+
+/* What of the pose is shown, mixed of two where updates are seldom: weights of targets, and palettes. */
+static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint32_t i)
+{
+    noh_character *ch = noh_stage_character(k, i);
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    noh_stage_actor *a = &s->actors[k->first_actor + i];
+    float error_pixels;
+    if (!ch->time.posed) {
+        return; /* over budget: not shown yet */
+    }
+    noh_stage_take_floats(k, i);
+    if (!a->parent && shown->updates) noh_stage_measure_shown(s, k, i, job->matrices);
+    take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);
+    shown->frame = s->frame;
+    if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes */
+    error_pixels = a->parent ? 0.0f : noh_stage_error_pixels(s, k, i);
+    if (error_pixels > job->error_pixels) job->error_pixels = error_pixels;
+}
+
+void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)
+{
+    noh_stage_job_part *job = &s->jobs[number];
+    poser p;
+    const uint64_t late = late_of(s, job);
+    p.k = NULL;
+    job->updated = 0;
+    job->error_pixels = 0.0f;
+    for (uint32_t t = first; t < end; t++) {
+        noh_stage_kind *of = noh_stage_kind_of(s, s->todo[t]);
+        if (of != p.k) {
+            open_poser(s, job, of, &p);
+        }
+        if (s->shown[s->todo[t]].updates) {
+            pose(s, job, &p, s->todo[t] - of->first_actor);
+            job->updated++;
+        }
+        show(s, job, of, s->todo[t] - of->first_actor);
+    }
+    job->decoded_late = late_of(s, job) - late;
+}

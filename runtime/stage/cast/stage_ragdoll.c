@@ -1,0 +1,423 @@
+/* stage_ragdoll.c: actors that fall. */
+#include "stage/cast/stage_ragdoll.h"
+
+#include <string.h>
+
+#include "motion/anim/clock_internal.h"
+#include "core/base/assert.h"
+#include "core/base/math_internal.h"
+#include "life/physics/ragdoll_internal.h"
+#include "life/physics/vector_internal.h"
+#include "stage/cast/fall.h"
+#include "stage/cast/stage_internal.h"
+
+/* ---- made ---- */
+
+const char *noh_stage_bad_ragdoll(const noh_kind_desc *d)
+{
+    const noh_kind_ragdoll *r = d->ragdoll;
+    if (!r->count || r->count > NOH_RAGDOLLS_MAX) return "count of a kind's ragdoll is not in 1..NOH_RAGDOLLS_MAX";
+    if (r->substeps && (r->substeps < 5u || r->substeps > NOH_RAGDOLL_SUBSTEPS_MAX))
+        return "substeps of a kind's ragdoll is not in 5..NOH_RAGDOLL_SUBSTEPS_MAX";
+    if (!(r->mass >= 0.0f) || !noh_is_finite(r->mass)) return "mass of a kind's ragdoll is below 0 or not finite";
+    if (d->skeleton == NOH_NONE) return "a kind with ragdolls has no skeleton";
+    return r->world && noh_world_check(r->world, NULL) ? "world of a kind's ragdoll: see noh_world_check" : NULL;
+}
+
+size_t noh_stage_doll_bytes(const noh_kind_desc *d)
+{
+    return d->ragdoll ? noh_ragdolls_state_size(d->ragdoll->count) : 0;
+}
+
+size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d)
+{
+    return d->ragdoll ? NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u : 0;
+}
+
+noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, noh_error *error)
+{
+    noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
+    const noh_skeleton_header *header;
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t count;
+    noh_result result;
+    if (source.skeleton == NOH_NONE || !source.pack->skeleton_count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+    }
+    result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
+    if (result != NOH_OK) return result;
+    source.metres = header->unit_cm / 100.0f;
+    source.mass = kind->ragdoll ? kind->ragdoll->mass : 0.0f;
+    result = noh_ragdoll_find_rows(&source, rows, &count, error);
+    return result == NOH_OK ? noh_ragdoll_rig_make(&source, rows, count, rig, error) : result;
+}
+
+noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error)
+{
+    noh_stage_ragdoll_kind *r = k->ragdoll;
+    const noh_skeleton_header *header;
+    noh_skeleton joints;
+    noh_ragdolls_desc desc;
+    noh_result result = noh_kind_can_fall(k->desc, &r->rig, error);
+    if (result != NOH_OK) return result;
+    (void)noh_pack_skeleton_at(k->desc->mesh, k->desc->skeleton, &joints, &header, NULL);
+    r->metres = header->unit_cm / 100.0f;
+    noh_ragdoll_fit_make(&r->rig, &k->skeleton, r->metres, &r->fit);
+    r->world = k->desc->ragdoll->world;
+    desc.rig = &r->rig;
+    desc.count = k->desc->ragdoll->count;
+    desc.substeps = k->desc->ragdoll->substeps;
+    (void)noh_ragdolls_begin(k->dolls, &desc);
+    return NOH_OK;
+}
+
+/* ---- poses ---- */
+
+noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3])
+{
+    noh_ragdoll_frame f;
+    for (int i = 0; i < 3; i++) {
+        f.position[i] = (float)((double)place->position[i] * (double)k->ragdoll->metres - (double)origin[i]);
+    }
+    memcpy(f.rotation, place->rotation, sizeof f.rotation);
+    f.metres = k->ragdoll->metres * place->scale;
+    return f;
+}
+
+void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights)
+{
+    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) {
+        weights[i] = b->held >> i & 1u ? 0.0f : 1.0f - b->animated[i];
+    }
+}
+
+/* What is remembered counts from near to a place. */
+static void move_origin(const noh_stage_kind *k, noh_stage_body *b, const noh_place *place)
+{
+    float at[3], origin[3];
+    for (int i = 0; i < 3; i++) at[i] = place->position[i] * k->ragdoll->metres;
+    noh_ragdoll_origin_near(at, origin);
+    for (int i = 0; i < 3; i++) {
+        const float by = origin[i] - b->origin[i];
+        for (uint32_t n = 0; n < 2u * NOH_RAGDOLL_BODIES_MAX; n++) {
+            b->bodies[n / NOH_RAGDOLL_BODIES_MAX][n % NOH_RAGDOLL_BODIES_MAX].position[i] -= by;
+        }
+        b->origin[i] = origin[i];
+    }
+}
+
+/* Where its bodies are now, and where they were in the pose before. */
+static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
+{
+    if (w->cut) b->poses = 0;
+    move_origin(k, b, &w->place);
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
+    if (b->poses && w->clock > b->clocks[0]) {
+        memcpy(b->bodies[1], b->bodies[0], sizeof b->bodies[1]);
+        b->clocks[1] = b->clocks[0];
+        b->poses = 2;
+    }
+    if (!b->poses) b->poses = 1;
+    b->clocks[0] = w->clock;
+    noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[0]);
+}
+
+/* Whether its ragdoll has to know where clips have its bodies. */
+static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
+{
+    int some = b->held != 0;
+    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) some |= b->hertz[i] > 0.0f;
+    return some;
+}
+
+static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
+{
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
+    float weights[NOH_RAGDOLL_BODIES_MAX];
+    b->goals = b->doll && has_goals(k, b);
+    if (b->goals) noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[1]);
+    noh_stage_ragdoll_weights(k, b, weights);
+    noh_ragdoll_to_pose(&k->ragdoll->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
+}
+
+void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w)
+{
+    if (b->state != NOH_BODY_STANDS) {
+        show_doll(k, b, w);
+        return;
+    }
+    if (b->rise) noh_stage_run_get_up(k, b, w);
+    remember(k, b, w);
+}
+
+/* ---- time ---- */
+
+/* Where its place lies from its first body, one axis of it: in the world's units. */
+static float carried_to(const noh_stage_kind *k, const noh_stage_body *b, int i)
+{
+    const double from = (double)b->bodies[0][0].position[i] + (double)b->offset[i];
+    return (float)(((double)b->origin[i] + from) / (double)k->ragdoll->metres);
+}
+
+/* Where the game has moved a place, or as it begins to fall. */
+static void take_offset(const noh_stage_kind *k, noh_stage_body *b, const noh_place *place)
+{
+    const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, place, b->origin);
+    noh_sub3(frame.position, b->bodies[0][0].position, b->offset);
+}
+
+/* The place goes where the first body goes, unless that is held: as far from it as ever, so that small ways add up. */
+static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_actor *a)
+{
+    int moved = 0;
+    for (int i = 0; i < 3; i++) moved |= a->place.position[i] != carried_to(k, b, i);
+    if (moved) take_offset(k, b, &a->place);
+    noh_ragdoll_bodies_local(k->dolls, b->doll - 1u, b->origin, b->bodies[0]);
+    for (int i = 0; i < 3 && noh_stage_is_carried(b); i++) a->place.position[i] = carried_to(k, b, i);
+    if (b->dead && noh_ragdoll_sleeps(k->dolls, b->doll - 1u)) {
+        b->state = NOH_BODY_LIES;
+        b->doll = 0;
+    }
+}
+
+/* Dolls learn what their clips want; those that are free cost nothing. */
+static void tell_dolls(const noh_stage_kind *k)
+{
+    uint8_t used[NOH_RAGDOLLS_MAX];
+    memset(used, 0, sizeof used);
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        const noh_stage_body *b = noh_stage_body_of(k, i);
+        if (!k->actors[i].alive || !b->doll) continue;
+        used[b->doll - 1u] = 1;
+        (void)noh_ragdoll_follow_about(k->dolls, b->doll - 1u, b->origin,
+                                       b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
+    }
+    for (uint32_t i = 0; i < k->desc->ragdoll->count; i++) {
+        if (!used[i]) noh_ragdoll_dolls(k->dolls)[i].asleep = 1;
+    }
+}
+
+void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks)
+{
+    uint8_t *scratch = k->doll_scratch;
+    scratch += (32u - (uintptr_t)scratch % 32u) % 32u;
+    tell_dolls(k);
+    (void)noh_ragdolls_step_with(k->dolls, k->ragdoll->world, ticks, (float *)(void *)scratch);
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        noh_stage_body *b = noh_stage_body_of(k, i);
+        if (k->actors[i].alive && b->doll) follow_doll(k, b, &k->actors[i]);
+    }
+}
+
+void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3])
+{
+    float metres[3];
+    for (int i = 0; i < 3; i++) metres[i] = by[i] * k->ragdoll->metres;
+    noh_ragdolls_shift(k->dolls, metres);
+    for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+        noh_stage_body *b = noh_stage_body_of(k, a);
+        float lost[3];
+        noh_ragdoll_origin_shift(b->origin, metres, lost);
+        for (uint32_t n = 0; n < 2u * NOH_RAGDOLL_BODIES_MAX; n++) {
+            float *at = b->bodies[n / NOH_RAGDOLL_BODIES_MAX][n % NOH_RAGDOLL_BODIES_MAX].position;
+            noh_madd3(at, 1.0f, lost, at);
+        }
+    }
+}
+
+/* ---- calls ---- */
+
+noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
+                               noh_stage_body **b, noh_error *error)
+{
+    const noh_result result = noh_stage_change(stage, actor, a, k, error);
+    if (result != NOH_OK) return result;
+    if (!(*k)->ragdoll) {
+        return noh_fail(error, NOH_ERR_ARG, "the actor's kind has no ragdolls: set noh_kind_desc.ragdoll",
+                        (uint64_t)(*k - stage->kinds), 0);
+    }
+    *b = noh_stage_body_of(*k, noh_stage_index(*k, *a));
+    return NOH_OK;
+}
+
+/* 1 + a doll that no actor has; 0: there is none. */
+static uint32_t free_doll(const noh_stage_kind *k)
+{
+    for (uint32_t doll = 1; doll <= k->desc->ragdoll->count; doll++) {
+        uint32_t i = 0;
+        while (i < k->desc->actor_count && noh_stage_body_of(k, i)->doll != doll) i++;
+        if (i == k->desc->actor_count) return doll;
+    }
+    return 0;
+}
+
+/* An actor that was not shown yet falls out of the bind pose, at rest. */
+static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, uint32_t doll,
+                             noh_error *error)
+{
+    const uint32_t count = k->ragdoll->rig.body_count;
+    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
+    const int stands = b->state == NOH_BODY_STANDS;
+    if (stands && !b->poses) {
+        move_origin(k, b, &a->place);
+        const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
+        noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, k->skeleton.bind_pose, &frame, b->bodies[0]);
+    }
+    memset(motions, 0, sizeof motions);
+    if (stands && b->poses == 2u) {
+        const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
+        noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
+    }
+    const noh_result result = noh_ragdoll_place_about(k->dolls, doll - 1u, b->origin, b->bodies[0], motions, error);
+    if (result == NOH_OK) take_offset(k, b, &a->place);
+    return result;
+}
+
+static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
+{
+    uint32_t doll;
+    noh_result result;
+    if (b->doll) return NOH_OK;
+    if (a->parent || a->place.scale != 1.0f) {
+        return noh_fail(error, NOH_ERR_ARG, "an actor falls that hangs on none and has a scale of 1", 0, 0);
+    }
+    doll = free_doll(k);
+    if (!doll) {
+        return noh_fail(error, NOH_ERR_LIMIT, "all ragdolls of the kind are in use: raise noh_kind_ragdoll.count",
+                        k->desc->ragdoll->count, k->desc->ragdoll->count + 1u);
+    }
+    result = place_doll(k, a, b, doll, error);
+    if (result != NOH_OK) return result;
+    b->doll = doll;
+    b->state = NOH_BODY_FALLS;
+    b->rise = NOH_RISE_NOT;
+    b->goals = 0;
+    b->poses = 0;
+    noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
+    return NOH_OK;
+}
+
+noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    return b ? fall(k, a, b, error) : result;
+}
+
+noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
+                         noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    NOH_ASSERT(point && impulse);
+    if (!b) return result;
+    for (int i = 0; i < 3; i++) {
+        if (!noh_is_finite(point[i]) || !noh_is_finite(impulse[i]))
+            return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not finite", (uint64_t)i, 0);
+    }
+    result = fall(k, a, b, error);
+    if (result == NOH_OK) noh_ragdoll_push(k->dolls, b->doll - 1u, point, impulse);
+    return result;
+}
+
+noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (!b) return result;
+    if (b->state != NOH_BODY_LIES) result = fall(k, a, b, error);
+    if (result == NOH_OK) b->dead = 1;
+    return result;
+}
+
+noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    if (b) b->dead = 0;
+    return result;
+}
+
+static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
+{
+    while (joint != above && joint != NOH_JOINT_ROOT) joint = skeleton->parents[joint];
+    return joint == above;
+}
+
+noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint, const noh_body_hold *hold,
+                               noh_error *error)
+{
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
+    uint32_t found = 0;
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    NOH_ASSERT(hold);
+    if (!b) return result;
+    if (!(hold->hertz >= 0.0f) || !noh_is_finite(hold->hertz) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is below 0, or animated not in 0..1", joint, 0);
+    for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < k->ragdoll->rig.body_count; i++) {
+        if (!is_below(&k->skeleton, k->ragdoll->fit.joints[i], joint)) continue;
+        b->held = (b->held & ~(1u << i)) | (hold->held ? 1u << i : 0u);
+        b->hertz[i] = hold->hertz;
+        b->animated[i] = hold->animated;
+        found = 1;
+    }
+    return found ? NOH_OK : noh_fail(error, NOH_ERR_ARG, "no body begins at that joint, nor below it", joint, 0);
+}
+
+noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    const noh_stage_body *b = a && k->ragdoll ? noh_stage_body_of(k, noh_stage_index(k, a)) : NULL;
+    if (!b) return NOH_BODY_STANDS;
+    if (b->doll) return noh_ragdoll_sleeps(k->dolls, b->doll - 1u) ? NOH_BODY_LIES : NOH_BODY_FALLS;
+    if (b->state == NOH_BODY_LIES) return NOH_BODY_LIES;
+    return b->rise && noh_clock_since(stage->head->clock, b->rise_clock) < (int64_t)b->rise_ticks ? NOH_BODY_GETS_UP
+                                                                                                  : NOH_BODY_STANDS;
+}
+
+/* ---- state from outside ---- */
+
+static int is_finite_pose(const noh_ragdoll_pose *pose)
+{
+    float sum = 0.0f;
+    for (int n = 0; n < 3; n++) sum += pose->position[n] - pose->position[n];
+    for (int n = 0; n < 4; n++) sum += pose->rotation[n] - pose->rotation[n];
+    return sum == 0.0f;
+}
+
+static int is_finite_hold(const noh_stage_body *b, uint32_t i)
+{
+    float sum = 0.0f;
+    for (int n = 0; n < 3; n++) {
+        sum += b->motions[i].velocity[n] - b->motions[i].velocity[n];
+        sum += b->motions[i].spin[n] - b->motions[i].spin[n];
+        sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n] + b->origin[n] - b->origin[n];
+    }
+    return sum == 0.0f && b->hertz[i] >= 0.0f && noh_is_finite(b->hertz[i]) && b->animated[i] >= 0.0f &&
+           b->animated[i] <= 1.0f;
+}
+
+const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b)
+{
+    if (b->doll > k->desc->ragdoll->count || b->poses > 2u || (b->poses == 2u && b->clocks[0] <= b->clocks[1]) ||
+        b->state > NOH_BODY_LIES || (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->rise > NOH_RISE_GOES_ON ||
+        (b->rise && !b->rise_ticks) || b->dead > 1u || b->goals > 1u) {
+        return "state: bad ragdoll of an actor";
+    }
+    for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
+        if (!is_finite_pose(&b->bodies[0][i]) || !is_finite_pose(&b->bodies[1][i]) || !is_finite_hold(b, i))
+            return "state: an actor's ragdoll is not finite";
+    }
+    return NULL;
+}

@@ -1,0 +1,263 @@
+/* stage_share.c: between the phases, on one thread: slots are shared out, updates chosen, segments decoded, and the
+ * seen actors put into the order in which they are drawn. */
+#include <string.h>
+
+#include "stage/cast/stage_internal.h"
+
+#define AHEAD_TICKS 12000u      /* looked ahead for clips: a quarter of a second */
+#define AHEAD_TRACK_FRAMES 512u /* decoded in a frame for what is not needed yet */
+
+static const noh_cost_weights costs = { 500.0f, 40.0f, 0.0f, 0.0f }; /* as `noh bench` measures them, roughly */
+
+/* ---- slots ---- */
+
+static void ask(noh_stage *s, noh_stage_kind *k)
+{
+    noh_lod_pools_begin(k->pools);
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        const noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        const noh_stage_actor *a = &k->actors[i];
+        if (shown->views) {
+            const uint32_t level = noh_lod_finest(&noh_stage_character(k, i)->lod), first = k->table.mesh_level_first;
+            noh_lod_pools_ask_at(k->pools, i, level > first ? level : first, shown->scale * noh_stage_size(s, a),
+                                 shown->distance, s->cut || a->was_seen < 3u);
+        }
+    }
+    noh_lod_pools_share_some(k->pools, s->cut ? UINT32_MAX : s->desc.slot_moves);
+}
+
+/* More are in view than may be drawn: as if it were out of view. */
+static void leave_out(noh_stage *s, noh_stage_shown *shown, uint32_t index)
+{
+    shown->views = 0;
+    s->actors[index].was_seen = 0;
+    if (!s->actors[index].look.posed && !(shown->updates & NOH_STAGE_CARRIES)) shown->due = NOH_DUE_NOT;
+}
+
+/* A pool may be short of fine slots: the actor is then drawn no finer than its slot, and chooses no finer from now on.
+ */
+static void take_slot(noh_stage *s, noh_stage_kind *k, uint32_t i)
+{
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    noh_lod *d = &noh_stage_character(k, i)->lod;
+    shown->slot = noh_lod_pools_slot(k->pools, i);
+    if (shown->slot.left_out) {
+        leave_out(s, shown, k->first_actor + i);
+        return;
+    }
+    shown->level = (uint8_t)(d->mesh > shown->slot.level ? d->mesh : shown->slot.level);
+    shown->level_before = (uint8_t)(d->mesh_before > shown->slot.level ? d->mesh_before : shown->slot.level);
+    noh_lod_set_limit(d, shown->slot.level);
+}
+
+/* ---- order ---- */
+
+uint32_t noh_stage_influence_levels(const noh_stage_kind *k)
+{
+    return k->table.influence_level_count ? k->table.influence_level_count : 1u;
+}
+
+uint32_t noh_stage_run_count(const noh_stage_kind *k)
+{
+    return k->plan->level_count * noh_stage_influence_levels(k);
+}
+
+uint32_t noh_stage_seen(const noh_stage_kind *k)
+{
+    return k->runs[noh_stage_run_count(k) + 1u];
+}
+
+static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
+{
+    const noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    return shown->level != shown->level_before
+               ? noh_stage_run_count(k)
+               : shown->level * noh_stage_influence_levels(k) + noh_stage_character(k, i)->lod.influences;
+}
+
+/* The next place in its run for each seen actor of a texture set. */
+static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t set, uint32_t *next)
+{
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        if (shown->views && k->actors[i].look.texture_set == set) {
+            shown->place = (uint16_t)next[run_of(s, k, i)]++;
+            k->order[shown->place] = i;
+        }
+    }
+}
+
+/* A counting sort by run, in a run by texture set; stable, so that neighbours in memory stay neighbours. */
+static void put_in_order(noh_stage *s, noh_stage_kind *k)
+{
+    const uint32_t runs = noh_stage_run_count(k);
+    uint32_t next[NOH_LOD_LEVELS_MAX * 4u + 1u] = { 0 }, count = 0;
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        if (s->shown[k->first_actor + i].views) next[run_of(s, k, i)]++;
+    }
+    for (uint32_t r = 0; r <= runs; r++) {
+        k->runs[r] = count;
+        count += next[r];
+        next[r] = k->runs[r];
+    }
+    k->runs[runs + 1u] = count;
+    for (uint32_t set = 0; set <= k->desc->texture_set_count; set++) take_places(s, k, set, next);
+}
+
+/* ---- updates ---- */
+
+/* Without a budget all that are due are posed: nothing is put in order, and no cost is asked for. */
+static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
+{
+    noh_stage_shown *shown = &s->shown[k->first_actor + i];
+    const noh_character *ch = noh_stage_character(k, i);
+    uint32_t cost;
+    shown->updates = 0;
+    if (shown->due == NOH_DUE_NOT || s->desc.update_budget_ns == UINT64_MAX) {
+        shown->updates = shown->due != NOH_DUE_NOT;
+        return;
+    }
+    cost = noh_cost_ns(&costs, noh_character_joint_work(ch) + noh_stage_graph_work(k, i), 0, 0);
+    if (shown->due >= NOH_DUE_AT_ONCE) {
+        noh_schedule_spend(&s->schedule, cost);
+        shown->updates = 1;
+    } else {
+        noh_schedule_offer(&s->schedule, k->first_actor + i, noh_character_late(ch), 0.01f * shown->scale, cost);
+    }
+}
+
+static void choose_updates(noh_stage *s)
+{
+    uint32_t index;
+    noh_schedule_begin(&s->schedule, s->head->step_ticks, s->desc.update_budget_ns);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        for (uint32_t a = 0; a < s->kinds[i].desc->actor_count; a++) offer(s, &s->kinds[i], a);
+    }
+    while (noh_schedule_next(&s->schedule, &index)) s->shown[index].updates = 1;
+    s->todo_count = 0;
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        const noh_stage_actor *at = &s->actors[i];
+        if (s->shown[i].views || s->shown[i].updates || (at->alive && at->look.posed)) s->todo[s->todo_count++] = i;
+    }
+}
+
+/* ---- decoding ---- */
+
+/* How far ahead an update poses: until the next one. */
+static uint32_t ahead_of(const noh_stage *s, const noh_character *ch)
+{
+    return noh_update_period((noh_update_rate)ch->lod.update_rate) + s->head->step_ticks;
+}
+
+static void want_clips(noh_stage *s, const noh_stage_kind *k, uint32_t i, int now)
+{
+    noh_character *ch = noh_stage_character(k, i);
+    const uint32_t ahead = now ? ahead_of(s, ch) : AHEAD_TICKS;
+    const noh_stage_playing p = noh_stage_playing_of(k, i);
+    (void)noh_clip_bank_prefetch(k->bank, noh_character_controller(ch), ahead);
+    if (p.graph) {
+        (void)noh_clip_bank_prefetch(k->bank, noh_graph_controller(p.state), ahead);
+    }
+}
+
+static void want(noh_stage *s, int now)
+{
+    for (uint32_t t = 0; t < s->todo_count; t++) {
+        const uint32_t index = s->todo[t];
+        const noh_stage_kind *k = noh_stage_kind_of(s, index);
+        if (k->bank && !s->kinds[k->bank_kind].holds_all && (s->shown[index].updates || !now)) {
+            want_clips(s, k, index - k->first_actor, now);
+        }
+    }
+}
+
+static uint64_t decoded_so_far(const noh_stage *s)
+{
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
+            sum += noh_clip_cache_stats_of(s->kinds[i].bank->cache).decoded;
+        }
+    }
+    return sum;
+}
+
+/* Whether a bank still has something to decode. Once its cache holds all, it always will. */
+static int any_missing(noh_stage *s)
+{
+    int missing = 0;
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        noh_stage_kind *k = &s->kinds[i];
+        if (!k->bank || k->bank_kind != i) continue;
+        noh_clip_cache_begin_frame(k->bank->cache);
+        if (!k->holds_all) k->holds_all = noh_clip_cache_holds_all(k->bank->cache);
+        missing |= !k->holds_all;
+    }
+    return missing;
+}
+
+/* First all that this frame needs, then a little of what the next ones will. */
+static void decode(noh_stage *s)
+{
+    const uint64_t before = decoded_so_far(s);
+    s->stats.decoded = 0;
+    if (!any_missing(s)) {
+        return;
+    }
+    for (int now = 1; now >= 0; now--) {
+        want(s, now);
+        for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+            if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
+                (void)noh_clip_cache_work(s->kinds[i].bank->cache, now ? UINT32_MAX : AHEAD_TRACK_FRAMES);
+            }
+        }
+    }
+    s->stats.decoded = decoded_so_far(s) - before;
+}
+
+/* ---- all of it ---- */
+
+static void add_slots(noh_stage_stats *stats, const noh_lod_pools_stats *from)
+{
+    stats->coarser += from->coarser;
+    stats->moved += from->moved;
+    stats->waiting += from->waiting;
+    stats->resting += from->resting;
+    stats->left_out += from->left_out;
+}
+
+static void count_levels(noh_stage *s)
+{
+    noh_stage_stats *stats = &s->stats;
+    stats->actors = stats->seen = stats->fading = stats->coarser = 0;
+    stats->moved = stats->waiting = stats->resting = stats->left_out = 0;
+    memset(stats->at_level, 0, sizeof stats->at_level);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        const noh_stage_kind *k = &s->kinds[i];
+        const uint32_t runs = noh_stage_run_count(k);
+        stats->actors += s->head->kinds[i].count;
+        stats->seen += k->runs[runs + 1u];
+        stats->fading += k->runs[runs + 1u] - k->runs[runs];
+        add_slots(stats, noh_lod_pools_stats_of(k->pools));
+        for (uint32_t p = 0; p < k->runs[runs + 1u]; p++) {
+            stats->at_level[s->shown[k->first_actor + k->order[p]].level]++;
+        }
+    }
+    if (stats->actors > stats->actors_high) stats->actors_high = stats->actors;
+    if (stats->coarser > stats->coarser_high) stats->coarser_high = stats->coarser;
+}
+
+void noh_stage_share(noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        noh_stage_kind *k = &s->kinds[i];
+        ask(s, k);
+        for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+            if (s->shown[k->first_actor + a].views) take_slot(s, k, a);
+        }
+        put_in_order(s, k);
+    }
+    count_levels(s);
+    choose_updates(s);
+    decode(s);
+}

@@ -1,0 +1,180 @@
+/* stage_state.c: the state out and in. */
+#include <string.h>
+
+#include "core/base/math_internal.h"
+#include "life/physics/ragdoll_internal.h"
+#include "stage/cast/stage_internal.h"
+
+const void *noh_stage_state(const noh_stage *stage, size_t *bytes)
+{
+    NOH_ASSERT(stage && bytes);
+    *bytes = stage->state_bytes;
+    return stage->state;
+}
+
+/* source  G. Fowler, L. C. Noll, K.-P. Vo: FNV-1a, 64 bits */
+uint64_t noh_stage_hash(const noh_stage *stage)
+{
+    uint64_t hash = 14695981039346656037u;
+    NOH_ASSERT(stage);
+    for (size_t i = 0; i < stage->state_bytes; i++) {
+        hash = (hash ^ stage->state[i]) * 1099511628211u;
+    }
+    return hash;
+}
+
+/* ---- a state from outside ---- */
+
+typedef struct reader {
+    const noh_stage *s;
+    const uint8_t *state;
+} reader;
+
+/* The same place in the copy as in the stage's own state. */
+static const void *in_copy(const reader *r, const void *own)
+{
+    return r->state + ((const uint8_t *)own - r->s->state);
+}
+
+static const char *bad_place(const noh_place *place)
+{
+    float length = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        if (!noh_is_number(place->position[i])) return "state: an actor's place is not a number";
+    }
+    for (int i = 0; i < 4; i++) length += place->rotation[i] * place->rotation[i];
+    if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f && noh_is_number(place->scale)))
+        return "state: an actor's rotation is not unit, or its scale not in 0..10^12";
+    return NULL;
+}
+
+static int is_too_deep(const reader *r, const noh_stage_actor *a)
+{
+    const noh_stage_actor *actors = in_copy(r, r->s->actors);
+    for (uint32_t depth = 0; depth <= NOH_ATTACH_DEPTH_MAX; depth++) {
+        const uint32_t index = a->parent & 0xffffu;
+        if (!a->parent || index >= r->s->actor_count) return 0;
+        if (!actors[index].alive || actors[index].generation != a->parent >> 16) return 0;
+        a = &actors[index];
+    }
+    return 1;
+}
+
+static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh_stage_actor *a)
+{
+    const char *what;
+    if (a->generation == 0 || a->generation > 0xffffu) return "state: bad generation of an actor";
+    if (a->alive > 1u || a->was_seen > 3u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
+    if (a->next_free > k->desc->actor_count) return "state: bad list of free actors";
+    if (!a->alive) return NULL;
+    what = bad_place(&a->place);
+    if (!what) what = bad_place(&a->before);
+    for (int i = 0; i < 3 && !what; i++) {
+        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !noh_is_number((float)a->home[i]))
+            what = "state: an actor's place is not a number";
+    }
+    for (int i = 0; i < 4 && !what; i++) {
+        if (!(a->rotation_rest[i] > -0.01f && a->rotation_rest[i] < 0.01f))
+            what = "state: an actor's rotation is not unit, or its scale not in 0..10^12";
+    }
+    if (what) return what;
+    if (!(a->look.pixels >= 0.0f && a->look.pixels <= NOH_PIXELS_MAX))
+        return "state: an actor's look asks for no error";
+    if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
+    if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
+    if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
+    if (is_too_deep(r, a)) return "state: an actor is attached to itself, or over too many others";
+    for (uint32_t l = 0; l < k->layer_count; l++) {
+        if ((a->started[l / 8u] >> 4u * (l % 8u) & 15u) >= k->layers[l].track_count)
+            return "state: bad track of a layer";
+    }
+    return NULL;
+}
+
+static const char *bad_held(const noh_stage_kind *k, const noh_stage_held *held)
+{
+    for (uint32_t i = 0; i < k->desc->held_float_count; i++) {
+        if (!(held[i].amount >= 0.0f && held[i].amount <= 1.0f) || !noh_is_number(held[i].value))
+            return "state: a held float is not a number";
+        if (held[i].amount > 0.0f && held[i].index >= k->float_count) return "state: a held float out of range";
+    }
+    return NULL;
+}
+
+/* The free actors are a list from first to last that meets each of them once. */
+static const char *bad_list(const reader *r, const noh_stage_kind *k, const noh_stage_free *f)
+{
+    const noh_stage_actor *actors = in_copy(r, k->actors);
+    uint32_t at = f->first, last = 0, met = 0, gone = 0;
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) gone += !actors[i].alive;
+    while (at && met <= gone) {
+        if (at > k->desc->actor_count || actors[at - 1u].alive) return "state: bad list of free actors";
+        last = at;
+        at = actors[at - 1u].next_free;
+        met++;
+    }
+    return met != gone || f->last != last || f->count != k->desc->actor_count - gone ? "state: bad list of free actors"
+                                                                                     : NULL;
+}
+
+static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
+{
+    const noh_stage_kind *k = &r->s->kinds[kind];
+    const noh_stage_actor *actors = in_copy(r, k->actors);
+    const noh_stage_head *head = (const void *)r->state;
+    const char *what = NULL;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < k->desc->actor_count && result == NOH_OK; i++) {
+        const uint8_t *character = in_copy(r, k->characters + (size_t)i * k->character_bytes);
+        what = bad_actor(r, k, &actors[i]);
+        if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc->held_float_count));
+        if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
+        if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);
+        if (actors[i].alive && result == NOH_OK) {
+            result = noh_stage_check_graph(k, in_copy(r, k->graph_slots + (size_t)i * k->slot_bytes), error);
+        }
+        if (actors[i].alive && result == NOH_OK) {
+            result = noh_stage_check_parts(k, in_copy(r, k->part_states + (size_t)i * k->part_bytes), error);
+        }
+    }
+    if (k->ragdoll && result == NOH_OK) what = noh_ragdolls_check(k->dolls, in_copy(r, (const uint8_t *)k->dolls));
+    if (what) return noh_fail(error, NOH_ERR_DATA, what, kind, 0);
+    what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
+    if (!what && result == NOH_OK) {
+        return noh_lod_pools_check(in_copy(r, k->pools), k->pools, error);
+    }
+    return what ? noh_fail(error, NOH_ERR_DATA, what, kind, 0) : result;
+}
+
+static noh_result check_state(const noh_stage *s, const void *state, size_t bytes, noh_error *error)
+{
+    const noh_stage_head *head = state;
+    const reader r = { s, state };
+    noh_result result = NOH_OK;
+    if (s->phase != NOH_STAGE_IDLE) {
+        return noh_fail(error, NOH_ERR_ARG, "a state is put back outside of steps and frames", 0, 0);
+    }
+    if ((uintptr_t)state % NOH_MEMORY_ALIGN) {
+        return noh_fail(error, NOH_ERR_ARG, "a state is misaligned", 0, 0);
+    }
+    if (bytes != s->state_bytes || head->magic != NOH_STAGE_MAGIC || head->hash != s->plan->hash) {
+        return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan", 0, s->state_bytes);
+    }
+    for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
+        result = check_kind(&r, i, error);
+    }
+    return result;
+}
+
+noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes, noh_error *error)
+{
+    noh_result result;
+    NOH_ASSERT(stage && state);
+    result = check_state(stage, state, bytes, error);
+    if (result == NOH_OK) {
+        memcpy(stage->state, state, bytes);
+        memset(stage->shown, 0, stage->actor_count * sizeof *stage->shown);
+        stage->events_held = 0;
+    }
+    return result;
+}

@@ -1,0 +1,65 @@
+/* character_check.c: whether a block of bytes is a character. */
+#include "stage/character/character.h"
+
+#include "core/base/arena.h"
+
+static const char *bad_lod(const noh_lod *d, const noh_lod_table *table)
+{
+    const uint32_t levels = table->mesh_level_count ? table->mesh_level_count : 1u;
+    if (d->mesh >= levels || d->mesh_before >= levels || d->mesh_wanted >= levels)
+        return "character: a mesh level that the table has not";
+    if (d->joints >= (table->joint_level_count ? table->joint_level_count : 1u))
+        return "character: a joint level that the table has not";
+    if (d->influences >= (table->influence_level_count ? table->influence_level_count : 1u))
+        return "character: an influence level that the table has not";
+    if (d->update_rate >= NOH_UPDATE_RATE_COUNT) return "character: a bad update rate";
+    if (!(d->pixels_per_metre >= 0.0f)) return "character: a negative scale";
+    return NULL;
+}
+
+static const char *bad_time(const noh_time_lod *t)
+{
+    if (t->chosen_rate >= NOH_UPDATE_RATE_COUNT || t->shown_rate >= NOH_UPDATE_RATE_COUNT)
+        return "character: a bad update rate";
+    return t->to_pose > 1u || t->posed > 1u ? "character: a bad pose index" : NULL;
+}
+
+/* The head against that of a new character with the same controller. */
+static const char *bad_head(const noh_character *ch, size_t bytes, const noh_clip_set *set)
+{
+    uint64_t at;
+    if (bytes < sizeof *ch || ch->bytes > bytes) return "character: its bytes do not suit its counts";
+    if (ch->joint_count != set->joint_count || ch->float_count != set->float_count)
+        return "character: made for another set";
+    if (ch->controller_offset != sizeof *ch || ch->palette_offsets[0] < sizeof *ch || ch->palette_offsets[0] > bytes)
+        return "character: bad offset of a part";
+    at = ch->palette_offsets[0];
+    for (int i = 0; i < 2; i++) {
+        if (ch->palette_offsets[i] != at) return "character: bad offset of a part";
+        at += 48u * (uint64_t)set->joint_count;
+        at = (at + 4u * (uint64_t)set->float_count + 15u) & ~(uint64_t)15;
+    }
+    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f)) return "character: a negative stretch of a pose";
+    if (ch->multiplied > 3u) return "character: bad flags of its palettes";
+    return ch->bytes != at ? "character: its bytes do not suit its counts" : NULL;
+}
+
+noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,
+                               noh_error *error)
+{
+    const noh_character *ch = (const noh_character *)memory;
+    const noh_result result = noh_arena_check(memory, 0, error);
+    const char *what;
+    NOH_ASSERT(set && table);
+    if (result) {
+        return result;
+    }
+    what = bad_head(ch, bytes, set);
+    if (!what) what = bad_lod(&ch->lod, table);
+    if (!what) what = bad_time(&ch->time);
+    if (what) {
+        return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
+    }
+    return noh_controller_check((const uint8_t *)memory + ch->controller_offset,
+                                ch->palette_offsets[0] - ch->controller_offset, set, error);
+}

@@ -1,0 +1,46 @@
+#!/bin/sh
+# check_rooms.sh: the rooms of runtime/ and the order in which they include.
+#   - a room includes from itself and from the rooms in front of it (tools/docs/rooms.sh order)
+#   - the folders of all rooms have an order, too: no two include each other, however indirectly
+#   - GL headers are included in gl/ alone; nothing else from outside but the compiler's own headers
+#   - a folder has at most fifty files
+#   - each README's picture is what the code includes, and the README is a page
+. "$(dirname "$0")/cli/lib.sh"
+order=$(sh tools/docs/rooms.sh order)
+echo "# rooms: $order"
+find runtime -mindepth 1 -maxdepth 1 -type d | sed 's|.*/||' | sort >"$work/found"
+echo "$order" | tr ' ' '\n' | sort >"$work/listed"
+check 'every folder of runtime/ is a room of the list' cmp "$work/found" "$work/listed"
+
+# ROOM/FOLDER INCLUDED for each include of the library's own.
+grep -n '^ *# *include *"' runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
+    sed 's|^runtime/\([^:]*\)/[^/:]*:.*"\([^"]*\)".*|\1 \2|' | sort -u >"$work/includes"
+awk '$2 !~ "^[a-z]+/[a-z]+/[a-z0-9_]+[.]h$" && $2 != "shaders.gen.h"' "$work/includes" >"$work/unnamed"
+check 'includes name room, folder and file' sh -c '! grep . "$1"' - "$work/unnamed"
+awk '$2 ~ "/" { sub("/[^/]*$", "", $2); if ($1 != $2) print $2, $1 }' "$work/includes" | sort -u >"$work/folders"
+check 'the includes were read' grep -q '^core/base gl/draw$' "$work/folders"
+awk -v order="$order" '
+    BEGIN { n = split(order, room, " "); for (i = 1; i <= n; i++) rank[room[i]] = i }
+    { split($1, a, "/"); split($2, b, "/"); if (rank[a[1]] > rank[b[1]]) print $2 " includes from " $1 }' "$work/folders" >"$work/upward"
+check 'a room includes only from the rooms in front of it' sh -c '! grep . "$1"' - "$work/upward"
+tsort "$work/folders" >"$work/order" 2>"$work/circles"
+check 'no folders include each other in a circle' sh -c '! grep . "$1"' - "$work/circles"
+echo "# folders, each including only from those before it: $(tr '\n' ' ' <"$work/order")"
+
+# The compiler's own headers, memcpy's, and SIMD intrinsics.
+grep -Hn '^ *# *include *<' runtime/*.h runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
+    grep -v '<\(stddef\|stdint\|float\|string\|emmintrin\|immintrin\|arm_neon\)\.h>' >"$work/system"
+check 'only gl/ includes GL headers, nothing else is included' sh -c '! grep -v "^runtime/gl/.*<GLES[23]*/" "$1"' - "$work/system"
+
+for folder in runtime/*/*/; do
+    [ "$(find "$folder" -type f | wc -l)" -le 50 ] || echo "$folder: $(find "$folder" -type f | wc -l) files"
+done >"$work/full"
+check 'a folder has at most fifty files' sh -c '! grep . "$1"' - "$work/full"
+
+check 'the pictures in the READMEs are what the code includes' sh tools/docs/rooms.sh check
+for room in '' $order; do
+    readme=runtime/${room:+$room/}README.md
+    [ "$(wc -l <"$readme")" -le 90 ] && [ "$(wc -c <"$readme")" -le 9000 ] || echo "$readme"
+done >"$work/long"
+check 'each README of a room is a page' sh -c '! grep . "$1"' - "$work/long"
+finish

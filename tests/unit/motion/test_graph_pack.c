@@ -1,0 +1,595 @@
+/* Tests of graph_pack.c and check_graph.c: a graph out of a pack, bound and played by names;
+ * damaged and forged ones. */
+#include "support/graph_fixture.h"
+
+#include "support/pack_walk.h"
+#include "noh.h"
+
+static set_fixture fixture;
+static noh_clip_bank *bank;
+
+static int set_up(void **state)
+{
+    noh_clip_bank_desc desc;
+    (void)state;
+    fixture = graph_fixture_pack(GRAPH_FIXTURE_TEXT);
+    memset(&desc, 0, sizeof desc);
+    desc.clips = &fixture.pack;
+    bank = test_clip_bank(&desc);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    free(bank);
+    free(fixture.bytes);
+    return 0;
+}
+
+static noh_graph_pack_desc desc_of(const noh_pack *pack)
+{
+    const noh_graph_pack_desc desc = { pack, 0, &bank->clips, NULL, 0 };
+    return desc;
+}
+
+static noh_graph_pack *make(const noh_graph_pack_desc *desc)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const size_t bytes = noh_graph_pack_size(desc, &error);
+    noh_graph_pack *made = NULL;
+    if (noh_graph_pack_init(test_aligned(NULL, bytes), bytes, desc, &made, &error)) {
+        fail_msg("%s (%u)", error.what, (unsigned)error.where);
+    }
+    return made;
+}
+
+typedef struct player {
+    noh_graph_pack *made;
+    noh_graph_state *state;
+    noh_graph_scratch scratch;
+    void *scratch_memory;
+    noh_transform pose[5];
+    float floats[8];
+} player;
+
+static player play(void)
+{
+    const noh_graph_pack_desc desc = desc_of(&fixture.pack);
+    player p;
+    size_t bytes, scratch_bytes;
+    memset(&p, 0, sizeof p);
+    p.made = make(&desc);
+    assert_true(p.made->clips.float_count <= 8);
+    bytes = noh_graph_state_size(&p.made->graph, &p.made->clips);
+    scratch_bytes = noh_graph_scratch_size(&p.made->graph, &p.made->clips);
+    p.scratch_memory = test_aligned(NULL, scratch_bytes);
+    assert_int_equal(
+        noh_graph_state_init(test_aligned(NULL, bytes), bytes, &p.made->graph, &p.made->clips, &p.state, NULL), NOH_OK);
+    assert_int_equal(
+        noh_graph_scratch_init(p.scratch_memory, scratch_bytes, &p.made->graph, &p.made->clips, &p.scratch, NULL),
+        NOH_OK);
+    return p;
+}
+
+static void stop(player *p)
+{
+    free(p->state);
+    free(p->made);
+    free(p->scratch_memory);
+}
+
+static void step(player *p, uint32_t ticks)
+{
+    (void)noh_graph_step(p->state, &p->made->graph, &p->made->clips, ticks, NULL, NULL);
+    noh_graph_pose(p->state, &p->made->graph, &p->made->clips, &p->scratch, p->pose, p->floats);
+}
+
+static void set(player *p, const char *name, float value)
+{
+    assert_int_equal(noh_graph_pack_set_param(p->made, p->state, noh_graph_pack_find_param(p->made, name), value),
+                     NOH_OK);
+}
+
+static const char *state_of(const player *p, const char *machine)
+{
+    const uint32_t m = noh_graph_pack_find_machine(p->made, machine);
+    assert_int_not_equal(m, NOH_NONE);
+    return noh_graph_pack_state_name(p->made, m, noh_graph_machine_state(p->state, m));
+}
+
+/* ---- names ---- */
+
+static void graphs_are_found_by_name(void **state)
+{
+    noh_pack_graph g;
+    noh_error error;
+    (void)state;
+    assert_int_equal(fixture.pack.graph_count, 1);
+    assert_int_equal(noh_pack_graph_find(&fixture.pack, "all"), 0);
+    assert_int_equal(noh_pack_graph_find(&fixture.pack, "al"), NOH_NONE);
+    assert_int_equal(noh_pack_graph_at(&fixture.pack, 0, &g, NULL), NOH_OK);
+    assert_string_equal(g.name, "all");
+    assert_int_equal(noh_pack_graph_at(&fixture.pack, 1, &g, &error), NOH_ERR_NOT_FOUND);
+    assert_true(error.where == 1 && error.need == 1);
+    assert_string_equal(noh_graph_pack_clip_name(&g, 1), "clip1");
+    assert_string_equal(noh_graph_pack_clip_name(&g, g.header->clip_count), "");
+}
+
+static void parameters_have_names_ranges_and_values(void **state)
+{
+    player p = play();
+    const uint32_t speed = noh_graph_pack_find_param(p.made, "speed"), mood = noh_graph_pack_find_param(p.made, "mood"),
+                   gear = noh_graph_pack_find_param(p.made, "gear");
+    (void)state;
+    assert_int_equal(noh_graph_pack_find_param(p.made, "spee"), NOH_NONE);
+    assert_true(noh_graph_param(p.state, speed) == 0.5f && noh_graph_param(p.state, mood) == 1.0f);
+    set(&p, "speed", 7.0f);
+    assert_true(noh_graph_param(p.state, speed) == 2.0f);
+    set(&p, "speed", -7.0f);
+    assert_true(noh_graph_param(p.state, speed) == 0.0f);
+    set(&p, "gear", 0.6f);
+    assert_true(noh_graph_param(p.state, gear) == 1.0f);
+    set(&p, "x", -0.3f);
+    assert_true(noh_graph_param(p.state, noh_graph_pack_find_param(p.made, "x")) == -0.3f);
+    assert_int_equal(noh_graph_pack_find_value(p.made, mood, "calm"), 0);
+    assert_int_equal(noh_graph_pack_find_value(p.made, mood, "glad"), 1);
+    assert_int_equal(noh_graph_pack_find_value(p.made, mood, "sad"), NOH_NONE);
+    assert_int_equal(noh_graph_pack_find_value(p.made, speed, "calm"), NOH_NONE);
+    assert_int_equal(noh_graph_pack_find_value(p.made, NOH_NONE, "calm"), NOH_NONE);
+    assert_int_equal(noh_graph_pack_set_param(p.made, p.state, NOH_NONE, 1.0f), NOH_ERR_ARG);
+    assert_int_equal(noh_graph_pack_set_param(p.made, p.state, speed, NAN), NOH_ERR_ARG);
+    stop(&p);
+}
+
+static void states_are_played_by_name(void **state)
+{
+    player p = play();
+    const uint32_t states = noh_graph_pack_find_machine(p.made, "states");
+    (void)state;
+    assert_int_equal(noh_graph_pack_find_machine(p.made, "walk"), NOH_NONE); /* a node, but no machine */
+    assert_int_equal(noh_graph_pack_find_state(p.made, states, "aim"), 1);
+    assert_int_equal(noh_graph_pack_find_state(p.made, states, "walk"), NOH_NONE);
+    assert_int_equal(noh_graph_pack_find_state(p.made, NOH_NONE, "aim"), NOH_NONE);
+    assert_string_equal(noh_graph_pack_state_name(p.made, states, 3), "");
+    assert_int_equal(noh_graph_pack_find_track(p.made, "run"), 1);
+    assert_int_equal(noh_graph_pack_find_track(p.made, "states"), NOH_NONE);
+    step(&p, 100);
+    assert_string_equal(state_of(&p, "choice"), "added"); /* glad */
+    set(&p, "mood", 0.0f);
+    step(&p, 1000);
+    assert_string_equal(state_of(&p, "choice"), "states");
+    assert_string_equal(state_of(&p, "states"), "go");
+    set(&p, "x", 0.75f);
+    step(&p, 1000);
+    assert_string_equal(state_of(&p, "states"), "aim");
+    step(&p, 9600);
+    set(&p, "leap", 1.0f);
+    step(&p, 1000);
+    assert_string_equal(state_of(&p, "states"), "mixed");
+    set(&p, "wave", 1.0f);
+    step(&p, 1000);
+    assert_string_equal(state_of(&p, "root"), "waving");
+    stop(&p);
+}
+
+/* What the text says is what the graph has. */
+static void clips_and_nodes_are_those_of_the_text(void **state)
+{
+    player p = play();
+    const noh_graph *g = &p.made->graph;
+    const uint32_t b = noh_graph_pack_find_track(p.made, "b"), c = noh_graph_pack_find_track(p.made, "c"),
+                   d = noh_graph_pack_find_track(p.made, "d"), e = noh_graph_pack_find_track(p.made, "e");
+    const noh_graph_node *root = &g->nodes[g->node_count - 1];
+    (void)state;
+    assert_int_equal(g->clips[0].sync_group, 1);
+    assert_int_equal(g->clips[1].sync_group, 1);
+    assert_int_equal(g->clips[1].speed, 98304);
+    assert_int_equal(g->clips[1].clip, noh_clip_bank_find(bank, "clip1"));
+    assert_int_equal(g->clips[b].position_ticks, 4800);
+    assert_int_equal(g->clips[c].loop, NOH_LOOP_PING_PONG);
+    assert_int_equal(g->clips[d].speed, -65536);
+    assert_int_equal(g->clips[e].flags, NOH_TRACK_PAUSED);
+    assert_int_equal(root->kind, NOH_NODE_ONE_SHOT);
+    assert_int_equal(root->fade_ticks, 4800);
+    assert_int_equal(root->fade_out_ticks, 9600);
+    assert_int_equal(g->clips[noh_graph_pack_find_track(p.made, "waving")].loop, NOH_LOOP_ONCE);
+    assert_int_equal(g->transition_count, 4);
+    assert_int_equal(g->transitions[0].curve, NOH_CURVE_SMOOTHSTEP);
+    assert_int_equal(g->transitions[1].flags, NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP);
+    assert_int_equal(g->transitions[2].from, NOH_GRAPH_NONE);
+    assert_int_equal(g->transitions[3].condition, NOH_WHEN_ENDING);
+    assert_int_equal(g->spaces[0].triangle_count, 1);
+    stop(&p);
+}
+
+static void masks_are_made_of_joint_names(void **state)
+{
+    static const uint8_t want[] = { 0, 0, 255, 64, 255 }; /* below joint2, then joint3 alone */
+    player p = play();
+    (void)state;
+    assert_int_equal(p.made->clips.mask_count, 1);
+    for (uint32_t j = 0; j < 5; j++) {
+        uint32_t number = (uint32_t)(noh_pack_joint_name(&fixture.pack, 0, j)[5] - '0');
+        assert_int_equal(p.made->clips.masks[j], want[number]);
+    }
+    for (uint32_t i = 0; i < p.made->clips.float_count; i++) assert_int_equal(p.made->clips.masks[5 + i], 128);
+    assert_int_equal(bank->clips.mask_count, 0); /* the bank's own set is as it was */
+    stop(&p);
+}
+
+/* ---- what is missing ---- */
+
+static void a_missing_clip_is_named(void **state)
+{
+    noh_clip_entry entries[3];
+    noh_clip_set less = bank->clips;
+    noh_graph_pack_desc desc = desc_of(&fixture.pack);
+    noh_graph_pack *made = NULL;
+    noh_pack_graph g;
+    noh_error error;
+    size_t bytes = noh_graph_pack_size(&desc, NULL);
+    void *memory = test_aligned(NULL, bytes);
+    (void)state;
+    memcpy(entries, bank->clips.clips, sizeof entries);
+    entries[1].name_hash ^= 1u;
+    less.clips = entries;
+    desc.set = &less;
+    assert_int_equal(noh_graph_pack_init(memory, bytes, &desc, &made, &error), NOH_ERR_NOT_FOUND);
+    assert_null(made);
+    assert_int_equal(noh_pack_graph_at(&fixture.pack, 0, &g, NULL), NOH_OK);
+    assert_string_equal(noh_graph_pack_clip_name(&g, (uint32_t)error.where), "clip1");
+    assert_non_null(strstr(error.what, "clip"));
+    free(memory);
+}
+
+/* A pose added relative to the pose that it is added to is itself, whatever the bind pose; without a reference it is
+ * not. A text of both comes back from its pack as it was. */
+static void poses_are_added_relative_to_a_clip(void **state)
+{
+    static const char *const texts[] = {
+        "clip b clip1 paused=yes start=0.1\n",
+        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\n"
+        "add c a b by=1 reference=clip0\n",
+        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\nadd c a b by=1\n"
+    };
+    const set_fixture kept = fixture;
+    noh_transform poses[3][5];
+    float floats[3][8], off[3] = { 0.0f, 0.0f, 0.0f };
+    (void)state;
+    memset(poses, 0, sizeof poses);
+    memset(floats, 0, sizeof floats);
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        player p;
+        snprintf(text, sizeof text, "graph all\n%s", texts[i]);
+        fixture = graph_fixture_pack(text);
+        p = play();
+        step(&p, 0);
+        memcpy(poses[i], p.pose, sizeof poses[i]);
+        memcpy(floats[i], p.floats, p.made->clips.float_count * sizeof(float));
+        for (uint32_t j = 0; j < p.made->clips.joint_count; j++) {
+            off[i] += 1.0f - fabsf(noh_quat_dot(poses[0][j].rotation, poses[i][j].rotation));
+            for (int k = 0; k < 3; k++) off[i] += fabsf(poses[0][j].translation[k] - poses[i][j].translation[k]);
+        }
+        for (uint32_t f = 0; f < p.made->clips.float_count; f++) off[i] += fabsf(floats[0][f] - floats[i][f]);
+        stop(&p);
+        free(fixture.bytes);
+    }
+    fixture = kept;
+    assert_true(off[1] < 1e-4f);
+    assert_true(off[2] > 1e-2f);
+}
+
+static void a_missing_joint_is_named(void **state)
+{
+    static const uint32_t frames[] = { 31, 25, 40 };
+    set_fixture other = set_fixture_make(5, 3, frames);
+    noh_graph_pack_desc desc = desc_of(&fixture.pack);
+    noh_graph_pack *made = NULL;
+    noh_error error;
+    size_t bytes;
+    void *memory;
+    char *name;
+    (void)state;
+    for (uint32_t i = 0; i < other.pack.string_bytes; i++) {
+        name = (char *)(uintptr_t)(other.pack.strings + i);
+        if (strcmp(name, "joint2") == 0) name[5] = '7';
+    }
+    desc.mesh = &other.pack;
+    bytes = noh_graph_pack_size(&desc, NULL);
+    memory = test_aligned(NULL, bytes);
+    assert_int_equal(noh_graph_pack_init(memory, bytes, &desc, &made, &error), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(error.what, "joint"));
+    free(memory);
+    free(other.bytes);
+}
+
+static void impossible_descs_are_refused(void **state)
+{
+    noh_graph_pack_desc desc = desc_of(&fixture.pack);
+    noh_clip_set fewer = bank->clips;
+    noh_error error;
+    (void)state;
+    desc.pack = NULL;
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_ARG);
+    desc = desc_of(&fixture.pack);
+    desc.set = NULL;
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_ARG);
+    desc = desc_of(&fixture.pack);
+    desc.graph = 1;
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_NOT_FOUND);
+    desc = desc_of(&fixture.pack);
+    desc.skeleton = 1; /* masks need it */
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_ARG);
+    desc = desc_of(&fixture.pack);
+    fewer.float_count = NOH_FLOATS_MAX + 1u;
+    desc.set = &fewer;
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_ARG);
+    fewer.float_count = bank->clips.float_count;
+    fewer.joint_count = 4;
+    assert_int_equal(noh_graph_pack_size(&desc, &error), 0);
+    assert_int_equal(error.result, NOH_ERR_ARG);
+}
+
+static void a_graph_without_masks_needs_no_skeleton(void **state)
+{
+    set_fixture x = graph_fixture_pack("graph one\nclip clip1\n");
+    noh_graph_pack_desc desc = desc_of(&x.pack);
+    noh_graph_pack *made;
+    (void)state;
+    desc.skeleton = 99;
+    made = make(&desc);
+    assert_int_equal(made->graph.node_count, 1);
+    assert_ptr_equal(made->clips.masks, bank->clips.masks);
+    free(made);
+    free(x.bytes);
+}
+
+/* ---- equal bits ---- */
+
+static void a_saved_instance_plays_the_same_bits(void **state)
+{
+    player p = play();
+    uint8_t *saved = test_aligned(NULL, p.state->bytes);
+    noh_transform first[60][5];
+    (void)state;
+    step(&p, 700);
+    memcpy(saved, p.state, p.state->bytes);
+    for (int run = 0; run < 2; run++) {
+        if (run) memcpy(p.state, saved, p.state->bytes);
+        for (int i = 0; i < 60; i++) {
+            if (i == 5) set(&p, "mood", 0.0f);
+            if (i == 9) set(&p, "wave", 1.0f);
+            if (i == 20) set(&p, "x", 0.9f);
+            if (i == 35) set(&p, "gear", 1.0f);
+            if (i == 50) set(&p, "gear", 0.0f);
+            step(&p, 800);
+            if (!run)
+                memcpy(first[i], p.pose, sizeof p.pose);
+            else
+                assert_memory_equal(first[i], p.pose, sizeof p.pose);
+        }
+    }
+    free(saved);
+    stop(&p);
+}
+
+/* ---- damage ---- */
+
+static void every_flip_is_refused(void **state)
+{
+    const size_t count = fixture.pack.byte_count;
+    uint8_t *bytes = test_aligned(fixture.bytes, count);
+    (void)state;
+    for (size_t bit = 0; bit < 8 * count; bit++) {
+        noh_pack pack;
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        if (noh_pack_open(bytes, count, &pack, &error) == NOH_OK || !error.what || error.where > count) {
+            fail_msg("bit %zu of byte %zu", bit % 8, bit / 8);
+        }
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    free(bytes);
+}
+
+static noh_result open_graph(const uint8_t *bytes, noh_pack *pack, noh_error *error)
+{
+    noh_pack_graph g;
+    noh_result result = noh_pack_open(bytes, fixture.pack.byte_count, pack, error);
+    return result ? result : noh_pack_graph_at(pack, 0, &g, error);
+}
+
+/* With repaired checksums: refused with a place, or played in full. */
+static void repaired_flips_of_a_graph_stay_in_bounds(void **state)
+{
+    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.first_graph];
+    const size_t count = fixture.pack.byte_count, first = 8u * (size_t)c->offset, last = first + 8u * (size_t)c->bytes;
+    uint8_t *bytes = test_aligned(NULL, count);
+    size_t opened = 0, refused = 0;
+    (void)state;
+    for (size_t bit = first; bit < last; bit++) {
+        noh_pack pack;
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        noh_result result;
+        memcpy(bytes, fixture.bytes, count);
+        bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        pack_repair(bytes, count);
+        result = open_graph(bytes, &pack, &error);
+        if (result == NOH_OK) {
+            if (opened++ % 7 == 0) pack_walk(&pack, (uint32_t)bit);
+        } else {
+            assert_int_equal(result, NOH_ERR_DATA);
+            assert_true(error.where >= c->offset && error.where < (uint64_t)c->offset + c->bytes);
+            refused++;
+        }
+    }
+    print_message("# graph of %u bytes: %zu flips open, %zu are refused\n", c->bytes, opened, refused);
+    assert_true(opened > 1000 && refused > 2 * opened / 3);
+    free(bytes);
+}
+
+typedef struct forged {
+    uint8_t *bytes;
+    noh_pack_graph_header *h;
+    noh_pack_graph_node *nodes;
+    uint16_t *children;
+    noh_pack_graph_clip *clips;
+    noh_pack_graph_transition *transitions;
+    float *points;
+    noh_pack_graph_space *spaces;
+    uint8_t *triangles;
+    noh_pack_graph_param *params;
+    noh_pack_graph_mask *masks;
+    noh_pack_graph_name *names;
+} forged;
+
+static forged forge(void)
+{
+    forged f;
+    uint8_t *chunk;
+    f.bytes = test_aligned(fixture.bytes, fixture.pack.byte_count);
+    chunk = f.bytes + fixture.pack.chunks[fixture.pack.first_graph].offset;
+    f.h = (noh_pack_graph_header *)(void *)chunk;
+    f.nodes = (noh_pack_graph_node *)(void *)(chunk + f.h->nodes_offset);
+    f.children = (uint16_t *)(void *)(chunk + f.h->children_offset);
+    f.clips = (noh_pack_graph_clip *)(void *)(chunk + f.h->clips_offset);
+    f.transitions = (noh_pack_graph_transition *)(void *)(chunk + f.h->transitions_offset);
+    f.points = (float *)(void *)(chunk + f.h->points_offset);
+    f.spaces = (noh_pack_graph_space *)(void *)(chunk + f.h->spaces_offset);
+    f.triangles = chunk + f.h->triangles_offset;
+    f.params = (noh_pack_graph_param *)(void *)(chunk + f.h->params_offset);
+    f.masks = (noh_pack_graph_mask *)(void *)(chunk + f.h->masks_offset);
+    f.names = (noh_pack_graph_name *)(void *)(chunk + f.h->names_offset);
+    return f;
+}
+
+static noh_pack_graph_node *kind(forged *f, uint32_t which)
+{
+    for (uint32_t i = 0; i < f->h->node_count; i++) {
+        if (f->nodes[i].kind == which) return &f->nodes[i];
+    }
+    fail_msg("no node of kind %u", which);
+    return NULL;
+}
+
+#define LIES                                                                                              \
+    X(f.h->node_count = 0, "count of a graph is")                                                         \
+    X(f.h->node_count = 257, "count of a graph is")                                                       \
+    X(f.h->child_count++, "count of a graph is")                                                          \
+    X(f.h->clip_count = 65, "count of a graph is")                                                        \
+    X(f.h->clip_count--, "array does not begin")                                                          \
+    X(f.h->param_count = 257, "count of a graph is")                                                      \
+    X(f.h->name_count = 5000, "count of a graph is")                                                      \
+    X(f.h->reserved[1] = 1, "count of a graph is")                                                        \
+    X(f.h->machine_count++, "count of clips or machines")                                                 \
+    X(f.nodes[0].name = 0x7fffffff, "name lies outside the strings")                                      \
+    X(f.nodes[1].name_hash ^= 4, "name and its hash differ")                                              \
+    X(f.nodes[0].kind = 9, "unknown kind")                                                                \
+    X(f.nodes[0].mask = 1, "field that its kind does not have")                                           \
+    X(f.nodes[0].param = 0, "field that its kind does not have")                                          \
+    X(f.nodes[0].child_count = 1, "children that do not suit")                                            \
+    X(f.nodes[0].index = 1, "not numbered in their order")                                                \
+    X(kind(&f, NOH_PACK_NODE_BLEND)->value = NAN, "value that is not finite")                             \
+    X(kind(&f, NOH_PACK_NODE_ADD)->param = 90, "parameter or mask that is not there")                     \
+    X(kind(&f, NOH_PACK_NODE_ADD)->first_item = 90, "adds relative to a clip")                            \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 2, "adds relative to a clip")                             \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 0, "adds relative to a clip")                             \
+    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->param_y = 90, "parameter or mask that is not there")              \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->param = NOH_PACK_GRAPH_NONE, "parameter or mask that is not there") \
+    X(kind(&f, NOH_PACK_NODE_MASK)->mask = 0, "parameter or mask that is not there")                      \
+    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->mask = 2, "parameter or mask that is not there")                  \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->curve = 2, "unknown curve or flags")                                \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->flags = 4, "unknown curve or flags")                                \
+    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->child_count = 1, "children that do not suit")                     \
+    X(kind(&f, NOH_PACK_NODE_MACHINE)->first_child = 400, "children are not in the chunk")                \
+    X(kind(&f, NOH_PACK_NODE_MACHINE)->item_count = 9, "transitions of a machine")                        \
+    X(kind(&f, NOH_PACK_NODE_SPACE_1D)->item_count = 1, "not one point for each child")                   \
+    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->first_item = 1, "blend space that is not there")                  \
+    X(f.points[1] = -1.0f, "do not rise")                                                                 \
+    X(f.points[3] = INFINITY, "point of a blend space is not finite")                                     \
+    X(f.spaces[0].point_count = 2, "not one point for each child")                                        \
+    X(f.spaces[0].triangle_count = 2, "points or triangles")                                              \
+    X(f.triangles[2] = 3, "triangle of a blend space names a point")                                      \
+    X(f.transitions[0].to = 3, "not between two states")                                                  \
+    X(f.transitions[0].to = 0, "not between two states")                                                  \
+    X(f.transitions[1].condition = 4, "unknown condition")                                                \
+    X(f.transitions[3].param = 0, "unknown condition")                                                    \
+    X(f.transitions[0].threshold = NAN, "unknown condition")                                              \
+    X(f.transitions[1].duration_ticks = 0, "inertial without a time")                                     \
+    X(f.children[0] = 1, "does not follow its children")                                                  \
+    X(f.clips[0].speed = 0, "clip of a graph has no speed")                                               \
+    X(f.clips[0].loop = 4, "clip of a graph has no speed")                                                \
+    X(f.clips[0].sync_group = 16, "clip of a graph has no speed")                                         \
+    X(f.params[0].kind = 4, "parameter of an unknown kind")                                               \
+    X(f.params[0].initial = 3.0f, "range of a parameter")                                                 \
+    X(f.params[0].maximum = INFINITY, "range of a parameter")                                             \
+    X(f.params[4].value_count = 9, "values that are not in the chunk")                                    \
+    X(f.params[4].maximum = 5.0f, "range of a parameter")                                                 \
+    X(f.params[5].maximum = 2.0f, "range of a parameter")                                                 \
+    X(f.masks[0].joint_count = 9, "mask has joints that are not in the chunk")                            \
+    X(f.masks[0].reserved[0] = 1, "mask has joints that are not in the chunk")                            \
+    X(f.names[0].subtree = 2, "name of a graph has unknown flags")
+
+/* Whether a byte is before the graph's chunk: of the header and table, where the checksums are. */
+static int is_checksum(uint64_t byte)
+{
+    return byte < fixture.pack.chunks[fixture.pack.first_graph].offset;
+}
+
+/* The byte that the error names is in the field with the lie; where an array ends elsewhere, in the next one's offset.
+ */
+static int names_the_field(const forged *f, const noh_error *error)
+{
+    uint64_t first = 0;
+    const int ends_elsewhere = strstr(error->what, "array") != NULL;
+    while (f->bytes[first] == fixture.bytes[first] || is_checksum(first)) first++;
+    return ends_elsewhere || (error->where <= first && first < error->where + 4u);
+}
+
+static void forged_graphs_are_refused(void **state)
+{
+    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.first_graph];
+    noh_pack pack;
+    noh_error error;
+    (void)state;
+#define X(lie, message)                                                                                       \
+    {                                                                                                         \
+        forged f = forge();                                                                                   \
+        lie;                                                                                                  \
+        pack_repair(f.bytes, fixture.pack.byte_count);                                                        \
+        error.what = "it opened";                                                                             \
+        error.where = 0;                                                                                      \
+        if (open_graph(f.bytes, &pack, &error) != NOH_ERR_DATA || !strstr(error.what, message) ||             \
+            error.where < c->offset || !names_the_field(&f, &error))                                          \
+            fail_msg("%s: %s (byte %u of the chunk)", #lie, error.what, (unsigned)(error.where - c->offset)); \
+        free(f.bytes);                                                                                        \
+    }
+    LIES
+#undef X
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(graphs_are_found_by_name),
+    cmocka_unit_test(parameters_have_names_ranges_and_values),
+    cmocka_unit_test(states_are_played_by_name),
+    cmocka_unit_test(clips_and_nodes_are_those_of_the_text),
+    cmocka_unit_test(masks_are_made_of_joint_names),
+    cmocka_unit_test(a_missing_clip_is_named),
+    cmocka_unit_test(poses_are_added_relative_to_a_clip),
+    cmocka_unit_test(a_missing_joint_is_named),
+    cmocka_unit_test(impossible_descs_are_refused),
+    cmocka_unit_test(a_graph_without_masks_needs_no_skeleton),
+    cmocka_unit_test(a_saved_instance_plays_the_same_bits),
+    cmocka_unit_test(every_flip_is_refused),
+    cmocka_unit_test(repaired_flips_of_a_graph_stay_in_bounds),
+    cmocka_unit_test(forged_graphs_are_refused),
+};
+
+TEST_MAIN(tests, set_up, tear_down)

@@ -1,0 +1,100 @@
+#!/bin/sh
+# rooms.sh: the pictures in the READMEs of runtime/ and its rooms, drawn from what the code includes.
+#
+#   rooms.sh order       the rooms, in the order in which they may include
+#   rooms.sh graph       Mermaid: the rooms, and which of them each includes
+#   rooms.sh graph ROOM  Mermaid: the folders of a room, and the rooms that they include
+#   rooms.sh check       exit 1 and a line for each README whose picture is not what the code includes
+#   rooms.sh update      puts the pictures into the READMEs
+#
+# An arrow points to what is included. Where A includes B, and B includes C, the arrow from A to C is left out.
+set -eu
+cd "$(dirname "$0")/../.."
+order='core motion deform life stage gl'
+
+# "FROM TO" for each include: ROOM/FOLDER/FILE without the extension.
+includes() {
+    grep -n '^ *# *include *"[^"]*/' runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
+        sed 's|^runtime/\([^:]*\)\.[ch]:.*"\(.*\)\.h".*|\1 \2|' | sort -u
+}
+
+# Reads "FROM TO" lines, prints a flowchart without the arrows that others imply. $1 is the room, or nothing.
+chart() {
+    awk -v room="${1:-}" -v order="$order" '
+        function reaches(a, b,    n, i, next_) {
+            if ((a, b) in known) return known[a, b]
+            known[a, b] = 0
+            n = split(out[a], next_, " ")
+            for (i = 1; i <= n; i++) if (next_[i] == b || reaches(next_[i], b)) known[a, b] = 1
+            return known[a, b]
+        }
+        function implied(a, b,    n, i, next_) {
+            n = split(out[a], next_, " ")
+            for (i = 1; i <= n; i++) if (next_[i] != b && reaches(next_[i], b)) return 1
+            return 0
+        }
+        BEGIN {
+            n = split(order, rooms, " ")
+            # A room stands for all the rooms in front of it that it may include: the nearest arrow is enough.
+            if (room != "") for (i = 2; i <= n; i++) out["the_" rooms[i]] = "the_" rooms[i - 1]
+        }
+        { if (!(($1, $2) in edge)) { edge[$1, $2] = 1; out[$1] = out[$1] " " $2; from[++count] = $1; to[count] = $2 } }
+        END {
+            print "```mermaid"
+            print "flowchart TD"
+            for (i = 1; i <= count; i++) if (!implied(from[i], to[i])) {
+                target = to[i]
+                if (sub(/^the_/, "", target)) target = to[i] "([" target "/])"
+                print "    " from[i] " --> " target
+            }
+            print "```"
+        }'
+}
+
+graph() {
+    if [ -z "${1:-}" ]; then
+        includes | awk '{ split($1, a, "/"); split($2, b, "/"); if (a[1] != b[1]) print a[1], b[1] }' | sort -u | chart
+        return
+    fi
+    includes | awk -v room="$1" '
+        function node(path,    part, n) {
+            n = split(path, part, "/")
+            if (part[1] != room) return "the_" part[1]
+            return part[2]
+        }
+        $1 ~ "^" room "/" { a = node($1); b = node($2); if (a != b) print a, b }' | sort -u | chart "$1"
+}
+
+# The README of a room with the picture of today.
+with_picture() { # README [ROOM]
+    graph ${2:+"$2"} >"$picture"
+    awk -v picture="$picture" '
+        /^```mermaid/ && !done { while ((getline line <picture) > 0) print line; inside = 1; done = 1; next }
+        inside { if (/^```/) inside = 0; next }
+        { print }' "$1"
+}
+
+picture=$(mktemp)
+trap 'rm -f "$picture" "$picture.new"' EXIT
+case ${1:-} in
+order) echo "$order" ;;
+graph) graph "${2:-}" ;;
+check | update)
+    bad=0
+    for room in '' $order; do
+        readme=runtime/${room:+$room/}README.md
+        with_picture "$readme" "$room" >"$picture.new"
+        if [ "$1" = update ]; then
+            cmp -s "$picture.new" "$readme" || cp "$picture.new" "$readme"
+        elif ! grep -q '^```mermaid' "$readme" || ! cmp -s "$picture.new" "$readme"; then
+            echo "$readme: its picture is not what the code includes; run: sh tools/docs/rooms.sh update"
+            bad=1
+        fi
+    done
+    exit $bad
+    ;;
+*)
+    echo "usage: rooms.sh order | graph [ROOM] | check | update" >&2
+    exit 2
+    ;;
+esac
