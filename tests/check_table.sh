@@ -30,7 +30,7 @@ has_command() {
     # shellcheck disable=SC2086 # words
     set -- $1
     case $1 in
-    make) grep -q "^$2:" Makefile || missing "no target $2" ;;
+    make) grep -q "^$2:" Makefile tools/mk/*.mk || missing "no target $2" ;;
     noh)
         "$build/noh" "$2" --help >"$work/verb" 2>/dev/null || missing "no verb $2"
         case ${3:-} in ''|[!-]*) ;; *) grep -q -e "$3\\b" "$work/verb" || missing "noh $2 has no $3" ;; esac ;;

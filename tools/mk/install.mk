@@ -1,0 +1,62 @@
+# install.mk: installing, the amalgam, the examples, sizes, lint, documents. Included by the Makefile.
+
+# ---- installing, and what is made of the library ----
+
+PREFIX     ?= /usr/local
+BINDIR     ?= $(PREFIX)/bin
+LIBDIR     ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DATADIR    ?= $(PREFIX)/share
+INSTALL    := BUILD="$(BUILD)" VERSION="$(VERSION)" CC="$(CC)" DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" BINDIR="$(BINDIR)" \
+              LIBDIR="$(LIBDIR)" INCLUDEDIR="$(INCLUDEDIR)" DATADIR="$(DATADIR)" sh tools/install/install.sh
+
+install: all
+	@$(INSTALL) all
+# Needs no C++ compiler and none of the tools' libraries: make install-lib CC=... AR=... for another processor.
+install-lib: lib
+	@$(INSTALL) lib
+uninstall:
+	@$(INSTALL) remove
+
+# make amalgam; tests links some tests with it instead of libnoh.a.
+amalgam: $(AMALGAM)/noh.c
+$(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
+	@mkdir -p $(@D)
+	$(call say,AMALG,$@)
+	$(Q)$(BUILD)/amalgamate -o $(@D) -I runtime -I $(BUILD)/gen $(RUNTIME_C:runtime/%=%) shaders.gen.c
+$(BUILD)/amalgamate: tools/amalgam/amalgam.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
+$(AMALGAM)/noh.o: $(AMALGAM)/noh.c
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) -c $< -o $@
+$(AMALGAM)/%: $(BUILD)/tests/%.o $(filter-out %/libnoh.a,$(TEST_LIBS)) $(AMALGAM)/noh.o
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
+
+# Small programs that show the library; they may use platform/ for a GL context.
+examples: $(EXAMPLES)
+$(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|start.h' tools/examples/$*.c),-lEGL) \
+	    $(if $(shell grep -ls measure.h tools/examples/$*.c),$(addprefix -Wl$(comma)--wrap=,malloc calloc realloc))
+
+# Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
+sizes:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh
+sizes-update:
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh --update
+
+deps-lint:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view lint
+lint: deps-lint
+	@$(MAKE) --no-print-directory $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/lint/lint.sh
+
+deps-docs:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh docs
+docs: deps-docs
+	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/docs/docs.sh

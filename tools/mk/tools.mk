@@ -1,0 +1,174 @@
+# tools.mk: the converter, the program noh, the demo assets and their packs. Included by the Makefile.
+
+# ---- the tools ----
+
+# The C++ side is tinygltf's; its headers are not held to our warnings.
+$(BUILD)/tools/convert/%.o: tools/convert/%.cpp
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+
+$(BUILD)/tools/convert/gltf/gltf_draco.o: ALL_CXXFLAGS += $(if $(HAVE_DRACO),-DNOH_DRACO)
+$(BUILD)/tools/convert/gltf/gltf_draco.o: $(BUILD)/gen/with_draco
+
+$(BUILD)/tools/convert/fbx/%.o: ALL_CXXFLAGS += $(if $(HAVE_ASSIMP),-DNOH_ASSIMP)
+$(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tools/convert/fbx/*.cpp)): $(BUILD)/gen/with_assimp
+
+# Change when Draco or Assimp comes or goes.
+$(BUILD)/gen/with_draco: FORCE
+	@mkdir -p $(@D)
+	@echo '$(HAVE_DRACO)' | cmp -s - $@ || echo '$(HAVE_DRACO)' >$@
+$(BUILD)/gen/with_assimp: FORCE
+	@mkdir -p $(@D)
+	@echo '$(HAVE_ASSIMP)' | cmp -s - $@ || echo '$(HAVE_ASSIMP)' >$@
+
+# One file of the library, wherever it lies, for an instruction set, its entry renamed.
+kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))
+$(BUILD)/kernel/clip_sample_%.o: $(call kernel_c,clip_sample)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -Dnoh_clip_blend_frames=noh_clip_blend_frames_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/skin_%.o: $(call kernel_c,skin)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_SKIN_VERTICES=noh_skin_vertices_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/ragdoll_lanes_scalar.o: $(call kernel_c,ragdoll_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_RAGDOLL_SCALAR -DNOH_RAGDOLL_STEP=noh_ragdoll_step_dolls_scalar -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/ragdoll_lanes_%.o: $(call kernel_c,ragdoll_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_RAGDOLL_STEP=noh_ragdoll_step_dolls_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/spring_lanes_scalar.o: $(call kernel_c,spring_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SPRING_SCALAR -DNOH_SPRING_STEP=noh_spring_step_scalar -DNOH_SPRING_ROTATIONS=noh_spring_rotations_scalar -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/spring_lanes_%.o: $(call kernel_c,spring_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_SPRING_STEP=noh_spring_step_$* -DNOH_SPRING_ROTATIONS=noh_spring_rotations_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/hair_lanes_scalar.o: $(call kernel_c,hair_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_HAIR_SCALAR -DNOH_HAIR_STEP=noh_hair_step_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
+
+$(BUILD)/kernel/hair_lanes_%.o: $(call kernel_c,hair_lanes)
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -m$* -DNOH_HAIR_STEP=noh_hair_step_$* -DNOH_HAIR_POINTS=noh_hair_points_$* -MMD -MP -c $< -o $@
+
+$(BUILD)/tools/noh/view/%.o: tools/noh/view/%.cpp | $(BUILD)/gen/shaders.gen.h
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) $(INCLUDES) $(patsubst -I%,-isystem %,$(shell $(PKG) --cflags glfw3 imgui)) -MMD -MP -c $< -o $@
+
+$(VIEW_NOT_C:%.c=$(BUILD)/%.o): $(VIEW_NOT_C) $(BUILD)/gen/view_without
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"$(subst $() , and ,$(VIEW_WITHOUT))"' -MMD -MP -c $< -o $@
+
+# Changes when what is missing does: noh is then linked again.
+$(BUILD)/gen/view_without: FORCE
+	@mkdir -p $(@D)
+	@echo '$(VIEW_WITHOUT)' | cmp -s - $@ || echo '$(VIEW_WITHOUT)' >$@
+FORCE:
+
+$(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a $(BUILD)/gen/view_without
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
+
+# The same as on a machine that has only what it must: no Draco, no Assimp, no window. For the tests.
+WITHOUT_CC := tools/convert/gltf/gltf_draco.cpp tools/convert/fbx/fbx_read.cpp
+WITHOUT_O  := $(WITHOUT_CC:%.cpp=$(BUILD)/without/%.o) $(VIEW_NOT_C:%.c=$(BUILD)/without/%.o)
+$(BUILD)/without/%.o: %.cpp
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+$(BUILD)/without/%.o: %.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"glfw3 and imgui"' -MMD -MP -c $< -o $@
+$(BUILD)/noh_without: $(TOOL_O) $(WITHOUT_O) $(filter-out $(BUILD)/tools/convert/fbx/% %/gltf_draco.o,$(CONVERT_O)) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $(filter %.o %.a,$^) -o $@ $(filter-out -ldraco -lassimp,$(TOOL_LIBS))
+
+# The man page and the completion for bash come from the tables that the verbs read their options by.
+$(BUILD)/noh.1: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --man >$@
+$(BUILD)/noh.bash: $(BUILD)/noh
+	$(Q)$(BUILD)/noh help --bash >$@
+
+$(BUILD)/demo_assets: $(DEMO_O)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lm
+
+# Makes runtime/motion/clip/clip_tables.c out of raw clips; after a change of the clip format only.
+$(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+
+# Makes runtime/life/face/ear_tables.c out of synthetic speech, after a change of the ear only: `make ear-tables` (ten
+# minutes; `tools/deps.sh ear` installs the synthesisers).
+TRAIN_EAR_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/train_ear/*.c)))
+$(BUILD)/train_ear: $(TRAIN_EAR_O) $(patsubst %,$(BUILD)/runtime/life/face/%.o,ear_cepstra ear_net phones)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lespeak-ng -lm
+
+ear-tables: $(BUILD)/train_ear
+	$(Q)cd $(BUILD) && ./train_ear $(CURDIR)/tools/train_ear/sentences.txt $(CURDIR)/tools/train_ear/phones.txt \
+	    >ear_tables.c
+	$(Q)mv $(BUILD)/ear_tables.c runtime/life/face/ear_tables.c
+
+# Our LOD levels against meshoptimizer's; for `make bench`.
+LOD_COMPARE_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/lod_compare/*.c)))
+$(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
+
+$(BUILD)/mask.glb: $(BUILD)/demo_assets
+	$(BUILD)/demo_assets $@
+
+$(BUILD)/demo/puppet.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --puppet $@
+
+$(BUILD)/demo/get_up.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --get-up $@
+
+$(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --arm $@
+
+$(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --wrinkles auto --quiet
+$(BUILD)/page/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(BUILD)/noh build $< -o $@ --wrinkles auto --lod 4 --lod-fast --lod-color 1.2 --quiet
+$(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
+MASK_HAIR := tools/demo_assets/mask/mask.hair
+$(BUILD)/wig.noh: $(BUILD)/mask.glb $(MASK_HAIR) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --hair $(MASK_HAIR) --quiet
+PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
+PUPPET_SPRINGS := tools/demo_assets/puppet/puppet.springs
+$(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRINGS) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --springs $(PUPPET_SPRINGS) --wrinkles auto --quiet
+
+# With what gets up from a fall.
+$(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
+	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --quiet
+
+$(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --transfer 4 --quiet
+
+PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
+$(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet

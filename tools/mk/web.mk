@@ -1,0 +1,192 @@
+# web.mk: the page, its converter, its crowd, the npm package. Included by the Makefile.
+
+# ---- the page ----
+
+# One program for all packs: the memory that it runs in is made in the browser, for its pack (platform/web/package).
+WEB_PACK    ?= $(BUILD)/page/mask.noh
+WEB_WIRE    ?= --error-um 10# of `noh pack`; empty: nothing is rounded
+WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
+WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB_STACK   := 65536
+WEB_STATIC  := 1048576
+WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
+               -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
+WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
+# A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
+WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js)
+WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js program.js pointer.js speech.js character.js)
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh page.nohz $(addprefix package/,noh.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
+WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm worker.js)
+WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
+
+web: deps-web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PAGE)
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERTER) || echo 'The page has no converter: it shows packs alone.'
+	@sh tools/web_sizes.sh $(WEB)
+
+# Of the mask and of the puppet; or of one pack, if it is named.
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
+web-check: deps-web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
+	@$(MAKE) --no-print-directory DEPS=0 npm
+	@NOH_BUILD="$(BUILD)" sh tests/web.sh $(WEB_PACKS)
+
+# HOST=all: also to phones and others in the same network.
+PORT ?= 8000
+web-serve: web
+	@node tools/web_serve.js $(WEB) $(PORT) $(if $(filter all,$(HOST)),all)
+
+# The page's frame beside three.js's.
+WEB_BENCH ?= $(ASSETS)/hero/head.glb
+web-bench: deps-web
+	@[ -f "$(WEB_BENCH)" ] || { echo 'skipped: no $(WEB_BENCH) (ASSETS=DIR says where models are)'; exit 0; }; \
+	mkdir -p $(BUILD)/web-bench && \
+	$(MAKE) --no-print-directory $(BUILD)/noh $(BUILD)/tests/gl/picture_diff && \
+	NOH_BUILD="$(BUILD)" sh tests/web_bench_pack.sh $(WEB_BENCH) $(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
+	$(MAKE) --no-print-directory DEPS=0 web WEB_WIRE= WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
+	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
+
+# Pictures beside those of three.js's standard materials.
+LOOKS ?= $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb $(BUILD)/mask.glb
+look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
+	@NOH_BUILD="$(BUILD)" sh tests/web_look.sh $(LOOKS)
+
+$(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh pack $< -o $@ --quiet $(WEB_WIRE)
+$(WEB)/page.noh: $(WEB)/page.nohz
+	$(Q)$(BUILD)/noh strip $< -o $@ --from-level 0 --quiet
+$(WEB)/page.js: $(WEB_SCRIPTS)
+	@mkdir -p $(@D)
+	@cat $^ >$@
+$(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
+$(WEB)/package/noh.wasm: $(WEB_OBJECTS)/noh.wasm
+	@mkdir -p $(@D)
+	@cp $< $@
+$(WEB)/%: platform/web/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+# The program, and the planner that the tests run under node.
+WEB_C := $(filter-out %/plan.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
+WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
+WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/web/cast.o $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
+$(BUILD)/web-cc: tools/web_cc.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_cc.sh $@
+$(WEB_OBJECTS)/%.o: %.c | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
+$(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
+$(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
+-include $(WEB_O:.o=.d) $(WEB_PLAN_O:.o=.d)
+
+$(WEB_OBJECTS)/noh.wasm: $(WEB_O)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
+	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
+
+# ---- the page's converter ----
+
+# `noh build` and `noh pack` as WebAssembly, which a page loads when a model is dropped on it (tools/web_convert). Headers
+# of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco and
+# Assimp are left out: what needs them is refused.
+WEB_CONVERT   := $(BUILD)/web-convert
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c stb.c libraries.cpp) \
+                 tools/noh/build/cmd_build.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
+                 $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) \
+                 $(filter-out tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%,$(CONVERT_CC)))) \
+                 $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
+WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include
+WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker,node \
+                     -s TOTAL_STACK=1MB -s MODULARIZE=1 -s EXPORT_NAME=nohConvert -s INVOKE_RUN=0 \
+                     -s EXPORTED_RUNTIME_METHODS=FS,callMain -s INCOMING_MODULE_JS_API=stdout,stderr,locateFile,wasmMemory
+
+# Headers that any processor can have, and nothing else of /usr/include.
+$(WEB_CONVERT)/include/.made: tools/web_convert/meshoptimizer.sh
+	@mkdir -p $(@D)
+	$(Q)sh tools/web_convert/meshoptimizer.sh $(WEB_CONVERT)
+	$(Q)ln -sfn /usr/include/nlohmann /usr/include/stb /usr/include/tiny_gltf.h $(abspath $(WEB_CONVERT)/meshoptimizer/src/meshoptimizer.h) $(@D)
+	@touch $@
+$(WEB_CONVERT)/%.o: %.c $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc -std=c99 $(WEB_CONVERT_FLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+$(WEB_CONVERT)/tools/%.o: tools/%.cpp $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc -std=c++17 -fwasm-exceptions $(WEB_CONVERT_FLAGS) -O1 -isystem /usr/include/stb $(INCLUDES) -MMD -MP -c $< -o $@
+$(WEB_CONVERT)/meshoptimizer/%.o: $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
+	$(call say,EMCC,$@)
+	$(Q)$(BUILD)/web-cc $(WEB_CONVERT_FLAGS) -U__SSE2__ -w -c $(@:.o=.cpp) -o $@
+$(WEB_CONVERT)/convert.js: $(WEB_CONVERT_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_CONVERT_FLAGS) $^ $(WEB_CONVERT_LINK) -o $@
+-include $(WEB_CONVERT_O:.o=.d)
+$(WEB_CONVERT)/convert.wasm: $(WEB_CONVERT)/convert.js
+$(WEB)/package/convert/worker.js: tools/web_convert/worker.js
+	@mkdir -p $(@D)
+	@cp $< $@
+$(WEB)/package/convert/convert.%: $(WEB_CONVERT)/convert.%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+# ---- the page's crowd ----
+
+# `noh crowd --place` as a page of its own (platform/web/festival), of files of the tool and of what `make demo-crowd` shows.
+# Its memory does not grow: a thousand people fit.
+WEB_FESTIVAL   := $(WEB)/festival
+WEB_FESTIVAL_O := $(patsubst %.c,$(WEB_OBJECTS)/%.o,platform/web/festival/festival.c platform/web/context.c platform/file.c \
+                  $(addprefix tools/noh/crowd/,place_scene.c place_life.c place_people.c place_file.c crowd_measure.c crowd_hair.c) \
+                  tools/noh/draw/lighting.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
+                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error nearest image_file input_file text_scan))
+WEB_FESTIVAL_FILES := $(addprefix $(WEB_FESTIVAL)/,index.html festival.js people.nohz festival.nohz festival.place)
+
+web-festival: web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_FESTIVAL)/program.js $(WEB_FESTIVAL_FILES)
+$(WEB_FESTIVAL)/program.js: $(WEB_FESTIVAL_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+	@mkdir -p $(@D)
+	$(call say,EMCC,$@)
+	$(Q)$(WEB_CC) $(WEB_FLAGS) -O1 $^ -msse2 --no-entry -s ALLOW_MEMORY_GROWTH=0 -s INITIAL_MEMORY=64MB -s TOTAL_STACK=1MB -s ENVIRONMENT=web \
+	    -s MODULARIZE=1 -s EXPORT_NAME=nohFestival -s EXPORTED_RUNTIME_METHODS=UTF8ToString,FS -s FORCE_FILESYSTEM=1 \
+	    -s INCOMING_MODULE_JS_API=instantiateWasm -s ERROR_ON_UNDEFINED_SYMBOLS=0 -o $@ 2>$(WEB_OBJECTS)/festival.log || { cat $(WEB_OBJECTS)/festival.log; exit 1; }
+	$(Q)! grep 'undefined symbol' $(WEB_OBJECTS)/festival.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
+# From the third level down: a camera that is 3 m away sees no finer one.
+$(WEB_OBJECTS)/festival/people.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh build $< -o $@ --lod 8 --lod-from 2 --graph $(PUPPET_MOVES) --quiet
+$(WEB_FESTIVAL)/people.nohz: $(WEB_OBJECTS)/festival/people.noh
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh pack $< -o $@ --error-um 10 --quiet
+$(WEB_FESTIVAL)/festival.nohz: $(BUILD)/demo_assets $(BUILD)/noh
+	@mkdir -p $(@D) $(WEB_OBJECTS)/festival
+	$(Q)$(BUILD)/demo_assets --festival $(WEB_OBJECTS)/festival/festival
+	$(Q)$(BUILD)/noh build $(WEB_OBJECTS)/festival/festival.obj -o $(WEB_OBJECTS)/festival/festival.noh --unit-cm 100 --quiet
+	$(Q)$(BUILD)/noh pack $(WEB_OBJECTS)/festival/festival.noh -o $@ --error-um 10 --quiet
+$(WEB_FESTIVAL)/festival.place: tools/demo_assets/festival/festival.place
+	@mkdir -p $(@D)
+	@cp $< $@
+$(WEB_FESTIVAL)/%: platform/web/festival/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+# ---- the package ----
+
+# noh-character for npm: what platform/web/package has, the program, and the version of the library.
+NPM := $(BUILD)/npm
+npm: deps-web
+	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
+	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/core/base/version.h \
+    tools/web_convert/worker.js $(wildcard $(WEB_CONVERT)/convert.wasm)
+	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE tools/web_convert/worker.js $(WEB_CONVERT)
