@@ -577,12 +577,12 @@ static void read_specular_maps(file &f, const tinygltf::Material &m, int occlusi
 static void read_priority(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
 {
     const double queue = number_in(extension_of(m, "VRMC_materials_mtoon"), "renderQueueOffsetNumber", 0.0);
-    if (queue >= -128.0 && queue <= 127.0) out.priority = static_cast<int8_t>(queue);
+    if (queue >= -128.0 && queue <= 127.0) out.priority = static_cast<int16_t>(queue);
     if (!m.extras.IsObject() || !m.extras.Has("priority")) return;
     const tinygltf::Value &value = m.extras.Get("priority");
     const double number = value.IsNumber() ? value.GetNumberAsDouble() : 1000.0;
     if (number >= -128.0 && number <= 127.0 && number == static_cast<double>(static_cast<int>(number)))
-        out.priority = static_cast<int8_t>(number);
+        out.priority = static_cast<int16_t>(number);
     else
         leave_out(f, where, ": the extra 'priority' is no whole number from -128 to 127 and was ignored");
 }

@@ -57,7 +57,7 @@ typedef struct model_material {
     float alpha_cutoff;
     uint8_t double_sided, unlit;
     uint8_t tint; /* MODEL_TINT_* */
-    int8_t priority;
+    int16_t priority;
     float normal_scale, occlusion_strength, emissive[3], f0[3];
     /* as noh_material has them: indices into textures or MODEL_NONE */
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];

@@ -16,7 +16,7 @@ int priority_assign(model *m, const char *assignment, model_error *error)
     for (uint32_t i = 0; i < m->material_count; i++) {
         const char *name = m->materials[i].name;
         if (strlen(name) == length && memcmp(name, assignment, length) == 0) {
-            m->materials[i].priority = (int8_t)priority;
+            m->materials[i].priority = (int16_t)priority;
             found = 1;
         }
     }

@@ -443,8 +443,10 @@ static void mean_weights(const wrinkle_field *f, const region_maps *maps, uint32
                        t * (corner[2][axis] - corner[0][axis]);
         }
         const size_t at = texel_at(f, maps, uv);
-        for (uint32_t r = 0; r < REGION_COUNT; r++)
-            sum[r] += maps->map[r % REGION_MAP_COUNT][at + r / REGION_MAP_COUNT];
+        for (uint32_t r = 0; r < REGION_COUNT; r++) {
+            const size_t channel = r / REGION_MAP_COUNT;
+            sum[r] += maps->map[r % REGION_MAP_COUNT][at + channel];
+        }
     }
     for (uint32_t r = 0; r < REGION_COUNT; r++) weights[r] = sum[r] / (255.0 * n * n);
 }
