@@ -22,7 +22,7 @@ holds() {
 # the functions of lib.sh, without its set-up
 sed -n '/^json_node()/,/^}/p; /^json_python()/,/^}/p' tests/cli/lib.sh >"$work/json.sh"
 
-holds info 'j.version === 4'
+holds info 'j.version === 5'
 holds info "j.bytes === $(wc -c <"$pack")"
 holds info 'j.meshes[0].vertices !== 0 && j.meshes[0].indices !== 0 && j.meshes[0].targets !== 0'
 holds info 'j.meshes[0].pairs !== 0 && j.meshes[0].texels !== 0 && j.meshes[0].target_bytes !== 0'

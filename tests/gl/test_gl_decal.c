@@ -91,9 +91,13 @@ static void expect_marks(shot *s, uint32_t kind, uint32_t mesh_count, const char
 static void marks_stay_through_a_smile_and_levels(void **state)
 {
     shot s;
+    float sphere[4];
     uint32_t levels, smile;
     (void)state;
     open_shot(&s, MASKS);
+    assert_int_equal(noh_actor_sphere(s.c.stage, s.actor, sphere, NULL), NOH_OK);
+    noh_view_orbit(&s.view, sphere, 0.3f, 0.1f, 1.6f * sphere[3], WIDTH, HEIGHT); /* something is left of the mask */
+    frame(&s);
     assert_true(strike(&s, 60, 0.09f, 64) > 3u);
     levels = s.c.plan.kinds[MASKS].level_count;
     smile = noh_stage_find(s.c.stage, MASKS, NOH_NAME_FLOAT, "smile");

@@ -221,12 +221,34 @@ static int same_corner(const face_corner *a, const face_corner *b)
     return memcmp(a, b, sizeof *a) == 0;
 }
 
+static void normal_of(const face_files *f, const face_corner *c, double normal[3])
+{
+    const float *p = f->positions + 3 * (size_t)c[0].position, *q = f->positions + 3 * (size_t)c[1].position,
+                *r = f->positions + 3 * (size_t)c[2].position;
+    for (int k = 0; k < 3; k++) {
+        const int m = (k + 1) % 3, n = (k + 2) % 3;
+        normal[k] = ((double)q[m] - (double)p[m]) * ((double)r[n] - (double)p[n]) -
+                    ((double)q[n] - (double)p[n]) * ((double)r[m] - (double)p[m]);
+    }
+}
+
+/* Whether four corners lie nearly in a plane: of a folded face it is a matter of taste which diagonal cuts it. */
+static int is_flat(const face_files *f, const face_corner *c)
+{
+    double a[3], b[3];
+    normal_of(f, c, a);
+    normal_of(f, c + 3, b);
+    const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const double lengths = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    return dot > 0.0 && dot * dot > 0.8 * lengths;
+}
+
 /* Two triangles that a fan of four corners gives are written as one face, as modellers keep them. */
 static void print_part(FILE *file, const face_files *f, const face_part *p)
 {
     for (uint32_t i = 0; i < p->count; i += 3) {
         const face_corner *c = f->corners + p->first + i;
-        const int is_quad = i + 3 < p->count && same_corner(&c[3], &c[0]) && same_corner(&c[4], &c[2]);
+        const int is_quad = i + 3 < p->count && same_corner(&c[3], &c[0]) && same_corner(&c[4], &c[2]) && is_flat(f, c);
         fputc('f', file);
         for (uint32_t k = 0; k < 3; k++) print_corner(file, f, &c[k]);
         if (is_quad) print_corner(file, f, &c[5]);

@@ -48,13 +48,8 @@ static void bind_toon(void *user, const noh_gl_api *api, GLuint program, const n
 static int open_shader(cast *c)
 {
     static const char *const samplers[] = { "u_shadow_map" };
-    const noh_gl_shader_desc d = { .name = "toon",
-                                   .vertex = toon_vertex,
-                                   .fragment = toon_fragment,
-                                   .samplers = samplers,
-                                   .sampler_count = 1,
-                                   .bind = bind_toon,
-                                   .user = c };
+    const noh_gl_shader_desc d = { "toon",    toon_vertex, toon_fragment, NULL, samplers, 1,
+                                   bind_toon, c,           NOH_VIEW_LIT,  NULL, 0,        NULL };
     const size_t bytes = noh_stage_shader_size(c->stage);
     noh_error e = { NOH_ERR_MEMORY, "malloc", 0, bytes };
     void *memory = malloc(bytes);

@@ -231,6 +231,18 @@ static void eyes_aim_at_what_they_look_at(void **state)
     model_free(m);
 }
 
+/* Whether a vertex is an earlier one with another tangent or none: at a pole, and at mirrored texture coordinates. */
+static int is_split(const model_mesh *m, size_t v)
+{
+    for (size_t u = 0; u < v; u++) {
+        if (memcmp(m->position + 3 * u, m->position + 3 * v, 3 * sizeof(float)) == 0 &&
+            memcmp(m->normal + 3 * u, m->normal + 3 * v, 3 * sizeof(float)) == 0 &&
+            memcmp(m->uv + 2 * u, m->uv + 2 * v, 2 * sizeof(float)) == 0)
+            return 1;
+    }
+    return 0;
+}
+
 static void eyes_of_a_head_are_found(void **state)
 {
     const char *const files[] = { "hero/head.glb", "hero/body.glb", "hero/head_skin.glb" };
@@ -248,10 +260,11 @@ static void eyes_of_a_head_are_found(void **state)
         assert_true(fabs(l->world[13] - r->world[13]) < 1e-4 && fabs(l->world[14] - r->world[14]) < 1e-4);
         for (size_t v = 0; v < m->meshes[0].vertex_count; v++) {
             const uint32_t place = m->meshes[0].joints[v * MODEL_INFLUENCES_MAX];
-            if (place + 2 >= m->skins[0].joint_count) eyes[place + 1 >= m->skins[0].joint_count]++;
+            if (place + 2 < m->skins[0].joint_count || is_split(&m->meshes[0], v)) continue;
+            eyes[place + 1 >= m->skins[0].joint_count]++;
         }
-        assert_int_equal(eyes[0], 96);
-        assert_int_equal(eyes[1], 96);
+        assert_int_equal(eyes[0], 80);
+        assert_int_equal(eyes[1], 80);
         model_free(m);
     }
 }

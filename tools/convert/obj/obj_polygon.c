@@ -43,9 +43,12 @@ static double turn(const polygon *p, uint32_t a, uint32_t b, uint32_t c)
            (p->at[b][1] - p->at[a][1]) * (p->at[c][0] - p->at[a][0]);
 }
 
-/* A star turns left everywhere too, but goes round more than once: then the fan's triangles overlap. */
-static int is_convex(const polygon *p)
+/* Whether the fan from the first corner covers it. Of four corners that is so where both triangles turn left: a corner
+ * that turns right may lie on the diagonal. A star turns left everywhere, but goes round more than once: then the fan's
+ * triangles overlap. */
+static int has_fan(const polygon *p)
 {
+    if (p->count == 4) return turn(p, 0, 1, 2) >= 0.0 && turn(p, 0, 2, 3) >= 0.0;
     for (uint32_t i = 0; i < p->count; i++) {
         const uint32_t b = (i + 1) % p->count, c = (i + 2) % p->count;
         if (turn(p, i, b, c) < 0.0 || (i > 0 && b > 0 && turn(p, 0, i, b) < 0.0)) return 0;
@@ -140,7 +143,7 @@ int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles)
     p.at = model_zeros(count, sizeof *p.at);
     if (!p.at) return 1;
     flatten(points, &p);
-    if (!is_convex(&p)) {
+    if (!has_fan(&p)) {
         p.next = model_zeros(count, sizeof *p.next);
         p.before = model_zeros(count, sizeof *p.before);
         p.ear = model_zeros(count, 1);
