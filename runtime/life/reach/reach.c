@@ -141,7 +141,7 @@ void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skelet
 {
     NOH_ASSERT(reach && rig && skeleton && local && points && seconds >= 0.0f);
     NOH_ASSERT(rig->arm_count <= NOH_REACH_ARMS_MAX && rig->last < skeleton->joint_count);
-    for (uint32_t i = 0; i < rig->arm_count; i++) {
+    for (uint32_t i = 0; i < rig->arm_count && i < NOH_REACH_ARMS_MAX; i++) { /* which gcc cannot see at -O3 */
         noh_reach_hand *h = &reach->hands[i];
         const float goal = h->wants ? 1.0f : 0.0f, way = seconds / REACH_SECONDS, left = goal - h->part;
         h->part = cut || (left < way && left > -way) ? goal : h->part + (left > 0.0f ? way : left < 0.0f ? -way : 0.0f);
