@@ -135,7 +135,7 @@ $(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/
 # The library's CPU tests, those that need neither C++ nor GL nor the tool, for another processor: tests/cross.sh
 # calls this with CC, AR and CROSS=1. tests/cross/ stands in for the libraries that it has no package of.
 CROSS       ?=
-CROSS_SKIP  := face_files normal_map raw_turn mocap wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips eye_split seam uv_targets wrinkles region_mask identity gltf_read gltf_left_out gltf_formula clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
+CROSS_SKIP  := face_files skin_mirror crowd_round stage_bounds stage_far stage_stop normal_map raw_turn mocap wire terrain gaze stage_gaze gltf_springs gltf_draco springs_pack stage_springs feet stage_feet obj_read ragdoll_rig ragdoll_pose transfer lips eye_split seam uv_targets wrinkles region_mask identity gltf_read gltf_left_out gltf_formula clip_import clip_bank pack_clip influences bvh_read events_read sources sources_kept \
                skin skin_list skin_oracle skin_pack bounds_pick pick source_errors simplify lod_chunks lod_certified lod_fit lod_lies levels pack \
                joint_order clip_errors lod_pack strip stage stage_between stage_day blob decal decal_grow stage_face stage_graph stage_part stage_ragdoll stage_springs walkers graph_text $(if $(findstring emcc,$(CC)),threads crowd_threads) \
                $(if $(SAN),,stage_threads)
