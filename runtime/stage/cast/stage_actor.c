@@ -462,8 +462,7 @@ noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look 
     return NOH_OK;
 }
 
-/* Attachments from an actor to another one that it is attached to, over others or not; NOH_NONE: it is not. */
-static uint32_t steps_to(const noh_stage *s, const noh_stage_actor *a, const noh_stage_actor *to)
+uint32_t noh_stage_steps_to(const noh_stage *s, const noh_stage_actor *a, const noh_stage_actor *to)
 {
     uint32_t steps = 0;
     for (; a && a != to; steps++) a = noh_stage_parent_of(s, a, NULL);
@@ -475,7 +474,7 @@ static uint32_t steps_below(const noh_stage *s, const noh_stage_actor *a)
 {
     uint32_t most = 0;
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        const uint32_t steps = s->actors[i].alive ? steps_to(s, &s->actors[i], a) : NOH_NONE;
+        const uint32_t steps = s->actors[i].alive ? noh_stage_steps_to(s, &s->actors[i], a) : NOH_NONE;
         if (steps != NOH_NONE && steps > most) most = steps;
     }
     return most;
@@ -504,13 +503,13 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the parent has no such joint", joint,
                         of_parent->skeleton.joint_count);
     }
-    if (steps_to(stage, p, a) != NOH_NONE) {
+    if (noh_stage_steps_to(stage, p, a) != NOH_NONE) {
         return noh_fail(error, NOH_ERR_ARG,
                         "an actor would be attached to itself: the parent is the actor, or is attached to it; let that "
                         "go first",
                         actor.id & 0xffffu, 0);
     }
-    depth = steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);
+    depth = noh_stage_steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);
     if (depth > NOH_ATTACH_DEPTH_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "more than NOH_ATTACH_DEPTH_MAX attachments follow on each other",
                         actor.id & 0xffffu, depth);

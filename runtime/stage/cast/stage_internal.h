@@ -540,6 +540,9 @@ noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index); /* of an 
 noh_stage_actor *noh_stage_parent_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind);
 /* The one at the end of its attachments: itself, where it has none. */
 const noh_stage_actor *noh_stage_root_of(const noh_stage *s, const noh_stage_actor *a);
+/* Attachments from an actor to another one that it is attached to, over others or not; 0: it is that one, NOH_NONE: it
+ * is not attached to it. */
+uint32_t noh_stage_steps_to(const noh_stage *s, const noh_stage_actor *a, const noh_stage_actor *to);
 noh_result noh_stage_gone(noh_error *error, noh_actor actor);
 /* Its own place as the last frame shows it, its position less `origin`; the place of an attached actor is relative to
  * the joint, and stays so. */

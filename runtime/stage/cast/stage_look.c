@@ -84,12 +84,10 @@ static uint32_t look_at_attached(const noh_stage *s, uint32_t index, const noh_s
 static int carries_seen(const noh_stage *s, const noh_stage_actor *a)
 {
     for (uint32_t i = 0; i < s->actor_count; i++) {
-        const noh_stage_actor *other = &s->actors[i], *on = other;
+        const noh_stage_actor *other = &s->actors[i];
         const noh_stage_kind *k;
         float matrix[12];
-        if (!other->alive || !other->parent || other == a) continue;
-        while (on && on != a) on = noh_stage_parent_of(s, on, NULL);
-        if (!on) continue;
+        if (!other->alive || other == a || noh_stage_steps_to(s, other, a) == NOH_NONE) continue;
         k = noh_stage_kind_of(s, i);
         if (look_at_attached(s, i, k, k->reach, matrix)) return 1;
     }
