@@ -1,13 +1,11 @@
-/* clip_set.h: what a controller knows of the clips it plays.
+/* clip_set.h: the clips that a controller plays.
  *
- * To a controller a clip is a noh_clip_entry: a name, a duration, a loop mode, callback keys and sync markers, as plain
- * data with indices instead of pointers. How its poses are stored the controller need not know: it asks
- * noh_clip_set.sample for them. One set serves any number of instances. A game fills in a set of its own, or takes the
- * one that a noh_clip_bank makes of a pack (clip_bank.h).
+ * A noh_clip_entry describes one clip: name, duration, loop mode, callback keys and sync markers, as plain data with
+ * indices instead of pointers. How poses are stored is up to noh_clip_set.sample. Any number of instances share one
+ * set. A game fills in its own set, or uses the one in a noh_clip_bank (clip_bank.h).
  *
- * Threads: a set is only read while instances use it, so any number of threads may share one whose `sample` may run on
- * several threads. Where it may not, each thread passes a copy of its own with another `user`; for clips of packs
- * noh_clip_bank_view holds that copy. */
+ * Threads: a set is read-only while instances use it. Threads may share it if `sample` may run on several threads. If
+ * not, give each thread a copy with its own `user`; for clips of packs, noh_clip_bank_view holds that copy. */
 #ifndef NOH_ANIM_CLIP_SET_H
 #define NOH_ANIM_CLIP_SET_H
 
@@ -20,26 +18,24 @@
 extern "C" {
 #endif
 
-/* A callback key. */
 typedef struct noh_event_key {
     uint32_t tick;      /* 0..duration of its clip */
     uint32_t name_hash; /* noh_hash_name of its name */
     uint8_t payload[8];
-    float weight_min; /* fires only while its track weighs at least this much; 0: always */
+    float weight_min; /* fires only while its track's weight is at least this; 0: always */
 } noh_event_key;
 
-/* A moment that the clips of a sync group have in common: a foot touches the ground. */
+/* A moment that the clips of a sync group share, such as a foot touching the ground. */
 typedef struct noh_marker {
     uint32_t tick; /* below the duration, increasing */
     uint32_t id;
 } noh_marker;
 
-#define NOH_CLIP_ADDITIVE 1u    /* its poses are differences already: see noh_pose_difference */
-#define NOH_CLIP_FLOATS_ONLY 2u /* animates floats only: joints are left to the other tracks */
-#define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only: a walk leaves the face to another track */
+#define NOH_CLIP_ADDITIVE 1u    /* its poses are differences: see noh_pose_difference */
+#define NOH_CLIP_FLOATS_ONLY 2u /* animates floats only; other tracks move the joints */
+#define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only, such as a walk that leaves the face to another track */
 #define NOH_CLIP_FLAGS (NOH_CLIP_ADDITIVE | NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)
 
-/* A clip of a set. */
 typedef struct noh_clip_entry {
     uint32_t name_hash;
     uint32_t duration_ticks;             /* 0..NOH_DURATION_MAX */
@@ -49,43 +45,44 @@ typedef struct noh_clip_entry {
     uint32_t first_marker, marker_count; /* in the set's markers */
 } noh_clip_entry;
 
-/* The root joint in a clip's first and last frame, as the source has them: rotation, then translation. What `sample`
- * gives at the two ends may be off by the clip's error. */
+/* The root joint in the first and last frame of the source clip: rotation, then translation. `sample` may differ from
+ * these by the clip's compression error. */
 typedef float noh_root_ends[2][7];
 
-/* The root displacement of one clip; made by noh_root_track_measure (root_motion.h). */
+/* Root displacement of one clip; made by noh_root_track_measure (root_motion.h). */
 struct noh_root_track;
 
-/* Sample a clip: fill pose[joint_count] with its first joints and floats[float_count].
+/* Sample a clip: fill pose[joint_count] with its first joints, and floats[float_count].
  * ranges  clip_tick 0..duration */
 typedef void (*noh_clip_sample_fn)(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
                                    noh_transform *pose, uint32_t float_count, float *floats);
 
-/* The clips of one skeleton, and what they are blended with. Borrowed; constant while instances use it. */
+/* The clips of one skeleton and the data to blend them. Borrowed; constant while instances use it. */
 typedef struct noh_clip_set {
     uint32_t clip_count;  /* 1..NOH_CLIPS_MAX */
-    uint32_t joint_count; /* 0..NOH_JOINTS_MAX; 0 needs floats, and takes no roots */
+    uint32_t joint_count; /* 0..NOH_JOINTS_MAX; 0 requires float_count > 0 and roots NULL */
     uint32_t float_count; /* 0..NOH_FLOATS_MAX: morph weights and named floats */
     uint32_t mask_count;  /* 0..NOH_MASKS_MAX */
     uint32_t event_count, marker_count;
     const noh_clip_entry *clips;           /* [clip_count] */
-    const noh_event_key *events;           /* [event_count]; may be NULL where that is 0 */
-    const noh_marker *markers;             /* [marker_count]; may be NULL where that is 0 */
+    const noh_event_key *events;           /* [event_count]; may be NULL if that is 0 */
+    const noh_marker *markers;             /* [marker_count]; may be NULL if that is 0 */
     const noh_transform *bind_pose;        /* [joint_count]; never NULL */
     const float *float_defaults;           /* [float_count]; NULL: all 0 */
     const uint8_t *masks;                  /* [mask_count][joint_count + float_count], 255 = full weight */
-    const struct noh_root_track *roots;    /* [clip_count]; NULL: the root joint moves in its pose */
-    const noh_root_ends *const *root_ends; /* [clip_count]; NULL: the ends are what `sample` gives */
+    const struct noh_root_track *roots;    /* [clip_count]; NULL: no root motion, the root joint moves in its pose */
+    const noh_root_ends *const *root_ends; /* [clip_count]; NULL: use `sample` at both ends */
     noh_clip_sample_fn sample;
-    void *user; /* for sample */
+    void *user; /* passed to sample */
 } noh_clip_set;
 
 /* Check a set once, before instances use it.
- * errors  ARG a count or pointer, named; DATA a clip (where: its index): its loop mode or duration, the tick, weight or
- *         order of a key, the tick or order of a marker */
+ * errors  ARG names a count or pointer; DATA a clip (where: its index) has a bad loop mode or duration, a key with a
+ *         bad tick, weight or order, or a marker with a bad tick or order */
 noh_result noh_clip_set_check(const noh_clip_set *set, noh_error *error);
 
-/* The index of the clip of that name; NOH_NONE when there is none. */
+/* Find a clip by name.
+ * returns  its index, or NOH_NONE */
 uint32_t noh_clip_set_find(const noh_clip_set *set, uint32_t name_hash);
 
 #ifdef __cplusplus

@@ -1,7 +1,7 @@
-/* mask.h: weights per joint and per float, a byte each (track masks: Granberg 2009, chapter 16).
+/* mask.h: weights per joint and per float, one byte each (track masks: Granberg 2009, chapter 16).
  *
- * 255 = full weight, 0 = left out. A mask of a set is uint8_t[joint_count + float_count]; these functions fill one in
- * memory of the caller's, at load time.
+ * 255 = full weight, 0 = excluded. A mask of a set is uint8_t[joint_count + float_count]. Fill masks in your own memory
+ * at load time.
  *
  * Threads: pure functions of their arguments; any thread. */
 #ifndef NOH_ANIM_MASK_H
@@ -15,17 +15,17 @@
 extern "C" {
 #endif
 
-/* Set all entries, of joints and floats. */
+/* Set all entries. */
 void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 
-/* Set the entries of a joint and of all its descendants.
+/* Set the entries of a joint and all its descendants.
  * ranges  joint below skeleton->joint_count */
 void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value);
 
-/* Replace every entry by 255 minus it. */
+/* Replace every entry v by 255 - v. */
 void noh_mask_invert(uint8_t *mask, uint32_t count);
 
-/* A mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
+/* Get a mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
 noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
-/* ping_pong.h: weights as functions of time: a ramp, and a ping-pong.
+/* ping_pong.h: weights as functions of time: a ramp and a ping-pong.
  *
- * Times are 64-bit ticks of the caller's own counter: nothing wraps and nothing drifts.
+ * Times are 64-bit ticks of the caller's own counter, so nothing wraps or drifts.
  *
  * Threads: pure functions; any thread. */
 #ifndef NOH_ANIM_PING_PONG_H
@@ -12,10 +12,11 @@
 extern "C" {
 #endif
 
-/* 0 up to tick 0, rising to 1 at `duration`, then 1. A duration of 0 or less is over at once. */
+/* Ramp from 0 at tick 0 to 1 at `duration`, clamped. A duration of 0 or less steps to 1 at tick 0. */
 float noh_ramp(int64_t ticks, int64_t duration);
 
-/* 0 at tick 0, 1 at `half`, 0 at twice that, and so on, before tick 0 too. A half of 0 or less gives 0. */
+/* Triangle wave: 0 at tick 0, 1 at `half`, 0 at 2 * `half`, and so on, also before tick 0. Returns 0 if `half` is 0 or
+ * less. */
 float noh_ping_pong(int64_t ticks, int64_t half);
 
 #ifdef __cplusplus

@@ -1,23 +1,23 @@
 /* root_motion.h: root displacement, extracted from the pose.
  *
- * Of the root joint's transform a chosen part E (some axes of the translation, and the heading: the twist about the up
- * axis) moves the character in the world; the rest stays in its pose, so that world * E * rest is where the root was.
+ * A chosen part E of the root joint's transform (some axes of the translation, and the heading: the twist about the up
+ * axis) moves the character in the world. The rest stays in the pose, so that world * E * rest is the original root.
  * From position a to b of a clip the character moves by
  *   inverse(E(a)) * E(b)                                         within one pass
  *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)      across n seams, L = inverse(E(0)) * E(end)
- * Headings count from the clip's own axes: the yaw of the first frame stays in the pose, so that a clip that walks along
- * z moves its character along z whichever way its first frame faces.
- * E(0) and E(end) are the source's where the set has them (root_ends); what sampling has in between goes over to them
- * within NOH_ROOT_SEAM_TICKS of either end. So a loop that closes in the source never drifts, however lossy its clip.
+ * Headings count from the clip's own axes: the yaw of the first frame stays in the pose. So a clip that walks along z
+ * moves its character along z, whatever direction its first frame faces.
+ * E(0) and E(end) come from the source clip if the set has them (root_ends); sampled values blend towards them within
+ * NOH_ROOT_SEAM_TICKS of either end. So a loop that closes in the source never drifts, however lossy its compression.
  * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
  * without rounding, and the sum of the n displacements is a geometric series of rotations.
  *
  *   noh_root_at       displacement since the start of a clip, after any number of passes
- *   noh_controller_root_motion (controller_pose.h)   displacement by all tracks since the last call, by weight
+ *   noh_controller_root_motion (controller_pose.h)   weighted displacement of all tracks since the last call
  *
- * source  Granberg 2009, chapter 16, names root motion; adding up its displacements in floats drifts
+ * source  Granberg 2009, chapter 16, names root motion; adding its displacements in floats drifts
  *
- * Threads: pure functions, except that some call the set's `sample`: they may run where that may (clip_set.h). */
+ * Threads: pure functions; those that call the set's `sample` may run where it may (clip_set.h). */
 #ifndef NOH_ANIM_ROOT_MOTION_H
 #define NOH_ANIM_ROOT_MOTION_H
 
@@ -33,8 +33,7 @@ extern "C" {
 #define NOH_ROOT_HEADING 8u
 #define NOH_ROOT_GROUND (NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_HEADING) /* for y up */
 
-#define NOH_ROOT_SEAM_TICKS \
-    200u /* 1/240 s: less than a frame, so that no position is off by more than its clip's error */
+#define NOH_ROOT_SEAM_TICKS 200u /* 1/240 s: less than a frame, so no position is off by more than its clip's error */
 
 /* A displacement: turn about the up axis, then translate. */
 typedef struct noh_root_pose {
@@ -43,43 +42,44 @@ typedef struct noh_root_pose {
     uint32_t reserved;
 } noh_root_pose;
 
-/* What root motion needs to know of one clip. Plain data. */
+/* Root motion data of one clip. Plain data. */
 typedef struct noh_root_track {
-    uint32_t axes;                  /* NOH_ROOT_*; 0: none is extracted */
+    uint32_t axes;                  /* NOH_ROOT_*; 0: nothing is extracted */
     uint32_t up;                    /* 0, 1, 2: x, y, z */
     noh_root_pose start, end, loop; /* E(0), E(duration), L */
-    float seam[2][3];               /* E(0) and E(duration) less what sampling gives there */
+    float seam[2][3];               /* E(0) and E(duration) minus the sampled values */
     int32_t seam_turn[2];
-    uint32_t facing; /* heading of the first frame, 2^-32 turns, which stays in the pose */
+    uint32_t facing; /* heading of the first frame, 2^-32 turns; stays in the pose */
     uint32_t reserved;
 } noh_root_track;
 
-/* E of a root joint's transform, its heading counted from the model's axes, and the transform without it. */
+/* Split the root joint's transform: extract returns E, with the heading relative to the model's axes; remove leaves the
+ * transform without E. */
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root);
 void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
 
-/* Sample a clip as it is posed: without its root motion, if the set extracts any.
+/* Sample a clip for its pose: without root motion, if the set extracts it.
  * shapes  pose[joint_count], floats[the set's float_count] */
 void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
                           noh_transform *pose, float *floats);
 
-/* Displacement a, then b in the frame that a leads to; and the displacement that undoes a. */
+/* Compose: displacement a, then b in the resulting frame. Inverse: the displacement that undoes a. */
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b);
 noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 
-/* a composed with itself n times; n < 0: its inverse, -n times. In closed form: constant time, no drift. */
+/* Compose a with itself n times; for n < 0 its inverse, -n times. Closed form: constant time, no drift. */
 noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n);
 
-/* Measure a root track by the two ends of its clip. Joint 0 is the root.
+/* Measure a root track from both ends of its clip. Joint 0 is the root.
  * errors  ARG clip, axes, up */
 noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
                                   noh_root_track *track, noh_error *error);
 
-/* The displacement from one unwrapped position to another. */
+/* Displacement from one unwrapped position to another. */
 noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
                                int64_t from, int64_t to);
 
-/* The displacement from position 0. */
+/* Displacement from position 0 to an unwrapped position. */
 noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
                           int64_t position);
 
