@@ -1,8 +1,8 @@
-/* graph_pack.h: an animation graph out of a pack, played by names.
+/* graph_pack.h: an animation graph from a pack, played by name.
  *
  * The pack's graph (noh build --graph) names clips, joints, parameters and states. noh_graph_pack_init binds it to a
- * clip set: clips by name, the joints of its masks by name. What it makes is a noh_graph like any other, for any number
- * of instances:
+ * clip set: clips by name, joints of its masks by name. The result is an ordinary noh_graph, for any number of
+ * instances:
  *
  *   desc.pack = &pack;  desc.set = &bank->clips;
  *   bytes = noh_graph_pack_size(&desc, &error);
@@ -12,10 +12,10 @@
  *   noh_graph_step(state, &made->graph, &made->clips, ticks, fn, user);
  *   noh_graph_pose(state, &made->graph, &made->clips, &scratch, pose, floats);
  *
- * made->clips is the set with the masks of the graph. To pose on several threads, give each a copy of its view's set
- * (noh_clip_bank_view.clips) with made's `masks` and `mask_count`.
+ * made->clips is the set with the graph's masks. To pose on several threads, give each a copy of its view's set
+ * (noh_clip_bank_view.clips) with `masks` and `mask_count` from made->clips.
  *
- * Threads: what is made is read-only and shared; filling it reads the pack and the set. */
+ * Threads: the result is read-only and shared; making it reads the pack and the set. */
 #ifndef NOH_GRAPH_GRAPH_PACK_H
 #define NOH_GRAPH_GRAPH_PACK_H
 
@@ -43,88 +43,93 @@ typedef struct noh_pack_graph {
     const noh_pack_graph_name *names;             /* [header->name_count] */
 } noh_pack_graph;
 
-/* The n-th graph, checked: as with a compressed clip, noh_pack_open has seen its checksum only.
- * errors  NOT_FOUND  past graph_count (where: the index, need: the count); DATA what is wrong in the chunk (where: the
- *         byte in the pack). *graph is then untouched */
+/* Get a graph by index and check it: as with compressed clips, noh_pack_open has only compared its checksum.
+ * errors  NOT_FOUND index past graph_count (where: the index, need: the count); DATA a fault in the chunk (where: the
+ *         byte in the pack). *graph is then unchanged */
 noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_graph *graph, noh_error *error);
 
-/* The index of the graph of that name; NOH_NONE when there is none. */
+/* Find a graph by name.
+ * returns  its index, or NOH_NONE */
 uint32_t noh_pack_graph_find(const noh_pack *pack, const char *name);
 
 typedef struct noh_graph_pack_desc {
-    const noh_pack *pack; /* holds the graph; required */
+    const noh_pack *pack; /* contains the graph; required */
     uint32_t graph;       /* its index there; default 0 */
-    /* the clips that it plays: &bank->clips, or a set of your own; required. Before there is a bank,
-     * noh_graph_pack_size needs only its counts: those of noh_clip_bank_needs.shape */
+    /* the clips it plays: &bank->clips, or a set of your own; required. Without a bank, noh_graph_pack_size needs only
+     * the counts: noh_clip_bank_needs.shape */
     const noh_clip_set *set;
-    /* The skeleton that the set moves, for the names of joints in masks: a pack, default (NULL) `pack`, and its index
-     * there. Not used by a graph without masks. */
+    /* The skeleton that the set moves, for joint names in masks: a pack, default (NULL) `pack`, and the skeleton's
+     * index there. Unused by a graph without masks. */
     const noh_pack *mesh;
     uint32_t skeleton;
 } noh_graph_pack_desc;
 
 typedef struct noh_graph_pack {
-    noh_graph graph;       /* for noh_graph_*, with: */
-    noh_clip_set clips;    /* desc.set with the masks of the graph; its own where the graph has none */
+    noh_graph graph;       /* for noh_graph_*, together with `clips` */
+    noh_clip_set clips;    /* desc.set with the graph's masks; with its own masks if the graph has none */
     noh_pack_graph source; /* names, in the pack's bytes */
 } noh_graph_pack;
 
-/* Exact bytes; 0 on error.
- * errors  those of noh_graph_pack_init that need no clips: ARG, and those of noh_pack_graph_at */
+/* Exact size in bytes; 0 on error.
+ * errors  as noh_pack_graph_at; ARG as noh_graph_pack_init */
 size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error);
 
-/* What a graph and its instances will need, told by counts alone, before there are clips. */
+/* Sizes of a graph and its instances, computed from counts before there are clips. */
 typedef struct noh_graph_pack_needs {
     size_t bytes;         /* noh_graph_pack_size */
     size_t state_bytes;   /* noh_graph_state_size */
     size_t scratch_bytes; /* noh_graph_scratch_size */
 } noh_graph_pack_needs;
 
-/* errors  as noh_graph_pack_size */
+/* Get the sizes of a graph and its instances.
+ * errors  as noh_graph_pack_size */
 noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pack_needs *needs, noh_error *error);
 
 /* Make a graph in memory[bytes], aligned to NOH_MEMORY_ALIGN, and check it (noh_graph_check). The pack's bytes and the
  * set must outlive it.
  * errors  ARG a field of desc, named, a set over the limits, or memory NULL or misaligned; MEMORY need: the bytes;
- *         those of noh_pack_graph_at; NOT_FOUND the set has no clip of a name (where: its index in source.clips, see
- *         noh_graph_pack_clip_name), or none that a node adds relative to (where: the node); the skeleton has no joint
- *         of a name (where: its index in source.names); DATA a node that these clips do not suit (where: its index),
- *         such as a one-shot whose clip is a loop; LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
+ *         errors of noh_pack_graph_at; NOT_FOUND the set lacks a named clip (where: its index in source.clips, see
+ *         noh_graph_pack_clip_name) or the reference clip of an ADD node (where: the node), or the skeleton lacks a
+ *         named joint (where: its index in source.names); DATA a node that these clips do not suit (where: its index),
+ *         such as a one-shot whose clip loops; LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
 noh_result noh_graph_pack_init(void *memory, size_t bytes, const noh_graph_pack_desc *desc, noh_graph_pack **made,
                                noh_error *error);
 
 /* ---- names ---- */
 
-/* The index of a parameter, for noh_graph_set_param; NOH_NONE when there is none of that name. */
+/* Find a parameter by name, for noh_graph_set_param.
+ * returns  its index, or NOH_NONE */
 uint32_t noh_graph_pack_find_param(const noh_graph_pack *made, const char *name);
 
-/* The name of a parameter, and of a machine, select or one-shot; "" past the last. */
+/* Get the name of a parameter, or of a machine, select or one-shot; "" past the last. */
 const char *noh_graph_pack_param_name(const noh_graph_pack *made, uint32_t param);
 const char *noh_graph_pack_machine_name(const noh_graph_pack *made, uint32_t machine);
 
-/* The number of a value of an ENUM parameter; NOH_NONE when it has none of that name. */
+/* Find a value of an ENUM parameter by name.
+ * returns  its number, or NOH_NONE */
 uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, const char *name);
 
-/* The number of a machine, select or one-shot, for noh_graph_machine_state; NOH_NONE when there is none of that name.
- */
+/* Find a machine, select or one-shot by name, for noh_graph_machine_state.
+ * returns  its number, or NOH_NONE */
 uint32_t noh_graph_pack_find_machine(const noh_graph_pack *made, const char *name);
 
-/* The state of a machine, as a child of its node, by the name of the child; NOH_NONE when it has none of that name. */
+/* Find a state of a machine by the name of its child node.
+ * returns  its number among the machine's children, or NOH_NONE */
 uint32_t noh_graph_pack_find_state(const noh_graph_pack *made, uint32_t machine, const char *name);
 
-/* The name of a state, as noh_graph_machine_state counts them; "" where there is no such machine or state. */
+/* Get the name of a state, numbered as by noh_graph_machine_state; "" if there is no such machine or state. */
 const char *noh_graph_pack_state_name(const noh_graph_pack *made, uint32_t machine, uint32_t state);
 
-/* The track that plays the clip node of that name, for noh_controller_track and noh_event.track; NOH_NONE when there is
- * none of that name. */
+/* Find the track that plays a clip node, by the node's name, for noh_controller_track and noh_event.track.
+ * returns  its index, or NOH_NONE */
 uint32_t noh_graph_pack_find_track(const noh_graph_pack *made, const char *name);
 
-/* The name of the n-th clip of a pack's graph; "" past the last. */
+/* Get the name of a clip of a pack's graph by index; "" past the last. */
 const char *noh_graph_pack_clip_name(const noh_pack_graph *graph, uint32_t clip);
 
-/* Set a parameter within its range: a value outside is held at its end; whole numbers and values of an ENUM are
- * rounded. A trigger is 1 to fire, and 0 again once it is taken.
- * errors  ARG param, NOH_NONE too, or a value that is not finite */
+/* Set a parameter, clamped to its range; whole numbers and ENUM values are rounded. Set a trigger to 1 to fire it;
+ * taking it resets it to 0.
+ * errors  ARG param (also NOH_NONE), or a value that is not finite */
 noh_result noh_graph_pack_set_param(const noh_graph_pack *made, noh_graph_state *state, uint32_t param, float value);
 
 #ifdef __cplusplus

@@ -1,15 +1,15 @@
-/* blend.h: poses blended by weight, layers over them, differences added to them.
+/* blend.h: weighted blends of poses, layers over them, and additive differences.
  *
  *   noh_blend_begin, noh_blend_add (for each pose), noh_blend_finish       pose = sum of w * pose / sum of w
  *   noh_blend_begin_over, noh_blend_add (for each pose), noh_blend_cover   lay a sum over the pose below
  *   noh_pose_mix, noh_floats_mix          two poses, masked
  *   noh_pose_difference, noh_pose_add, noh_floats_add   additive layers
  *
- * Every joint and every float has a sum of weights of its own. So a mask on one track, or a clip that does not animate
- * a joint, leaves the other tracks at full weight there. Where the sum is 0 the result is the bind pose (a float's
- * default). A quaternion is negated where it points away from the sum so far. With two tracks that is the hemisphere of
- * the first one; with more, unlike alignment to the first track alone, the sum can never vanish, and nothing depends on
- * a first track that has faded out.
+ * Every joint and every float has its own sum of weights. So a mask on one track, or a clip that does not animate a
+ * joint, leaves the other tracks at full weight there. Where the sum is 0 the result is the bind pose (for a float, its
+ * default). A quaternion is negated if it points away from the sum so far. With two tracks this equals alignment to the
+ * first one; with more, unlike that alignment, the sum can never vanish, and nothing depends on a first track that has
+ * faded out.
  *
  * source  Granberg 2009, chapter 5, blends two clips with weights w and 1 - w; sums that are not divided by their
  *         weight, or that add q and -q, shrink or cancel
@@ -27,21 +27,22 @@
 extern "C" {
 #endif
 
-/* A blend in progress. The arrays are borrowed; joint_count may be less than they hold. */
+/* A blend in progress. The arrays are borrowed; joint_count may be less than their length. */
 typedef struct noh_blend {
     uint32_t joint_count, float_count;
     noh_transform *sum;   /* [joint_count] */
     float *weights;       /* [joint_count] */
     float *float_sum;     /* [float_count] */
     float *float_weights; /* [float_count] */
-    float *totals;        /* [joint_count] unmasked weights, after noh_blend_begin_over; else not touched */
+    float *totals;        /* [joint_count] unmasked weights, set after noh_blend_begin_over only */
     float *float_totals;  /* [float_count] likewise */
     int covers;           /* 1: begun by noh_blend_begin_over */
-    float full;           /* 0: weights are relative. 1: weights that sum to less than 1 cover only so much of what lies
-                           * below: floats of their defaults, a sum begun by noh_blend_begin_over of the pose there */
+    /* 0: weights are relative. 1: weights with a sum below 1 cover only partly: floats their defaults, a sum begun by
+     * noh_blend_begin_over the pose below it */
+    float full;
 } noh_blend;
 
-/* A mask: a factor for each joint and float, 255 = 1; NULL arrays: 1 everywhere (track masks: Granberg 2009, chapter
+/* A mask: one factor per joint and float, 255 = 1; NULL arrays: 1 everywhere (track masks: Granberg 2009, chapter
  * 16). */
 typedef struct noh_mask_view {
     const uint8_t *joints; /* [joint_count] */
@@ -50,11 +51,11 @@ typedef struct noh_mask_view {
 
 void noh_blend_begin(noh_blend *blend);
 
-/* Begin a sum that noh_blend_cover will lay over the pose of the sum that `blend` holds. */
+/* Begin a sum that noh_blend_cover will lay over the pose of the sum in `blend`. */
 void noh_blend_begin_over(noh_blend *blend);
 
-/* Add one pose. Joints that a clip does not animate, or a mask leaves out, take no part: the pose neither moves them
- * nor dilutes what others do there.
+/* Add one pose. Joints that a clip does not animate, or that a mask excludes, are skipped: the pose neither moves them
+ * nor dilutes the other poses there.
  * shapes  pose[joint_count], floats[float_count]; NULL: not animated
  * ranges  weight > 0 */
 void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask);
@@ -65,25 +66,25 @@ void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, co
                       noh_transform *pose, float *floats);
 
 /* Lay a sum begun by noh_blend_begin_over over the pose below, in place. Each joint is covered by `amount` times the
- * mean mask of the poses that take part there (sum of w * mask / sum of w), wholly where the pose below has no weight.
- * With `full` 1 the sum of w counts as at least 1, and so does a pose below without weight: it is the bind pose.
+ * mean mask of the poses added there (sum of w * mask / sum of w), fully where the pose below has no weight. With
+ * `full` 1 the sum of w counts as at least 1, and so does a pose below without weight, which is the bind pose.
  * shapes  pose[joint_count], floats[float_count] */
 void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats);
 
-/* out = a at t = 0, b at t = 1; out may be either. The mask multiplies t.
+/* Interpolate: out = a at t = 0, b at t = 1; out may be a or b. The mask multiplies t.
  * shapes  a, b, out and mask (NULL: 1 everywhere) [joint_count]
  * ranges  t 0..1 */
 void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask,
                   noh_transform *out);
 void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, const uint8_t *mask, float *out);
 
-/* The difference that leads from the reference to the pose: rotation inverse(reference) * pose, the difference of
+/* Compute the difference from a reference to a pose: rotation inverse(reference) * pose, the difference of
  * translations, the ratio of scales (1 where the reference's is 0). out may be pose, not reference. */
 void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose,
                          noh_transform *out);
 
-/* Apply a difference in place, by weight: the rotation is multiplied on the right, the translation added, the scale
- * multiplied. Weights above 1 exaggerate. */
+/* Apply a weighted difference in place: multiply the rotation on the right, add the translation, multiply the scale.
+ * Weights above 1 exaggerate. */
 void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask,
                   noh_transform *pose);
 void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats);

@@ -1,7 +1,7 @@
 /* local_to_model.h: from a pose to matrices.
  *
- * A matrix is 3 rows of 4, row by row: position = rows * (x, y, z, 1), as in noh_node.world and as a palette in a
- * uniform buffer or texture has it, 48 bytes a joint. Column vectors: model = parent's model * local.
+ * A matrix has 3 rows of 4, stored by row: position = rows * (x, y, z, 1), the layout of noh_node.world and of palettes
+ * in uniform buffers or textures; 48 bytes per joint. Column vectors: model = parent's model * local.
  *
  * source  C. Granberg, "Character Animation with Direct3D", Charles River Media 2009, chapter 3
  *
@@ -15,18 +15,18 @@
 extern "C" {
 #endif
 
-/* translation * rotation * scale of one joint. */
+/* Compute translation * rotation * scale of one joint. */
 void noh_transform_matrix(const noh_transform *t, float matrix[12]);
 
-/* out = a * b; out may be either. */
+/* Multiply: out = a * b; out may be a or b. */
 void noh_matrix_multiply(const float a[12], const float b[12], float out[12]);
 
-/* Model-space matrices in one pass over the joints.
+/* Compute model-space matrices in one pass over the joints.
  * shapes  pose[joint_count], model[joint_count][12]
- * ranges  joint_count at most the skeleton's; a LOD level has fewer, the first ones */
+ * ranges  joint_count at most the skeleton's; a LOD level uses the first joints only */
 void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose, uint32_t joint_count, float *model);
 
-/* Skinning matrices: model * inverse bind.
+/* Compute skinning matrices: model * inverse bind.
  * shapes  model[joint_count][12], palette[joint_count][12]; palette may be model */
 void noh_model_to_palette(const noh_skeleton *skeleton, const float *model, uint32_t joint_count, float *palette);
 

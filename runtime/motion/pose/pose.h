@@ -1,5 +1,5 @@
-/* pose.h: the transform of a joint, local to its parent. A pose is an array of them in skeleton order, parents first:
- * what sampling gives and blending takes.
+/* pose.h: the transform of a joint, local to its parent. A pose is an array of transforms in skeleton order, parents
+ * first.
  *
  * Threads: no state; any thread. */
 #ifndef NOH_POSE_POSE_H
