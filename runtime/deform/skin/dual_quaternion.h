@@ -1,24 +1,24 @@
 /* dual_quaternion.h: skinning that keeps volume where joints twist.
  *
- * Linear blending of matrices flattens what lies between two joints that twist against each other ("candy wrapper");
+ * Linear blending of matrices flattens the mesh between two joints that twist against each other ("candy wrapper");
  * blending rigid motions as dual quaternions does not.
  *
  * A joint's matrix M (position = A p + t) is split as A = R H, R a rotation and H symmetric (polar decomposition):
  * first the mesh is stretched, then it moves rigidly. r_i = R_i as a quaternion (x, y, z, w); d_i = 1/2 (t_i, 0) r_i
  * For a vertex with weights w_i, joint 0 the strongest:
- *   s_i  = +1, or -1 where dot(r_i, r_0) < 0        (r and -r are one rotation: the shorter way)
+ *   s_i  = +1, or -1 where dot(r_i, r_0) < 0        (r and -r are one rotation: take the shorter way)
  *   H    = w_0 H_0 + w_1 H_1 + ...                  (stretches are blended linearly)
  *   r    = w_0 s_0 r_0 + ...,  d = w_0 s_0 d_0 + ...
  *   r, d are divided by |r|
- *   t    = 2 (r_w d - d_w r + cross(r, d)), the vector parts except for _w   (d's part along r cancels)
+ *   t    = 2 (r_w d - d_w r + cross(r, d)), the vector parts except for _w   (d's component along r cancels)
  *   position = rotate(r, H p) + t
  *   normal   = unit(rotate(r, s C n)), C the cofactors of H, s the sign of its determinant
  *   tangent  = unit(rotate(r, H t)), its handedness times s
  *   rotate(r, v) = v + 2 cross(r, cross(r, v) + r_w v)
- * A joint alone moves its vertices exactly as its matrix does, scale and mirror included.
+ * A single joint moves its vertices exactly as its matrix does, including scale and mirroring.
  *
- * source  Kavan, Collins, Zara, O'Sullivan: Geometric skinning with approximate dual quaternion blending, 2008; the
- *         stretch in a first phase is theirs too (section 4.2)
+ * source  Kavan, Collins, Zara, O'Sullivan: Geometric skinning with approximate dual quaternion blending, 2008,
+ *         including the stretch in a first phase (section 4.2)
  *
  * Threads: no state; any thread. */
 #ifndef NOH_DEFORM_DUAL_QUATERNION_H
@@ -37,25 +37,25 @@ typedef struct noh_dual_quaternion {
     float stretch[9]; /* [3][3] rows, symmetric */
 } noh_dual_quaternion;
 
-/* Split a matrix of 3 rows of 4. Where its axes vanish or lie in a plane the rotation is not defined: it is then the
+/* Split a matrix of 3 rows of 4. If its axes vanish or lie in a plane the rotation is undefined: it is then the
  * identity, and all of A is stretch. */
 void noh_dual_quaternion_from_matrix(const float matrix[12], noh_dual_quaternion *out);
 
-/* The same for all joints of a skin, made once per instance and frame from noh_skin_matrices.
+/* Split the matrices of all joints of a skin, once per instance and frame (noh_skin_matrices).
  * shapes  matrices[count][12], out[count] */
 void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_quaternion *out);
 
-/* One vertex as drawn, in model space.
+/* Compute a vertex as drawn, in model space.
  * shapes  joints[skin's joint_count]; layers NULL: no morph targets
  * ranges  index below vertex_count, of a skinned mesh */
 void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                           uint32_t index, noh_vertex *out);
 
-/* Only its position, in the same bits. */
+/* Compute only the position of a vertex, with the same bits. */
 void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                             uint32_t index, float out[3]);
 
-/* As noh_skin_vertices. */
+/* Skin a range of vertices; parameters as for noh_skin_vertices. */
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                             uint32_t first, uint32_t count, float *positions, float *normals, float *tangents);
 

@@ -1,10 +1,10 @@
-/* skin_list.h: vertices that many joints move, on the CPU.
+/* skin_list.h: skinning on the CPU of vertices with any number of joints.
  *
- * What draws a mesh, and what is compared with that, has up to NOH_INFLUENCES_MAX joints a vertex: the strongest. Where
- * a model has more and was built with `noh build --influences N`, N over that, its pack also lists all joints of those
- * vertices, each with a count of its own, up to NOH_SKIN_LIST_MAX. Simulation, baking and pictures made without a GPU
- * move them by the list: noh_skin_vertices first, then noh_skin_list_vertices, which does those of the list again.
- * Meshes by dual quaternions have none.
+ * Drawn meshes, and everything compared with them, use up to NOH_INFLUENCES_MAX joints per vertex: the strongest. If a
+ * model has more and was built with `noh build --influences N`, N above that, its pack also lists all joints of those
+ * vertices, up to NOH_SKIN_LIST_MAX each. Use the list for simulation, baking and pictures without a GPU: call
+ * noh_skin_vertices first, then noh_skin_list_vertices, which overwrites the listed vertices. Dual quaternion meshes
+ * have no list.
  *
  * source  Granberg, Character Animation with Direct3D, 2009, chapter 3: a mesh may have any number of influences when
  *         the CPU skins it
@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-/* Of one mesh and all of its levels; it points into the pack. */
+/* The list of one mesh and all its LOD levels; points into the pack. */
 typedef struct noh_skin_list {
     const noh_influences_header *header;
     const uint32_t *vertices; /* [vertex_count] ascending */
@@ -28,16 +28,17 @@ typedef struct noh_skin_list {
     const uint16_t *joints;   /* [influence_count] indices into the skin's joints */
 } noh_skin_list;
 
-/* The list of the n-th mesh.
- * errors  NOT_FOUND  no vertex of it has so many joints, or the pack was built without them */
+/* Get the list of a mesh by index.
+ * errors  NOT_FOUND no vertex of the mesh has more than NOH_INFLUENCES_MAX joints, or the pack was built without the
+ *         list */
 noh_result noh_pack_skin_list(const noh_pack *pack, uint32_t mesh, noh_skin_list *list, noh_error *error);
 
-/* How many vertices of the list are below `vertex`: where one is, if it is there. */
+/* Get the number of listed vertices below `vertex`: its place in the list, if it is there. */
 uint32_t noh_skin_list_place(const noh_skin_list *list, uint32_t vertex);
 
-/* Write those of vertices first..first+count-1 that are in the list again, moved by all of their joints; the others'
- * places are not touched. Arrays and ranges as noh_skin_vertices has them.
- * returns  how many were written */
+/* Overwrite the listed ones of vertices first..first+count-1, moved by all their joints; other vertices are not
+ * changed. Arrays and ranges as for noh_skin_vertices.
+ * returns  the number of vertices written */
 uint32_t noh_skin_list_vertices(const noh_skin_list *list, const noh_mesh *mesh, const float *matrices,
                                 const noh_morph_layers *layers, uint32_t first, uint32_t count, float *positions,
                                 float *normals, float *tangents);

@@ -112,8 +112,8 @@ noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
 /* Get the number of segments that it holds at the same time. */
 uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache);
 
-/* Test whether every segment of every clip is decoded; then nothing is ever evicted and requests are unnecessary. Linear in
- * the segments; stops at the first one that is missing. */
+/* Test whether every segment of every clip is decoded; nothing is evicted then, and requests are unnecessary.
+ * Linear in the segments; stops at the first one that is missing. */
 int noh_clip_cache_holds_all(const noh_clip_cache *cache);
 
 /* Get the clip at an index of the desc. */
