@@ -1,23 +1,23 @@
-/* weight_rule.h: what the author of a face allows its morph targets: how far each goes, and which exclude each other.
+/* weight_rule.h: limits that the author of a face sets on its morph targets: ranges and mutual exclusion.
  *
- *   noh_weight_rules_bind  the rules of a mesh, as its pack tells them
- *   noh_weight_rules_keep  weights that break none of them
+ *   noh_weight_rules_bind  get the rules of a mesh from its pack
+ *   noh_weight_rules_keep  apply them to weights
  *
- * A weight is any finite number: nothing is clamped unless it is asked for. A mouth that smiles at 0.8 and frowns at
- * 0.6 shows neither, though, and an eye that closes by 1.4 turns its lid inside out. So a pack may say, in its recipe
- * (`noh build --recipe`, or glTF extras):
+ * By default a weight is any finite number and nothing is clamped. But a mouth that smiles at 0.8 and frowns at 0.6
+ * shows neither, and an eye that closes by 1.4 turns its lid inside out. So the recipe of a pack (`noh build --recipe`,
+ * or glTF extras) may contain:
  *
- *   range TARGET MIN MAX     the target is shown from MIN, at most 0, to MAX, at least 0
- *   oppose TARGET TARGET     two that exclude each other: both lose the smaller one's weight, so that at most one is
- *                            left, and as the one fades into the other neither jumps
- *   share TARGET TARGET ...  those of one group sum up to 1 at most: above that, each keeps its share
+ *   range TARGET MIN MAX     clamp the target to MIN, at most 0, to MAX, at least 0
+ *   oppose TARGET TARGET     two targets that exclude each other: subtract the smaller weight from both, so that at
+ *                            most one remains, and a fade from one to the other is continuous
+ *   share TARGET TARGET ...  the sum of a group is at most 1: above that, all are scaled down
  *
- * Ranges are kept first, then opposites, then groups. Negative weights are left alone by the last two. A stage keeps
- * the rules of kinds that ask for it (noh_kind_desc.weight_rules), wherever weights come from. Correctives follow from
- * other targets (corrective.h) and have no rules.
+ * Ranges are applied first, then opposites, then groups. The last two ignore negative weights. A stage applies the
+ * rules of kinds that request it (noh_kind_desc.weight_rules), whatever the source of the weights. Correctives follow
+ * from other targets (corrective.h) and have no rules.
  *
  * source   Lewis and others, "Practice and Theory of Blendshape Facial Models", Eurographics 2014, section 3.1
- * (limits); combining opposites by their difference is the two-ended slider of facial rigs
+ *          (limits); combining opposites by their difference is the two-ended slider of facial rigs
  * Threads  no state; any thread */
 #ifndef NOH_FACE_WEIGHT_RULE_H
 #define NOH_FACE_WEIGHT_RULE_H
@@ -32,20 +32,20 @@ typedef enum noh_weight_rule_kind { NOH_WEIGHT_RANGE = 0, NOH_WEIGHT_OPPOSE, NOH
 
 typedef struct noh_weight_rule {
     uint16_t kind;   /* noh_weight_rule_kind */
-    uint16_t target; /* of a group, the rules of its targets follow each other */
-    uint16_t other;  /* OPPOSE: the other one; SHARE: the group's first target that the mesh has; RANGE: 0 */
+    uint16_t target; /* the rules of a group's targets are consecutive */
+    uint16_t other;  /* OPPOSE: the other target; SHARE: the group's first target in the mesh; RANGE: 0 */
     uint16_t reserved;
     float low, high; /* RANGE: low at most 0, high at least 0; else 0 */
 } noh_weight_rule;
 
-/* The rules whose targets the mesh has, in the order in which they are kept. A group holds those of its targets
+/* Get the rules for targets of the mesh, in the order in which they are applied. A group contains those of its targets
  * that the mesh has.
  * shapes   rules[rule_max]
- * returns  how many there are; those past rule_max are not written */
+ * returns  the number of rules; rules past rule_max are not written */
 uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);
 
-/* Change weights that break a rule. Those of no rule, and those that break none, keep their bits. NaN of a target with
- * a range becomes its lowest weight.
+/* Apply the rules to weights. Weights that break no rule keep their bits. NaN of a target with a range becomes its
+ * lowest weight.
  * shapes  weights[as many as the rules refer to] */
 void noh_weight_rules_keep(const noh_weight_rule *rules, uint32_t rule_count, float *weights);
 
