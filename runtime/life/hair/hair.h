@@ -1,24 +1,24 @@
-/* hair.h: hair that moves: a few control hairs, between which the hair that is seen lies.
+/* hair.h: moving hair: a few control hairs; the visible hair is interpolated between them.
  *
  *   noh_hair_size, noh_hair_init   control hairs at rest
- *   noh_hair_reset                 at rest again, after the head has leapt
- *   noh_hair_step                  time moves on
- *   noh_hair_points                where they are
- *   noh_hair_check                 hair that comes from outside
+ *   noh_hair_reset                 back to rest, after the head was teleported
+ *   noh_hair_step                  advance time
+ *   noh_hair_points                positions of the points
+ *   noh_hair_check                 check hair from outside
  *   noh_hair_curve                 a point between the points of a control hair
  *
- * All is in the head's space, in metres: the rest, the spheres that stand for the head, and what comes out. So hair
- * turns with the head however far it turns; what the head does is felt as inertia. Each hair follows its root: every
- * point keeps its distance from the one before, turned away from spheres round that one before and not pushed off it,
- * so lengths and spheres hold at the same time. Steps are of 1/60 s whatever the frame rate, with the head's place
- * interpolated, and what is shown lies between the last two of them.
+ * Everything is in the head's space, in metres: rest positions, the spheres that represent the head, and results. So
+ * hair turns with the head through any angle; motion of the head acts as inertia. Each hair follows its root: every
+ * point keeps its distance from the previous one, and spheres rotate it about the previous point instead of pushing it
+ * off, so lengths and spheres hold at the same time. Steps are 1/60 s at any frame rate, with the head's transform
+ * interpolated; the result is interpolated between the last two steps.
  *
- * Hairs are stepped side by side, one in each lane of the processor's vectors; the bits are the same at every width.
+ * Hairs are stepped in parallel, one per SIMD lane; the bits are the same at every width.
  *
- * Hair is one block without pointers: a copy of it goes on as it would, on every processor with the same bits.
- * source   Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur, 2012 (follow the leader, and what of
- *          its corrections goes into speeds); Granberg, Character Animation with Direct3D, 2009, chapter 15, corrected:
- *          its springs have their rest in the world, lose no energy, and keep no length
+ * Hair is one block without pointers: a copy continues identically, with the same bits on every processor.
+ * source   Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur, 2012 (follow the leader, and the
+ *          share of its corrections that goes into velocities); Granberg, Character Animation with Direct3D, 2009,
+ *          chapter 15, corrected: its springs rest in world space, lose no energy, and keep no length
  * Threads: hair belongs to one thread at a time; a desc may be shared. */
 #ifndef NOH_SIM_HAIR_H
 #define NOH_SIM_HAIR_H
@@ -37,58 +37,63 @@ extern "C" {
 
 typedef struct noh_hair_sphere {
     float centre[3];
-    float radius; /* with half a hair's strip on top, 0.. */
+    float radius; /* including half the width of a hair strip, 0.. */
 } noh_hair_sphere;
 
-/* What hair of one kind has in common. */
+/* Data shared by hair of one kind. */
 typedef struct noh_hair_desc {
-    const float *rest;    /* [hair_count][point_count][3], from the root to the tip; no two points at one place */
+    /* [hair_count][point_count][3], from the root to the tip; no two points of a hair are equal */
+    const float *rest;
     uint32_t hair_count;  /* 1..NOH_HAIRS_MAX */
-    uint32_t point_count; /* of each, 2..NOH_HAIR_POINTS_MAX */
-    const noh_hair_sphere *spheres; /* [sphere_count]; one in which a root lies is for that hair as small as that */
-    uint32_t sphere_count;          /* 0..NOH_HAIR_SPHERES_MAX */
-    uint32_t seed;                  /* of gusts */
-    float pull;        /* share of the way to rest by which a point is pulled in a step, 0..1; usually 0.02 */
-    float pull_at_tip; /* the same at the tip; in between along a line */
-    float damping;     /* of speed, per second, 0..; usually 2 to 4 */
-    float gravity;     /* metres per second squared that are not yet in `rest`, 0.. */
+    uint32_t point_count; /* per hair, 2..NOH_HAIR_POINTS_MAX */
+    /* [sphere_count]; for a hair with its root inside a sphere, the sphere shrinks to that root */
+    const noh_hair_sphere *spheres;
+    uint32_t sphere_count; /* 0..NOH_HAIR_SPHERES_MAX */
+    uint32_t seed;         /* for gusts */
+    float pull;            /* share of the distance to rest that a point moves per step, 0..1; usually 0.02 */
+    float pull_at_tip;     /* pull at the tip; linear in between */
+    float damping;         /* of velocity, per second, 0..; usually 2 to 4 */
+    float gravity;         /* metres per second squared not yet included in `rest`, 0.. */
 } noh_hair_desc;
 
-/* Where the head is, and the air that it moves through: world space. */
+/* The head's transform and the wind: world space. */
 typedef struct noh_hair_carrier {
     float position[3];
     float rotation[4];
-    float wind[3]; /* metres per second squared that it gives to hair, at its mean; gusts go from none to twice that */
+    /* mean acceleration of hair by wind, metres per second squared; gusts vary from zero to twice the mean */
+    float wind[3];
 } noh_hair_carrier;
 
 typedef struct noh_hair noh_hair;
 
-/* The exact bytes of hair: 112, and 40 a point, rounded up to 16. 0 for an impossible desc. */
+/* Exact size of hair in bytes: 112, and 40 per point, rounded up to 16. 0 if the desc is invalid. */
 size_t noh_hair_size(const noh_hair_desc *desc);
 
-/* At rest.
- * errors  ARG memory is NULL or misaligned, two points of a hair are at one place, or a number is out of its range
- *         (where: the point, of all hairs); LIMIT a count; MEMORY it is too small */
+/* Make hair at rest.
+ * errors  ARG memory NULL or misaligned, equal points in a hair, or a number out of its range (where: the point,
+ *         counted over all hairs); LIMIT a count; MEMORY too small */
 noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, const noh_hair_carrier *carrier,
                          noh_hair **hair, noh_error *error);
 
-/* At rest where the head is now: after a leap. Gusts go on. */
+/* Put hair at rest at the head's present place, after a teleport. Gusts continue. */
 void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier);
 
-/* Time moves on, in any pieces; in one call by NOH_HAIR_STEPS_MAX steps, one second.
- * carrier  at the end of this time; in between it is interpolated
- * returns  ticks that were dropped, 0 up to a second */
+/* Advance time, in pieces of any length; at most NOH_HAIR_STEPS_MAX steps, one second, per call.
+ * carrier  at the end of this time; interpolated in between
+ * returns  ticks dropped, 0 up to a second */
 uint32_t noh_hair_step(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
 
-/* shapes  points[hair_count][point_count][3], head space; lengths are those at rest, and spheres are kept out of */
+/* Compute the points, with rest lengths and outside the spheres.
+ * shapes  points[hair_count][point_count][3], head space */
 void noh_hair_points(const noh_hair *hair, const noh_hair_desc *desc, float *points);
 
-/* What is wrong with hair of this desc whose bytes come from outside, a constant text; NULL: it can go on.
- * shapes  hair: noh_hair_size bytes, aligned to 16 */
+/* Check hair of this desc whose bytes come from outside.
+ * shapes   hair: noh_hair_size bytes, aligned to 16
+ * returns  NULL if it may be used, else a constant message */
 const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc);
 
-/* A point of the Catmull-Rom curve through the points of a hair, as strips are made: its tangents are half of what lies
- * between the neighbours. With all of it, as in the source, it overshoots.
+/* Compute a point of the Catmull-Rom curve through the points of a hair, as used for strips. Tangents are half the
+ * difference of the neighbours; with the full difference, as in the source, the curve overshoots.
  * shapes  points[count][3]
  * ranges  count 2..; t 0 the root, 1 the tip */
 void noh_hair_curve(const float *points, uint32_t count, float t, float out[3]);

@@ -1,6 +1,6 @@
-/* terrain.h: the height field of a pack, where it lies.
+/* terrain.h: the height field in a pack, used in place.
  *
- *   noh_terrain_of        the height field (world.h): its heights, normals, rays, and a world's ground
+ *   noh_terrain_of        get the height field (world.h): heights, normals, rays, and the ground of a world
  *
  * Threads: no state; any thread. */
 #ifndef NOH_SIM_TERRAIN_H
@@ -13,9 +13,9 @@
 extern "C" {
 #endif
 
-/* A view: valid as long as the pack and its bytes are.
+/* Get the height field: a view, valid as long as the pack and its bytes.
  * units   metres
- * errors  NOT_FOUND  the pack has no terrain: it was built without --terrain; *field is untouched */
+ * errors  NOT_FOUND  the pack has no terrain (build it with --terrain); *field is then unchanged */
 noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *error);
 
 #ifdef __cplusplus

@@ -1,12 +1,12 @@
-/* world.h: what bodies collide with: planes, capsules, boxes and a height field. Nothing of it moves by itself.
+/* world.h: static obstacles for bodies: planes, capsules, boxes and a height field.
  *
- *   noh_world_check       whether bodies can collide with it
- *   noh_field_height      a height field's height and normal at a place
- *   noh_field_ray         where a ray meets it
+ *   noh_world_check       check a world
+ *   noh_field_height      height and normal of a height field at a place
+ *   noh_field_ray         intersect a ray with a height field
  *
- * A world is the caller's: arrays that stay while it is used. Up is +Y.
+ * The caller owns the world's arrays and keeps them while it is used. Up is +Y.
  * source   Amanatides, Woo: A fast voxel traversal algorithm, 1987 (the ray's walk through cells)
- * Threads: read only; any number of threads. */
+ * Threads: read-only; any number of threads. */
 #ifndef NOH_SIM_WORLD_H
 #define NOH_SIM_WORLD_H
 
@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second, at which what overlaps comes apart */
+#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
 
 /* Solid below: points with normal . x < distance are inside. */
 typedef struct noh_plane {
@@ -28,19 +28,19 @@ typedef struct noh_plane {
     float distance;
 } noh_plane;
 
-/* A sphere where `from` and `to` are equal. */
+/* A sphere if `from` and `to` are equal. */
 typedef struct noh_capsule {
     float from[3], to[3];
     float radius;
 } noh_capsule;
 
-/* A grid of heights, bilinear between them: solid below, and nothing outside of it. */
+/* A grid of heights with bilinear interpolation: solid below, nothing outside. */
 typedef struct noh_field {
-    const uint16_t *heights; /* [depth][width], rows along +X, one after the other along +Z */
+    const uint16_t *heights; /* [depth][width], rows along +X, consecutive rows along +Z */
     uint32_t width, depth;   /* 2..65536 */
-    float origin[3];         /* of heights[0][0] at 0 */
+    float origin[3];         /* of heights[0][0] at height 0 */
     float spacing;           /* between heights */
-    float scale;             /* y of one unit of a height */
+    float scale;             /* y per unit of height */
 } noh_field;
 
 typedef struct noh_world {
@@ -49,19 +49,22 @@ typedef struct noh_world {
     const noh_obb *boxes;
     uint32_t plane_count, capsule_count, box_count; /* each 0..NOH_OBSTACLES_MAX */
     const noh_field *field;                         /* NULL: none */
-    float friction;                                 /* 0.. of everything */
+    float friction;                                 /* 0.., of everything */
     float restitution; /* 0..1: the share of its speed towards an obstacle with which a body leaves it; 0: no bounce */
 } noh_world;
 
-/* errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area (where: which);
- *         LIMIT more than NOH_OBSTACLES_MAX of a kind */
+/* Check a world.
+ * errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area (where: the index);
+ *         LIMIT more than NOH_OBSTACLES_MAX of one kind */
 noh_result noh_world_check(const noh_world *world, noh_error *error);
 
-/* shapes   normal[3] unit, or NULL
- * returns  0 where the field has nothing, outside of its grid: nothing is written */
+/* Get the height and normal of a field at a place.
+ * shapes   normal[3] unit, or NULL
+ * returns  0 outside the grid; nothing is written then */
 int noh_field_height(const noh_field *field, float x, float z, float *height, float normal[3]);
 
-/* returns  the distance, in the ray's lengths, at which it first comes to the field from above; below 0: it does not */
+/* Intersect a ray with a field, from above.
+ * returns  the distance, in lengths of the ray's direction; below 0: no hit */
 float noh_field_ray(const noh_field *field, const noh_ray *ray);
 
 #ifdef __cplusplus
