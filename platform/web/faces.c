@@ -62,8 +62,8 @@ EMSCRIPTEN_KEEPALIVE void web_feel(int emotion, float amount)
         for (int e = 0; e < NOH_EMOTION_COUNT; e++) {
             const float wanted = e == emotion ? amount : 0.0f;
             if (e != emotion && now.emotions[e] == 0.0f) continue;
-            (void)noh_actor_feel(web.stage, web.figures[i].actor, noh_emotion_name((noh_emotion)e), wanted, 0, 0, 0,
-                                 NULL);
+            (void)noh_actor_set_emotion(web.stage, web.figures[i].actor, noh_emotion_name((noh_emotion)e), wanted, 0, 0,
+                                        0, NULL);
         }
     }
 }

@@ -101,7 +101,7 @@ static float factor(const noh_corrective_term *t, float weight)
     return weight < t->to ? (t->to - weight) / (t->to - t->peak) : 0.0f;
 }
 
-void noh_correct(const noh_corrective_term *terms, uint32_t term_count, float *weights)
+void noh_correctives_apply(const noh_corrective_term *terms, uint32_t term_count, float *weights)
 {
     float product = 1.0f;
     NOH_ASSERT((terms || !term_count) && (weights || !term_count));

@@ -1,7 +1,7 @@
 /* corrective.h: correctives and in-betweens: targets whose weights follow from other targets.
  *
- *   noh_correctives_bind  get the correctives of a mesh from its pack
- *   noh_correct           compute their weights
+ *   noh_correctives_bind   get the correctives of a mesh from its pack
+ *   noh_correctives_apply  compute their weights
  *
  * An open mouth that smiles is more than an open mouth plus a smile: a corrective is a target that is added while both
  * show. Its weight is the product of one factor per driver (a target that drives it). The factor is 0 at a driver
@@ -39,7 +39,7 @@ uint32_t noh_correctives_bind(const noh_mesh *mesh, noh_corrective_term *terms, 
 
 /* Set the weights of correctives from the weights of their drivers, which are clamped to 0..1.
  * shapes  weights[as many as the terms refer to] */
-void noh_correct(const noh_corrective_term *terms, uint32_t term_count, float *weights);
+void noh_correctives_apply(const noh_corrective_term *terms, uint32_t term_count, float *weights);
 
 #ifdef __cplusplus
 }

@@ -114,7 +114,7 @@ void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flag
     if (flags & NOH_FACE_CALM) memset(face->tremor, 0, sizeof face->tremor);
     face->flags = (uint8_t)flags;
     if ((before ^ flags) & NOH_FACE_FOUR) {
-        memset(face->feelings, 0, sizeof face->feelings);
+        memset(face->emotions, 0, sizeof face->emotions);
         face->blinking = 0;
     }
     if (has_moods(face) && before != flags) noh_face_mood_next(face);
@@ -133,7 +133,7 @@ typedef enum event {
     EVENT_GAZE,
     EVENT_GLANCE,
     EVENT_TREMOR,
-    EVENT_FEELING,
+    EVENT_EMOTION,
     EVENT_MOOD
 } event;
 
@@ -171,16 +171,16 @@ static event next_event(const noh_face *face, const noh_face_desc *desc, uint32_
     if (does(face, 0)) take_sooner(now, face->next_tremor, EVENT_TREMOR, left, &next);
     if (has_moods(face)) take_sooner(now, noh_face_mood_end(face), EVENT_MOOD, left, &next);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        if (face->feelings[i].holds) take_sooner(now, face->feelings[i].end, EVENT_FEELING, left, &next);
+        if (face->emotions[i].holds) take_sooner(now, face->emotions[i].end, EVENT_EMOTION, left, &next);
     }
     return next;
 }
 
-static void fade_feelings(noh_face *face)
+static void fade_emotions(noh_face *face)
 {
     const uint32_t now = (uint32_t)face->clock;
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        noh_face_feeling *f = &face->feelings[i];
+        noh_face_emotion *f = &face->emotions[i];
         if (f->holds && f->end == now) {
             noh_face_spring_to(&f->amount, now, 0.0f, f->fade_omega);
             f->holds = 0;
@@ -199,7 +199,7 @@ static void handle(noh_face *face, const noh_face_desc *desc, event e)
     case EVENT_GAZE: noh_face_gaze_event(face, desc); break;
     case EVENT_GLANCE: noh_face_glance(face, desc); break;
     case EVENT_TREMOR: noh_face_tremor(face); break;
-    case EVENT_FEELING: fade_feelings(face); break;
+    case EVENT_EMOTION: fade_emotions(face); break;
     case EVENT_MOOD: noh_face_mood_next(face); break;
     case EVENT_NONE: break;
     }
@@ -211,10 +211,10 @@ static void settle(noh_face *face)
     const uint32_t now = (uint32_t)face->clock;
     for (int i = 0; i < 2; i++) noh_face_spring_settle(&face->head[i], now);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX && !noh_face_is_four(face); i++) {
-        noh_face_spring_settle(&face->feelings[i].amount, now);
+        noh_face_spring_settle(&face->emotions[i].amount, now);
     }
     if (now - face->blink_start > 48000u) face->blinking = 0;
-    if (noh_face_is_four(face) && (int32_t)(now - noh_face_mood_end(face)) > 0) face->feelings[0].on = 0;
+    if (noh_face_is_four(face) && (int32_t)(now - noh_face_mood_end(face)) > 0) face->emotions[0].on = 0;
 }
 
 void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
@@ -238,7 +238,7 @@ static void arrive(noh_face_spring *s, uint32_t now)
     s->start = now;
 }
 
-static void skip_feeling(noh_face_feeling *f, uint32_t now, int64_t ticks)
+static void skip_emotion(noh_face_emotion *f, uint32_t now, int64_t ticks)
 {
     const uint32_t left = f->end - (now - (uint32_t)ticks);
     if (f->holds && ticks >= (int64_t)left) {
@@ -257,7 +257,7 @@ void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks)
     now = (uint32_t)face->clock;
     if (has_moods(face)) noh_face_mood_next(face);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX && !noh_face_is_four(face); i++) {
-        if (face->feelings[i].on) skip_feeling(&face->feelings[i], now, ticks);
+        if (face->emotions[i].on) skip_emotion(&face->emotions[i], now, ticks);
     }
     face->gaze = NOH_GAZE_HOLD;
     face->blinking = 0;
@@ -326,25 +326,25 @@ noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const flo
 }
 
 /* The one of this emotion, else a free one, else the weakest. */
-static noh_face_feeling *feeling_for(noh_face *face, noh_emotion emotion)
+static noh_face_emotion *emotion_for(noh_face *face, noh_emotion emotion)
 {
     const uint32_t now = (uint32_t)face->clock;
-    noh_face_feeling *best = &face->feelings[0];
+    noh_face_emotion *best = &face->emotions[0];
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        if (face->feelings[i].on && face->feelings[i].emotion == emotion) return &face->feelings[i];
+        if (face->emotions[i].on && face->emotions[i].emotion == emotion) return &face->emotions[i];
     }
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        noh_face_feeling *f = &face->feelings[i];
+        noh_face_emotion *f = &face->emotions[i];
         if (!f->on) return f;
         if (noh_face_spring_at(&f->amount, now) < noh_face_spring_at(&best->amount, now)) best = f;
     }
     return best;
 }
 
-noh_result noh_face_feel(noh_face *face, noh_emotion emotion, float amount, uint32_t onset_ticks, uint32_t hold_ticks,
-                         uint32_t fade_ticks, noh_error *error)
+noh_result noh_face_set_emotion(noh_face *face, noh_emotion emotion, float amount, uint32_t onset_ticks,
+                                uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error)
 {
-    noh_face_feeling *f;
+    noh_face_emotion *f;
     NOH_ASSERT(face);
     if ((unsigned)emotion >= NOH_EMOTION_COUNT) return noh_fail(error, NOH_ERR_ARG, "no such emotion", emotion, 0);
     if (!(amount >= 0.0f && amount <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "amount is not in 0..1", 0, 0);
@@ -355,7 +355,7 @@ noh_result noh_face_feel(noh_face *face, noh_emotion emotion, float amount, uint
         noh_face_mood_begin(face, (uint32_t)emotion, amount, hold_ticks ? hold_ticks : 240000u);
         return NOH_OK;
     }
-    f = feeling_for(face, emotion);
+    f = emotion_for(face, emotion);
     if (!f->on || f->emotion != emotion) {
         memset(f, 0, sizeof *f);
         f->amount.omega = 1.0f;

@@ -3,7 +3,7 @@
  *   noh_face_init          make a face from a seed: at rest, looking ahead
  *   noh_face_step          advance time; noh_face_skip: time while it is not visible
  *   noh_face_look_at       turn the eyes to a point, and the head if the eyes do not reach; noh_face_follow: track it
- *   noh_face_feel          start an emotion, which rises, holds and fades
+ *   noh_face_set_emotion   start an emotion, which rises, holds and fades
  *   noh_face_set_activity  resting, talking or reading: sets the blink rate and how long the gaze rests on a point
  *   noh_face_phrase_end    a phrase ends: people often blink then
  *   noh_face_blink         blink now
@@ -81,12 +81,12 @@ typedef struct noh_face_spring {
     uint32_t start; /* tick, modulo 2^32 */
 } noh_face_spring;
 
-typedef struct noh_face_feeling {
+typedef struct noh_face_emotion {
     noh_face_spring amount;
     uint32_t end; /* tick at which it begins to fade, modulo 2^32 */
     float fade_omega;
     uint8_t emotion, on, holds, reserved;
-} noh_face_feeling;
+} noh_face_emotion;
 
 /* Fields are private; the type is complete so that it can be stored in an array. */
 typedef struct noh_face {
@@ -101,7 +101,7 @@ typedef struct noh_face {
     float away[2];                   /* yaw and pitch from the target to the gaze */
     float tremor[2];
     noh_face_spring head[2]; /* yaw, pitch */
-    noh_face_feeling feelings[NOH_FACE_EMOTIONS_MAX];
+    noh_face_emotion emotions[NOH_FACE_EMOTIONS_MAX];
     uint8_t activity, flags, gaze, blinking;
     uint32_t moods; /* number of spontaneous emotions so far */
 } noh_face;
@@ -148,8 +148,8 @@ noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const floa
  * ranges  amount 0..1; hold_ticks below 2^31, 0: until it is changed. onset_ticks, fade_ticks: time to reach 95 %; 0:
  *         0.35 and 0.8 s. A micro-expression has a hold of 0.04 to 0.2 s and an equally short onset
  * errors  ARG */
-noh_result noh_face_feel(noh_face *face, noh_emotion emotion, float amount, uint32_t onset_ticks, uint32_t hold_ticks,
-                         uint32_t fade_ticks, noh_error *error);
+noh_result noh_face_set_emotion(noh_face *face, noh_emotion emotion, float amount, uint32_t onset_ticks,
+                                uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error);
 
 void noh_face_set_activity(noh_face *face, const noh_face_desc *desc, noh_activity activity);
 

@@ -30,12 +30,12 @@ float noh_face_four_lid(uint32_t ticks)
     return sine < 0.0f ? 0.0f : sine;
 }
 
-/* ---- moods: emotions one after another, in the first feeling ---- */
+/* ---- moods: emotions one after another, in the first emotion ---- */
 
 void noh_face_mood_begin(noh_face *face, uint32_t emotion, float amount, uint32_t hold)
 {
-    noh_face_feeling *f = &face->feelings[0];
-    memset(face->feelings, 0, sizeof face->feelings);
+    noh_face_emotion *f = &face->emotions[0];
+    memset(face->emotions, 0, sizeof face->emotions);
     f->amount.goal = amount;
     f->amount.omega = 1.0f;
     f->amount.start = (uint32_t)face->clock;
@@ -52,18 +52,18 @@ void noh_face_mood_next(noh_face *face)
                 hold = noh_face_uniform(face->seed, NOH_FACE_MOOD, 2u * n + 1u);
     uint32_t emotion = (uint32_t)(which * (float)(NOH_EMOTION_COUNT - 1));
     emotion = emotion < NOH_EMOTION_COUNT - 1u ? emotion : NOH_EMOTION_COUNT - 2u;
-    if (face->feelings[0].on && emotion >= face->feelings[0].emotion) emotion++;
+    if (face->emotions[0].on && emotion >= face->emotions[0].emotion) emotion++;
     noh_face_mood_begin(face, emotion, 1.0f, 48u * (2000u + (uint32_t)(hold * 6000.0f)));
 }
 
 uint32_t noh_face_mood_end(const noh_face *face)
 {
-    return face->feelings[0].end + FADE_TICKS;
+    return face->emotions[0].end + FADE_TICKS;
 }
 
 float noh_face_mood_at(const noh_face *face)
 {
-    const noh_face_feeling *f = &face->feelings[0];
+    const noh_face_emotion *f = &face->emotions[0];
     const uint32_t age = (uint32_t)face->clock - f->amount.start,
                    left = noh_face_mood_end(face) - (uint32_t)face->clock;
     const uint32_t whole = noh_face_mood_end(face) - f->amount.start;

@@ -102,14 +102,14 @@ float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
     return 0.5f - 0.5f * cosine;
 }
 
-static void show_feelings(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
+static void show_emotions(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
 {
-    if (noh_face_is_four(face) && face->feelings[0].on) {
-        emotions[face->feelings[0].emotion] = clamped(noh_face_mood_at(face), 0.0f, 1.0f);
+    if (noh_face_is_four(face) && face->emotions[0].on) {
+        emotions[face->emotions[0].emotion] = clamped(noh_face_mood_at(face), 0.0f, 1.0f);
         return;
     }
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        const noh_face_feeling *f = &face->feelings[i];
+        const noh_face_emotion *f = &face->emotions[i];
         if (f->on) {
             emotions[f->emotion] = clamped(noh_face_spring_at(&f->amount, (uint32_t)face->clock), 0.0f, 1.0f);
         }
@@ -128,5 +128,5 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
     pose->lids_up = clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
     pose->blink = noh_face_blink_at(face);
     pose->breath = noh_face_breath(face, desc);
-    show_feelings(face, pose->emotions);
+    show_emotions(face, pose->emotions);
 }

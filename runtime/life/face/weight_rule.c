@@ -136,7 +136,7 @@ static uint32_t keep_shares(const noh_weight_rule *rules, uint32_t first, uint32
     return end;
 }
 
-void noh_weight_rules_keep(const noh_weight_rule *rules, uint32_t rule_count, float *weights)
+void noh_weight_rules_apply(const noh_weight_rule *rules, uint32_t rule_count, float *weights)
 {
     uint32_t i = 0;
     NOH_ASSERT((rules || !rule_count) && (weights || !rule_count));

@@ -1,7 +1,7 @@
 /* weight_rule.h: limits that the author of a face sets on its morph targets: ranges and mutual exclusion.
  *
- *   noh_weight_rules_bind  get the rules of a mesh from its pack
- *   noh_weight_rules_keep  apply them to weights
+ *   noh_weight_rules_bind   get the rules of a mesh from its pack
+ *   noh_weight_rules_apply  apply them to weights
  *
  * By default a weight is any finite number and nothing is clamped. But a mouth that smiles at 0.8 and frowns at 0.6
  * shows neither, and an eye that closes by 1.4 turns its lid inside out. So the recipe of a pack (`noh build --recipe`,
@@ -47,7 +47,7 @@ uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uin
 /* Apply the rules to weights. Weights that break no rule keep their bits. NaN of a target with a range becomes its
  * lowest weight.
  * shapes  weights[as many as the rules refer to] */
-void noh_weight_rules_keep(const noh_weight_rule *rules, uint32_t rule_count, float *weights);
+void noh_weight_rules_apply(const noh_weight_rule *rules, uint32_t rule_count, float *weights);
 
 #ifdef __cplusplus
 }

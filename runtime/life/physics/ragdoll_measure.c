@@ -86,7 +86,7 @@ static float in_box(const noh_obb *at, const float origin[3], const float point[
     noh_sub3(at->centre, origin, local.centre);
     noh_obb_closest(box, point, closest);
     noh_sub3(point, closest, d);
-    if (!noh_obb_holds(box, point)) return radius - noh_length3(d);
+    if (!noh_obb_contains(box, point)) return radius - noh_length3(d);
     noh_quat_conjugate(box->rotation, back);
     noh_sub3(point, box->centre, d);
     noh_quat_rotate(back, d, d);

@@ -177,7 +177,7 @@ static void up_of(const noh_ragdoll_pose *body, float up[3])
     noh_quat_rotate(back, y, up);
 }
 
-float noh_ragdoll_likeness(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b)
+float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b)
 {
     float ups[2][3];
     up_of(a, ups[0]);

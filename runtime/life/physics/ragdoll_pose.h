@@ -4,7 +4,7 @@
  *   noh_ragdoll_from_pose    bodies from a pose: to place a doll, and goals to drive it
  *   noh_ragdoll_motions_of   velocities from two poses
  *   noh_ragdoll_to_pose      a pose from bodies
- *   noh_ragdoll_likeness     how similarly two dolls lie, to choose the clip to get up with
+ *   noh_ragdoll_similarity   how similarly two dolls lie, to choose the clip to get up with
  *   noh_ragdoll_place_under  place the character so that its pose lies where the doll does
  *
  * To fall: place the bodies from the last visible pose, with velocities from the pose before it; then each step's
@@ -61,7 +61,7 @@ void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleto
 
 /* Compare how the first bodies of two dolls lie (on the front, back or side, or upright), whatever their place and
  * heading. Returns the cosine of the angle between their up directions: 1 equal, -1 opposite. */
-float noh_ragdoll_likeness(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b);
+float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b);
 
 /* Place and turn a character so that its pose lies where a doll does: the first bodies above each other, the others on
  * the same side. Turns about +Y only, and keeps the frame's height.

@@ -15,7 +15,7 @@ static float absolute(float x)
 
 /* ---- boxes ---- */
 
-int noh_aabb_holds(const noh_aabb *box, const float point[3])
+int noh_aabb_contains(const noh_aabb *box, const float point[3])
 {
     for (int i = 0; i < 3; i++) {
         if (!(point[i] >= box->min[i] && point[i] <= box->max[i])) return 0;
@@ -23,7 +23,7 @@ int noh_aabb_holds(const noh_aabb *box, const float point[3])
     return 1;
 }
 
-int noh_aabb_meet(const noh_aabb *a, const noh_aabb *b)
+int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b)
 {
     for (int i = 0; i < 3; i++) {
         if (!(a->min[i] <= b->max[i] && b->min[i] <= a->max[i])) return 0;
@@ -46,7 +46,7 @@ static void into_box(const noh_obb *box, const float point[3], float out[3])
     into(box->rotation, from_centre, out);
 }
 
-int noh_obb_holds(const noh_obb *box, const float point[3])
+int noh_obb_contains(const noh_obb *box, const float point[3])
 {
     float p[3];
     into_box(box, point, p);
@@ -56,7 +56,7 @@ int noh_obb_holds(const noh_obb *box, const float point[3])
 void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3])
 {
     float p[3];
-    if (noh_obb_holds(box, point)) {
+    if (noh_obb_contains(box, point)) {
         for (int i = 0; i < 3; i++) closest[i] = point[i];
         return;
     }
@@ -113,7 +113,7 @@ static int edges_part(const pair *p, const float a[3], const float b[3], int i, 
     return absolute(at) > reach_a + reach_b;
 }
 
-int noh_obb_meet(const noh_obb *a, const noh_obb *b)
+int noh_obb_overlap(const noh_obb *a, const noh_obb *b)
 {
     const pair p = pair_of(a, b);
     if (sides_part(&p, a->half, b->half)) return 0;

@@ -1,7 +1,7 @@
 /* shape.h: boxes, and ray tests against boxes and capsules.
  *
- *   noh_aabb_holds, noh_aabb_meet        axis-aligned boxes: contains a point, overlap
- *   noh_obb_holds, noh_obb_meet          oriented boxes
+ *   noh_aabb_contains, noh_aabb_overlap  axis-aligned boxes
+ *   noh_obb_contains, noh_obb_overlap    oriented boxes
  *   noh_obb_closest                      the nearest point of a box
  *   noh_ray_aabb, noh_ray_obb, noh_ray_capsule
  *   noh_segments_closest                 the nearest points of two segments
@@ -31,14 +31,14 @@ typedef struct noh_ray {
     float distance_max;          /* 0.. */
 } noh_ray;
 
-int noh_aabb_holds(const noh_aabb *box, const float point[3]);
-int noh_aabb_meet(const noh_aabb *a, const noh_aabb *b);
-int noh_obb_holds(const noh_obb *box, const float point[3]);
+int noh_aabb_contains(const noh_aabb *box, const float point[3]);
+int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b);
+int noh_obb_contains(const noh_obb *box, const float point[3]);
 
 /* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of
  * 1e-6 of the sides where edges are parallel and their product vanishes. Boxes closer than that margin may count as
  * overlapping. */
-int noh_obb_meet(const noh_obb *a, const noh_obb *b);
+int noh_obb_overlap(const noh_obb *a, const noh_obb *b);
 
 /* Get the point of a box nearest to a point: the point itself if it is inside. */
 void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3]);

@@ -3,7 +3,7 @@
  *   noh_kind_desc.face        what faces of a kind have in common: one line makes its actors alive
  *   noh_kind_find_eyes        where its eyes are, where no joints say so
  *   noh_actor_look_at         a point of the world; noh_actor_look_at_actor: another actor's eyes
- *   noh_actor_feel            an emotion by name: comes, holds and goes
+ *   noh_actor_set_emotion     an emotion by name: comes, holds and goes
  *   noh_actor_set_activity    resting, talking, reading
  *   noh_actor_set_visemes     mouth shapes that come live, of an ear or a network
  *   noh_actor_set_face_flags  calm, or without one of the things that a face does by itself
@@ -67,9 +67,9 @@ noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float poin
  * its place. Once it is gone: ahead. */
 noh_result noh_actor_look_at_actor(noh_stage *stage, noh_actor actor, noh_actor other, noh_error *error);
 
-/* emotion  "joy", "sadness", "surprise", "fear", "anger", "disgust", "contempt"; all else as noh_face_feel */
-noh_result noh_actor_feel(noh_stage *stage, noh_actor actor, const char *emotion, float amount, uint32_t onset_ticks,
-                          uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error);
+/* emotion  "joy", "sadness", "surprise", "fear", "anger", "disgust", "contempt"; all else as noh_face_set_emotion */
+noh_result noh_actor_set_emotion(noh_stage *stage, noh_actor actor, const char *emotion, float amount,
+                                 uint32_t onset_ticks, uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error);
 
 noh_result noh_actor_set_activity(noh_stage *stage, noh_actor actor, noh_activity activity, noh_error *error);
 

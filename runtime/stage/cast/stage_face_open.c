@@ -333,7 +333,7 @@ static int is_sound(const noh_face *f)
                 f->head[1].goal;
     for (int i = 0; i < 3; i++) sum += f->from[i] + f->target[i] + (i < 2 ? f->away[i] + f->tremor[i] : 0.0f);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
-        const noh_face_feeling *e = &f->feelings[i];
+        const noh_face_emotion *e = &f->emotions[i];
         sum += e->amount.from + e->amount.speed + e->amount.goal + e->amount.omega + e->fade_omega;
         if (e->emotion >= NOH_EMOTION_COUNT || e->on > 1u || e->holds > 1u) return 0;
     }
@@ -396,14 +396,15 @@ noh_result noh_actor_look_at_actor(noh_stage *stage, noh_actor actor, noh_actor 
     return NOH_OK;
 }
 
-noh_result noh_actor_feel(noh_stage *stage, noh_actor actor, const char *emotion, float amount, uint32_t onset_ticks,
-                          uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error)
+noh_result noh_actor_set_emotion(noh_stage *stage, noh_actor actor, const char *emotion, float amount,
+                                 uint32_t onset_ticks, uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error)
 {
     noh_stage_kind *k;
     noh_result result;
     noh_stage_face *f = face_for(stage, actor, &k, &result, error);
     NOH_ASSERT(emotion);
-    return f ? noh_face_feel(&f->face, noh_emotion_of_name(emotion), amount, onset_ticks, hold_ticks, fade_ticks, error)
+    return f ? noh_face_set_emotion(&f->face, noh_emotion_of_name(emotion), amount, onset_ticks, hold_ticks, fade_ticks,
+                                    error)
              : result;
 }
 

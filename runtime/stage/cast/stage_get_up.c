@@ -64,7 +64,7 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name to get up by", i, 0);
         result = bodies_of(s, k, a, b, clip, tried, error);
         if (result != NOH_OK) return result;
-        const float like = noh_ragdoll_likeness(tried, b->bodies[0]);
+        const float like = noh_ragdoll_similarity(tried, b->bodies[0]);
         if (i && !(like > best)) continue;
         best = like;
         *chosen = i;

@@ -54,7 +54,7 @@ void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
     float *floats = k->floats + (size_t)index * k->float_count;
     take_floats(k, noh_stage_character(k, index), floats);
     hold(k, index, floats); /* the game's word is over clips, faces and parts */
-    noh_weight_rules_keep(k->weight_rules, k->weight_rule_count, floats);
+    noh_weight_rules_apply(k->weight_rules, k->weight_rule_count, floats);
     if (k->corrective_count) noh_stage_correct(k, index, floats);
 }
 

@@ -46,7 +46,7 @@ static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t 
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats)
 {
     const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
-    noh_correct(k->correctives, k->corrective_count, floats);
+    noh_correctives_apply(k->correctives, k->corrective_count, floats);
     for (uint32_t i = 0; i < k->corrective_count; i++) {
         const uint32_t target = k->correctives[i].target;
         if (i && k->correctives[i - 1u].target == target) continue;

@@ -99,7 +99,7 @@ static void corners_are_exact(void **state)
     for (uint32_t corner = 0; corner < 8; corner++) {
         float w[8] = { 0 };
         for (uint32_t i = 0; i < 3; i++) w[i] = corner >> i & 1u ? 1.0f : 0.0f;
-        noh_correct(f.terms, count, w);
+        noh_correctives_apply(f.terms, count, w);
         assert_true(w[3] == ((corner & 3u) == 3u ? 1.0f : 0.0f));
         assert_true(w[4] == (corner == 7u ? 1.0f : 0.0f));
         assert_true(w[5] == 0.0f && w[6] == 0.0f && w[7] == 0.0f);
@@ -114,7 +114,7 @@ static void in_betweens_are_exact_at_all_peaks(void **state)
     (void)state;
     for (uint32_t i = 0; i < 6; i++) {
         float w[8] = { at[i], 1.0f };
-        noh_correct(f.terms, count, w);
+        noh_correctives_apply(f.terms, count, w);
         assert_true(w[5] == (i == 1 ? 1.0f : 0.0f));
         assert_true(w[6] == (i == 2 ? 1.0f : 0.0f));
         assert_true(w[7] == (i == 1 || i == 2 ? 0.5f : 0.0f)); /* a50_b: half way to its own peak */
@@ -137,7 +137,7 @@ static void nothing_jumps(void **state)
         for (uint32_t step = 0; step <= 1000; step++) {
             const float t = (float)step / 1000.0f;
             for (int i = 0; i < 3; i++) w[i] = from[i] + (to[i] - from[i]) * t;
-            noh_correct(f.terms, count, w);
+            noh_correctives_apply(f.terms, count, w);
             for (int i = 3; i < 8; i++) {
                 assert_true(w[i] >= 0.0f && w[i] <= 1.0f);
                 if (step) assert_true(fabsf(w[i] - before[i]) <= 3.0f * 4.0f * 1.4f / 1000.0f + 1e-5f);
@@ -157,7 +157,7 @@ static void shapes_modelled_for_both_are_shown(void **state)
     float w[8] = { 1.0f, 1.0f }, added = 0.0f, corrected = 0.0f;
     (void)state;
     for (int i = 0; i < 3; i++) added += deltas[i] * w[i];
-    noh_correct(f.terms, count, w);
+    noh_correctives_apply(f.terms, count, w);
     for (int i = 0; i < 4; i++) corrected += deltas[i] * w[i];
     assert_true(fabsf(added - 12.0f) > 7.0f && corrected == 12.0f);
 }
@@ -179,7 +179,7 @@ static void what_lacks_a_target_is_left_out(void **state)
     for (uint32_t i = 0; i <= NOH_CORRECTIVE_DRIVERS_MAX; i++) drive(&f, "a_b", "a", 1.0f);
     assert_int_equal(noh_correctives_bind(&f.mesh, NULL, 0), 1);
     assert_int_equal(noh_correctives_bind(&f.mesh, f.terms, 0), 1);
-    noh_correct(f.terms, 0, NULL);
+    noh_correctives_apply(f.terms, 0, NULL);
 }
 
 /* Channels of faces and drivers, in any order: every term refers to targets, and none is written past the room. */
@@ -206,7 +206,7 @@ static void any_rows_bind(void **state)
             assert_true(f.terms[i].from < f.terms[i].peak && f.terms[i].peak <= f.terms[i].to);
         }
         for (uint32_t i = 0; i < 8; i++) w[i] = test_random_float(&r, -1.0f, 2.0f);
-        noh_correct(f.terms, count, w);
+        noh_correctives_apply(f.terms, count, w);
         for (uint32_t i = 0; i < 8; i++) assert_true(w[i] >= -1.0f && w[i] <= 2.0f);
     }
 }

@@ -239,7 +239,7 @@ static void emotions_of_four_channels_may_be_called(void **state)
     noh_face_pose pose;
     (void)state;
     noh_face_step(&face, &desc, SECOND);
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_FEAR, 0.5f, 0, SECOND, 0, NULL), NOH_OK);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_FEAR, 0.5f, 0, SECOND, 0, NULL), NOH_OK);
     noh_face_step(&face, &desc, SECOND + SECOND / 2u);
     pose = pose_of(&face);
     assert_true(pose.emotions[NOH_EMOTION_FEAR] == 0.5f);
@@ -456,7 +456,7 @@ static noh_face play(uint32_t cut)
                                  0.6f + (float)(second % 7u) };
         if (second % 11u == 0) noh_face_look_at(&face, &desc, second % 22u ? point : NULL, NULL);
         if (second % 7u == 3u)
-            noh_face_feel(&face, (noh_emotion)(second % 7u), 0.7f, 0, second % 2u ? 9600 : 0, 0, NULL);
+            noh_face_set_emotion(&face, (noh_emotion)(second % 7u), 0.7f, 0, second % 2u ? 9600 : 0, 0, NULL);
         if (second % 17u == 5u) noh_face_set_activity(&face, &desc, (noh_activity)(second % 3u));
         if (second % 13u == 6u) noh_face_phrase_end(&face, &desc);
         for (uint32_t left = SECOND; left;) {
@@ -521,7 +521,8 @@ static void emotions_come_hold_and_go(void **state)
 {
     noh_face face = face_of(8, NOH_FACE_CALM);
     (void)state;
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_JOY, 0.8f, SECOND / 4u, SECOND, SECOND / 2u, NULL), NOH_OK);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_JOY, 0.8f, SECOND / 4u, SECOND, SECOND / 2u, NULL),
+                     NOH_OK);
     noh_face_step(&face, &desc, SECOND / 4u);
     assert_true(fabs((double)pose_of(&face).emotions[NOH_EMOTION_JOY] - 0.76) < 0.002); /* 95 % */
     noh_face_step(&face, &desc, SECOND * 3u / 4u);
@@ -529,7 +530,7 @@ static void emotions_come_hold_and_go(void **state)
     noh_face_step(&face, &desc, SECOND / 2u);
     assert_true(fabs((double)pose_of(&face).emotions[NOH_EMOTION_JOY] - 0.04) < 0.002);
     for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
-        noh_face_feel(&face, (noh_emotion)i, 0.1f * (float)(i + 1), 480, 0, 0, NULL);
+        noh_face_set_emotion(&face, (noh_emotion)i, 0.1f * (float)(i + 1), 480, 0, 0, NULL);
         noh_face_step(&face, &desc, SECOND);
     }
     assert_true(pose_of(&face).emotions[NOH_EMOTION_CONTEMPT] > 0.69f); /* the strongest are kept */
@@ -556,10 +557,10 @@ static void bad_values_are_refused(void **state)
     face = before = face_of(1, 0);
     assert_int_equal(noh_face_look_at(&face, &desc, near_point, &error), NOH_ERR_ARG);
     assert_int_equal(noh_face_look_at(&face, &desc, nan_point, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_COUNT, 0.5f, 0, 0, 0, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_JOY, 1.5f, 0, 0, 0, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_JOY, NAN, 0, 0, 0, &error), NOH_ERR_ARG);
-    assert_int_equal(noh_face_feel(&face, NOH_EMOTION_JOY, 1.0f, 0x80000000u, 0, 0, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_COUNT, 0.5f, 0, 0, 0, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_JOY, 1.5f, 0, 0, 0, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_JOY, NAN, 0, 0, 0, &error), NOH_ERR_ARG);
+    assert_int_equal(noh_face_set_emotion(&face, NOH_EMOTION_JOY, 1.0f, 0x80000000u, 0, 0, &error), NOH_ERR_ARG);
     assert_memory_equal(&face, &before, sizeof face);
 }
 
@@ -567,7 +568,7 @@ static void a_face_lives_past_the_day_at_which_ticks_wrap(void **state)
 {
     noh_face face = face_of(2, 0);
     (void)state;
-    noh_face_feel(&face, NOH_EMOTION_JOY, 0.5f, 0, 0, 0, NULL);
+    noh_face_set_emotion(&face, NOH_EMOTION_JOY, 0.5f, 0, 0, 0, NULL);
     for (uint32_t hour = 0; hour < 60; hour++) {
         for (uint32_t i = 0; i < 60; i++) noh_face_step(&face, &desc, 60u * SECOND);
         assert_true(fabs((double)pose_of(&face).emotions[NOH_EMOTION_JOY] - 0.5) < 1e-6);

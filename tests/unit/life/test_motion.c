@@ -199,8 +199,8 @@ static void boxes_meet_as_in_double(void **state)
         random_rotation(a.rotation);
         random_rotation(b.rotation);
         const double gap = gap_of(&a, &b);
-        if (gap > 1e-4) assert_false(noh_obb_meet(&a, &b));
-        if (gap < -1e-4) assert_true(noh_obb_meet(&a, &b));
+        if (gap > 1e-4) assert_false(noh_obb_overlap(&a, &b));
+        if (gap < -1e-4) assert_true(noh_obb_overlap(&a, &b));
         met += gap < -1e-4;
         apart += gap > 1e-4;
     }
@@ -219,9 +219,9 @@ static void parallel_edges_part_nothing(void **state)
         memcpy(b.rotation, a.rotation, sizeof b.rotation);
         for (int k = 0; k < 3; k++) b.rotation[k] += turn[k];
         noh_quat_rotate(a.rotation, (const float[3]){ 0.9999f, 0.5999f, 0.3999f }, b.centre); /* inside of a corner */
-        assert_true(noh_obb_meet(&a, &b));
+        assert_true(noh_obb_overlap(&a, &b));
         noh_quat_rotate(a.rotation, (const float[3]){ 1.0001f, 0.0f, 0.0f }, b.centre);
-        assert_false(noh_obb_meet(&a, &b));
+        assert_false(noh_obb_overlap(&a, &b));
     }
 }
 
@@ -235,11 +235,11 @@ static void corners_and_halves_are_told_apart(void **state)
     const noh_obb half = { { 0.0f, 0.0f, 0.0f }, { 1.0f, 2.0f, 3.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
     const float inside[3] = { 0.9f, -1.9f, 2.9f }, outside[3] = { 0.0f, 0.0f, 3.1f };
     (void)state;
-    assert_true(noh_aabb_holds(&box, inside) && noh_obb_holds(&half, inside));
-    assert_false(noh_aabb_holds(&box, outside) || noh_obb_holds(&half, outside));
-    assert_false(noh_aabb_holds(&turned, inside));
-    assert_true(noh_aabb_meet(&box, &beside));
-    assert_false(noh_aabb_meet(&box, &far));
+    assert_true(noh_aabb_contains(&box, inside) && noh_obb_contains(&half, inside));
+    assert_false(noh_aabb_contains(&box, outside) || noh_obb_contains(&half, outside));
+    assert_false(noh_aabb_contains(&turned, inside));
+    assert_true(noh_aabb_overlap(&box, &beside));
+    assert_false(noh_aabb_overlap(&box, &far));
 }
 
 static void the_closest_point_is_no_farther_than_others(void **state)

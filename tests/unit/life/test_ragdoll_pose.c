@@ -193,7 +193,7 @@ static void dolls_lie_alike_whichever_way_they_head(void **state)
             noh_ragdoll_pose one = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } }, other = one;
             memcpy(one.rotation, turns[a], sizeof one.rotation);
             noh_quat_mul(turn, turns[b], other.rotation);
-            const float like = noh_ragdoll_likeness(&one, &other), wanted = a == b ? 1.0f : a + b == 1 ? -1.0f : 0.0f;
+            const float like = noh_ragdoll_similarity(&one, &other), wanted = a == b ? 1.0f : a + b == 1 ? -1.0f : 0.0f;
             assert_true(fabsf(like - wanted) < 1e-5f);
         }
     }

@@ -95,7 +95,7 @@ static void ranges_hold(void **state)
     assert_int_equal(f.rule_count, 6);
     for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
         float w[TARGETS] = { at[i] };
-        noh_weight_rules_keep(f.rules, f.rule_count, w);
+        noh_weight_rules_apply(f.rules, f.rule_count, w);
         assert_true(w[SMILE] == want[i]);
     }
 }
@@ -109,7 +109,7 @@ static void opposites_do_not_add_up(void **state)
     (void)state;
     open_all(&f);
     assert_true(stretch > 1.3f);
-    noh_weight_rules_keep(f.rules, f.rule_count, w);
+    noh_weight_rules_apply(f.rules, f.rule_count, w);
     assert_true(fabsf(w[SMILE] - 0.2f) < 1e-6f && w[FROWN] == 0.0f);
 }
 
@@ -119,11 +119,11 @@ static void groups_sum_to_one(void **state)
     face f;
     (void)state;
     open_all(&f);
-    noh_weight_rules_keep(f.rules, f.rule_count, w); /* the range of blink is kept first: 0 */
+    noh_weight_rules_apply(f.rules, f.rule_count, w); /* the range of blink is kept first: 0 */
     assert_true(w[O] == 0.75f && w[U] == 0.25f && w[BLINK] == 0.0f);
     f.rules[1] = f.rules[0]; /* without that range negative weights are left alone */
     w[BLINK] = -0.5f;
-    noh_weight_rules_keep(f.rules, f.rule_count, w);
+    noh_weight_rules_apply(f.rules, f.rule_count, w);
     assert_true(w[BLINK] == -0.5f);
 }
 
@@ -145,8 +145,8 @@ static void rules_hold_for_any_weights(void **state)
         for (uint32_t i = BLINK; i <= U; i++) sum += w[i] > 0.0f ? w[i] : 0.0f;
         keeps &= w[SMILE] >= -0.5f && w[SMILE] <= 1.5f && w[BLINK] >= 0.0f && w[BLINK] <= 1.0f;
         keeps &= (w[SMILE] <= 0.0f || w[FROWN] <= 0.0f) && sum <= 1.0f;
-        noh_weight_rules_keep(f.rules, f.rule_count, w);
-        noh_weight_rules_keep(f.rules, f.rule_count, near);
+        noh_weight_rules_apply(f.rules, f.rule_count, w);
+        noh_weight_rules_apply(f.rules, f.rule_count, near);
         if (keeps) assert_memory_equal(w, was, sizeof w);
         assert_true(w[SMILE] >= -0.5f && w[SMILE] <= 1.5f && w[BLINK] >= 0.0f && w[BLINK] <= 1.0f);
         assert_true(w[SMILE] <= 0.0f || w[FROWN] <= 0.0f);
@@ -154,7 +154,7 @@ static void rules_hold_for_any_weights(void **state)
         assert_memory_equal(&w[SMILE_BLINK], &was[SMILE_BLINK], sizeof w[0]);
         for (uint32_t i = 0; i < TARGETS; i++) assert_true(fabsf(w[i] - near[i]) < 0.005f);
         memcpy(was, w, sizeof w);
-        noh_weight_rules_keep(f.rules, f.rule_count, w);
+        noh_weight_rules_apply(f.rules, f.rule_count, w);
         for (uint32_t i = 0; i < TARGETS; i++) assert_true(fabsf(w[i] - was[i]) < 1e-6f);
     }
 }
@@ -183,7 +183,7 @@ static void what_makes_no_rule_is_left_out(void **state)
     assert_int_equal(noh_weight_rules_bind(&f.mesh, f.rules, RULES), 2);
     assert_int_equal(f.rules[0].other, U);
     assert_int_equal(f.rules[1].other, U);
-    noh_weight_rules_keep(f.rules, 0, NULL);
+    noh_weight_rules_apply(f.rules, 0, NULL);
 }
 
 /* Any rows: every rule refers to targets, and none is written past the room. */
@@ -211,7 +211,7 @@ static void any_rows_bind(void **state)
             assert_true(f.rules[i].low <= 0.0f && f.rules[i].high >= 0.0f);
         }
         for (uint32_t i = 0; i < TARGETS; i++) w[i] = test_random_float(&r, -3.0f, 3.0f);
-        noh_weight_rules_keep(f.rules, count, w);
+        noh_weight_rules_apply(f.rules, count, w);
         for (uint32_t i = 0; i < TARGETS; i++) assert_true(w[i] >= -4.0f && w[i] <= 4.0f);
     }
 }

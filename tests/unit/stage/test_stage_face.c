@@ -301,8 +301,8 @@ static void emotions_by_name_leave_the_mouth_to_speech(void **state)
     open_cast(&c, 1, &face, 1);
     cast_make(&c, NULL);
     actor = enter(&c, NULL, NULL);
-    assert_int_equal(noh_actor_feel(c.stage, actor, "surprise", 1.0f, 4800, 0, 0, NULL), NOH_OK);
-    assert_int_equal(noh_actor_feel(c.stage, actor, "hunger", 1.0f, 0, 0, 0, &said), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_set_emotion(c.stage, actor, "surprise", 1.0f, 4800, 0, 0, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_emotion(c.stage, actor, "hunger", 1.0f, 0, 0, 0, &said), NOH_ERR_ARG);
     run(&c, 60);
     assert_true(float_named(&c, actor, "jawOpen") > 0.2f && float_named(&c, actor, "browInnerUp") > 0.5f);
     visemes[NOH_VISEME_PP] = 1.0f;
@@ -356,7 +356,7 @@ static void a_pack_brings_its_own_recipe_and_correctives(void **state)
     c.kinds[0].held_float_count = 1;
     cast_make(&c, NULL);
     actor = enter(&c, NULL, NULL);
-    assert_int_equal(noh_actor_feel(c.stage, actor, "joy", 1.0f, 4800, 0, 0, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", 1.0f, 4800, 0, 0, NULL), NOH_OK);
     run(&c, 60);
     assert_true(fabsf(float_named(&c, actor, "jawOpen") - 0.5f) < 1e-3f);
     assert_true(float_named(&c, actor, "mouthSmileLeft") == 0.0f);            /* the built-in row gives way */
@@ -401,9 +401,8 @@ static void rules_for_weights_hold_on_request(void **state)
         assert_int_equal(noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "jawOpen"),
                                               0.25f, 1.0f, NULL),
                          NOH_OK);
-        assert_int_equal(noh_actor_hold_float(c.stage, actor,
-                                              noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "mouthFunnel"), 0.75f, 1.0f,
-                                              NULL),
+        assert_int_equal(noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "mouthFunnel"),
+                                              0.75f, 1.0f, NULL),
                          NOH_OK);
         run(&c, 2);
         assert_true(float_named(&c, actor, "jawOpen") == (asked ? 0.0f : 0.25f));
@@ -545,7 +544,7 @@ static void an_hour_unseen_is_skipped(void **state)
     open_cast(&c, 1, &face, 1);
     cast_make(&c, NULL);
     actor = enter(&c, "idle", NULL);
-    assert_int_equal(noh_actor_feel(c.stage, actor, "joy", 1.0f, 0, 480000, 0, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", 1.0f, 0, 480000, 0, NULL), NOH_OK);
     run(&c, 60);
     assert_int_equal(noh_actor_set_look(c.stage, actor, &unseen, NULL), NOH_OK);
     for (int i = 0; i < 60; i++)
@@ -605,7 +604,7 @@ static void crowd_frame(const cast *c, uint32_t f)
         assert_int_equal(noh_actor_look_at_actor(c->stage, actor, noh_stage_actor_at(c->stage, (f + 1) % CAST), NULL),
                          NOH_OK);
     }
-    if (f % 13u == 0) assert_int_equal(noh_actor_feel(c->stage, actor, "joy", 0.7f, 0, 9600, 0, NULL), NOH_OK);
+    if (f % 13u == 0) assert_int_equal(noh_actor_set_emotion(c->stage, actor, "joy", 0.7f, 0, 9600, 0, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
 }
 

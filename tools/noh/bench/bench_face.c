@@ -82,7 +82,7 @@ static int make_faces(face_bench *b)
         const float point[3] = { (float)(i % 7u) - 3.0f, 0.1f, 2.0f };
         if (noh_face_init(&b->faces[i], &b->desc, i, 0, &error) ||
             noh_face_look_at(&b->faces[i], &b->desc, point, &error) ||
-            noh_face_feel(&b->faces[i], (noh_emotion)(i % NOH_EMOTION_COUNT), 0.5f, 0, 0, 0, &error)) {
+            noh_face_set_emotion(&b->faces[i], (noh_emotion)(i % NOH_EMOTION_COUNT), 0.5f, 0, 0, 0, &error)) {
             return tool_fail_error("bench", &error);
         }
     }

@@ -40,7 +40,7 @@ int figure_feel(figure *f, const option_list *emotions)
         name[length] = '\0';
         for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
             if (!(f->faces_found >> k & 1u)) continue;
-            if (noh_actor_feel(f->stage, f->actors[k], name, (float)amount, 1, 0, 0, &error)) {
+            if (noh_actor_set_emotion(f->stage, f->actors[k], name, (float)amount, 1, 0, 0, &error)) {
                 return tool_usage("--feel %s: %s", text, error.what);
             }
         }

@@ -41,8 +41,8 @@ static noh_result graph(session_stage *s, const session_input *in, noh_error *er
 static noh_result feel(session_stage *s, const session_input *in, noh_error *error)
 {
     const float *n = in->numbers;
-    return noh_actor_feel(s->stage, s->actors[in->actor], in->name, n[0], whole(n[1], 1e7f), whole(n[2], 1e7f),
-                          whole(n[3], 1e7f), error);
+    return noh_actor_set_emotion(s->stage, s->actors[in->actor], in->name, n[0], whole(n[1], 1e7f), whole(n[2], 1e7f),
+                                 whole(n[3], 1e7f), error);
 }
 
 static noh_result apply(session_stage *s, const session_input *in, noh_error *error)
