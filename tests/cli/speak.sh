@@ -68,7 +68,7 @@ check 'and feels' sh -c '! cmp -s "$1" "$2"' - "$work/still.png" "$work/joy.png"
 noh render "$build/mask.noh" -o "$work/x.png" --face maybe
 expect 2 '--face takes on or off'
 noh render "$build/mask.noh" -o "$work/x.png" --face on --feel hunger=1
-expect 2 'no such emotion'
+expect 2 'unknown emotion'
 cp "$work/line.noh" "$work/first.noh"
 noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
 check 'the same bytes every time' cmp "$work/line.noh" "$work/first.noh"

@@ -129,7 +129,8 @@ noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh
         }
     }
     return noh_fail(error, NOH_ERR_UNSUPPORTED,
-                    "this processor, or this build of the library, has no such kernel: avx2, sse2, neon, scalar", 0, 0);
+                    "no kernel of that name on this processor or in this build: use scalar, or NULL for the fastest", 0,
+                    0);
 }
 
 static float round_half(float value, noh_half_mode mode)

@@ -319,10 +319,10 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
     r.limit = distance_max;
     r.moved = -1.0f;
     if (count && !surface->matrices) {
-        return noh_fail(error, NOH_ERR_ARG, "a skinned mesh is picked without matrices", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "matrices is NULL: a skinned mesh needs them", 0, 0);
     }
     if (!(noh_dot3(direction, direction) > 0.0f)) {
-        return noh_fail(error, NOH_ERR_ARG, "the ray's direction has no length", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "the ray's direction has length 0", 0, 0);
     }
     result = need ? noh_arena_open(&arena, scratch, scratch_bytes, need, error) : NOH_OK;
     if (result) {

@@ -20,10 +20,10 @@ noh_result noh_pack_skin_list(const noh_pack *pack, uint32_t mesh, noh_skin_list
             return NOH_OK;
         }
     }
-    return noh_fail(error, NOH_ERR_NOT_FOUND,
-                    "the mesh has no influence list: build its pack with --influences over 8, from a model that has as "
-                    "many",
-                    mesh, 0);
+    return noh_fail(
+        error, NOH_ERR_NOT_FOUND,
+        "the mesh has no influence list: build its pack with --influences above 8, from a model with that many", mesh,
+        0);
 }
 
 uint32_t noh_skin_list_place(const noh_skin_list *list, uint32_t vertex)

@@ -12,10 +12,10 @@ noh_result noh_amplitude_init(noh_amplitude *a, uint32_t sample_rate, uint32_t c
 {
     NOH_ASSERT(a);
     if (sample_rate < MIN_RATE || sample_rate > MAX_RATE) {
-        return noh_fail(error, NOH_ERR_ARG, "1000 to 192000 samples a second", sample_rate, MAX_RATE);
+        return noh_fail(error, NOH_ERR_ARG, "sample_rate must be 1000 to 192000 Hz", sample_rate, MAX_RATE);
     }
     if (!channels || channels > MAX_CHANNELS) {
-        return noh_fail(error, NOH_ERR_ARG, "1 to 64 channels", channels, MAX_CHANNELS);
+        return noh_fail(error, NOH_ERR_ARG, "channels must be 1 to 64", channels, MAX_CHANNELS);
     }
     memset(a, 0, sizeof *a);
     a->rate = sample_rate;

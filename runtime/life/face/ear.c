@@ -57,8 +57,7 @@ noh_result noh_ear_init(noh_ear *memory, uint32_t sample_rate, noh_error *error)
     ear *e = (ear *)(void *)memory;
     NOH_ASSERT(memory);
     if (sample_rate < NOH_EAR_MIN_RATE || sample_rate > NOH_EAR_MAX_RATE) {
-        return noh_fail(error, NOH_ERR_ARG, "an ear hears 8000 to 48000 samples a second", sample_rate,
-                        NOH_EAR_MAX_RATE);
+        return noh_fail(error, NOH_ERR_ARG, "sample_rate must be 8000 to 48000 Hz", sample_rate, NOH_EAR_MAX_RATE);
     }
     memset(memory, 0, sizeof *memory);
     e->rate = sample_rate;

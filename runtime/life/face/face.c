@@ -56,14 +56,14 @@ static const char *bad_desc(const noh_face_desc *d, uint64_t *where)
     static const float most[] = { 120.0f, 120.0f, 120.0f, 0.5f, 120.0f, 1.5f, 1.5f, 1.5f, 3.1f, 1.5f, 1.5f, 1.0f };
     for (uint32_t i = 0; i < 6; i++) {
         *where = i;
-        if (!noh_is_finite(d->eyes[i / 3][i % 3])) return "eyes of a face desc: not finite";
+        if (!noh_is_finite(d->eyes[i / 3][i % 3])) return "eyes of a face desc are not finite";
     }
     *where = 0;
-    if (d->eyes[0][0] - d->eyes[1][0] < 1e-4f)
-        return "eyes of a face desc: the left one is not to the left of the other";
+    if (d->eyes[0][0] - d->eyes[1][0] < 1e-4f) return "eyes of a face desc: the left eye must have the greater x";
     for (uint32_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         *where = 6u + i;
-        if (!(values[i] >= 0.0f && values[i] <= most[i])) return "a field of a face desc is negative or too large";
+        if (!(values[i] >= 0.0f && values[i] <= most[i]))
+            return "a field of a face desc is negative or above its maximum";
     }
     return NULL;
 }
@@ -93,7 +93,7 @@ noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t see
     uint64_t where = 0;
     const char *what = bad_desc(desc, &where);
     if (what || flags > NOH_FACE_FLAGS) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "flags of a face: unknown bits", where, 0);
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "flags must be bits of NOH_FACE_FLAGS", where, 0);
     }
     memset(face, 0, sizeof *face);
     face->seed = seed;
@@ -280,7 +280,7 @@ static noh_result check_point(const noh_face_desc *desc, const float point[3], n
     }
     return square >= NEAREST_M * NEAREST_M && square < 1e12f
                ? NOH_OK
-               : noh_fail(error, NOH_ERR_ARG, "point to look at: not finite, or within 5 cm of the eyes", 0, 0);
+               : noh_fail(error, NOH_ERR_ARG, "the point to look at is not finite, or within 5 cm of the eyes", 0, 0);
 }
 
 noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const float point[3], noh_error *error)
@@ -346,10 +346,12 @@ noh_result noh_face_set_emotion(noh_face *face, noh_emotion emotion, float amoun
 {
     noh_face_emotion *f;
     NOH_ASSERT(face);
-    if ((unsigned)emotion >= NOH_EMOTION_COUNT) return noh_fail(error, NOH_ERR_ARG, "no such emotion", emotion, 0);
-    if (!(amount >= 0.0f && amount <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "amount is not in 0..1", 0, 0);
+    if ((unsigned)emotion >= NOH_EMOTION_COUNT)
+        return noh_fail(error, NOH_ERR_ARG,
+                        "unknown emotion: use joy, sadness, surprise, fear, anger, disgust or contempt", emotion, 0);
+    if (!(amount >= 0.0f && amount <= 1.0f)) return noh_fail(error, NOH_ERR_ARG, "amount must be 0 to 1", 0, 0);
     if (onset_ticks > HOLD_MAX || hold_ticks > HOLD_MAX || fade_ticks > HOLD_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "ticks of an emotion: 2^31 or more", 0, HOLD_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "onset_ticks, hold_ticks and fade_ticks must be below 2^31", 0, HOLD_MAX);
     }
     if (noh_face_is_four(face)) {
         noh_face_mood_begin(face, (uint32_t)emotion, amount, hold_ticks ? hold_ticks : 240000u);

@@ -292,7 +292,7 @@ static noh_result check(const noh_identity_desc *desc, noh_error *error)
     const float values[3] = { desc->range, desc->strain, desc->asymmetry };
     for (uint32_t i = 0; i < 3u; i++) {
         if (!(values[i] >= 0.0f && values[i] <= 1.0f)) {
-            return noh_fail(error, NOH_ERR_ARG, "range, strain or asymmetry of identities is not within 0..1", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "range, strain and asymmetry of an identity desc must be 0 to 1", i, 0);
         }
     }
     return NOH_OK;

@@ -79,10 +79,10 @@ noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uin
     uint32_t count = 0;
     NOH_ASSERT(pack && recipe && (rows || !row_max));
     if (!pack->recipe_row_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "pack has no recipe of its own", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the pack has no recipe: build it with --recipe", 0, 0);
     }
     if (pack->recipe_row_count > row_max) {
-        return noh_fail(error, NOH_ERR_MEMORY, "more rows of a recipe than there is room for", row_max,
+        return noh_fail(error, NOH_ERR_MEMORY, "the recipe has more rows than row_max", row_max,
                         pack->recipe_row_count);
     }
     for (uint32_t i = 0; i < pack->recipe_row_count; i++) {

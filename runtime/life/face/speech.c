@@ -32,16 +32,16 @@ noh_result noh_speech_check(const noh_speech *speech, noh_error *error)
 {
     NOH_ASSERT(speech);
     if (!speech->phones || speech->phone_count == 0 || speech->phone_count > NOH_SPEECH_PHONES_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "phones of speech: none, or more than NOH_SPEECH_PHONES_MAX", 0,
-                        speech->phone_count);
+        return noh_fail(error, NOH_ERR_ARG, "phone_count must be 1 to NOH_SPEECH_PHONES_MAX", 0, speech->phone_count);
     }
     for (uint32_t i = 0; i < speech->phone_count; i++) {
         const uint32_t next = i + 1u < speech->phone_count ? speech->phones[i + 1u].start : speech->end;
         if (speech->phones[i].viseme >= NOH_VISEME_COUNT) {
-            return noh_fail(error, NOH_ERR_DATA, "a phone's viseme is none of the fifteen", i, NOH_VISEME_COUNT);
+            return noh_fail(error, NOH_ERR_DATA, "a phone's viseme is not a noh_viseme", i, NOH_VISEME_COUNT);
         }
         if (next <= speech->phones[i].start) {
-            return noh_fail(error, NOH_ERR_DATA, "a phone ends before it begins: starts must rise", i, 0);
+            return noh_fail(error, NOH_ERR_DATA, "a phone ends before it begins: starts must increase, up to the end",
+                            i, 0);
         }
     }
     return NOH_OK;

@@ -36,27 +36,29 @@ static int is_share(float x)
 static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
 {
     if (!noh_hair_size(d)) {
-        return noh_fail(error, NOH_ERR_LIMIT, "hair has no hairs, too few points, or more than a limit", d->hair_count,
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "hair_count, point_count or sphere_count of a hair desc is out of its range", d->hair_count,
                         NOH_HAIRS_MAX);
     }
     if (!is_share(d->pull) || !is_share(d->pull_at_tip) || !(d->damping >= 0.0f) || !(d->gravity >= 0.0f) ||
         !are_sound(&d->damping, 1) || !are_sound(&d->gravity, 1)) {
-        return noh_fail(error, NOH_ERR_ARG, "hair: pull, damping or gravity is out of its range", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "pull, damping or gravity of a hair desc is out of its range", 0, 0);
     }
     for (uint32_t i = 0; i < d->sphere_count; i++) {
         if (!are_sound(d->spheres[i].centre, 3) || !are_sound(&d->spheres[i].radius, 1) ||
             d->spheres[i].radius < 0.0f) {
-            return noh_fail(error, NOH_ERR_ARG, "hair: a sphere has a number out of its range", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "a sphere of a hair desc is not finite, or its radius is below 0", i,
+                            0);
         }
     }
     for (uint32_t i = 0; i < d->hair_count * d->point_count; i++) {
         const float *p = d->rest + 3 * (size_t)i;
         float way[3];
-        if (!are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "hair: a point at rest is not finite", i, 0);
+        if (!are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "a rest point of a hair desc is not finite", i, 0);
         if (i % d->point_count == 0) continue;
         noh_sub3(p, p - 3, way);
         if (!(noh_dot3(way, way) > 1e-12f)) {
-            return noh_fail(error, NOH_ERR_ARG, "hair: two points of a hair are at one place", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "two consecutive rest points of a hair are equal", i, 0);
         }
     }
     return NOH_OK;
@@ -148,14 +150,14 @@ const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
 {
     NOH_ASSERT(hair && desc);
     if (hair->hair_count != desc->hair_count || hair->point_count != desc->point_count) {
-        return "hair is of another desc";
+        return "hair was made with another desc";
     }
     const noh_hair_carrier *carriers[2] = { &hair->last, &hair->stepped };
     for (int i = 0; i < 2; i++) {
         const float square = noh_quat_dot(carriers[i]->rotation, carriers[i]->rotation);
         if (!are_sound(carriers[i]->position, 3) || !are_sound(carriers[i]->wind, 3) ||
             !(square > 0.9f && square < 1.1f)) {
-            return "hair: the head is out of range";
+            return "hair: the head's transform is out of range";
         }
     }
     if (hair->left >= NOH_HAIR_STEP_TICKS) return "hair: its time is out of range";

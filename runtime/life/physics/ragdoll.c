@@ -83,24 +83,24 @@ static int good_joint(const noh_ragdoll_joint *j)
 noh_result noh_ragdoll_rig_check(const noh_ragdoll_rig *rig, noh_error *error)
 {
     if (!rig->body_count || rig->body_count > NOH_RAGDOLL_BODIES_MAX || rig->pair_count > NOH_RAGDOLL_PAIRS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a ragdoll has no bodies, or more bodies or pairs than the limit",
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "a rig needs 1 to NOH_RAGDOLL_BODIES_MAX bodies and at most NOH_RAGDOLL_PAIRS_MAX pairs",
                         rig->body_count, NOH_RAGDOLL_BODIES_MAX);
     }
     for (uint32_t i = 0; i < rig->body_count; i++) {
         if (!good_body(rig, i)) {
-            return noh_fail(error, NOH_ERR_ARG, "a ragdoll's body has a number out of its range", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "a body of a rig has a number out of its range", i, 0);
         }
         if (i && !good_joint(&rig->joints[i])) {
             return noh_fail(error, NOH_ERR_ARG,
-                            "a ragdoll's joint has a number out of its range, or rests outside "
-                            "of its limits",
-                            i, 0);
+                            "a joint of a rig has a number out of its range, or its limits do not contain its rest", i,
+                            0);
         }
     }
     for (uint32_t i = 0; i < rig->pair_count; i++) {
         const uint8_t *pair = rig->pairs[i];
         if (pair[0] >= rig->body_count || pair[1] >= rig->body_count || pair[0] == pair[1]) {
-            return noh_fail(error, NOH_ERR_ARG, "a pair of a ragdoll's bodies names one that is not there", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "a pair of a rig is not two different bodies of it", i, 0);
         }
     }
     return NOH_OK;
@@ -351,9 +351,8 @@ noh_result noh_ragdolls_init(void *memory, size_t bytes, const noh_ragdolls_desc
     NOH_ASSERT(desc && set);
     if (!good_desc(desc)) {
         return noh_fail(error, NOH_ERR_LIMIT,
-                        "a set of ragdolls has no rig, no dolls, too many, or substeps out of "
-                        "5..20",
-                        desc->count, NOH_RAGDOLLS_MAX);
+                        "a set of ragdolls needs a rig, 1 to NOH_RAGDOLLS_MAX dolls and 5 to 20 substeps", desc->count,
+                        NOH_RAGDOLLS_MAX);
     }
     noh_result result = noh_ragdoll_rig_check(desc->rig, error);
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_ragdolls_size(desc), error);
@@ -388,11 +387,11 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
 {
     if (copy->count != set->count || copy->size != set->size ||
         memcmp(&copy->shape, &set->shape, sizeof set->shape) != 0) {
-        return "state: ragdolls of another rig";
+        return "state: ragdolls were made with another rig";
     }
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
-        if (!is_finite3(doll->origin)) return "state: a ragdoll is nowhere";
+        if (!is_finite3(doll->origin)) return "state: a ragdoll's position is not finite";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
                 return "state: a ragdoll's body is not finite";
@@ -437,8 +436,8 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
         if (!is_finite3(motions[i].velocity) || !is_finite3(motions[i].spin)) bad = i;
     }
     if (bad < count) {
-        return noh_fail(error, NOH_ERR_ARG, "a ragdoll's body is placed where no number is, or not by a unit rotation",
-                        bad, 0);
+        return noh_fail(error, NOH_ERR_ARG, "a placed body's position is not finite, or its rotation is not unit", bad,
+                        0);
     }
     noh_ragdoll_origin_near(bodies[0].position, d->origin);
     noh_madd3(d->origin, 1.0f, origin, d->origin);
@@ -476,7 +475,7 @@ noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const floa
         if (!(hertz[i] >= 0.0f) || !noh_is_finite(hertz[i])) bad = i;
     }
     if (bad < count) {
-        return noh_fail(error, NOH_ERR_ARG, "a goal of a ragdoll's body is no number, or its strength below 0", bad, 0);
+        return noh_fail(error, NOH_ERR_ARG, "a goal of a body is not finite, or its hertz is below 0", bad, 0);
     }
     memset(d->hertz, 0, sizeof d->hertz);
     d->held = goals ? held : 0;

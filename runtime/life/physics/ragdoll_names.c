@@ -228,9 +228,7 @@ noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_r
     t = (trunk){ where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
     if (t.pelvis == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        "no two joints of this skeleton have names of thighs: its ragdoll "
-                        "needs a table",
-                        0, 0);
+                        "no two joints have the names of thighs: build the pack with --ragdoll FILE", 0, 0);
     }
     if (t.chest != NOH_NONE && (t.chest == t.pelvis || !is_above(&source->joints, t.pelvis, t.chest))) {
         t.chest = NOH_NONE;

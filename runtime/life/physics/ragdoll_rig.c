@@ -497,14 +497,14 @@ noh_result noh_ragdoll_rig_make(const noh_ragdoll_source *source, const noh_ragd
     maker m;
     NOH_ASSERT(source && source->pack && rows && rig);
     if (!count || count > NOH_RAGDOLL_BODIES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a ragdoll has no rows, or more than the limit", count,
+        return noh_fail(error, NOH_ERR_LIMIT, "a ragdoll needs 1 to NOH_RAGDOLL_BODIES_MAX rows", count,
                         NOH_RAGDOLL_BODIES_MAX);
     }
     for (uint32_t i = 0; i < count; i++) {
         if (!good_row(source, rows, i)) {
             return noh_fail(error, NOH_ERR_ARG,
-                            "a row of a ragdoll has a number out of its range, or its joint is not "
-                            "below the first one's and in order",
+                            "a ragdoll row has a number out of its range, or its joint is not a descendant of "
+                            "the first row's, in order",
                             i, 0);
         }
     }

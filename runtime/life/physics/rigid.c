@@ -53,8 +53,7 @@ static int good_shape(const noh_rigid_desc *d)
 
 noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error *error)
 {
-    static const char *const wrong = "a rigid body has a number out of its range: a side, the mass, the inertia, or "
-                                     "the place";
+    static const char *const wrong = "a rigid body has a side, mass, inertia or place out of its range";
     const float *own = desc->inertia, *q = desc->rotation;
     float inertia[3], turned = noh_quat_dot(q, q);
     if (!good_shape(desc)) return noh_fail(error, NOH_ERR_ARG, wrong, 0, 0);

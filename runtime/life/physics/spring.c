@@ -31,15 +31,15 @@ noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
 {
     NOH_ASSERT(desc);
     if (!noh_spring_size(desc)) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a spring has no joints, or more joints or colliders than the limit",
+        return noh_fail(error, NOH_ERR_LIMIT, "joint_count or collider_count of a spring desc is out of its range",
                         desc->joint_count, NOH_SPRING_JOINTS_MAX);
     }
     if (!(desc->restitution >= 0.0f && desc->restitution <= 1.0f)) {
-        return noh_fail(error, NOH_ERR_ARG, "restitution of a spring is not in 0..1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "restitution of a spring must be 0 to 1", 0, 0);
     }
     for (uint32_t i = 0; i < desc->joint_count; i++) {
         if (!is_good(&desc->joints[i])) {
-            return noh_fail(error, NOH_ERR_ARG, "a spring's joint has no length, or a number out of its range", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "a joint of a spring has length 0, or a number out of its range", i, 0);
         }
     }
     return NOH_OK;
@@ -118,7 +118,7 @@ const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *de
     const noh_spring *s = spring;
     NOH_ASSERT(spring && desc);
     if (s->joint_count != desc->joint_count || s->collider_count != desc->collider_count) {
-        return "a spring is of another desc";
+        return "the spring was made with another desc";
     }
     if (s->collides > 1u || s->left >= NOH_SPRING_STEP_TICKS || !turns(s->last.rotation) ||
         !turns(s->stepped.rotation) || !turns(s->turned) || !are_sound(s->last.position, 3) ||

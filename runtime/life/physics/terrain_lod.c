@@ -105,7 +105,7 @@ noh_result noh_terrain_lod_init(void *memory, size_t bytes, const noh_field *fie
 {
     noh_arena arena;
     NOH_ASSERT(field && out);
-    if (!is_field(field)) return noh_fail(error, NOH_ERR_ARG, "a field to draw has at least 2 x 2 heights", 0, 0);
+    if (!is_field(field)) return noh_fail(error, NOH_ERR_ARG, "the field has fewer than 2 x 2 heights", 0, 0);
     const noh_result result = noh_arena_open(&arena, memory, bytes, noh_terrain_lod_size(field), error);
     if (result) return result;
     out->field = *field;

@@ -40,7 +40,7 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
 {
     if (w->plane_count > NOH_OBSTACLES_MAX || w->capsule_count > NOH_OBSTACLES_MAX ||
         w->box_count > NOH_OBSTACLES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a world has more obstacles of a kind than the limit", 0,
+        return noh_fail(error, NOH_ERR_LIMIT, "a world has more than NOH_OBSTACLES_MAX obstacles of one kind", 0,
                         NOH_OBSTACLES_MAX);
     }
     for (uint32_t i = 0; i < w->plane_count; i++) {
@@ -62,9 +62,10 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
     if (w->field && !good_field(w->field)) {
         return noh_fail(error, NOH_ERR_ARG, "a height field has no area, or a number that is not finite", 0, 0);
     }
-    if (!is_size(w->friction)) return noh_fail(error, NOH_ERR_ARG, "friction is below 0 or not finite", 0, 0);
+    if (!is_size(w->friction))
+        return noh_fail(error, NOH_ERR_ARG, "friction of a world is below 0 or not finite", 0, 0);
     if (!(w->restitution >= 0.0f && w->restitution <= 1.0f))
-        return noh_fail(error, NOH_ERR_ARG, "restitution of a world is not in 0..1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "restitution of a world must be 0 to 1", 0, 0);
     return NOH_OK;
 }
 

@@ -472,13 +472,13 @@ const char *noh_feet_check(const noh_feet *feet)
         for (int k = 0; k < 9; k++) sum += f->was[k / 3][k % 3];
         sum += f->height + f->speed + f->moved[0] + f->moved[1] + f->held[0] + f->held[1];
         if (f->part > 2u || f->is_held > 1u || f->has_ground > 1u || !(f->stands >= 0.0f && f->stands <= 1.0f)) {
-            return "feet: a part, a share or a flag is out of its range";
+            return "feet: the planted part, its share or a flag is out of range";
         }
         if (!(square == 0.0f || (square > 0.99f && square < 1.01f))) return "feet: a normal is not unit";
     }
     return noh_is_finite(sum) && feet->begun <= 1u && feet->kept <= NOH_FEET_LEGS_MAX
                ? NULL
-               : "feet: a number is not finite, or a flag is none";
+               : "feet: a number is not finite, or a flag is not 0 or 1";
 }
 
 static void step_foot(const step *s, noh_foot *f, leg_now *n, keeping keeps)

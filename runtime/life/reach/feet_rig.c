@@ -213,9 +213,7 @@ noh_result noh_feet_rig_make(const noh_ragdoll_source *source, noh_feet_rig *rig
     }
     if (!rig->leg_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        "no thigh of this skeleton has a shin and a foot with skin on it: it cannot be put on the "
-                        "ground",
-                        0, 0);
+                        "no thigh of this skeleton has a shin and a skinned foot: its feet cannot be placed", 0, 0);
     }
     rig->top = rows[0].joint;
     while (source->joints.parents[rig->top] != NOH_JOINT_ROOT) rig->top = source->joints.parents[rig->top];

@@ -182,8 +182,8 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
     if (result != NOH_OK) return result;
     head = find_head(&s);
     if (head == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        "no joint of this skeleton has 'head' in its name: fill in the rig of its gaze by hand", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint's name contains 'head': fill in the gaze rig by hand", 0,
+                        0);
     }
     memset(rig, 0, sizeof *rig);
     find_chain(&s, head, rig);
@@ -211,7 +211,7 @@ const char *noh_gaze_check(const noh_gaze *g)
     if (!noh_is_finite(g->point[0] + g->point[1] + g->point[2]) || !(g->near >= 0.0f && g->near < 1e12f)) {
         return "gaze: a point or a distance is not finite";
     }
-    if (g->looks > 1u || g->begun > 1u) return "gaze: a flag is none";
+    if (g->looks > 1u || g->begun > 1u) return "gaze: a flag is not 0 or 1";
     return !g->begun || (is_look(&g->head) && is_look(&g->eyes)) ? NULL : "gaze: a direction is not unit";
 }
 

@@ -213,11 +213,11 @@ static void unbend(work *w)
 static noh_result check(const noh_ik_chain *chain, const float target[3], noh_error *error)
 {
     if (chain->count == 0 || chain->count > NOH_IK_JOINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "a chain has no joints, or more than the limit", chain->count,
+        return noh_fail(error, NOH_ERR_ARG, "count of a chain must be 1 to NOH_IK_JOINTS_MAX", chain->count,
                         NOH_IK_JOINTS_MAX);
     }
     if (!noh_is_finite(target[0] + target[1] + target[2])) {
-        return noh_fail(error, NOH_ERR_ARG, "a chain's target is not finite", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "the target is not finite", 0, 0);
     }
     return NOH_OK;
 }

@@ -81,7 +81,7 @@ noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *r
     }
     if (!rig->arm_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        "no upper arm of this skeleton has a forearm and a hand: it cannot reach for anything", 0, 0);
+                        "no upper arm of this skeleton has a forearm and a hand: it cannot reach", 0, 0);
     }
     if (rig->arm_count == 2u && side_of(source, &rig->arms[0]) < side_of(source, &rig->arms[1])) {
         const noh_reach_arm right = rig->arms[0];
@@ -105,7 +105,7 @@ const char *noh_reach_check(const noh_reach *reach)
         const noh_reach_hand *h = &reach->hands[i];
         if (!noh_is_finite(h->point[0] + h->point[1] + h->point[2])) return "reach: a point is not finite";
         if (h->wants > 1u || !(h->part >= 0.0f && h->part <= 1.0f))
-            return "reach: a share or a flag is out of its range";
+            return "reach: a fraction or a flag is out of range";
     }
     return NULL;
 }

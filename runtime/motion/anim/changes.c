@@ -53,11 +53,11 @@ static float float_of(int64_t bits)
 static const char *bad_value(const noh_change_desc *d)
 {
     float weight_max = d->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is above NOH_SPEED_MAX";
     if (!(d->weight >= 0.0f && d->weight <= weight_max))
-        return "weight is not in 0..NOH_WEIGHT_MAX, or 0..1 for PRIORITY";
+        return "weight must be 0 to NOH_WEIGHT_MAX, or 0 to 1 for PRIORITY";
     if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44))
-        return "position_ticks is past 2^44";
+        return "position_ticks is beyond 2^44";
     if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     return NULL;
 }
@@ -65,7 +65,7 @@ static const char *bad_value(const noh_change_desc *d)
 static const char *bad_change(const noh_change_target *target, uint32_t track_count, const noh_change_desc *d)
 {
     if ((unsigned)d->kind > NOH_CHANGE_PRIORITY) return "kind is not a noh_change_kind";
-    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track is not below track_count";
+    if (d->kind != NOH_CHANGE_PRIORITY && d->track >= track_count) return "track must be below track_count";
     if (d->kind == NOH_CHANGE_POSITION && target->tracks[d->track].sync_group)
         return "track is synchronised: its group moves it";
     if ((unsigned)d->curve > NOH_CURVE_SMOOTHSTEP) return "curve is not a noh_curve";
@@ -104,7 +104,8 @@ static noh_result add(noh_change *table, uint32_t count, noh_change_target *targ
 {
     noh_change *entry = entry_for(table, count, c);
     if (!entry) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", count, (uint64_t)count + 1u);
+        return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full: raise change_count", count,
+                        (uint64_t)count + 1u);
     }
     *entry = *c;
     if (c->start == target->clock) {

@@ -10,7 +10,7 @@ const char *noh_clip_set_excess(const noh_clip_set *set)
 static const char *bad_count(const noh_clip_set *set)
 {
     if (set->clip_count == 0 || set->clip_count > NOH_CLIPS_MAX)
-        return "clip_count of a set is 0, or above NOH_CLIPS_MAX";
+        return "clip_count of a set must be 1 to NOH_CLIPS_MAX";
     if (set->joint_count == 0 && set->float_count == 0) return "joint_count and float_count of a set are both 0";
     if (set->mask_count > NOH_MASKS_MAX) return "mask_count of a set is above NOH_MASKS_MAX";
     return noh_clip_set_excess(set);
@@ -24,7 +24,7 @@ static const char *bad_pointer(const noh_clip_set *set)
     if (!set->bind_pose) return "bind_pose of a set is NULL";
     if (!set->masks && set->mask_count) return "masks of a set is NULL, and mask_count is not 0";
     if (!set->sample) return "sample of a set is NULL";
-    if (set->roots && set->joint_count == 0) return "roots of a set without joints";
+    if (set->roots && set->joint_count == 0) return "roots of a set must be NULL: it has no joints";
     return NULL;
 }
 
@@ -32,13 +32,13 @@ static const char *bad_events(const noh_clip_set *set, const noh_clip_entry *cli
 {
     const uint32_t duration = clip->duration_ticks;
     if (clip->first_event > set->event_count || clip->event_count > set->event_count - clip->first_event) {
-        return "event range of a clip passes the set's events";
+        return "events of a clip lie outside the set's events";
     }
     for (uint32_t i = 0; i < clip->event_count; i++) {
         const noh_event_key *key = &set->events[clip->first_event + i];
-        if (key->tick > duration) return "event tick past the duration of its clip";
-        if (i > 0 && key->tick < key[-1].tick) return "event order of a clip: ticks fall";
-        if (!(key->weight_min >= 0.0f)) return "event weight_min is negative or not a number";
+        if (key->tick > duration) return "an event's tick is after the end of its clip";
+        if (i > 0 && key->tick < key[-1].tick) return "events of a clip are not in tick order";
+        if (!(key->weight_min >= 0.0f)) return "weight_min of an event is negative or not a number";
     }
     return NULL;
 }
@@ -47,12 +47,12 @@ static const char *bad_markers(const noh_clip_set *set, const noh_clip_entry *cl
 {
     const uint32_t duration = clip->duration_ticks;
     if (clip->first_marker > set->marker_count || clip->marker_count > set->marker_count - clip->first_marker) {
-        return "marker range of a clip passes the set's markers";
+        return "markers of a clip lie outside the set's markers";
     }
     for (uint32_t i = 0; i < clip->marker_count; i++) {
         const noh_marker *marker = &set->markers[clip->first_marker + i];
-        if (marker->tick >= duration) return "marker tick past the duration of its clip";
-        if (i > 0 && marker->tick <= marker[-1].tick) return "marker order of a clip: ticks do not rise";
+        if (marker->tick >= duration) return "a marker's tick is not before the end of its clip";
+        if (i > 0 && marker->tick <= marker[-1].tick) return "markers of a clip are not in increasing tick order";
     }
     return NULL;
 }
@@ -60,9 +60,9 @@ static const char *bad_markers(const noh_clip_set *set, const noh_clip_entry *cl
 static const char *bad_clip(const noh_clip_set *set, const noh_clip_entry *clip)
 {
     const char *what;
-    if (clip->loop < NOH_LOOP_ONCE || clip->loop > NOH_LOOP_PING_PONG) return "loop of a clip is no loop mode";
+    if (clip->loop < NOH_LOOP_ONCE || clip->loop > NOH_LOOP_PING_PONG) return "loop of a clip is not a noh_loop";
     if (clip->duration_ticks > NOH_DURATION_MAX) return "duration_ticks of a clip is above NOH_DURATION_MAX";
-    if (clip->flags & ~NOH_CLIP_FLAGS) return "clip flags of a clip hold unknown bits";
+    if (clip->flags & ~NOH_CLIP_FLAGS) return "flags of a clip must be bits of NOH_CLIP_FLAGS";
     what = bad_events(set, clip);
     return what ? what : bad_markers(set, clip);
 }

@@ -38,13 +38,13 @@ static uint32_t change_count_of(const noh_controller_desc *d)
 static const char *bad_desc(const noh_controller_desc *d)
 {
     if (!d->set || d->set->joint_count > NOH_JOINTS_MAX || d->set->float_count > NOH_FLOATS_MAX)
-        return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+        return "set is NULL, has neither joints nor floats, or exceeds NOH_JOINTS_MAX or NOH_FLOATS_MAX";
     if (d->set->joint_count == 0 && d->set->float_count == 0)
-        return "set: NULL, or without joints and floats, or over NOH_JOINTS_MAX or NOH_FLOATS_MAX";
+        return "set is NULL, has neither joints nor floats, or exceeds NOH_JOINTS_MAX or NOH_FLOATS_MAX";
     if (d->track_count > NOH_TRACKS_MAX) return "track_count is above NOH_TRACKS_MAX";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count is above NOH_CHANGES_MAX";
     if (d->flags & ~(NOH_CONTROLLER_INERTIAL | NOH_CONTROLLER_COVERS))
-        return "flags has bits other than NOH_CONTROLLER_INERTIAL and NOH_CONTROLLER_COVERS";
+        return "flags must be NOH_CONTROLLER_INERTIAL and NOH_CONTROLLER_COVERS only";
     return NULL;
 }
 
@@ -184,14 +184,14 @@ noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint
     noh_result result;
     memset(&started, 0, sizeof started);
     if (track >= c->track_count) {
-        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+        return noh_fail(error, NOH_ERR_ARG, "track must be below track_count", track, c->track_count);
     }
     result = noh_track_start(&started, set, desc, error);
     if (result != NOH_OK) {
         return result;
     }
     if (started.sync_group && !sync_fits(c, set, track, &started)) {
-        return noh_fail(error, NOH_ERR_ARG, "markers differ from those of the sync group", track, 0);
+        return noh_fail(error, NOH_ERR_ARG, "the clip's sync markers differ from its sync group's", track, 0);
     }
     noh_changes_drop(changes_of(c), c->change_count, track);
     tracks[track].mode = NOH_TRACK_OFF; /* it may have been the leader of the group it joins */
@@ -237,9 +237,9 @@ noh_result noh_controller_seek(noh_controller *c, const noh_clip_set *set, uint3
     int64_t position;
     NOH_ASSERT(c && IS_SET_OF(c, set));
     if (track >= c->track_count)
-        return noh_fail(error, NOH_ERR_ARG, "track is not below track_count", track, c->track_count);
+        return noh_fail(error, NOH_ERR_ARG, "track must be below track_count", track, c->track_count);
     if (tick > (int64_t)1 << 43 || tick < -((int64_t)1 << 43))
-        return noh_fail(error, NOH_ERR_ARG, "tick is past 2^43", track, 0);
+        return noh_fail(error, NOH_ERR_ARG, "tick is beyond 2^43", track, 0);
     if ((unsigned)policy > NOH_SEEK_FIRE) return noh_fail(error, NOH_ERR_ARG, "policy is not a noh_seek", track, 0);
     t = &noh_controller_tracks(c)[track];
     m = &set->clips[t->clip];
@@ -346,12 +346,13 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set,
     noh_change_desc d;
     NOH_ASSERT(c && IS_SET_OF(c, set));
     if (from >= c->track_count || to >= c->track_count || from == to)
-        return noh_fail(error, NOH_ERR_ARG, "track: from and to must be two tracks of the controller", from,
+        return noh_fail(error, NOH_ERR_ARG, "from and to must be two different tracks below track_count", from,
                         c->track_count);
     if (!(weight >= 0.0f && weight <= NOH_WEIGHT_MAX))
-        return noh_fail(error, NOH_ERR_ARG, "weight is not in 0..NOH_WEIGHT_MAX", to, 0);
+        return noh_fail(error, NOH_ERR_ARG, "weight must be 0 to NOH_WEIGHT_MAX", to, 0);
     if ((unsigned)curve > NOH_CURVE_SMOOTHSTEP) return noh_fail(error, NOH_ERR_ARG, "curve is not a noh_curve", to, 0);
-    if (free_changes(c) < 3) return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full", c->change_count, 3);
+    if (free_changes(c) < 3)
+        return noh_fail(error, NOH_ERR_LIMIT, "the table of changes is full: raise change_count", c->change_count, 3);
     memset(&d, 0, sizeof d);
     d.kind = NOH_CHANGE_WEIGHT;
     d.duration_ticks = duration_ticks;

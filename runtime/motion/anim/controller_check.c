@@ -30,12 +30,13 @@ static const char *bad_head(const noh_controller *c, size_t bytes, const noh_cli
     if (c->clip_count != set->clip_count || c->joint_count != set->joint_count || c->float_count != set->float_count ||
         c->mask_count != set->mask_count)
         return "controller: made for another set";
-    if (c->bytes != noh_controller_size(&d) || c->bytes > bytes) return "controller: its bytes do not suit its counts";
+    if (c->bytes != noh_controller_size(&d) || c->bytes > bytes)
+        return "controller: its size does not match its counts";
     if (c->tracks_offset != tracks || c->changes_offset != changes) return "controller: bad offset of a table";
     if (inertial ? c->inertia_offset != inertia || c->inertia_floats_offset != inertia + 48u * (uint64_t)c->joint_count
                  : c->inertia_offset || c->inertia_floats_offset || c->inertia_ticks)
         return "controller: bad offset of inertia";
-    if (!(c->priority_blend >= 0.0f && c->priority_blend <= 1.0f)) return "controller: priority_blend is not in 0..1";
+    if (!(c->priority_blend >= 0.0f && c->priority_blend <= 1.0f)) return "controller: priority_blend must be 0 to 1";
     if (c->lod_joint_count > c->joint_count || (c->joint_count && !c->lod_joint_count))
         return "controller: bad lod_joint_count";
     return NULL;
@@ -52,10 +53,10 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
     if (t->sync_group && (t->loop != NOH_LOOP_REPEAT || set->clips[t->clip].duration_ticks < NOH_SYNC_DURATION_MIN ||
                           set->clips[t->clip].duration_ticks > NOH_SYNC_DURATION_MAX))
         return "track: cannot be synchronised";
-    if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight is not in 0..NOH_WEIGHT_MAX";
+    if (!(t->weight >= 0.0f && t->weight <= NOH_WEIGHT_MAX)) return "track: weight must be 0 to NOH_WEIGHT_MAX";
     if (t->reference > set->clip_count) return "track: reference is not a clip of the set";
-    if (!(t->full >= -1.0f && t->full <= NOH_WEIGHT_MAX)) return "track: full is not in -1..NOH_WEIGHT_MAX";
-    if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is past NOH_SPEED_MAX";
+    if (!(t->full >= -1.0f && t->full <= NOH_WEIGHT_MAX)) return "track: full must be -1 to NOH_WEIGHT_MAX";
+    if (!is_within(t->speed, NOH_SPEED_MAX)) return "track: speed is above NOH_SPEED_MAX";
     if (!is_within(t->speed_now, t->sync_group ? SYNC_SPEED_NOW_MAX : SPEED_NOW_MAX))
         return "track: speed_now is out of range";
     if (t->loop == NOH_LOOP_ONCE) {
@@ -82,14 +83,13 @@ static const char *bad_change(const noh_controller *c, const noh_change *change)
     if (change->state == NOH_CHANGE_FREE) return NULL;
     if (change->kind > NOH_CHANGE_PRIORITY || change->curve > NOH_CURVE_JUMP) return "change: bad kind or curve";
     if (change->track >= c->track_count) return "change: track is not below track_count";
-    if (change->state == NOH_CHANGE_WAITING && change->start <= c->clock)
-        return "change: waits for a tick that is past";
+    if (change->state == NOH_CHANGE_WAITING && change->start <= c->clock) return "change: waits for a tick in the past";
     if (change->state == NOH_CHANGE_RUNNING &&
         (change->start > c->clock || change->start < c->clock - (int64_t)change->duration)) {
-        return "change: runs outside of its duration";
+        return "change: running before its start or after its end";
     }
     if (change->state == NOH_CHANGE_RUNNING && change->start == c->clock - (int64_t)change->duration)
-        return "change: runs though it is over";
+        return "change: running after its end";
     switch (change->kind) {
     case NOH_CHANGE_SPEED:
         return is_within(change->to, NOH_SPEED_MAX) && is_within(change->from, NOH_SPEED_MAX) ? NULL
@@ -117,7 +117,7 @@ noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip
     if (result) {
         return result;
     }
-    what = bytes < sizeof *c ? "controller: cut short" : bad_head(c, bytes, set);
+    what = bytes < sizeof *c ? "controller: too few bytes" : bad_head(c, bytes, set);
     if (what) {
         return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
     }

@@ -323,8 +323,9 @@ void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_p
  * the switch (captured, with the offsets of a transition that still runs) and of what plays after it (without). */
 static const char *bad_transition(const noh_controller *c, const noh_pose_scratch *scratch)
 {
-    if (!(c->flags & NOH_CONTROLLER_INERTIAL)) return "the controller has no room for inertia";
-    if (!scratch->captured[0]) return "the scratch has no room for inertia";
+    if (!(c->flags & NOH_CONTROLLER_INERTIAL))
+        return "the controller has no room for inertia: set NOH_CONTROLLER_INERTIAL";
+    if (!scratch->captured[0]) return "the scratch has no room for inertia: make it with inertial 1";
     return NULL;
 }
 
@@ -360,7 +361,7 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 {
     NOH_ASSERT(c && set && scratch);
     const char *what = bad_transition(c, scratch);
-    what = what ? what : duration_ticks == 0 ? "duration_ticks is 0" : NULL;
+    what = what ? what : duration_ticks == 0 ? "duration_ticks must be above 0" : NULL;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }

@@ -15,7 +15,7 @@ noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, n
     noh_arena arena;
     noh_result result;
     NOH_ASSERT(queue);
-    if (need == 0) return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..16777216", capacity, CAPACITY_MAX);
+    if (need == 0) return noh_fail(error, NOH_ERR_ARG, "capacity must be 1 to 16777216", capacity, CAPACITY_MAX);
     result = noh_arena_open(&arena, memory, bytes, need, error);
     if (result == NOH_OK) {
         queue->capacity = capacity;

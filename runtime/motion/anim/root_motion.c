@@ -253,8 +253,8 @@ noh_result noh_root_track_measure(const noh_clip_set *set, uint32_t clip, uint32
     NOH_ASSERT(set && track);
     if (clip >= set->clip_count)
         return noh_fail(error, NOH_ERR_ARG, "clip is not a clip of the set", clip, set->clip_count);
-    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes has bits other than NOH_ROOT_*", clip, 0);
-    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up is not 0, 1 or 2", clip, 0);
+    if (axes > 15u) return noh_fail(error, NOH_ERR_ARG, "axes must be bits of NOH_ROOT_*", clip, 0);
+    if (up > 2u) return noh_fail(error, NOH_ERR_ARG, "up must be 0, 1 or 2", clip, 0);
     memset(&t, 0, sizeof t);
     t.axes = axes;
     t.up = up;

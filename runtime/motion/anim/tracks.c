@@ -10,9 +10,9 @@ static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
 {
     if (d->clip >= set->clip_count) return "clip is not a clip of the set";
     if (d->position_ticks > ((int64_t)1 << 44) || d->position_ticks < -((int64_t)1 << 44))
-        return "position_ticks is past 2^44";
-    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is past NOH_SPEED_MAX";
-    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight is not in 0..NOH_WEIGHT_MAX";
+        return "position_ticks is beyond 2^44";
+    if (d->speed > NOH_SPEED_MAX || d->speed < -NOH_SPEED_MAX) return "speed is above NOH_SPEED_MAX";
+    if (!(d->weight >= 0.0f && d->weight <= NOH_WEIGHT_MAX)) return "weight must be 0 to NOH_WEIGHT_MAX";
     if ((unsigned)d->loop > NOH_LOOP_PING_PONG) return "loop is not a noh_loop";
     if ((unsigned)d->mode > NOH_TRACK_ON) return "mode is not a noh_track_mode";
     if ((unsigned)d->group > NOH_GROUP_HIGH) return "group is not a noh_track_group";
@@ -20,7 +20,7 @@ static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
     if (d->lod_levels > 255u) return "lod_levels is above 255";
     if (d->sync_group > NOH_SYNC_GROUPS_MAX) return "sync_group is above NOH_SYNC_GROUPS_MAX";
     if (d->reference > set->clip_count) return "reference is above clip_count of the set";
-    if (d->flags & ~NOH_TRACK_FLAGS) return "flags has bits other than NOH_TRACK_FLAGS";
+    if (d->flags & ~NOH_TRACK_FLAGS) return "flags must be bits of NOH_TRACK_FLAGS";
     return NULL;
 }
 
@@ -31,7 +31,7 @@ static const char *bad_sync(const noh_clip_set *set, const noh_track_desc *d)
     uint32_t loop = d->loop ? (uint32_t)d->loop : m->loop;
     int fits = m->duration_ticks >= NOH_SYNC_DURATION_MIN && m->duration_ticks <= NOH_SYNC_DURATION_MAX;
     return d->sync_group && (loop != NOH_LOOP_REPEAT || !fits)
-               ? "sync_group: the clip does not repeat, or its duration is not in NOH_SYNC_DURATION_MIN..MAX"
+               ? "sync_group: the clip must repeat, with a duration of NOH_SYNC_DURATION_MIN to _MAX"
                : NULL;
 }
 

@@ -150,9 +150,9 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
     if (r) return r;
     if (c->shape.clip_count == 0) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        c->foreign ? "no clip fits: all move another skeleton (names or parents of joints differ); "
+                        c->foreign ? "no clip fits: all are for another skeleton (joint names or parents differ); "
                                      "build mesh and clips from one skeleton"
-                                   : "the packs of a clip bank hold no clips",
+                                   : "the packs of a clip bank have no clips",
                         0, c->foreign);
     }
     if (c->shape.float_count > NOH_FLOATS_MAX) {
@@ -194,11 +194,12 @@ static noh_result check_packs(const noh_clip_bank_desc *desc, noh_error *error)
                                             "clip_packs for several"
                                           : NULL)
                        : !desc->clip_packs || !desc->clip_pack_count
-                           ? "clips of a clip bank is NULL, and so is clip_packs, or clip_pack_count is 0"
+                           ? "a clip bank needs clips, or clip_packs with clip_pack_count above 0"
                            : NULL;
     if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     for (uint32_t i = 0; i < desc->clip_pack_count; i++) {
-        if (!desc->clip_packs[i]) return noh_fail(error, NOH_ERR_ARG, "one of clip_packs of a clip bank is NULL", i, 0);
+        if (!desc->clip_packs[i])
+            return noh_fail(error, NOH_ERR_ARG, "an entry of clip_packs of a clip bank is NULL", i, 0);
     }
     return NOH_OK;
 }
@@ -208,10 +209,10 @@ static noh_result check_desc(const noh_clip_bank_desc *desc, noh_error *error)
     const noh_result r = check_packs(desc, error);
     if (r) return r;
     if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) {
-        return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank hold unknown bits", desc->root_axes, 0);
+        return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank must be bits of NOH_ROOT_*", desc->root_axes, 0);
     }
     if (desc->root_axes && desc->root_up > 2u)
-        return noh_fail(error, NOH_ERR_ARG, "root_up of a clip bank is no axis", desc->root_up, 0);
+        return noh_fail(error, NOH_ERR_ARG, "root_up of a clip bank must be 0, 1 or 2", desc->root_up, 0);
     return NOH_OK;
 }
 
@@ -227,7 +228,7 @@ static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, c
     *bytes = carve(&arena, c, &p);
     return *bytes < SIZE_MAX ? NOH_OK
                              : noh_fail(error, NOH_ERR_LIMIT,
-                                        "the clips of a clip bank need more memory than there can be", 0, SIZE_MAX);
+                                        "the clips of a clip bank need more memory than size_t can count", 0, SIZE_MAX);
 }
 
 /* As noh_clip_bank_view_size, before there is a bank. */

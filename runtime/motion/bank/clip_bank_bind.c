@@ -12,7 +12,7 @@ static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_erro
     }
     b->skeleton_index = skeleton;
     if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
-        return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank: the mesh pack has fewer", skeleton,
+        return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank is past the mesh pack's last skeleton", skeleton,
                         b->mesh->skeleton_count);
     }
     return NOH_OK;
@@ -29,7 +29,7 @@ static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_erro
         if (h->hash == b->header->hash && (h->unit_cm > b->header->unit_cm || h->unit_cm < b->header->unit_cm)) {
             return noh_fail(
                 error, NOH_ERR_NOT_FOUND,
-                "the clips' skeleton has another unit than the mesh's: build both in one unit, or in one pack",
+                "the clips' skeleton and the mesh's have different units: build both with one unit, or in one pack",
                 noh_bank_where(at), 0);
         }
     }

@@ -64,22 +64,21 @@ static uint32_t capacity_of(const noh_clip_cache_needs *needs, uint32_t cached_s
 static noh_result check_counts(const noh_clip_cache_needs *needs, uint32_t cached_segment_count, noh_error *error)
 {
     if (needs->clip_count == 0u || needs->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "clip_count of a clip cache: none, or more than NOH_CLIP_CACHE_CLIPS_MAX",
-                        0, needs->clip_count);
+        return noh_fail(error, NOH_ERR_ARG, "clip_count of a clip cache must be 1 to NOH_CLIP_CACHE_CLIPS_MAX", 0,
+                        needs->clip_count);
     }
     if (needs->segment_count >= SEGMENTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "clips of a clip cache: more segments than it can number", 0,
+        return noh_fail(error, NOH_ERR_LIMIT, "the clips of a clip cache have too many segments", 0,
                         needs->segment_count);
     }
     if (cached_segment_count == 1u) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "cached_segment_count of a clip cache: a sample between two segments needs two entries", 0,
+                        "cached_segment_count of a clip cache must be at least 2: a pose can need two segments", 0,
                         NOH_CLIP_CACHE_SEGMENTS_MIN);
     }
     if (capacity_of(needs, cached_segment_count) > NOH_CLIP_CACHE_SEGMENTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG,
-                        "cached_segment_count of a clip cache: more entries than NOH_CLIP_CACHE_SEGMENTS_MAX", 0,
-                        NOH_CLIP_CACHE_SEGMENTS_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "cached_segment_count of a clip cache is above NOH_CLIP_CACHE_SEGMENTS_MAX",
+                        0, NOH_CLIP_CACHE_SEGMENTS_MAX);
     }
     return NOH_OK;
 }
@@ -89,7 +88,7 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
     memset(needs, 0, sizeof *needs);
     if (!desc->clips || desc->clip_count > NOH_CLIP_CACHE_CLIPS_MAX) {
         return noh_fail(error, NOH_ERR_ARG,
-                        desc->clips ? "clip_count of a clip cache: more than NOH_CLIP_CACHE_CLIPS_MAX"
+                        desc->clips ? "clip_count of a clip cache is above NOH_CLIP_CACHE_CLIPS_MAX"
                                     : "clips of a clip cache is NULL",
                         0, NOH_CLIP_CACHE_CLIPS_MAX);
     }

@@ -53,17 +53,15 @@ static noh_result read_counts(parser *p)
     noh_bits *b = &p->bits;
     noh_clip_info *info = &p->clip->info;
     if (noh_bits_get(b, 8u) != NOH_CLIP_VERSION)
-        return fail(p, NOH_ERR_VERSION, "the clip is of another format version: build its pack again",
-                    NOH_CLIP_VERSION);
+        return fail(p, NOH_ERR_VERSION, "the clip has another format version: rebuild its pack", NOH_CLIP_VERSION);
     info->flags = noh_bits_get(b, 8u);
-    if (info->flags & ~NOH_CLIP_FLAGS_ALL)
-        return fail(p, NOH_ERR_DATA, "the clip has flags that do not exist", info->flags);
+    if (info->flags & ~NOH_CLIP_FLAGS_ALL) return fail(p, NOH_ERR_DATA, "the clip has unknown flags", info->flags);
     info->joint_count = noh_bits_varint(b);
     info->frame_count = noh_bits_varint(b);
     if (info->joint_count > NOH_CLIP_JOINTS_MAX)
         return fail(p, NOH_ERR_LIMIT, "the clip has more joints than NOH_CLIP_JOINTS_MAX", info->joint_count);
     if (info->joint_count != p->desc->joint_count)
-        return fail(p, NOH_ERR_ARG, "the clip has another number of joints than the skeleton", info->joint_count);
+        return fail(p, NOH_ERR_ARG, "the clip's joint count differs from the skeleton's", info->joint_count);
     if (info->frame_count == 0u || info->frame_count > NOH_CLIP_FRAMES_MAX)
         return fail(p, NOH_ERR_LIMIT, "the clip has no frames, or more than NOH_CLIP_FRAMES_MAX", info->frame_count);
     if (noh_bits_get(b, 1u)) {
@@ -72,7 +70,7 @@ static noh_result read_counts(parser *p)
     } else {
         info->sample_rate_uhz = noh_bits_get(b, 32u);
     }
-    if (info->sample_rate_uhz == 0u) return fail(p, NOH_ERR_DATA, "the clip's sample rate is 0 or past 32 bits", 0);
+    if (info->sample_rate_uhz == 0u) return fail(p, NOH_ERR_DATA, "the clip's sample rate is 0 or above 32 bits", 0);
     info->segment_count = noh_bits_varint(b);
     if (info->segment_count == 0u || info->segment_count > info->frame_count)
         return fail(p, NOH_ERR_DATA, "the clip has no segments, or more than frames", info->segment_count);
@@ -300,7 +298,8 @@ static noh_result read_sizes(parser *p)
                                                       : p->desc->byte_count - begin;
         if (p->offsets) p->offsets[s] = (uint32_t)at;
         if (p->firsts) p->firsts[s] = (uint32_t)((uint64_t)s * info->frame_count / info->segment_count);
-        if (bytes > p->desc->byte_count - at) return fail(p, NOH_ERR_DATA, "a segment passes the clip's end", s);
+        if (bytes > p->desc->byte_count - at)
+            return fail(p, NOH_ERR_DATA, "a segment reaches beyond the end of the clip", s);
         at += bytes;
     }
     if (p->offsets) p->offsets[info->segment_count] = (uint32_t)at;

@@ -13,8 +13,7 @@ noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skelet
     NOH_ASSERT(pack && skeleton);
     if (index >= pack->skeleton_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->skeleton_count ? "skeleton index is past the pack's last skeleton"
-                                             : "pack holds no skeleton",
+                        pack->skeleton_count ? "index is past the pack's last skeleton" : "the pack has no skeleton",
                         index, pack->skeleton_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_skeleton + index].offset;
@@ -57,7 +56,7 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
     NOH_ASSERT(pack && clip);
     if (index >= pack->clip_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->clip_count ? "clip index is past the pack's last clip" : "pack holds no clip", index,
+                        pack->clip_count ? "index is past the pack's last clip" : "the pack has no clip", index,
                         pack->clip_count);
     }
     chunk = pack->bytes + pack->chunks[pack->first_clip + index].offset;
@@ -83,7 +82,6 @@ noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, n
             return NOH_OK;
         }
     }
-    return noh_fail(error, NOH_ERR_NOT_FOUND,
-                    "the clip was built for another skeleton: names or parents of its joints differ",
+    return noh_fail(error, NOH_ERR_NOT_FOUND, "the clip was built for another skeleton: joint names or parents differ",
                     clip->header->skeleton_hash, 0);
 }

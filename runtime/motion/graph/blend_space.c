@@ -272,7 +272,8 @@ static noh_result check_points(const mesh *m, const float *points, noh_error *er
 {
     for (uint32_t i = 0; i < m->count; i++) {
         if (!in_range(points[2u * i]) || !in_range(points[2u * i + 1u])) {
-            return noh_fail(error, NOH_ERR_DATA, "point is not finite or past NOH_BLEND_SPACE_COORDINATE_MAX", i, 0);
+            return noh_fail(error, NOH_ERR_DATA, "a point is not finite, or beyond NOH_BLEND_SPACE_COORDINATE_MAX", i,
+                            0);
         }
     }
     return NOH_OK;
@@ -282,7 +283,7 @@ static noh_result check_apart(const mesh *m, noh_error *error)
 {
     for (uint32_t i = 1; i < m->count; i++) {
         if (!comes_before(m, m->order[i - 1], m->order[i])) {
-            return noh_fail(error, NOH_ERR_DATA, "two points are in one place", m->order[i], 0);
+            return noh_fail(error, NOH_ERR_DATA, "two points are equal", m->order[i], 0);
         }
     }
     return NOH_OK;
@@ -295,7 +296,7 @@ noh_result noh_blend_space_2d_triangulate(uint32_t count, const float *points, u
     noh_result result;
     NOH_ASSERT(points && triangles && triangle_count);
     if (count == 0 || count > NOH_BLEND_SPACE_POINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "count is not in 1..NOH_BLEND_SPACE_POINTS_MAX", count,
+        return noh_fail(error, NOH_ERR_ARG, "count must be 1 to NOH_BLEND_SPACE_POINTS_MAX", count,
                         NOH_BLEND_SPACE_POINTS_MAX);
     }
     memset(&m, 0, sizeof m);

@@ -36,7 +36,7 @@ noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_grap
     NOH_ASSERT(pack && graph);
     if (index >= pack->graph_count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->graph_count ? "graph index is past the pack's last graph" : "pack holds no graph", index,
+                        pack->graph_count ? "index is past the pack's last graph" : "the pack has no graph", index,
                         pack->graph_count);
     }
     result = noh_pack_check_graph(pack, index, error);
@@ -121,7 +121,7 @@ static noh_result fill_references(const noh_pack_graph *g, const noh_clip_set *s
         clip = noh_clip_set_find(set, g->names[g->nodes[i].first_item].name_hash);
         if (clip == NOH_NONE) {
             return noh_fail(error, NOH_ERR_NOT_FOUND,
-                            "the set has no clip of the name that the graph adds relative to: play clips with it", i,
+                            "the set has no clip with the name of an ADD node's reference: add that clip to the set", i,
                             0);
         }
         nodes[i].first_item = (uint16_t)clip;
@@ -142,8 +142,7 @@ static noh_result fill_clips(const noh_pack_graph *g, const noh_clip_set *set, n
         clips[i].flags = from->paused ? NOH_TRACK_PAUSED : 0u;
         if (clips[i].clip == NOH_NONE) {
             return noh_fail(error, NOH_ERR_NOT_FOUND,
-                            "the set has no clip of the name that the graph plays: noh_graph_pack_clip_name says which",
-                            i, 0);
+                            "the set lacks a clip that the graph plays: noh_graph_pack_clip_name gives its name", i, 0);
         }
     }
     return NOH_OK;
@@ -194,8 +193,8 @@ static noh_result fill_mask(const noh_pack_graph *g, const noh_graph_pack_desc *
     for (uint32_t i = m->first_joint; i < (uint32_t)m->first_joint + m->joint_count; i++) {
         const uint32_t joint = find_joint(desc, mesh, noh_pack_string(g->pack, g->names[i].name));
         if (joint == NOH_NONE) {
-            return noh_fail(error, NOH_ERR_NOT_FOUND,
-                            "the skeleton has no joint of the name that a mask of the graph has", i, 0);
+            return noh_fail(error, NOH_ERR_NOT_FOUND, "the skeleton lacks a joint that a mask of the graph names", i,
+                            0);
         }
         if (g->names[i].subtree) {
             noh_mask_subtree(mask, skeleton, joint, g->names[i].weight);
@@ -238,7 +237,7 @@ static noh_result check_desc(const noh_graph_pack_desc *desc, noh_pack_graph *g,
     result = noh_pack_skeleton_at(desc->mesh ? desc->mesh : desc->pack, desc->skeleton, &skeleton, NULL, NULL);
     if (result || skeleton.joint_count != desc->set->joint_count) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "mesh and skeleton are not those of the set: a graph with masks finds joints there by name",
+                        "mesh and skeleton differ from the set's: a graph with masks needs them to find joints by name",
                         desc->skeleton, desc->set->joint_count);
     }
     return NOH_OK;

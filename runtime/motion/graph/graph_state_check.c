@@ -6,13 +6,13 @@
 
 static const char *bad_head(const noh_graph_state *s, const noh_graph_state *made, size_t bytes)
 {
-    if (bytes < made->bytes || s->bytes != made->bytes) return "graph: its bytes do not suit its counts";
+    if (bytes < made->bytes || s->bytes != made->bytes) return "graph: its size does not match its counts";
     if (s->node_count != made->node_count || s->param_count != made->param_count ||
         s->machine_count != made->machine_count)
-        return "graph: an instance of another graph";
+        return "graph: the instance was made with another graph";
     return s->params_offset != made->params_offset || s->machines_offset != made->machines_offset ||
                    s->controller_offset != made->controller_offset
-               ? "graph: bad offset of a part"
+               ? "graph: bad offset of a table"
                : NULL;
 }
 
@@ -20,10 +20,10 @@ static const char *bad_machine(const noh_graph_node *n, const noh_machine *m)
 {
     const uint32_t states = n->child_count;
     if (m->current >= states || (m->previous != NOH_GRAPH_NONE && m->previous >= states))
-        return "graph: a machine is in no state of its own";
-    if (m->curve > NOH_CURVE_SMOOTHSTEP || m->switched > 1u) return "graph: bad curve or flag of a machine";
+        return "graph: a machine is in a state that it does not have";
+    if (m->curve > NOH_CURVE_SMOOTHSTEP || m->switched > 1u) return "graph: a machine has a bad curve or flag";
     return m->previous != NOH_GRAPH_NONE && (m->duration == 0 || m->elapsed > m->duration)
-               ? "graph: a fade of a machine is past its end"
+               ? "graph: a machine's fade is past its end"
                : NULL;
 }
 
@@ -54,7 +54,7 @@ noh_result noh_graph_state_check(const void *memory, size_t bytes, const noh_gra
         return result;
     }
     noh_graph_state_head(graph, set, &made);
-    what = bytes < sizeof *s ? "graph: cut short" : bad_head(s, &made, bytes);
+    what = bytes < sizeof *s ? "graph: too few bytes" : bad_head(s, &made, bytes);
     if (what) {
         return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
     }
@@ -64,9 +64,10 @@ noh_result noh_graph_state_check(const void *memory, size_t bytes, const noh_gra
                                       s->params_offset - s->controller_offset, set, error);
     }
     if (result == NOH_OK && noh_graph_controller_of(s)->track_count != graph->clip_count) {
-        return noh_fail(error, NOH_ERR_DATA, "graph: not a track for each of its clips", 0, graph->clip_count);
+        return noh_fail(error, NOH_ERR_DATA, "graph: its controller does not have one track per clip", 0,
+                        graph->clip_count);
     }
     return result == NOH_OK && s->inertia_ticks && !noh_graph_controller_of(s)->inertia_offset
-               ? noh_fail(error, NOH_ERR_DATA, "graph: a transition by inertia without room for one", 0, 0)
+               ? noh_fail(error, NOH_ERR_DATA, "graph: an inertial transition runs without room for one", 0, 0)
                : result;
 }

@@ -15,7 +15,7 @@ static const char *bad_joint(const noh_skeleton *s, uint32_t i)
 {
     const noh_transform *t = &s->bind_pose[i];
     float square = noh_quat_dot(t->rotation, t->rotation);
-    if (s->parents[i] != NOH_JOINT_ROOT && s->parents[i] >= i) return "a joint's parent does not come first";
+    if (s->parents[i] != NOH_JOINT_ROOT && s->parents[i] >= i) return "a joint's parent does not come before it";
     if (!finite_all(t->rotation, 4) || !finite_all(t->translation, 3) || !finite_all(t->scale, 3))
         return "a joint's bind pose is not finite";
     if (!(square > 0.999f && square < 1.001f)) return "a joint's bind rotation is not unit";
@@ -27,7 +27,7 @@ static const char *bad_joint(const noh_skeleton *s, uint32_t i)
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error)
 {
     if (skeleton->joint_count == 0 || skeleton->joint_count > NOH_JOINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "joint_count of a skeleton is 0, or above NOH_JOINTS_MAX", 0,
+        return noh_fail(error, NOH_ERR_ARG, "joint_count of a skeleton must be 1 to NOH_JOINTS_MAX", 0,
                         skeleton->joint_count);
     }
     if (!skeleton->parents) return noh_fail(error, NOH_ERR_ARG, "parents of a skeleton is NULL", 0, 0);
