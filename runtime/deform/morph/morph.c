@@ -1,5 +1,5 @@
-/* morph.c: morph targets on the CPU, the reference that the GPU's accumulators are compared with. Every product and
- * every sum is made in the order of the shaders, so equal inputs give equal bits. */
+/* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Every product and every sum is made in
+ * the order of the shaders, so equal inputs give equal bits. */
 #include "deform/morph/morph.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ static void accumulate_some(const noh_mesh *mesh, const float *weights, const no
     noh_accumulate_targets(mesh, weights, layers, groups, noh_add_rows);
 }
 
-/* The kernels that need not be fast are called. */
+/* Kernels that need not be fast are called, not inlined. */
 NOH_NEVER_INLINE static void accumulate_by(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                                            const uint8_t *groups, noh_rows_function add)
 {
@@ -74,8 +74,8 @@ static void accumulate_some_scalar(const noh_mesh *mesh, const float *weights, c
 
 /* ---- kernels by name ---- */
 
-/* Functions of this file that call those of others: where code is independent of its place, the address of a function
- * of another file is looked up in a table that the linker must be able to write. */
+/* Functions of this file that call functions of other files: in position-independent code, the address of a function in
+ * another file is looked up in a table that the linker must be able to write. */
 
 static void finish(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out)
 {
@@ -194,7 +194,7 @@ void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_mor
 {
     size_t floats = layer_texels(mesh) * (layers->tangent ? 9u : 6u);
     for (size_t i = 0; i < floats; i++) {
-        layers->position[i] = round_half(layers->position[i], mode); /* the layers lie one behind another */
+        layers->position[i] = round_half(layers->position[i], mode); /* the layers are contiguous */
     }
 }
 
@@ -246,7 +246,7 @@ void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, ui
     }
 }
 
-/* The words of a target's delta at a texel; NULL: it does not move it. */
+/* The words of a target's delta at a texel; NULL if it does not move it. */
 static const uint32_t *delta_at(const noh_mesh *mesh, const noh_target *t, uint32_t x, uint32_t y)
 {
     const noh_rect *rect = mesh->rects + t->first_rect;

@@ -1,5 +1,5 @@
-/* morph_avx2.c: noh_morph_accumulate with AVX2, where the compiler makes single functions of it. The processor is asked
- * before it is called: noh_morph_kernel_find. */
+/* morph_avx2.c: noh_morph_accumulate with AVX2, for compilers that can target single functions. noh_morph_kernel_find
+ * queries the processor before it is called. */
 #include "deform/morph/morph_accumulate_internal.h"
 
 #ifdef NOH_AVX2_AT_RUN_TIME

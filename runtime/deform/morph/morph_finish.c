@@ -1,7 +1,8 @@
-/* morph_finish.c: accumulated layers as finished vertices.
+/* morph_finish.c: final vertices from accumulated layers.
  *
- * A direction need not be unit to be put on the octahedron, and a tangent needs no unit normal to be made perpendicular:
- * t - n (t.n / n.n). Only the length of the bind pose's directions counts, because deltas are added to unit ones. */
+ * A direction need not be unit to be mapped to the octahedron, and a tangent needs no unit normal to be made
+ * perpendicular: t - n (t.n / n.n). Only the length of the bind pose's directions counts, because deltas are added to
+ * unit directions. */
 #include "deform/morph/morph_finish_internal.h"
 
 #include <string.h>
@@ -44,7 +45,7 @@ static void fold(const float v[3], float pair[2])
     pair[1] = v[2] < 0.0f ? with_sign_of(1.0f - magnitude(x), y) : y;
 }
 
-/* A direction of the pack with a delta, times the length that the pack's has: not unit. */
+/* Add a delta to a direction of the pack, scaled by the length of the pack's direction: not unit. */
 static void move(float out[3], const float *delta)
 {
     const float length = noh_sqrt(noh_dot3(out, out));
@@ -83,7 +84,8 @@ static int is_direction(float square)
     return square > NOH_VANISHES && square < NOH_OVERFLOWS;
 }
 
-/* The words of a vertex's normal and tangent, with its deltas. What vanishes or overflows is that of the bind pose. */
+/* The words of a vertex's normal and tangent, with deltas. A direction that vanishes or overflows becomes the bind
+ * pose's. */
 static void morph_words(uint32_t words[2], const float *normal_delta, const float *tangent_delta, int has_tangents)
 {
     float n[3], t[3], square;
@@ -106,7 +108,7 @@ static void morph_words(uint32_t words[2], const float *normal_delta, const floa
     }
 }
 
-/* One vertex. texel: whose deltas it has; above the last one: none */
+/* Finish one vertex. texel: index of its deltas; beyond the last one: none */
 static void finish_one(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t v, uint32_t texel, uint8_t *out)
 {
     const uint8_t *record = mesh->attributes + (size_t)v * mesh->header->attribute_stride;

@@ -4,13 +4,13 @@
 
 #include "core/base/math_internal.h"
 
-/* The rounding of a moved vertex is below this share of the largest terms that are summed: eight products and sums that
+/* The rounding error of a moved vertex is below this share of the largest summed terms: eight products and sums that
  * blend the matrices, four that move the vertex, each within 2^-24. */
 #define ROUNDING 4e-6f
-/* How far an arc that dual quaternions take leaves the hull of where the joints put a vertex, as a share of the largest
- * distance between two of these places. All of them, and the arc, lie on a sphere about the joints' common centre. By
- * Jung's theorem points at most d apart fit into a ball of radius sqrt(3/8) d = 0.612 d, and the cap of the sphere over
- * them, which holds the arc, is no higher than that radius. The rest is for rounding. */
+/* How far an arc of dual quaternions leaves the hull of the joints' positions of a vertex, as a share of the largest
+ * distance between two of these. All of them, and the arc, lie on a sphere about the joints' common centre. By Jung's
+ * theorem points at most d apart fit into a ball of radius sqrt(3/8) d = 0.612 d, and the cap of the sphere over them,
+ * which contains the arc, is no higher than that radius. The rest is for rounding. */
 #define ARC 0.62f
 
 static float magnitude(float v)
@@ -34,7 +34,7 @@ void noh_box_unite(const float a[6], const float b[6], float out[6])
 }
 
 /* The box of the sum of weighted differences: interval arithmetic per axis, since each target's difference lies in its
- * box whatever the vertex. A negative weight swaps the ends of an interval. */
+ * box for every vertex. A negative weight swaps the ends of an interval. */
 void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6])
 {
     NOH_ASSERT(mesh && box);
@@ -105,7 +105,7 @@ static uint32_t joint_count(const noh_mesh *mesh)
     return noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) ? 0 : skin.header->joint_count;
 }
 
-/* The intersection of two boxes. Returns 0 where there is none. */
+/* The intersection of two boxes. Returns 0 if there is none. */
 static int meet(const float a[6], const float b[6], float out[6])
 {
     for (int i = 0; i < 3; i++) {
@@ -118,8 +118,8 @@ static int meet(const float a[6], const float b[6], float out[6])
     return 1;
 }
 
-/* The farthest that two joints put one vertex of a box apart, squared: the difference of two matrices moves a point to
- * the difference of where they move it. */
+/* The largest squared distance between a vertex moved by one joint and by another, over a box: the difference of two
+ * matrices maps a point to the difference of its images. */
 static float distance_apart(const float a[12], const float b[12], const float box[6])
 {
     float difference[12], moved[6], square = 0.0f;
@@ -134,7 +134,7 @@ static float distance_apart(const float a[12], const float b[12], const float bo
     return square;
 }
 
-/* How far beyond the joints' boxes dual quaternions may take a vertex. Only joints whose boxes meet in the bind pose
+/* How far beyond the joints' boxes dual quaternions may move a vertex. Only joints whose boxes overlap in the bind pose
  * can share a vertex, and only within both boxes. */
 static float arc_radius(const noh_mesh *mesh, const float *matrices, const float deltas[6], uint32_t count)
 {
@@ -152,7 +152,7 @@ static float arc_radius(const noh_mesh *mesh, const float *matrices, const float
     return ARC * noh_sqrt(most);
 }
 
-/* What all joints' boxes are grown by: the targets' differences before they are moved, the arcs afterwards. */
+/* Growth of all joints' boxes: the targets' differences before they are moved, the arcs afterwards. */
 typedef struct growth {
     float deltas[6], radius;
 } growth;

@@ -9,15 +9,16 @@
 #include "deform/skin/skin.h"
 #include "deform/skin/skin_blend_internal.h"
 
-#define EDGE 1e-6f /* how far beyond a triangle's edge is still a hit, so that rays do not slip between two */
+#define EDGE 1e-6f /* tolerance beyond a triangle's edge, so that rays do not slip between two */
 
 typedef struct ray {
     float origin[3], direction[3], limit; /* limit: the nearest hit so far */
-    float moved; /* how far targets move a corner as drawn, at most; below 0: it is not looked at */
+    float moved;                          /* upper bound on how far targets move a corner; below 0: not computed */
 } ray;
 
-/* A box is where three slabs meet; a ray is inside each slab for an interval of its distance, and in the box where the
- * three intervals and 0..limit overlap. Without a component along an axis it is inside that slab always or never. */
+/* A box is the intersection of three slabs; a ray is inside each slab for an interval of its distance, and in the box
+ * where the three intervals and 0..limit overlap. Without a component along an axis it is inside that slab always or
+ * never. */
 static int ray_meets_box(const ray *r, const float box[6])
 {
     float enter = 0.0f, leave = r->limit;
@@ -50,8 +51,8 @@ static void cross(const float a[3], const float b[3], float out[3])
 }
 
 /* Moller and Trumbore 1997: origin + t direction = a + u ab + v ac is three linear equations in t, u and v, solved by
- * Cramer's rule; the scalar triple products share two cross products. The sign of the determinant says from which side
- * the triangle is seen, and both count. Fills distance and barycentric of a hit that is nearer than the limit. */
+ * Cramer's rule; the scalar triple products share two cross products. The sign of the determinant gives the side from
+ * which the triangle is seen, and both count. Fills distance and barycentric of a hit nearer than the limit. */
 static int ray_meets_triangle(const ray *r, float corners[3][3], noh_pick_hit *hit)
 {
     float ab[3], ac[3], from[3], p[3], q[3], determinant, u, v, t;
@@ -81,7 +82,7 @@ static int ray_meets_triangle(const ray *r, float corners[3][3], noh_pick_hit *h
 
 /* ---- the mesh ---- */
 
-/* Places of the morphed surface as drawn. */
+/* Positions on the morphed surface as drawn. */
 static void move_point(const noh_pick_surface *s, uint32_t vertex, const float p[3], float out[3])
 {
     if (s->dual_quaternions) {
@@ -113,10 +114,9 @@ static int boxes_meet(const float a[6], const float b[6])
     return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
 }
 
-/* For each joint a box that contains all its vertices as drawn. A vertex lies within the hull of where each of its
- * joints would put it. In the bind pose it is in the box of each of these joints, so only joints whose boxes meet there
- * can share a vertex, and the union of their moved boxes contains it. No hit is lost, and most triangles are skipped.
- */
+/* For each joint a box that contains all its vertices as drawn. A vertex lies in the hull of the positions from each of
+ * its joints. In the bind pose it is in the box of each of these joints, so only joints whose boxes overlap there can
+ * share a vertex, and the union of their moved boxes contains it. No hit is lost, and most triangles are skipped. */
 static void neighbourhoods(const noh_mesh *mesh, uint32_t count, const float *boxes, float *out)
 {
     for (size_t j = 0; j < count; j++) {
@@ -148,7 +148,7 @@ static float length_of(const float v[3])
     return noh_sqrt(noh_dot3(v, v));
 }
 
-/* The most that a matrix stretches, or more: the root of the sum of its squares. */
+/* An upper bound on the stretch of a matrix: the root of the sum of its squares. */
 static float stretch_of(const float m[12])
 {
     float square = 0.0f;
@@ -156,8 +156,8 @@ static float stretch_of(const float m[12])
     return noh_sqrt(square);
 }
 
-/* The sum of all weighted differences is within a box, and no matrix stretches it by more than the one that stretches
- * the most. A blend of dual quaternions stretches no more either. */
+/* The sum of all weighted differences lies in a box, and no matrix stretches it by more than the largest stretch. A
+ * blend of dual quaternions stretches no more either. */
 static float moved_at_most(const noh_pick_surface *s, uint32_t joints)
 {
     float most[3] = { 0.0f, 0.0f, 0.0f }, stretch = s->world && !joints ? stretch_of(s->world) : joints ? 0.0f : 1.0f;
@@ -175,7 +175,7 @@ static float moved_at_most(const noh_pick_surface *s, uint32_t joints)
     return 1.001f * stretch * length_of(most);
 }
 
-/* Whether the ray comes near enough to a triangle without its targets to hit it with them. */
+/* Whether the ray passes a triangle without targets closely enough to hit it with targets. */
 static int comes_near(const noh_pick_surface *s, const ray *r, const uint32_t vertices[3])
 {
     float box[6], p[3];
@@ -190,7 +190,7 @@ static int comes_near(const noh_pick_surface *s, const ray *r, const uint32_t ve
     return ray_meets_box(r, box);
 }
 
-/* Whether the ray may meet this triangle. near: neighbourhoods; NULL for a rigid mesh. */
+/* Whether the ray may hit this triangle. near: neighbourhoods; NULL for a rigid mesh. */
 static int is_candidate(const ray *r, const noh_mesh *mesh, const uint32_t corners[3], const float *near)
 {
     float box[6];
@@ -232,7 +232,7 @@ static void pick_submesh(const noh_pick_surface *s, uint32_t index, const float 
 
 /* ---- the hit ---- */
 
-/* The joint with the largest weight at the point: its corners' weights, mixed as the point mixes them. */
+/* The joint with the largest weight at the point: its corners' weights, interpolated. */
 static uint32_t joint_at(const noh_mesh *mesh, const uint32_t vertices[3], const float mix[3])
 {
     uint32_t joints[3 * NOH_INFLUENCES_MAX], count = 0, best = 0;
@@ -283,8 +283,8 @@ size_t noh_pick_scratch_size(const noh_mesh *mesh)
     return joint_count(mesh) * 12u * sizeof(float);
 }
 
-/* Whether the ray meets the mesh's box. Of a skinned mesh, fills boxes[count][6], then the neighbourhoods behind them.
- */
+/* Whether the ray hits the mesh's box. For a skinned mesh, fills boxes[count][6], then the neighbourhoods after
+ * them. */
 static int may_hit(const noh_pick_surface *s, const ray *r, float *boxes, uint32_t count)
 {
     float box[6];

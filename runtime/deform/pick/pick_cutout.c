@@ -1,10 +1,10 @@
-/* pick_cutout.c: what alpha leaves of a surface, read from the pack's own texels. */
+/* pick_cutout.c: visibility of a surface by its alpha, from the pack's own texels. */
 #include "deform/pick/pick_internal.h"
 
 #include "core/pack/etc2.h"
 
-#define CLEAR (0.5f / 255.0f) /* an alpha below it is written as 0 */
-#define FAR_AWAY 1e6f         /* texture coordinates beyond have no fraction worth the name */
+#define CLEAR (0.5f / 255.0f) /* a lower alpha is written as 0 */
+#define FAR_AWAY 1e6f         /* larger texture coordinates have no useful fraction */
 
 static int32_t below(float x)
 {
@@ -12,7 +12,7 @@ static int32_t below(float x)
     return (float)whole > x ? whole - 1 : whole;
 }
 
-/* A texture coordinate as one of 0..1. */
+/* Fold a texture coordinate into 0..1. */
 static float folded(float u, uint32_t wrap)
 {
     if (!(u > -FAR_AWAY && u < FAR_AWAY)) return 0.0f;
@@ -24,7 +24,7 @@ static float folded(float u, uint32_t wrap)
     return u - (float)below(u);
 }
 
-/* A texel -1..size, of which two are over an edge. */
+/* Wrap a texel of -1..size, where the first and last are over an edge. */
 static uint32_t wrapped(int32_t texel, uint32_t size, uint32_t wrap)
 {
     if (texel < 0) return wrap == NOH_WRAP_REPEAT ? size - 1u : 0;
@@ -50,7 +50,7 @@ static float alpha_of(const noh_texture *texture, const noh_texture_level *level
     return (float)values[y % 4u * 4u + x % 4u] / 255.0f;
 }
 
-/* Filtered between the four texels round the place, as it is drawn where it is magnified. */
+/* Filtered bilinearly between the four nearest texels, as drawn under magnification. */
 static float alpha_at(const noh_texture *texture, const float uv[2])
 {
     const noh_texture_header *h = texture->header;

@@ -12,10 +12,10 @@
 /* ---- polar decomposition ---- */
 
 /* R of the polar decomposition A = R H by Newton's iteration R <- (R + R^-T) / 2 (Higham, Computing the polar
- * decomposition, 1986). In terms of the singular values of R, each becomes the mean of itself and its reciprocal while
- * the directions stay: all converge to 1, quadratically once they are near. R^-T is the cofactors over the determinant.
- * A is first scaled to about unit size, which saves the steps that would only halve large values. m: 3 rows of 4, the
- * fourth column is unused. Returns 0 where A has no inverse. */
+ * decomposition, 1986). Each singular value of R becomes the mean of itself and its reciprocal while the directions
+ * stay: all converge to 1, quadratically once they are near. R^-T is the cofactors over the determinant. A is first
+ * scaled to about unit size, which saves the steps that would only halve large values. m: 3 rows of 4, the fourth
+ * column is unused. Returns 0 if A has no inverse. */
 static int polar_rotation(const float a[12], float m[12])
 {
     float size = noh_sqrt((noh_dot3(a, a) + noh_dot3(a + 4, a + 4) + noh_dot3(a + 8, a + 8)) / 3.0f), c[9],
@@ -44,7 +44,7 @@ static int polar_rotation(const float a[12], float m[12])
 }
 
 /* The quaternion of a rotation. Each row below is the quaternion times four times one of its components, from sums and
- * differences of the matrix. The row of the largest component loses no digits, where those of small ones cancel; it is
+ * differences of the matrix. The row of the largest component loses no digits, while small ones cancel; it is
  * normalised. (S. W. Shepperd, "Quaternion from rotation matrix", 1978) */
 static void rotation_quaternion(const float m[12], float q[4])
 {
@@ -71,7 +71,7 @@ void noh_dual_quaternion_from_matrix(const float a[12], noh_dual_quaternion *out
     if (!polar_rotation(a, r)) {
         memcpy(r, identity, sizeof r);
     }
-    sign = noh_cofactors(r, c); /* below 0 for a mirror: then -R is the rotation, and the stretch takes the sign */
+    sign = noh_cofactors(r, c); /* below 0 for a mirror: then -R is the rotation, and the stretch gets the sign */
     for (int i = 0; i < 12; i++) {
         r[i] *= sign;
     }
@@ -103,9 +103,9 @@ static void add_scaled(float *sum, const float *values, float factor, int count)
     }
 }
 
-/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: where they are on
- * the far side of the strongest joint's they are negated, or the blend would go the long way round. |r| is then at
- * least that joint's weight, so nothing is divided by 0. */
+/* The weighted sums of one vertex's joints, with the rotation part unit. r and -r are one rotation: those on the far
+ * side of the strongest joint's are negated, or the blend would take the long way round. |r| is then at least that
+ * joint's weight, so nothing is divided by 0. */
 static void blend(const noh_dual_quaternion *joints, const uint32_t *places, const float *weights, uint32_t count,
                   noh_dual_quaternion *sum)
 {

@@ -7,7 +7,7 @@
 #include "deform/skin/skin_blend_internal.h"
 #include "deform/skin/skin_kernel_internal.h"
 
-/* The benches and tests build this file again for other instruction sets, under other names. */
+/* Benches and tests compile this file again for other instruction sets, under other names. */
 #ifndef NOH_SKIN_VERTICES
 #define NOH_SKIN_VERTICES noh_skin_vertices
 #define NOH_SKIN_ALL 1
@@ -36,7 +36,7 @@ void NOH_SKIN_VERTICES(const noh_mesh *mesh, const float *matrices, const noh_mo
     if (tangents && !job.has_tangents) {
         memset(tangents, 0, 16u * (size_t)count);
     }
-    /* Full blocks store past their last vertex, where the next block writes again; the last block must not. */
+    /* Full blocks store past their last vertex, where the next block overwrites; the last block must not. */
     for (uint32_t i = 0; i < count; i += NOH_LANES) {
         uint32_t block = count - i < NOH_LANES ? count - i : NOH_LANES;
         skin_block(&job, first + i, block, i, count - i <= NOH_LANES);
@@ -53,7 +53,7 @@ void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices
     }
 }
 
-/* Make a moved direction unit; one without length becomes the rest direction, which need not be unit itself. */
+/* Normalise a moved direction; one of length 0 becomes the rest direction, which need not be unit itself. */
 static void unit_or_rest(float v[3], const float rest[3])
 {
     static const float up[3] = { 0.0f, 0.0f, 1.0f };
@@ -84,8 +84,8 @@ void noh_skin_apply(const float m[12], noh_vertex *vertex)
     }
 }
 
-/* Matrices are blended and then applied once, not applied by each joint and blended: twelve sums per joint and vertex
- * whatever is moved, and the normal follows the very matrix that moved the position. */
+/* Matrices are blended and then applied once, not applied per joint and blended: twelve sums per joint and vertex
+ * whatever is moved, and the normal is consistent with the matrix that moved the position. */
 static void blend_matrix(const noh_mesh *mesh, const float *matrices, uint32_t index, float m[12])
 {
     uint32_t joints[NOH_INFLUENCES_MAX], count;

@@ -40,7 +40,7 @@ uint32_t noh_skin_list_place(const noh_skin_list *list, uint32_t vertex)
     return low;
 }
 
-/* As noh_skin_vertex blends, in the list's order. */
+/* Blend like noh_skin_vertex, in the list's order. */
 static void blend(const noh_skin_list *list, const float *matrices, uint32_t place, float m[12])
 {
     memset(m, 0, 12 * sizeof *m);

@@ -1,9 +1,9 @@
 /* changes.c: fades and other changes over time.
  *
- * A change waits in a table until its tick, then notes the value it starts from and runs. A weight is a function of the
- * clock alone, so it may be evaluated at the end of a step. A speed may not: tracks are moved by its integral. So
- * speeds are held constant over stretches of whole ticks, NOH_CHANGE_SLICES to a change, and noh_changes_speeds says up
- * to which tick they hold; the integral is then a product of integers, however time is cut into steps. */
+ * A change waits in a table until its tick, then stores its start value and runs. A weight is a function of the clock
+ * alone and can be evaluated at the end of a step. A speed cannot: it moves tracks by its integral. So speeds are
+ * constant over slices of whole ticks, NOH_CHANGE_SLICES per change, and noh_changes_speeds returns the tick up to
+ * which they hold. The integral is then a product of integers, however time is split into steps. */
 #include "motion/anim/changes.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ static int64_t curve_fixed(uint32_t curve, int64_t halves)
     return curve == NOH_CURVE_SMOOTHSTEP ? halves * halves * (3 * HALVES - 2 * halves) : halves * (CURVE_ONE / HALVES);
 }
 
-/* difference * factor / CURVE_ONE without the product, which would overflow. */
+/* Compute difference * factor / CURVE_ONE; the product itself would overflow. */
 static int64_t scaled(int64_t difference, int64_t factor)
 {
     return difference / CURVE_ONE * factor + difference % CURVE_ONE * factor / CURVE_ONE;
@@ -83,7 +83,7 @@ static int64_t wanted(const noh_change_desc *d)
     }
 }
 
-/* The entry to fill: one of the same kind and track waiting for the same tick, else a free one, else NULL. */
+/* The entry to fill: a change of the same kind and track that waits for the same tick, else a free one, else NULL. */
 static noh_change *entry_for(noh_change *table, uint32_t count, const noh_change *c)
 {
     noh_change *free_one = NULL;
@@ -202,7 +202,7 @@ static void set_weight(const noh_change *c, noh_change_target *t, float weight)
     }
 }
 
-/* A track that has reached its full weight plays as any other from then on. */
+/* At its full weight a track becomes an ordinary one. */
 static void settle_full(noh_track *track)
 {
     if (track->full > 0.0f && track->weight >= track->full) {
@@ -211,7 +211,7 @@ static void settle_full(noh_track *track)
     }
 }
 
-/* A change is over: set its end value exactly. A travelling position has arrived already. */
+/* End a change: set its end value exactly. A position has arrived already. */
 static void finish(noh_change *c, noh_change_target *t)
 {
     noh_track *track = track_of(c, t);
@@ -255,7 +255,7 @@ static void follow(const noh_change *c, noh_change_target *t)
     }
 }
 
-/* Running changes first, so that one that begins starts from the value of this very tick. */
+/* Running changes first, so that a change that begins starts from the value at this tick. */
 void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *target)
 {
     NOH_ASSERT(target && (table || !count));
@@ -281,8 +281,8 @@ void noh_changes_update(noh_change *table, uint32_t count, noh_change_target *ta
 
 /* ---- speeds ---- */
 
-/* A stretch of whole ticks in which a change's speed is constant. A change shorter than NOH_CHANGE_SLICES ticks has
- * empty slices; their part of the curve goes to the next one that is not empty. */
+/* A stretch of whole ticks with constant speed. A change shorter than NOH_CHANGE_SLICES ticks has empty slices; their
+ * part of the curve moves to the next slice that is not empty. */
 typedef struct slice {
     int64_t begin, end;   /* ticks after the change's start */
     int64_t first, after; /* the part of the curve, in slices */
@@ -305,8 +305,8 @@ static slice slice_at(const noh_change *c, int64_t elapsed)
     return s;
 }
 
-/* The speed of one slice: the curve's value in its middle. For a linear curve that is its mean over the slice, for the
- * smoothstep it is within 1/64^2 of the mean. Returns the tick, after the start, up to which it holds. */
+/* The speed of one slice: the curve's value at its middle. For a linear curve this is the mean over the slice, for
+ * smoothstep within 1/64^2 of it. Returns the tick, after the start, up to which it holds. */
 static int64_t slice_speed(const noh_change *c, int64_t elapsed, int32_t *speed)
 {
     slice s = slice_at(c, elapsed);
@@ -315,9 +315,9 @@ static int64_t slice_speed(const noh_change *c, int64_t elapsed, int32_t *speed)
     return s.end;
 }
 
-/* The speed of a travel to a position. The distance of each slice is cut into steps of one tick, of two lengths that
- * differ by one, the longer ones last (as in Bresenham's line, but in two runs), so that each slice ends exactly where
- * the curve says. Returns the tick, after the start, up to which the speed holds. */
+/* The speed of a move to a position. The distance of each slice is split into steps of one tick with two lengths that
+ * differ by one, the longer ones last (Bresenham's line in two runs), so that each slice ends exactly on the curve.
+ * Returns the tick, after the start, up to which the speed holds. */
 static int64_t travel_speed(const noh_change *c, int64_t elapsed, int64_t *speed)
 {
     slice s = slice_at(c, elapsed);
@@ -325,7 +325,7 @@ static int64_t travel_speed(const noh_change *c, int64_t elapsed, int64_t *speed
     int64_t slice_way = scaled(way, curve_fixed(c->curve, 2 * s.after)) -
                         scaled(way, curve_fixed(c->curve, 2 * s.first));
     int64_t step = noh_floor_div(slice_way, ticks), rest = slice_way - step * ticks;
-    int64_t turn = s.end - rest; /* from here on one more per tick */
+    int64_t turn = s.end - rest; /* from here on, one more per tick */
     *speed = elapsed < turn ? step : step + 1;
     return elapsed < turn ? turn : s.end;
 }
@@ -364,7 +364,7 @@ static int64_t apply_travels(const noh_change *table, uint32_t count, const noh_
     return end;
 }
 
-/* When the next change is due or over. */
+/* The tick of the next change that begins or ends. */
 static int64_t next_change(const noh_change *table, uint32_t count, int64_t end)
 {
     for (uint32_t i = 0; i < count; i++) {

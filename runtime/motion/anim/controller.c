@@ -1,8 +1,7 @@
 /* controller.c: tracks, changes and callback keys on one clock.
  *
- * A controller is one block: a header, the tracks, the table of changes, then inertial offsets where there is room for
- * them. Arrays are found by their offsets and clips by their index in the set, so the block has no pointers and a copy
- * of it is a controller. */
+ * A controller is one block: header, tracks, table of changes, then the inertial offsets if there is room for them.
+ * Arrays are found by offset and clips by index in the set, so the block has no pointers and can be copied. */
 #include "motion/anim/controller.h"
 
 #include <string.h>
@@ -12,7 +11,7 @@
 #include "motion/anim/sync_internal.h"
 #include "core/base/arena.h"
 
-/* Whether a controller was made for a set like this one: for asserts. */
+/* Whether a controller was made for a set like this one; for asserts. */
 #define IS_SET_OF(c, set) ((set) && (set)->clip_count == (c)->clip_count && (set)->joint_count == (c)->joint_count)
 
 /* private flags, above the public ones */
@@ -54,7 +53,7 @@ static size_t place(noh_arena *arena, size_t bytes)
     return arena->used - bytes;
 }
 
-/* By falling alignment: 8 bytes in the head and the tables, 4 in the offsets. */
+/* In order of decreasing alignment: 8 bytes for the head and the tables, 4 for the offsets. */
 static layout layout_of(const noh_controller_desc *d)
 {
     noh_arena arena = noh_arena_measure();
@@ -148,7 +147,7 @@ static noh_change_target target_of(noh_controller *c, const noh_clip_set *set)
     return t;
 }
 
-/* After the table of changes was touched: note its high-water mark, and whether a sync group is affected. */
+/* After the table of changes was modified: update its high-water mark and the sync groups. */
 static void settle(noh_controller *c, const noh_change_target *t)
 {
     const noh_change *changes = changes_of(c);
@@ -194,7 +193,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint
         return noh_fail(error, NOH_ERR_ARG, "the clip's sync markers differ from its sync group's", track, 0);
     }
     noh_changes_drop(changes_of(c), c->change_count, track);
-    tracks[track].mode = NOH_TRACK_OFF; /* it may have been the leader of the group it joins */
+    tracks[track].mode = NOH_TRACK_OFF; /* it may have led the group that it joins */
     if (started.sync_group) {
         uint32_t leader = noh_sync_leader(tracks, c->track_count, started.sync_group);
         if (leader < c->track_count) {
@@ -206,7 +205,7 @@ noh_result noh_controller_start(noh_controller *c, const noh_clip_set *set, uint
     return NOH_OK;
 }
 
-/* Move the other tracks of a sync group to the phase of one of them. */
+/* Move the other tracks of a sync group to the phase of one track. */
 static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t track)
 {
     noh_track *tracks = noh_controller_tracks(c);
@@ -218,8 +217,8 @@ static void gather_group(noh_controller *c, const noh_clip_set *set, uint32_t tr
     c->flags |= SYNC_TOUCHED;
 }
 
-/* The position of a tick of the present pass (of a ping-pong clip, of the present cycle): the durations passed so far,
- * and the tick. */
+/* The position of a tick in the present pass (in a ping-pong clip, the present cycle): the durations passed so far,
+ * plus the tick. */
 static int64_t seek_position(const noh_track *t, const noh_clip_entry *m, int64_t tick)
 {
     int64_t legs = noh_time_legs(t->position, m->duration_ticks, (noh_loop)t->loop);
@@ -372,7 +371,7 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set,
 
 /* ---- time ---- */
 
-/* A track's passage up to the present tick, kept apart from the track itself, which the callback may change. */
+/* A track's passage up to the present tick, stored separately because the callback may change the track. */
 typedef struct passed {
     noh_passage passage;
     float weight;
@@ -386,7 +385,7 @@ typedef struct delivery {
     noh_event_fn fn;
     void *user;
     int64_t clock;
-    uint32_t count, passed; /* passed: delivered or not */
+    uint32_t count, passed; /* passed: including those not delivered */
 } delivery;
 
 static void deliver_key(void *user, uint32_t index, int64_t position_tick)
@@ -411,7 +410,7 @@ static void deliver_key(void *user, uint32_t index, int64_t position_tick)
     }
 }
 
-/* Move one track on by `ticks`. */
+/* Advance one track by `ticks`. */
 static void move_track(noh_track *t, const noh_clip_entry *m, const noh_passage *p)
 {
     int64_t rebase = noh_time_rebase(p->to, m->duration_ticks, (noh_loop)t->loop);
@@ -420,7 +419,7 @@ static void move_track(noh_track *t, const noh_clip_entry *m, const noh_passage 
     t->placed = (uint8_t)(t->placed && t->speed_now == 0);
 }
 
-/* Move all tracks on; returns how many may have passed keys. */
+/* Advance all tracks; returns the number that may have passed keys. */
 static uint32_t move_tracks(noh_controller *c, const noh_clip_set *set, int64_t ticks, passed *out)
 {
     noh_track *tracks = noh_controller_tracks(c);
@@ -440,9 +439,9 @@ static uint32_t move_tracks(noh_controller *c, const noh_clip_set *set, int64_t 
     return count;
 }
 
-/* Move time to a tick and deliver the keys that have been passed by then. All tracks move, changes take effect, and the
- * weights are noted before the first key is delivered: the callback may change anything, and the other keys of the tick
- * still see the tick as it was. */
+/* Advance time to a tick and deliver the keys passed by then. All tracks move, changes take effect, and the weights are
+ * stored before the first key is delivered: the callback may change anything, and later keys of the tick still see the
+ * state before. */
 static void advance(noh_controller *c, const noh_clip_set *set, int64_t clock, delivery *d)
 {
     passed list[NOH_TRACKS_MAX];
@@ -474,8 +473,8 @@ static int has_sync(const noh_controller *c)
     return any;
 }
 
-/* Give sync groups new speeds at every multiple of NOH_SYNC_TICKS, and whenever one was changed. Returns the tick up to
- * which the speeds hold. */
+/* Update the speeds of sync groups at every multiple of NOH_SYNC_TICKS, and after changes. Returns the tick up to which
+ * the speeds hold. */
 static int64_t sync_speeds(noh_controller *c, const noh_clip_set *set, int64_t end)
 {
     int64_t next = noh_clock_add(c->clock, NOH_SYNC_TICKS - c->clock % NOH_SYNC_TICKS);
@@ -489,7 +488,7 @@ static int64_t sync_speeds(noh_controller *c, const noh_clip_set *set, int64_t e
     return next < end ? next : end;
 }
 
-/* The first tick, up to `end`, by which a key has been passed; else `end`. */
+/* The first tick, up to `end`, by which a key is passed; else `end`. */
 static int64_t next_event(const noh_controller *c, const noh_clip_set *set, int64_t end)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {
@@ -501,10 +500,10 @@ static int64_t next_event(const noh_controller *c, const noh_clip_set *set, int6
     return end;
 }
 
-/* A step goes from one tick at which anything happens to the next: a change begins or ends or enters a new slice, a
- * sync group gets new speeds, a key is passed. In between every track moves at a constant speed, so its position is one
- * multiplication, exact in integers. That is why the events, and the state afterwards, are the same however time is
- * cut: the ticks at which something happens depend on the clock alone, never on where a step ends. */
+/* A step advances from one tick with an event to the next: a change begins, ends or enters a new slice, a sync group
+ * gets new speeds, a key is passed. Between them every track has constant speed, so its position is one exact integer
+ * multiplication. These ticks depend only on the clock, never on where a step ends, so events and state are the same
+ * however time is split into steps. */
 uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user)
 {
     NOH_ASSERT(c && IS_SET_OF(c, set));

@@ -1,13 +1,13 @@
 /* An upper bound on the events of a step: controller.h, noh_controller_events_max.
  *
- * Per track: the farthest that it can travel, and into how many stretches of one direction that travel can fall, since
- * each change of direction can pass the keys around it again. noh_events_max turns both into a number of keys. */
+ * Per track: the farthest it can travel, and the number of stretches of one direction, since each change of direction
+ * can pass the keys around it again. noh_events_max turns both into a number of keys. */
 #include "motion/anim/controller.h"
 #include "motion/anim/sync_internal.h"
 
-/* What a track can do in a step, at most. */
+/* Limits of a track's motion in a step. */
 typedef struct play_bound {
-    uint64_t travel; /* the sum of its movement, 1/65,536 ticks */
+    uint64_t travel; /* total movement, 1/65,536 ticks */
     uint64_t runs;   /* stretches of one direction */
 } play_bound;
 
@@ -31,7 +31,7 @@ static int concerns(const noh_change *change, uint32_t track, noh_change_kind ki
     return change->state != NOH_CHANGE_FREE && change->kind == kind && change->track == track;
 }
 
-/* The highest speed of a track: its present one, or that of a change that waits or runs. */
+/* The highest speed of a track: its present one, or one set by a waiting or running change. */
 static uint64_t speed_reached(const noh_controller *c, uint32_t track)
 {
     const noh_change *changes = changes_of(c);
@@ -60,7 +60,7 @@ static void interval_range(const noh_clip_set *set, const noh_clip_entry *m, uin
 }
 
 /* A synchronised track moves at most at the phase speed of its group's fastest member, through its own longest
- * interval; and the group may turn round whenever it gets new speeds. */
+ * interval; the group may reverse whenever it gets new speeds. */
 static play_bound sync_bound(const noh_controller *c, const noh_clip_set *set, uint32_t track, uint32_t ticks)
 {
     const noh_track *t = noh_controller_track(c, track);
@@ -83,8 +83,8 @@ static play_bound sync_bound(const noh_controller *c, const noh_clip_set *set, u
     return r;
 }
 
-/* A track that is not synchronised: its highest speed all the time, a change of speed may turn it round, and a change
- * of position may take it to its target and on from there. */
+/* A track without a sync group: its highest speed all the time; a change of speed may reverse it, and a change of
+ * position may take it to its target, from where it plays on. */
 static play_bound free_bound(const noh_controller *c, uint32_t track, uint32_t ticks)
 {
     const noh_change *changes = changes_of(c);
@@ -97,7 +97,7 @@ static play_bound free_bound(const noh_controller *c, uint32_t track, uint32_t t
         } else if (concerns(&changes[i], track, NOH_CHANGE_POSITION)) {
             uint64_t there = plus(magnitude(changes[i].to - noh_controller_track(c, track)->position), way);
             r.runs += 3;
-            r.travel = plus(r.travel, plus(there, there)); /* to the target, and perhaps from there to the next one */
+            r.travel = plus(r.travel, plus(there, there)); /* to the target, and possibly from there to the next one */
         }
     }
     return r;

@@ -4,8 +4,8 @@
 #include "motion/anim/controller.h"
 #include "core/base/arena.h"
 
-/* Bounds that every step keeps. Positions are rebased past NOH_POSITION_MAX; the present speed of a synchronised track
- * is the mean speed of its group, in intervals per tick (at most 256), times an interval of its own (at most 2^28
+/* Bounds that every step keeps. Positions beyond NOH_POSITION_MAX are rebased; the present speed of a synchronised
+ * track is the mean speed of its group, in intervals per tick (at most 256), times its own interval (at most 2^28
  * ticks). */
 #define SYNC_SPEED_NOW_MAX ((int64_t)1 << 53)
 #define SPEED_NOW_MAX ((int64_t)1 << 61)
@@ -66,7 +66,7 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
     return t->position < least || t->position > most ? "track: its position is out of range" : NULL;
 }
 
-/* Whether the bits of a change's end are a weight of its kind. */
+/* Whether the bits of a change's end value are a weight valid for its kind. */
 static int is_weight(const noh_change *change, int64_t bits)
 {
     const float most = change->kind == NOH_CHANGE_PRIORITY ? 1.0f : NOH_WEIGHT_MAX;
@@ -76,7 +76,7 @@ static int is_weight(const noh_change *change, int64_t bits)
     return bits >= 0 && bits <= UINT32_MAX && weight >= 0.0f && weight <= most;
 }
 
-/* A change that waits is due later than now, one that runs is not over: a step relies on both. */
+/* A waiting change must be due in the future, and a running one must not be over: steps rely on both. */
 static const char *bad_change(const noh_controller *c, const noh_change *change)
 {
     if (change->state > NOH_CHANGE_RUNNING) return "change: bad state";

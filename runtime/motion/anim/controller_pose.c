@@ -1,9 +1,9 @@
 /* controller_pose.c: the pose and the root motion of a controller.
  *
- * A pose is made in four steps: the low group's tracks are blended, and laid over the bind pose as far as they hide it
- * (noh_track_cover); the high group's result is laid over them; additive tracks are added in the order of their
- * indices; what is left of an inertial transition is added last, since it is the difference between two such results.
- * A single track with its full weight skips the blend, which would return it. */
+ * A pose is made in four steps: the low group's tracks are blended, and cover the bind pose by noh_track_cover; the
+ * high group's result covers the low one; additive tracks are added in index order; the remaining offset of an inertial
+ * transition is added last, since it is the difference between two such results. A single track with full weight skips
+ * the blend, which would not change it. */
 #include "motion/anim/controller_pose.h"
 
 #include <string.h>
@@ -76,7 +76,7 @@ typedef struct view {
     const noh_controller *c;
     const noh_clip_set *set;
     noh_pose_scratch *scratch;
-    int64_t ago; /* ticks: tracks are where they were then, had they always had their present speeds */
+    int64_t ago; /* ticks: tracks are where they were then, assuming their present speeds */
 } view;
 
 static int is_sampled(const noh_controller *c, const noh_track *t)
@@ -95,13 +95,13 @@ static float full_weight(const noh_controller *c)
     return c->flags & NOH_CONTROLLER_COVERS ? 1.0f : 0.0f;
 }
 
-/* One track's pose into the scratch, without its root motion. */
+/* Sample one track's pose into the scratch, without its root motion. */
 static void sample_at(const view *v, uint32_t clip, uint32_t tick, noh_transform *pose, float *floats)
 {
     noh_root_sample_rest(v->set, clip, tick, v->c->lod_joint_count, pose, floats);
 }
 
-/* Add the poses of a group's tracks to the sum that was begun. Returns how many there were. */
+/* Add the poses of a group's tracks to the sum. Returns their number. */
 static uint32_t sum_group(const view *v, noh_track_group group)
 {
     noh_pose_scratch *s = v->scratch;
@@ -125,7 +125,7 @@ static int is_low(const view *v, const noh_track *t)
     return t->group == NOH_GROUP_LOW && !(t->flags & NOH_TRACK_ADDITIVE) && is_sampled(v->c, t);
 }
 
-/* Whether a low track hides the bind pose in part alone. */
+/* Whether any low track covers the bind pose only partly. */
 static int some_shine_through(const view *v)
 {
     for (uint32_t i = 0; i < v->c->track_count; i++) {
@@ -144,7 +144,7 @@ static void cover_more(float *covers, uint32_t count, const uint8_t *mask, float
     }
 }
 
-/* The most that any low track hides of each joint and float; then what rising ones hide of the rest. */
+/* Largest cover of each joint and float by any low track; then the share of the rest that rising tracks cover. */
 static void find_covers(const view *v, float *joints, float *floats)
 {
     memset(joints, 0, v->c->lod_joint_count * sizeof *joints);
@@ -162,8 +162,8 @@ static void find_covers(const view *v, float *joints, float *floats)
     }
 }
 
-/* Let the bind pose and the floats' defaults shine through the low group's result. Floats whose weights sum to less
- * than `full` of the blend show their defaults in part already. */
+/* Let the bind pose and the floats' defaults show through the low group's result. Floats with a sum of weights below
+ * the blend's `full` already show part of their defaults. */
 static void lay_over_bind(const view *v, noh_transform *pose, float *floats)
 {
     const noh_blend *b = &v->scratch->blend;
@@ -179,7 +179,7 @@ static void lay_over_bind(const view *v, noh_transform *pose, float *floats)
     }
 }
 
-/* Blend the low tracks, blend the high tracks, lay the high result over the low one. */
+/* Blend the low tracks, blend the high tracks, cover the low result by the high one. */
 static void blend_groups(const view *v, noh_transform *pose, float *floats)
 {
     noh_pose_scratch *s = v->scratch;
@@ -193,8 +193,7 @@ static void blend_groups(const view *v, noh_transform *pose, float *floats)
     }
 }
 
-/* The track that is the whole blend, if there is just one, it has no mask and its weight is full: its clip needs no
- * sum. */
+/* The only track in the blend, if it has no mask and full weight: its clip needs no sum. */
 static const noh_track *only_track(const view *v)
 {
     const noh_track *only = NULL;
@@ -221,7 +220,7 @@ void noh_reference_pose(const noh_clip_set *set, uint32_t reference, uint32_t jo
     }
 }
 
-/* An additive track's. 0: the bind pose; else 1 + index of a clip. */
+/* The reference of an additive track. 0: the bind pose; else 1 + index of a clip. */
 static uint32_t reference_of(const noh_track *t)
 {
     return t->reference || !(t->flags & NOH_TRACK_REFERENCE_START) ? t->reference : t->clip + 1u;
@@ -234,7 +233,7 @@ static void add_track(const view *v, const noh_track *t, noh_transform *pose, fl
     uint32_t joints = v->c->lod_joint_count, count = v->set->float_count, flags = v->set->clips[t->clip].flags;
     sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
     if (!(flags & NOH_CLIP_ADDITIVE)) {
-        /* into the blend's sums, which are free by then */
+        /* into the blend's sums, which are unused by now */
         noh_reference_pose(v->set, reference_of(t), joints, s->blend.sum, s->blend.float_sum);
         noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
         for (uint32_t i = 0; i < count; i++) {
@@ -278,7 +277,7 @@ void noh_controller_inertia_add(const noh_controller *c, int64_t ago, noh_transf
     }
 }
 
-/* The pose some ticks ago, with or without the rest of a transition. */
+/* Compute the pose some ticks ago, with or without the remaining offset of a transition. */
 static void evaluate(const noh_controller *c, const noh_clip_set *set, noh_pose_scratch *scratch, int64_t ago,
                      int inertia, noh_transform *pose, float *floats)
 {
@@ -319,8 +318,9 @@ void noh_controller_pose(const noh_controller *c, const noh_clip_set *set, noh_p
 
 /* ---- transitions ---- */
 
-/* Speeds of a transition are differences: the pose now and the pose NOH_INERTIA_BEFORE_TICKS ago, of what played before
- * the switch (captured, with the offsets of a transition that still runs) and of what plays after it (without). */
+/* Speeds of a transition are differences between the pose now and the pose NOH_INERTIA_BEFORE_TICKS ago: for what
+ * played before the switch (captured, including a running transition's offsets) and for what plays after it (without
+ * them). */
 static const char *bad_transition(const noh_controller *c, const noh_pose_scratch *scratch)
 {
     if (!(c->flags & NOH_CONTROLLER_INERTIAL))
@@ -373,9 +373,9 @@ noh_result noh_controller_inertia_begin(noh_controller *c, const noh_clip_set *s
 
 /* ---- root motion ---- */
 
-/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the unmasked weight of the
- * tracks that take part: `weight` over it is the mean mask, by which a high group covers the low one. `cover` is how
- * far they hide the bind pose, which does not move; `bare` what rising tracks leave of the rest. */
+/* A weighted sum of displacements. Turns count as angles of -1/2 to 1/2 turn. `total` is the sum of unmasked weights:
+ * `weight` / `total` is the mean mask, by which a high group covers the low one. `cover` is how much the tracks cover
+ * the bind pose, which does not move; `bare` is what rising tracks leave of the rest. */
 typedef struct root_sum {
     double translation[3], turn, weight, total, cover, bare;
 } root_sum;
@@ -391,7 +391,7 @@ static void add_root(root_sum *sum, const noh_root_pose *move, double weight, do
     sum->total += weight;
 }
 
-/* How far a track takes part in moving the root: 0 where its clip animates no joints or its mask leaves joint 0 out. */
+/* A track's share in moving the root: 0 if its clip animates no joints or its mask excludes joint 0. */
 static double root_part(const noh_clip_set *set, const noh_track *t)
 {
     noh_mask_view mask = noh_clip_set_mask(set, t->mask);
@@ -460,8 +460,8 @@ static void scale_root(noh_root_pose *move, double part)
     move->turn = (uint32_t)(uint64_t)(int64_t)(turn < 0.0 ? turn - 0.5 : turn + 0.5);
 }
 
-/* Each group's displacement is the weighted mean of its tracks', and the high one covers the low one by the priority
- * blend times its mean mask, exactly as noh_blend_cover covers the pose of joint 0. */
+/* Each group's displacement is the weighted mean of its tracks' displacements; the high group covers the low one by the
+ * priority blend times its mean mask, exactly as noh_blend_cover does for the pose of joint 0. */
 noh_root_pose noh_controller_root_motion_given(noh_controller *c, const noh_clip_set *set, const noh_given_root *given)
 {
     noh_root_pose out = { { 0.0, 0.0, 0.0 }, 0, 0 }, low, high;

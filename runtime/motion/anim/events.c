@@ -1,20 +1,20 @@
 #include "motion/anim/events.h"
 
-/* The whole ticks that a passage covers, both ends included. Occurrences lie on whole ticks, so no more than this is
- * needed of a passage in 1/65,536 ticks; which end is open is decided here, once. */
+/* The whole ticks of a passage, both ends included. Occurrences lie on whole ticks, so this is enough; the open end is
+ * resolved here, once. */
 typedef struct span {
     int64_t low, high;
 } span;
 
-/* One leg of a passage: the clip ticks low..high, which lie at base + sign * tick of the position. */
+/* One leg of a passage: the clip ticks low..high, at position base + sign * tick. */
 typedef struct leg {
     int64_t low, high;
     int64_t base, sign;
-    int descending; /* clip ticks fall as the passage goes on */
+    int descending; /* 1: clip ticks decrease along the passage */
 } leg;
 
 typedef struct legs {
-    int64_t next, last; /* numbers of legs; `next` moves towards `last` */
+    int64_t next, last; /* leg numbers; `next` moves towards `last` */
     int done;
 } legs;
 
@@ -31,13 +31,12 @@ static span passage_span(const noh_passage *p)
     return s;
 }
 
-/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find those that meet the span. The tick
- * between two legs belongs to both, since keys at tick 0 and at tick `duration` both occur there in a repeating clip.
- */
+/* A leg is one traversal of the clip: a pass, or half of a ping-pong cycle. Find the legs in a span. The tick between
+ * two legs belongs to both, since in a repeating clip keys at tick 0 and at tick `duration` both occur there. */
 static legs passage_legs(const noh_passage *p, span s)
 {
     int64_t d = (int64_t)p->duration_ticks;
-    /* placed on a seam: only the keys on the far side lie ahead */
+    /* placed on a seam: only the keys beyond it lie ahead */
     int fresh = p->placed && p->from % 65536 == 0 && p->loop == NOH_LOOP_REPEAT;
     legs l = { 0, 0, s.low > s.high };
     if (p->loop == NOH_LOOP_ONCE || d == 0) {
@@ -136,7 +135,7 @@ static uint32_t pass_descending(const noh_event_key *keys, uint32_t begin, uint3
 {
     uint32_t passed = 0;
     while (end > begin && passed < limit) {
-        uint32_t first = end - 1; /* of the keys at this tick: they keep their order */
+        uint32_t first = end - 1; /* of the keys at this tick, which keep their order */
         while (first > begin && keys[first - 1].tick == keys[first].tick) {
             first--;
         }
@@ -164,7 +163,7 @@ uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_pa
 uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs)
 {
     uint64_t duration = (uint64_t)duration_ticks * 65536u, passes = runs, most;
-    /* A comb of period c has at most floor(x / c) + 1 teeth in a closed stretch of length x. */
+    /* A comb of period c has at most floor(x / c) + 1 teeth in a closed interval of length x. */
     if (duration && loop == NOH_LOOP_REPEAT) {
         passes += travel / duration;
     } else if (duration && loop == NOH_LOOP_PING_PONG) {
@@ -184,7 +183,7 @@ uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, 
     NOH_ASSERT(set);
     for (uint32_t i = 0; i < set->clip_count; i++) {
         const noh_clip_entry *m = &set->clips[i];
-        /* the controller may play it in any mode: the worst of them */
+        /* the controller may play it in any mode: take the worst */
         uint64_t there = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_REPEAT, travel, 2);
         uint64_t back = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_PING_PONG, travel, 2);
         most = there > most ? there : most;

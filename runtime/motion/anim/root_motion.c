@@ -81,8 +81,9 @@ static void turn_vector(uint32_t up, uint64_t half_turns, double v[3])
     v[b] = s * va + c * vb;
 }
 
-/* The heading: the angle of the twist about the up axis, which is twice the half angle that a quaternion holds. Where a
- * float's arc tangent is off by, the tangent of the difference says, in double: passes add up what headings lose. */
+/* The heading: the angle of the twist about the up axis, which is twice the half angle in the quaternion. The error of
+ * a float's arc tangent is corrected in double by the tangent of the difference, because passes add up heading
+ * errors. */
 static uint32_t heading(uint32_t up, const noh_transform *root)
 {
     const double along = (double)root->rotation[up], w = (double)root->rotation[3];
@@ -93,7 +94,7 @@ static uint32_t heading(uint32_t up, const noh_transform *root)
     turn = noh_turn_from_radians(2.0f * noh_atan2(twist[up], twist[3]));
     sin_cos_half(turn, &s, &c);
     rest = w * c + along * s;
-    if (along * along + w * w <= 1e-12) return turn;        /* a twist of none, as noh_quat_twist has it */
+    if (along * along + w * w <= 1e-12) return turn;        /* no twist, as in noh_quat_twist */
     rest = (along * c - w * s) / rest * 1367130551.1528633; /* 2^33 / 2 pi */
     return turn + (uint32_t)(int32_t)(rest < 0.0 ? rest - 0.5 : rest + 0.5);
 }
@@ -110,8 +111,8 @@ noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *
     return e;
 }
 
-/* rest = inverse(E) * root: subtract E's translation, then turn both what is left of the translation and the rotation
- * back by the heading, as far as it is not `facing`. */
+/* rest = inverse(E) * root: subtract E's translation, then turn both the remaining translation and the rotation back by
+ * the heading, except for `facing`. */
 static void remove_motion(uint32_t axes, uint32_t up, uint32_t facing, noh_transform *root)
 {
     noh_root_pose e = noh_root_extract(axes, up, root);
@@ -200,7 +201,7 @@ noh_root_pose noh_root_power(uint32_t up, const noh_root_pose *a, int64_t n)
     return out;
 }
 
-/* E of the joint that sampling gives at a tick. */
+/* E of the sampled joint at a tick. */
 static noh_root_pose sampled_root(const noh_clip_set *set, uint32_t clip, uint32_t axes, uint32_t up,
                                   uint32_t clip_tick)
 {
@@ -227,7 +228,7 @@ static noh_root_pose root_at(const noh_clip_set *set, const noh_root_track *trac
     return e;
 }
 
-/* One end of a track: the source's, and how far the sampled one is from it. */
+/* One end of a track: the source's value, and the difference to the sampled one. */
 static noh_root_pose measure_end(const noh_clip_set *set, uint32_t clip, uint32_t end, noh_root_track *t)
 {
     const noh_root_ends *ends = set->root_ends ? set->root_ends[clip] : NULL;
@@ -276,7 +277,7 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
 {
     NOH_ASSERT(set && track && clip < set->clip_count);
     uint32_t duration = set->clips[clip].duration_ticks, up = track->up;
-    /* a ping-pong clip comes back to where it was, so only a repeating one adds up its passes */
+    /* a ping-pong clip returns to its start, so only repeating clips add up passes */
     int64_t passes = loop == NOH_LOOP_REPEAT ? noh_time_legs(to, duration, loop) - noh_time_legs(from, duration, loop)
                                              : 0;
     noh_root_pose a = root_at(set, track, clip, (uint32_t)(noh_time_clip(from, duration, loop) / 65536));
@@ -330,5 +331,5 @@ void noh_root_drive(uint32_t up, const noh_root_pose *moved, double scale, doubl
     q[a] = rotation[a] * c + rotation[b] * s;
     q[b] = rotation[b] * c + rotation[a] * -s;
     for (int i = 0; i < 4; i++) square += q[i] * q[i];
-    for (int i = 0; i < 4; i++) rotation[i] = q[i] * (1.5 - 0.5 * square); /* a step of Newton's towards length 1 */
+    for (int i = 0; i < 4; i++) rotation[i] = q[i] * (1.5 - 0.5 * square); /* a Newton step towards length 1 */
 }

@@ -7,7 +7,7 @@ static uint32_t interval_count(const noh_clip_entry *m)
     return m->marker_count ? m->marker_count : 1u;
 }
 
-/* The marker of phase 0: the first one of the smallest id. */
+/* The marker of phase 0: the first one with the smallest id. */
 static uint32_t canonical(const noh_clip_set *set, const noh_clip_entry *m)
 {
     const noh_marker *markers = set->markers + m->first_marker;
@@ -20,7 +20,7 @@ static uint32_t canonical(const noh_clip_set *set, const noh_clip_entry *m)
     return best;
 }
 
-/* The position of the n-th marker, n from 0; past the last one they continue in the next pass. */
+/* The position of the n-th marker, n from 0; beyond the last one they continue in the next pass. */
 static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m, uint32_t n)
 {
     uint32_t count = interval_count(m);
@@ -28,8 +28,8 @@ static int64_t marker_position(const noh_clip_set *set, const noh_clip_entry *m,
     return m->marker_count ? pass + noh_position_of(set->markers[m->first_marker + n % count].tick) : pass;
 }
 
-/* Intervals are counted from the marker of phase 0, not from the clip's start, so that equal phases are equal steps in
- * all clips of a group. */
+/* Intervals count from the marker of phase 0, not from the clip's start, so that equal phases are equal steps in all
+ * clips of a group. */
 noh_phase noh_sync_phase(const noh_clip_set *set, const noh_clip_entry *clip, int64_t position)
 {
     NOH_ASSERT(set && clip && clip->duration_ticks > 0);
@@ -98,7 +98,7 @@ static const noh_clip_entry *clip_of(const noh_clip_set *set, const noh_track *t
     return &set->clips[track->clip];
 }
 
-/* Of the positions of a phase, one in each pass, the nearest to another position: whole durations, rounded, are added
+/* The position with a given phase, one in each pass, that is nearest to another position: add whole durations, rounded,
  * to the one in the first pass. */
 static int64_t nearest(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase, int64_t to)
 {
@@ -114,14 +114,14 @@ void noh_sync_join(const noh_clip_set *set, noh_track *track, const noh_track *l
     noh_track_place(track, clip_of(set, track), nearest(set, clip_of(set, track), phase, track->position));
 }
 
-/* Length of a phase's marker interval in this clip, in 1/65,536 ticks. */
+/* Length of a phase's marker interval in this clip, 1/65,536 ticks. */
 static double interval_length(const noh_clip_set *set, const noh_clip_entry *m, noh_phase phase)
 {
     uint32_t n = ((uint32_t)phase.interval + canonical(set, m)) % interval_count(m);
     return (double)(marker_position(set, m, n + 1) - marker_position(set, m, n));
 }
 
-/* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own where all weights are 0. */
+/* Weighted mean of the group's phase speeds, in intervals per tick; the leader's own if all weights are 0. */
 static double mean_speed(const noh_clip_set *set, const noh_track *tracks, uint32_t track_count, uint32_t leader,
                          noh_phase phase)
 {
@@ -142,10 +142,10 @@ static int64_t rounded(double x)
     return (int64_t)(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one in each
- * pass) it takes the nearest to where the follower would be after covering as many passes as the leader; that keeps
- * both in the same pass even where an interval is short in one clip and long in the other. A follower never moves
- * against its leader: it would pass keys twice. It waits instead. */
+/* The speed that brings a follower to the leader's phase in `ticks`. Of all positions with that phase (one per pass) it
+ * uses the nearest to where the follower would be after as many passes as the leader; that keeps both in the same pass
+ * even if an interval is short in one clip and long in the other. A follower never moves against its leader, which
+ * would pass keys twice; it waits instead. */
 static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, double travelled, int64_t leader_speed,
                   int64_t ticks)
 {
@@ -157,7 +157,8 @@ static void steer(const noh_clip_set *set, noh_track *track, noh_phase goal, dou
                                                                                                                : speed;
 }
 
-/* The leader gets the group's mean phase speed, times its own interval; the others are steered to where it will be. */
+/* The leader moves at the group's mean phase speed, times its own interval; the others are steered to its future
+ * phase. */
 static void group_speeds(const noh_clip_set *set, noh_track *tracks, uint32_t track_count, uint32_t leader,
                          int64_t ticks)
 {

@@ -16,7 +16,7 @@ uint32_t noh_frame_clock_advance(noh_frame_clock *clock, double seconds)
 {
     const double step = !(seconds > 0.0) ? 0.0 : seconds < NOH_FRAME_SECONDS_MAX ? seconds : NOH_FRAME_SECONDS_MAX;
     const double ticks = clock->left_ticks + step * (double)NOH_TICKS_PER_SECOND;
-    const uint32_t whole = (uint32_t)(ticks + 0.5); /* to the nearest, as noh_ticks_from_seconds */
+    const uint32_t whole = (uint32_t)(ticks + 0.5); /* to the nearest, like noh_ticks_from_seconds */
     clock->left_ticks = ticks - (double)whole;
     return whole;
 }
@@ -27,11 +27,11 @@ int64_t noh_position_of(int64_t ticks)
     return ticks * 65536;
 }
 
-/* position + speed * ticks, held at the ends of what 64 bits hold. */
+/* position + speed * ticks, saturated to 64 bits. */
 static int64_t advance_saturated(int64_t position, int64_t speed, int64_t ticks)
 {
     const int back = (speed < 0) != (ticks < 0);
-    /* magnitudes as unsigned: INT64_MIN has none in int64_t */
+    /* unsigned magnitudes: -INT64_MIN does not fit in int64_t */
     const uint64_t s = speed < 0 ? (uint64_t)0 - (uint64_t)speed : (uint64_t)speed;
     const uint64_t t = ticks < 0 ? (uint64_t)0 - (uint64_t)ticks : (uint64_t)ticks;
     uint64_t left; /* to the end of the range in the direction of play */
@@ -54,7 +54,7 @@ static int is_small(int64_t x)
 int64_t noh_time_advance(int64_t position, int64_t speed, int64_t ticks, uint32_t duration_ticks, noh_loop loop)
 {
     const int64_t end = noh_position_of(duration_ticks);
-    /* two factors below 2^30 move by less than 2^60: from within 2^62 that cannot overflow */
+    /* two factors below 2^30 move by less than 2^60, which cannot overflow from within 2^62 */
     const int safe = is_small(speed) && is_small(ticks) && position < 4 * NOH_POSITION_MAX &&
                      position > -4 * NOH_POSITION_MAX;
     int64_t to = safe ? position + speed * ticks : advance_saturated(position, speed, ticks);
@@ -64,7 +64,7 @@ int64_t noh_time_advance(int64_t position, int64_t speed, int64_t ticks, uint32_
     return to;
 }
 
-/* Repeating and ping-pong clips differ in folding only, not in how far they have come: both count durations. */
+/* Repeating and ping-pong clips differ only in folding: both count durations. */
 int64_t noh_time_legs(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     return loop == NOH_LOOP_ONCE || duration_ticks == 0 ? 0 : noh_floor_div(position, noh_position_of(duration_ticks));
@@ -77,7 +77,7 @@ int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop)
     if (loop == NOH_LOOP_ONCE || duration == 0) {
         return position < 0 ? 0 : position > duration ? duration : position;
     }
-    /* the remainder first: leg * duration may lie below INT64_MIN */
+    /* the remainder first: leg * duration may be below INT64_MIN */
     leg = position / duration;
     rest = position % duration;
     if (rest < 0) {
@@ -87,8 +87,8 @@ int64_t noh_time_clip(int64_t position, uint32_t duration_ticks, noh_loop loop)
     return loop == NOH_LOOP_PING_PONG && (leg & 1) ? duration - rest : rest;
 }
 
-/* Two durations are one cycle of a ping-pong clip and two passes of a repeating one: a whole number of them changes no
- * folded position, direction or key. */
+/* Two durations are one cycle of a ping-pong clip and two passes of a repeating one: multiples of them change no folded
+ * position, direction or key. */
 int64_t noh_time_rebase(int64_t position, uint32_t duration_ticks, noh_loop loop)
 {
     int64_t cycle = 2 * noh_position_of(duration_ticks);

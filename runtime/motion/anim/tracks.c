@@ -1,9 +1,8 @@
-/* tracks.c: one clip on its way through time.
+/* tracks.c: playing one clip.
  *
- * A track's position is in 1/65,536 ticks and grows past the clip's end: it is folded into the clip only where it is
- * looked at, so that passes can be counted, and it is brought back by whole cycles after each move, so that it never
- * grows out of 64 bits. A track that was just placed has not passed the keys at its position yet: `placed` says so
- * until it moves. */
+ * A track's position is in 1/65,536 ticks and grows beyond the clip's end. It is folded into the clip only when it is
+ * read, so that passes can be counted, and reduced by whole cycles after each move, so that it never overflows. A track
+ * that was just placed has not passed the keys at its position yet: `placed` is 1 until it moves. */
 #include "motion/anim/tracks.h"
 
 static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
@@ -24,7 +23,7 @@ static const char *bad_desc(const noh_clip_set *set, const noh_track_desc *d)
     return NULL;
 }
 
-/* Only a repeating clip has a phase, and only one of some length can be steered. */
+/* Only a repeating clip has a phase, and it must be long enough to be steered. */
 static const char *bad_sync(const noh_clip_set *set, const noh_track_desc *d)
 {
     const noh_clip_entry *m = &set->clips[d->clip];
@@ -103,8 +102,8 @@ int64_t noh_track_next_event(const noh_track *track, const noh_clip_set *set, in
     }
     way = noh_position_of(at) - track->position;
     way = way < 0 ? -way : way;
-    /* Rounded up: the first tick by which the key has been passed. A key exactly at a placed track's position is passed
-     * by its first move. */
+    /* Rounded up: the first tick by which the key is passed. The first move of a placed track passes a key exactly at
+     * its position. */
     return way == 0 ? 1 : noh_ceil_div(way, speed);
 }
 
@@ -126,7 +125,7 @@ uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip,
 {
     NOH_ASSERT(track && clip);
     noh_loop loop = (noh_loop)track->loop;
-    /* a seek that fires keys may travel billions of passes in its tick: keep the product in range */
+    /* a seek that fires keys may travel billions of passes within one tick: keep the product in range */
     const int64_t most = ((int64_t)1 << 61) / (ago > 0 ? ago : 1);
     int64_t speed = track->speed_now > most ? most : track->speed_now < -most ? -most : track->speed_now;
     int64_t position = noh_time_advance(track->position, -speed, ago, clip->duration_ticks, loop);

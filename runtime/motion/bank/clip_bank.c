@@ -10,13 +10,13 @@
 
 typedef struct noh_bank_clip bank_clip;
 
-#define TRACKS 2u /* of an instance that play at once, where the desc does not say */
+#define TRACKS 2u /* per instance at the same time, if the desc does not set it */
 
 /* A bank is made in two passes over the packs. The first counts (clips that fit, their keys, markers and floats, the
- * cache's needs) without memory, out of the packs' bytes alone; the second carves exactly that and fills it in the same
- * order. */
+ * size of the cache) without memory, from the packs' bytes alone; the second carves exactly that and fills it in the
+ * same order. */
 
-/* What the first pass finds. */
+/* Results of the first pass. */
 typedef struct counts {
     noh_clip_set shape;
     uint32_t groups, runs, sampled, foreign, replaced, unknown;
@@ -27,7 +27,7 @@ typedef struct counts {
     int roots;
 } counts;
 
-/* Where it all lies. NULL while measuring. */
+/* The layout. NULL while measuring. */
 typedef struct parts {
     noh_clip_bank *bank;
     noh_clip_entry *clips;
@@ -61,8 +61,8 @@ static void count_nodes(const noh_bank_binding *b, counts *c)
     }
 }
 
-/* A clip's groups: named floats go to the bank's own, weights to a node of the mesh pack, if it has one of their name.
- */
+/* Count a clip's groups: named floats become floats of the bank, weights belong to the node of the mesh pack with that
+ * name, if any. */
 static void count_groups(const noh_bank_binding *b, const noh_bank_found *found, counts *c)
 {
     noh_clip_group_reader reader = noh_clip_groups_of(&found->clip);
@@ -103,7 +103,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
     return NOH_OK;
 }
 
-/* Count all clips: those of the bank, those that a later pack replaces, those that move another skeleton. */
+/* Count all clips: clips of the bank, clips replaced by a later pack, clips of another skeleton. */
 static noh_result count_clips(const noh_bank_binding *b, counts *c, noh_error *error)
 {
     const uint32_t fitting = noh_bank_count_fitting(b);
@@ -118,18 +118,18 @@ static noh_result count_clips(const noh_bank_binding *b, counts *c, noh_error *e
     }
     c->foreign -= fitting;
     c->replaced = fitting - c->shape.clip_count;
-    noh_bank_count_names(b, &c->groups, &c->shape.float_count); /* they are appended to those of nodes */
+    noh_bank_count_names(b, &c->groups, &c->shape.float_count); /* they follow the nodes' floats */
     return NOH_OK;
 }
 
-/* How many segments the cache holds: enough for what plays at once, unless the desc says how many; no more than there
- * are, but at least 2. A desc that asks for 1 is passed on, for the cache to refuse. */
+/* The number of segments that the cache holds: enough for everything that plays at the same time, unless the desc sets
+ * it; no more than exist, but at least 2. A desc with 1 is passed on, for the cache to reject. */
 static uint32_t cached_segments_of(const noh_clip_bank_desc *desc, uint32_t segments)
 {
     const uint64_t instances = desc->instance_count ? desc->instance_count : 1u,
                    tracks = desc->track_count ? desc->track_count : TRACKS, most = NOH_CLIP_CACHE_SEGMENTS_MAX;
     const uint64_t plays = NOH_CLIP_CACHE_SEGMENTS_PER_TRACK * (instances < most ? instances : most) *
-                           (tracks < most ? tracks : most); /* of the full numbers, 64 bits might overflow */
+                           (tracks < most ? tracks : most); /* the product of the full numbers might overflow 64 bits */
     const uint64_t wanted = desc->cached_segment_count            ? desc->cached_segment_count
                             : plays < NOH_CLIP_CACHE_SEGMENTS_MAX ? plays
                                                                   : NOH_CLIP_CACHE_SEGMENTS_MAX;
@@ -231,7 +231,7 @@ static noh_result measure(const noh_clip_bank_desc *desc, noh_bank_binding *b, c
                                         "the clips of a clip bank need more memory than size_t can count", 0, SIZE_MAX);
 }
 
-/* As noh_clip_bank_view_size, before there is a bank. */
+/* The size of noh_clip_bank_view_size, before the bank is made. */
 static size_t view_bytes(const counts *c)
 {
     noh_arena arena = noh_arena_measure();
@@ -284,7 +284,7 @@ static void fill_nodes(const noh_bank_binding *b, parts *p)
     }
 }
 
-/* The bank's group of a named float; a new one is appended. */
+/* The bank's group of a named float; appended if it is new. */
 static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
 {
     noh_clip_bank *bank = p->bank;
@@ -302,7 +302,7 @@ static const noh_clip_group *name_group(parts *p, const noh_clip_group *wanted)
     return group;
 }
 
-/* Where the clip's floats go among the bank's: one run for each of its groups that is played. */
+/* Where the clip's floats go in the bank: one run for each of its groups that is played. */
 static void fill_runs(const noh_bank_binding *b, const noh_clip *opened, parts *p, bank_clip *clip)
 {
     noh_bank_floats *run = p->runs;
@@ -348,7 +348,7 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
     }
 }
 
-/* Open a clip and enter it in the set. It was measured, so opening succeeds. */
+/* Open a clip and add it to the set. It was measured, so opening succeeds. */
 static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, parts *p)
 {
     const uint32_t m = p->bank->clips.clip_count++;
@@ -404,7 +404,8 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     bank->clips.markers = p->markers;
     bank->clips.root_ends = p->root_ends;
     bank->clips.bind_pose = b->header ? b->skeleton.bind_pose
-                                      : (const noh_transform *)(const void *)p->clips; /* not NULL; of no joints */
+                                      /* not NULL, although there are no joints */
+                                      : (const noh_transform *)(const void *)p->clips;
     bank->clips.float_defaults = p->defaults;
     noh_clip_bank_sample_cache(bank);
 }

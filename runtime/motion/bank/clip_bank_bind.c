@@ -18,7 +18,7 @@ static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_erro
     return NOH_OK;
 }
 
-/* Clips of this skeleton that were built in other units would be posed in the wrong size. */
+/* Clips of this skeleton in another unit would be posed at the wrong size. */
 static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_error *error)
 {
     for (uint32_t i = 0; b->header && i < b->packs[pack]->skeleton_count; i++) {
@@ -51,9 +51,9 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
     return r;
 }
 
-/* Whether the clip at found->at fits, and the desc that opens it. A clip without joints fits always. One with joints
- * fits the skeleton of the same hash; in the mesh's own pack, which may hold equal skeletons, it fits the very one that
- * it was built with. */
+/* Whether the clip at found->at fits, and the desc to open it with. A clip without joints always fits. A clip with
+ * joints fits the skeleton of the same hash; in the mesh's own pack, which may contain equal skeletons, it fits only
+ * the one that it was built with. */
 static int fits(const noh_bank_binding *b, noh_bank_found *found)
 {
     const noh_pack *pack = b->packs[found->at.pack];
@@ -85,7 +85,7 @@ static uint32_t name_hash_at(const noh_bank_binding *b, noh_bank_place at)
     return pack->chunks[pack->first_clip + at.index].name_hash;
 }
 
-/* The first clip of a pack that fits and has this name. Returns 0 when there is none. */
+/* Find the first clip of a pack that fits and has this name. Returns 0 if there is none. */
 static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
 {
     noh_bank_place at = { pack, 0 };
@@ -98,8 +98,8 @@ static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_has
     return 0;
 }
 
-/* A clip takes the place of the first pack's that has its name, so an added pack renumbers no clip: one that an earlier
- * pack has too was handed out there. */
+/* A clip replaces the clip of the same name in the first pack that has it, so an added pack renumbers no clip: a clip
+ * that an earlier pack also has was numbered there. */
 static int resolve(const noh_bank_binding *b, noh_bank_place at, noh_bank_found *found)
 {
     const uint32_t name_hash = name_hash_at(b, at);
@@ -162,8 +162,7 @@ int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *firs
     return 0;
 }
 
-/* Names may repeat among nodes: the node of the clip's index decides where it has the name, else the first that does.
- */
+/* Nodes may share names: use the node of the clip's index if it has the name, else the first node with that name. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found)
 {
     noh_clip_group group;
@@ -182,11 +181,11 @@ int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, 
 
 #define NAMES_AT_ONCE 128u
 
-/* Distinct named groups, a batch of the lowest keys at a time: counting them all at once wants memory, and comparing
- * each with all before it the square of their number. */
+/* Distinct named groups, in batches of the lowest keys: counting them all at once would need memory, and comparing each
+ * with all previous ones would take quadratic time. */
 typedef struct names {
     uint64_t after;               /* keys up to this one were counted in earlier batches */
-    uint64_t keys[NAMES_AT_ONCE]; /* rising: the name's hash above, the width below */
+    uint64_t keys[NAMES_AT_ONCE]; /* increasing: the name's hash above, the width below */
     uint32_t count;
 } names;
 
@@ -205,7 +204,7 @@ static void keep_name(names *n, uint64_t key)
         return;
     }
     if (n->count < NAMES_AT_ONCE) n->keys[n->count++] = key;
-    for (; at < n->count; at++) { /* those above move up; the highest falls out of a full batch */
+    for (; at < n->count; at++) { /* larger keys move up; the highest drops out of a full batch */
         const uint64_t next = n->keys[at];
         n->keys[at] = key;
         key = next;

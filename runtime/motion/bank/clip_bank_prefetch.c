@@ -1,15 +1,15 @@
-/* clip_bank_prefetch.c: which segments a controller will need soon.
+/* clip_bank_prefetch.c: the segments that a controller will need soon.
  *
  * A track plays in legs: passes of its clip, forwards or (every other one of a ping-pong clip) backwards. The stretch
  * of play from its position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece covers one
- * run of frames, and the cache is asked for all segments that hold them. Three pieces are enough: the rest of this leg
- * and one whole leg cover the whole clip, and whatever comes later needs no other segment. */
+ * run of frames, and all segments with those frames are requested. Three pieces are enough: the rest of this leg and
+ * one whole leg cover the whole clip, and anything later needs no other segment. */
 #include "motion/clip/clip_internal.h"
 #include "motion/bank/clip_bank.h"
 
 #define LEGS_MAX 3
 
-/* The stretch of a clip that is played in one leg: ticks, in the order of play. */
+/* The part of a clip played in one leg: ticks, in the order of play. */
 typedef struct stretch {
     int64_t from, to;
 } stretch;
@@ -47,7 +47,7 @@ static uint32_t want_track(const noh_clip_bank *bank, const noh_track *t, uint32
     int64_t at = t->position, leg = noh_time_legs(at, m->duration_ticks, loop);
     uint32_t missing = 0;
     for (int i = 0; i < LEGS_MAX; i++, leg += step) {
-        const int64_t edge = (leg + (step > 0)) * duration; /* where this leg ends in the direction of play */
+        const int64_t edge = (leg + (step > 0)) * duration; /* the end of this leg in the direction of play */
         const int last = loop == NOH_LOOP_ONCE || duration == 0 || (step > 0 ? end <= edge : end >= edge);
         missing += want_stretch(bank, t->clip, fold(m, loop, leg, at, last ? end : edge), joint_count);
         if (last) break;
@@ -68,7 +68,7 @@ uint32_t noh_clip_bank_prefetch(noh_clip_bank *bank, const noh_controller *contr
             continue; /* clips past the bank's are the caller's own */
         }
         m = &bank->clips.clips[t->clip];
-        if (bank->clips.roots) { /* root motion is measured from the position of its last call */
+        if (bank->clips.roots) { /* root motion starts from the position of its last call */
             const int64_t tick = noh_time_clip(t->root_position, m->duration_ticks, (noh_loop)t->loop) / 65536;
             const stretch before = { tick, tick };
             missing += want_stretch(bank, t->clip, before, 1);

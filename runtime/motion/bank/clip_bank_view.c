@@ -1,12 +1,11 @@
-/* clip_bank_view.c: how a bank's clips are sampled: through the bank's own cache, or through one thread's view of it.
- */
+/* clip_bank_view.c: sampling a bank's clips, through the bank's own cache or through a thread's view of it. */
 #include <string.h>
 
 #include "motion/bank/clip_bank_internal.h"
 #include "core/base/arena.h"
 
-/* Complete what a clip was sampled into: a clip without joints gives the bind pose, floats that it does not move have
- * their defaults, and those that it moves go to their places among the bank's. */
+/* Complete a sample: a clip without joints gives the bind pose, floats that it does not move get their defaults, and
+ * the others are copied to their places in the bank. */
 static void complete(const noh_clip_bank *bank, const struct noh_bank_clip *clip, const float *sampled,
                      uint32_t joint_count, noh_transform *pose, uint32_t float_count, float *floats)
 {
@@ -66,8 +65,8 @@ void noh_clip_bank_sample_cache(noh_clip_bank *bank)
 
 /* ---- views ----
  *
- * A view holds a copy of the set whose `sample` and `user` are its own. So calls that take a set need not know of
- * views, and threads share everything else. */
+ * A view holds a copy of the set with its own `sample` and `user`. So calls that take a set need not know about views,
+ * and threads share everything else. */
 
 static size_t carve(noh_arena *arena, const noh_clip_bank *bank, noh_clip_bank_view **view, void **clips,
                     float **sampled)

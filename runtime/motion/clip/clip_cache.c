@@ -8,14 +8,14 @@
 typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u
-#define GLIMPSE_FRAMES 16u      /* segments up to this are decoded whole, always */
-#define PLAY_FRAMES 8u          /* samples at most so far apart are play */
-#define SEGMENTS_MAX (1u << 28) /* of all clips of a cache: their table is within 32 bits of bytes */
+#define GLIMPSE_FRAMES 16u      /* segments up to this length are always decoded whole */
+#define PLAY_FRAMES 8u          /* samples at most this far apart count as steady play */
+#define SEGMENTS_MAX (1u << 28) /* over all clips of a cache: their table fits in 32 bits of bytes */
 
 /* ---- sizes ---- */
 
-/* The size class of a number of bytes: its highest three bits, and where they lie, so four classes to each doubling.
- * Entries of a class are as large as its largest segment, so at most a fifth of an entry is wasted. */
+/* The size class of a number of bytes: its highest three bits and their position, so four classes per doubling. Entries
+ * of a class are as large as its largest segment, so at most a fifth of an entry is wasted. */
 static uint32_t size_class(size_t bytes)
 {
     uint32_t shift = 0;
@@ -38,7 +38,7 @@ void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *
     NOH_ASSERT(size < NOH_CLIP_CACHE_SIZES);
     needs->clip_count++;
     if (info->segment_count == 0 || info->segment_count > SEGMENTS_MAX - needs->segment_count) {
-        needs->segment_count = SEGMENTS_MAX; /* which is refused */
+        needs->segment_count = SEGMENTS_MAX; /* rejected later */
         return;
     }
     needs->segment_count += info->segment_count;
@@ -48,7 +48,7 @@ void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *
     needs->lengths[info->frame_count / info->segment_count] |= basis;
 }
 
-/* How many of `left` entries a class gets; the classes are asked from the largest down. */
+/* The number of entries, of `left`, for a class; classes are asked from the largest down. */
 static uint32_t share_of(const noh_clip_cache_needs *needs, uint32_t size, uint32_t left)
 {
     return needs->size_segments[size] < left ? needs->size_segments[size] : left;
@@ -101,7 +101,7 @@ static noh_result needs_of(const noh_clip_cache_desc *desc, noh_clip_cache_needs
 
 /* ---- memory ---- */
 
-/* The transforms of each segment length that occurs, once for all clips. */
+/* Carve the transform of each segment length in use, shared by all clips. */
 static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_cache *cache, int build)
 {
     for (uint32_t i = 0; i < NOH_CLIP_BASES * NOH_CLIP_SEGMENT_FRAMES_MAX; i++) {
@@ -116,7 +116,7 @@ static void carve_bases(noh_arena *arena, const noh_clip_cache_needs *needs, noh
     }
 }
 
-/* The frames of all entries: the largest class first, the entries of a class in a row. */
+/* Carve the frames of all entries: the largest class first, the entries of a class in a row. */
 static void carve_frames(noh_arena *arena, const noh_clip_cache_needs *needs, noh_clip_cache *cache, int build)
 {
     uint32_t made = 0;
@@ -210,7 +210,7 @@ static void add_clips(const noh_clip_cache_desc *desc, noh_clip_cache *cache)
         e->first = segments;
         e->size = cache->size_count - 1u;
         while (cache->sizes[e->size].bytes < bytes) {
-            e->size--; /* ends: the class of the largest segment is always there */
+            e->size--; /* terminates: the class of the largest segment always exists */
         }
         segments += desc->clips[i]->info.segment_count;
         cache->segment_bytes = bytes > cache->segment_bytes ? bytes : cache->segment_bytes;
@@ -275,8 +275,8 @@ static void drop_want(noh_clip_cache *cache, uint32_t s)
 
 /* ---- entries ---- */
 
-/* Move an entry to the end of its size's list. Once in a frame of the game is enough: what was touched in the same
- * frame is equally recent. */
+/* Move an entry to the end of its size's list, at most once per frame of the game: entries touched in one frame are
+ * equally recent. */
 static void touch(noh_clip_cache *cache, uint32_t s)
 {
     cached *t = &cache->cached[s];
@@ -296,8 +296,8 @@ static void touch(noh_clip_cache *cache, uint32_t s)
     size->newest = (uint16_t)s;
 }
 
-/* The entry to take for a clip's segment, but not `keep`: free, or touched longest ago, of the smallest size that fits
- * and has one that was not touched in this frame. Where all were touched, none, or with `must` the oldest that fits. */
+/* The entry to use for a clip's segment, except `keep`: free or least recently touched, of the smallest sufficient size
+ * that has one not touched in this frame. If all were touched: none, or with `must` the oldest that fits. */
 static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t keep, int must)
 {
     uint32_t any = NOH_CLIP_NOT_CACHED;
@@ -311,7 +311,7 @@ static uint32_t find_room(const noh_clip_cache *cache, uint32_t clip, uint32_t k
     return must ? any : NOH_CLIP_NOT_CACHED;
 }
 
-/* Give an entry to a segment; what it held is no longer cached. */
+/* Assign an entry to a segment, evicting its old one. */
 static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segment)
 {
     cached *t = &cache->cached[s];
@@ -344,11 +344,11 @@ static int is_whole(const noh_clip_cache *cache, uint32_t clip, uint32_t segment
     return s != NOH_CLIP_NOT_CACHED && cache->cached[s].cursor.track >= tracks;
 }
 
-/* Decode an entry up to a track, whole or at the frames of `quads` (bits as noh_clip_quad_bit gives them) alone.
+/* Decode an entry up to a track, either whole or only at the frames of `quads` (bits from noh_clip_quad_bit).
  *
- * A jump needs two frames, and the next sample may be elsewhere; so of a segment whose neighbours are not there, and
- * which nobody wanted, only the frames about these are summed up. Its bits have to be read all the same, and again when
- * the rest is needed: whoever plays on from a jump decodes that segment twice. */
+ * A jump needs two frames, and the next sample may be elsewhere. So for an unrequested segment without cached
+ * neighbours, only the frames around these two are summed. Its bits must still be read, and again when the rest is
+ * needed: play that continues after a jump decodes the segment twice. */
 static void decode_late(noh_clip_cache *cache, uint32_t s, uint32_t tracks, uint32_t quads)
 {
     cached *t = &cache->cached[s];
@@ -371,10 +371,9 @@ static void decode_late(noh_clip_cache *cache, uint32_t s, uint32_t tracks, uint
     cache->stats.decoded_late += spent;
 }
 
-/* The entry of a segment with at least `tracks` decoded at the frames of `quads`, whatever it takes. A clip's second
- * segment always finds room beside its first (`keep`): a size class with a single entry either has a single segment, or
- * is the last class that got any, and then a larger entry exists, because a cache of several segments has at least two.
- */
+/* The entry of a segment, decoded for at least `tracks` at the frames of `quads`. A clip's second segment always finds
+ * room next to its first (`keep`): a size class with a single entry either has a single segment, or is the last class
+ * that got any, and then a larger entry exists, because a cache of several segments has at least two. */
 static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks, uint32_t quads,
                       uint32_t keep)
 {
@@ -391,8 +390,8 @@ static uint32_t ready(noh_clip_cache *cache, uint32_t clip, uint32_t segment, ui
     return s;
 }
 
-/* The segment that play without wants comes to next, and the samples until then; NOH_CLIP_NOT_CACHED where a clip is
- * not played on: its sample before was more than PLAY_FRAMES away, or in the same frame. */
+/* The segment that steady play without requests reaches next, and the number of samples until then; NOH_CLIP_NOT_CACHED
+ * if the clip does not play steadily: its last sample was more than PLAY_FRAMES away, or in the same frame. */
 static uint32_t next_segment(const noh_clip *clip, const noh_clip_place *p, uint32_t before, uint32_t *samples)
 {
     const uint32_t first = noh_clip_segment_first(clip, p->segment), frame = first + p->frame;
@@ -407,9 +406,9 @@ static uint32_t next_segment(const noh_clip *clip, const noh_clip_place *p, uint
     return clip->info.flags & NOH_CLIP_FLAG_LOOP ? 0u : NOH_CLIP_NOT_CACHED;
 }
 
-/* An entry for what nobody has asked for yet: not one that was touched in this frame or the one before, because what
- * plays beside this clip comes back to it. Where there is no room for two segments of all that plays, none: each clip
- * that goes on to its next segment would evict one that plays. */
+/* An entry for an unrequested segment: never one touched in this frame or the previous one, because other playing clips
+ * will return to it. None if there is no room for two segments of everything that plays: each clip that moves on to its
+ * next segment would evict one in use. */
 static uint32_t find_spare(const noh_clip_cache *cache, uint32_t clip, uint32_t keep)
 {
     uint32_t s;
@@ -419,8 +418,8 @@ static uint32_t find_spare(const noh_clip_cache *cache, uint32_t clip, uint32_t 
     return cache->stamp - cache->cached[s].stamp > 1u ? s : NOH_CLIP_NOT_CACHED;
 }
 
-/* Decode a share of the segment that comes next, if nobody wants it: the same for each sample until it is needed, where
- * it would be decoded late, all at once. */
+/* Decode a share of the next segment if nothing requests it, spread evenly over the samples until it is needed; without
+ * this it would be decoded late, all at once. */
 static void decode_ahead(noh_clip_cache *cache, uint32_t clip, const noh_clip_place *p, uint32_t here)
 {
     noh_cached_clip *e = &cache->clips[clip];
@@ -443,8 +442,8 @@ static void decode_ahead(noh_clip_cache *cache, uint32_t clip, const noh_clip_pl
 }
 
 #if NOH_ASSERT_LEVEL >= 2
-/* Each size's list holds each of its entries once; `cached_of` and the entries agree; every entry that waits is in the
- * list of wants. */
+/* Each size's list contains each of its entries once; `cached_of` and the entries agree; every waiting entry is in the
+ * list of requests. */
 static int is_sound(const noh_clip_cache *cache)
 {
     uint32_t first = 0, listed = 0, waiting = 0;
@@ -485,8 +484,8 @@ void noh_clip_cache_begin_frame(noh_clip_cache *cache)
     cache->samples_begun = (uint32_t)cache->stats.samples;
 }
 
-/* Give a segment an entry, note up to which track it is wanted, and put it on the list if there is something to decode.
- */
+/* Assign an entry to a segment, store the track up to which it is requested, and queue it if anything must be
+ * decoded. */
 static int want_segment(noh_clip_cache *cache, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
     NOH_ASSERT(tracks <= cache->clips[clip].clip->info.track_count);
@@ -534,8 +533,8 @@ uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32
     }
 }
 
-/* Wants are served in the order of asking, a track at a time. Where the budget ends in the middle of a segment its
- * cursor stays, and the next call goes on from there. */
+/* Requests are served in order, one track at a time. If the budget ends within a segment its cursor stays, and the next
+ * call continues there. */
 uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
 {
     uint32_t spent = 0;
@@ -551,7 +550,7 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget)
     return spent;
 }
 
-/* The slots that a sample needs of the segment it begins in, as noh_clip_quad_bit. Of a next one it is the first. */
+/* The slots that a sample needs of its first segment, as noh_clip_quad_bit. Of a next segment it needs the first. */
 static uint32_t quads_of(const noh_clip_place *p)
 {
     const uint32_t here = noh_clip_quad_bit(p->slot, p->slots);

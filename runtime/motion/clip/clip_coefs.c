@@ -1,16 +1,16 @@
 #include "motion/clip/clip_coefs_internal.h"
 
 /* Most coefficients of a track are 0, 1 or -1, and the larger ones are at low frequencies; the neighbours just above in
- * frequency predict well how large one is. So the three components of one frequency are one symbol, from a table that
- * their neighbours choose, and where neighbours are large the low bits are kept out of the symbol (Rice coding with an
- * adaptive parameter); clip_coefs_internal.h has the rules. Any bits decode: quotients, shifts and escapes are cut to a
- * width at which nothing overflows. */
+ * frequency predict the magnitude well. So the three components of one frequency are one symbol, from a table selected
+ * by their neighbours, and where neighbours are large the low bits are stored outside the symbol (Rice coding with an
+ * adaptive parameter); clip_coefs_internal.h has the rules. Any bits decode: quotients, shifts and escapes are limited
+ * to a width at which nothing overflows. */
 
 #define LOW_BITS_READY 44u /* after a refill, a symbol of 9 bits and before 3 signs */
 #define MAGNITUDE_MASK ((1u << NOH_CLIP_MAGNITUDE_BITS) - 1u)
 
-/* What the three frequencies above the one being read say of it: per component, their magnitudes' sum, the two nearest
- * of them, and how many low bits stand apart. */
+/* Statistics of the three frequencies above the current one: per component the sum of their magnitudes, the two
+ * nearest, and the number of separate low bits. */
 typedef struct history {
     uint32_t sum[3], near[3], middle[3], shift[3];
 } history;
@@ -28,7 +28,7 @@ static inline int32_t with_sign(uint32_t magnitude, uint32_t negative)
     return ((int32_t)magnitude ^ -(int32_t)negative) + (int32_t)negative;
 }
 
-/* An Exp-Golomb number of order 0: n zeros, a one, n bits. A prefix longer than any encoder writes is cut. */
+/* An Exp-Golomb number of order 0: n zeros, a one, n bits. A prefix longer than any encoder writes is cut off. */
 static uint32_t read_escape(noh_bits *b)
 {
     uint32_t zeros;
@@ -51,15 +51,15 @@ static inline uint32_t read_low(noh_bits *b, uint32_t quotient, uint32_t shift)
     return ((quotient << shift) | noh_bits_take(b, shift)) & MAGNITUDE_MASK;
 }
 
-/* The table of a triple: which of its components are busy. One is where its sum is NOH_CLIP_BUSY or more, and that is
- * where its shift is not 0. */
+/* The table of a triple, by which of its components are busy: those with a sum of NOH_CLIP_BUSY or more, which is where
+ * the shift is not 0. */
 static inline const uint16_t *table_of(const history *h)
 {
     return noh_clip_triple_table[(uint32_t)(h->shift[0] != 0u) | (uint32_t)(h->shift[1] != 0u) << 1 |
                                  (uint32_t)(h->shift[2] != 0u) << 2];
 }
 
-/* What is seldom needed works on a copy of the reader, which itself can so stay in registers. */
+/* Rare cases use a copy of the reader, so that the reader itself can stay in registers. */
 static inline void read_triple(noh_bits *b, const uint16_t *table, history *h, int32_t out[4])
 {
     const uint32_t wide = h->shift[0] + h->shift[1] + h->shift[2] > LOW_BITS_READY;

@@ -7,7 +7,7 @@
 #define ROTATION_NARROW 8u
 #define ROTATION_WIDE 16u
 #define LINEAR_BYTES 12u
-#define LAST_AT_START 4u /* the context of the first track: as if the one before had 4 frequencies */
+#define LAST_AT_START 4u /* the context of the first track: as if the previous one had 4 frequencies */
 
 noh_clip_cursor noh_clip_cursor_at(const noh_clip *clip, uint32_t segment)
 {
@@ -36,7 +36,7 @@ static float raw_float(noh_bits *b)
     return v - v == 0.0f ? v : 0.0f; /* NaN and infinity become 0 */
 }
 
-/* A raw track keeps its frames as floats: the encoder's last resort where coefficients do not keep to the bound. */
+/* A raw track stores its frames as floats: the encoder's last resort if coefficients exceed the error bound. */
 static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, const noh_clip_basis *basis,
                        uint8_t *out)
 {
@@ -58,8 +58,8 @@ static void decode_raw(noh_bits *b, const noh_clip *clip, const noh_clip_track *
     }
 }
 
-/* The quantiser's step of a track. In a clip of several segments the header has a step for each track, and a segment
- * only the difference from it; in a clip of a single segment the difference is from the step of the track before. */
+/* The quantiser step of a track. In a clip of several segments the header has a step for each track, and a segment only
+ * the difference from it; in a clip of a single segment it is the difference from the previous track's step. */
 static uint32_t read_step(noh_bits *b, const noh_clip *clip, const noh_clip_track *track, int16_t before)
 {
     const uint32_t single = clip->info.segment_count == 1u;
@@ -86,9 +86,8 @@ static void read_wild(noh_bits *b, float reference[4])
     }
 }
 
-/* The coefficients of a track. Of a split segment the high ones come from its second part, and whoever wants half of
- * the frames does without them. `high`: a reader of that part, NULL where it is not read. Returns how many there are.
- */
+/* Read the coefficients of a track. In a split segment the high ones come from its second part, which halved playback
+ * skips. `high`: a reader of that part, NULL if it is not read. Returns their number. */
 static uint32_t read_frequencies(noh_bits *b, noh_bits *high, const noh_clip_basis *basis, uint32_t class,
                                  noh_clip_cursor *cursor, int32_t coefs[][4])
 {
@@ -110,9 +109,9 @@ static uint32_t read_frequencies(noh_bits *b, noh_bits *high, const noh_clip_bas
     return last;
 }
 
-/* One track of a segment: read its coefficients, multiply by the step, turn mixed axes back, and sum the cosines into
- * frames. A rotation is the reference times the rotation that the components stand for, a linear value the reference
- * plus the components. */
+/* Decode one track of a segment: read its coefficients, multiply by the step, undo mixed axes, and sum the cosines into
+ * frames. A rotation is the reference times the rotation given by the components; a linear value is the reference plus
+ * the components. */
 static void decode_track(noh_bits *b, noh_bits *high, const noh_clip *clip, const noh_clip_track *track,
                          const noh_clip_basis *basis, noh_clip_cursor *cursor, uint8_t *out)
 {

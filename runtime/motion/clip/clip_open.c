@@ -1,10 +1,9 @@
-/* clip_open.c: the header, checked and expanded. One parser runs twice, first to measure (its pointers are NULL and it
+/* clip_open.c: checks and expands the header. One parser runs twice, first to measure (its pointers are NULL and it
  * only counts), then into the caller's memory, so that size and use cannot disagree.
  *
- * A clip is untrusted bytes. The header is read to its end, and every count is checked against a limit before it bounds
- * a loop; past the end the bit reader gives zeros, and read_sizes finds that out. The segments' sizes must fill the
- * clip exactly; what is in the segments need not be checked, because any bits decode to some frames, in bounds
- * (clip_decode_internal.h). */
+ * A clip is untrusted bytes. Every count in the header is checked against a limit before it bounds a loop; past the end
+ * the bit reader returns zeros, which read_sizes detects. The segments' sizes must fill the clip exactly. The contents
+ * of segments need no check, because any bits decode to some frames, in bounds (clip_decode_internal.h). */
 #include <string.h>
 
 #include "core/base/arena.h"
@@ -24,7 +23,7 @@ typedef struct parser {
     noh_bits bits;
     const noh_clip_desc *desc;
     noh_clip *clip;
-    /* where the expansion goes; NULL while measuring */
+    /* destination of the expansion; NULL while measuring */
     noh_clip_track *tracks;
     noh_clip_prefix *prefixes;
     uint32_t *rotation_offsets;
@@ -131,7 +130,7 @@ static void read_quat(parser *p, uint32_t width, float q[4])
     noh_clip_quat_expand(codes, left_out, width, q);
 }
 
-/* Three floats, of which the highest `width` bits are stored. NaN and infinity are refused. */
+/* Three floats stored as their highest `width` bits. NaN and infinity are rejected. */
 static noh_result read_floats(parser *p, uint32_t width, float v[3])
 {
     for (uint32_t i = 0; i < 3u; i++) {
@@ -142,7 +141,7 @@ static noh_result read_floats(parser *p, uint32_t width, float v[3])
     return NOH_OK;
 }
 
-/* Keep a track that was read, or only count it. Rotations and linear tracks are numbered apart: a cached frame has all
+/* Store a track, or only count it. Rotations and linear tracks are numbered separately: a cached frame has all tracks
  * of one kind in a row, so that sampling is a loop over neighbours. */
 static void add_track(parser *p, const noh_clip_track *track)
 {
@@ -162,8 +161,8 @@ static void add_track(parser *p, const noh_clip_track *track)
     p->track_count++;
 }
 
-/* The floats of a triple may have very different ranges: the second and third have steps of their own, relative to the
- * first. They are kept as the diagonal of the mix matrix, so decoding floats takes the same path as mixed axes. */
+/* The floats of a triple may have very different ranges: the second and third have their own steps, relative to the
+ * first. They are stored as the diagonal of the mix matrix, so decoding floats uses the same path as mixed axes. */
 static void read_scales(parser *p, noh_clip_track *t)
 {
     for (uint32_t i = 0; i < 2u; i++) {
@@ -225,8 +224,8 @@ static noh_result read_subtrack(parser *p, noh_clip_kind kind, uint32_t mode, ui
     return read_floats(p, widths[noh_bits_get(&p->bits, 2u)], value);
 }
 
-/* Most joints of most clips only rotate: one bit says so. The others say for each of rotation, translation and scale
- * whether it is the bind pose's, constant or animated. */
+/* Most joints of most clips only rotate: one bit marks them. Other joints mark each of rotation, translation and scale
+ * as bind, constant or animated. */
 static noh_result read_joint(parser *p, uint32_t joint)
 {
     uint32_t rotation = NOH_CLIP_MODE_ANIMATED, translation = NOH_CLIP_MODE_BIND, scale = NOH_CLIP_MODE_BIND;
@@ -251,8 +250,8 @@ static noh_result read_joint(parser *p, uint32_t joint)
     return r;
 }
 
-/* Tracks come in the order of joints, so the first n joints need the first so many tracks, rotations and linear tracks:
- * a LOD level that poses a prefix of the skeleton decodes and samples just those. */
+/* Tracks are in joint order, so the first n joints need the first tracks, rotations and linear tracks: a LOD level that
+ * poses a prefix of the skeleton decodes and samples just those. */
 static void keep_prefix(parser *p, uint32_t joint)
 {
     if (p->prefixes) {
@@ -307,11 +306,11 @@ static noh_result read_sizes(parser *p)
     return at == p->desc->byte_count ? NOH_OK : fail(p, NOH_ERR_DATA, "the clip has bytes after its last segment", at);
 }
 
-/* What the whole weights of two frames add up to: the largest number, up to NOH_CLIP_WEIGHT_MAX, of parts of a frame
- * with every tick and every eighth of a frame among them. At 30 Hz a frame is 1,600 ticks, and 32,000 parts of one hold
- * both. With g = gcd(48,000 Hz, sample rate), both in micro-hertz, ticks lie at multiples of 1 / (48,000 Hz / g) of a
- * frame; doubling that divisor until 8 divides it takes in the eighths. At sample rates for which it is too large, a
- * time is off by less than 1/65,000 of a frame. */
+/* The sum of the whole-number weights of two frames: the largest number, up to NOH_CLIP_WEIGHT_MAX, that divides a
+ * frame so that every tick and every eighth of a frame is a multiple. At 30 Hz a frame is 1,600 ticks, and 32,000 parts
+ * contain both. With g = gcd(48,000 Hz, sample rate), both in micro-hertz, ticks lie at multiples of 1 / (48,000 Hz /
+ * g) of a frame; doubling that divisor until 8 divides it includes the eighths. At sample rates for which it is too
+ * large, a time is off by less than 1/65,000 of a frame. */
 static uint32_t weight_one(uint32_t sample_rate_uhz)
 {
     const uint64_t second = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;
@@ -331,7 +330,7 @@ static uint32_t weight_one(uint32_t sample_rate_uhz)
     return (uint32_t)(NOH_CLIP_WEIGHT_MAX / step * step);
 }
 
-/* A rate of 119.88 is twice 60. */
+/* A rate of 119.88 counts as twice 60. */
 static uint32_t is_halved(const noh_clip_desc *desc, uint32_t sample_rate_uhz)
 {
     return desc->sample_rate_enough &&
@@ -480,9 +479,10 @@ noh_clip_group noh_clip_group_at(const noh_clip *clip, uint32_t index)
     return clip->groups[index];
 }
 
-/* ticks / 48,000 Hz * sample rate, as a quotient and a remainder of integers: no time is rounded before it is split
- * into frame and fraction. Frames seldom lie at whole ticks (90 Hz: every third); a frame is shown at the ticks nearest
- * to it, so that a player at the clip's own frame times gets the frames, within the bound, and not what lies beside. */
+/* ticks / 48,000 Hz * sample rate, as quotient and remainder of integers: no time is rounded before it is split into
+ * frame and fraction. Frames seldom lie at whole ticks (90 Hz: every third); a frame is shown at the tick nearest to
+ * it, so that a player at the clip's own frame times gets the exact frames, within the bound, and not interpolated
+ * ones. */
 uint32_t noh_clip_frame_at(const noh_clip *clip, int64_t ticks, float *fraction)
 {
     const uint64_t unit = (uint64_t)NOH_CLIP_TICKS_PER_SECOND * NOH_CLIP_MICRO;

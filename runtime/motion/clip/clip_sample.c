@@ -7,15 +7,15 @@
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
 #define NOH_CLIP_INLINE NOH_ALWAYS_INLINE
 
-#define TINY 1e-30f /* so that rotations of zeros, which only a broken clip has, do not divide by 0 */
+#define TINY 1e-30f /* so that zero rotations, which only a broken clip has, do not divide by 0 */
 
-/* The weights of two frames: whole numbers where rotations are kept in 16 bits, else floats. */
+/* The weights of two frames: whole numbers if rotations are stored in 16 bits, else floats. */
 typedef struct weights {
     int32_t whole_a, whole_b;
     float to_a, to_b;
 } weights;
 
-/* `offset`: of a joint in a pose, bytes. */
+/* `offset`: byte offset of a joint in a pose. */
 static inline float *rotation_at(noh_transform *out, uint32_t offset)
 {
     return (float *)(void *)((uint8_t *)out + offset);
@@ -24,7 +24,7 @@ static inline float *rotation_at(noh_transform *out, uint32_t offset)
 #if defined(NOH_AVX2) && !defined(NOH_CLIP_SCALAR)
 #include <immintrin.h>
 
-/* Two joints to a register, eight at a time; sums in the order of the scalar twin. */
+/* Two joints per register, eight at a time; sums in the order of the scalar code. */
 NOH_CLIP_INLINE void blend_four(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
                                 __m256 *first, __m256 *second)
 {
@@ -60,7 +60,7 @@ static inline void store_two(__m256 q, noh_transform *out, uint32_t first, uint3
     _mm_storeu_ps(rotation_at(out, second), _mm256_extractf128_ps(q, 1));
 }
 
-/* Registers hold joints 0 2, 1 3, 4 6, 5 7. Returns how many rotations are done. */
+/* Registers hold joints 0 2, 1 3, 4 6, 5 7. Returns the number of rotations done. */
 NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, const uint8_t *b, const weights *w,
                                     uint32_t count, int wide, noh_transform *out)
 {
@@ -94,8 +94,8 @@ NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, c
 }
 #endif
 
-/* Normalise four quaternions with one vector square root. Written out, here and below: at -O2 compilers keep loops of
- * four, and their arrays in memory. */
+/* Normalise four quaternions with one vector square root. Unrolled by hand, here and below: at -O2 compilers keep loops
+ * of four, and their arrays in memory. */
 NOH_CLIP_INLINE void normalise_group(noh_v4 q[NOH_CLIP_GROUP])
 {
     noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]),
@@ -113,7 +113,7 @@ NOH_CLIP_INLINE noh_v4 lerp(const float *a, const float *b, noh_v4 to_a, noh_v4 
     return noh_v4_add(noh_v4_mul(noh_v4_load(a), to_a), noh_v4_mul(noh_v4_load(b), to_b));
 }
 
-/* Four neighbours. A frame has room for a whole group past the last rotation; what lies there is not used. */
+/* Blend four neighbours. A frame has room for a whole group after the last rotation; the extra results are unused. */
 NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
                                  noh_v4 q[NOH_CLIP_GROUP])
 {
@@ -133,10 +133,10 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
     normalise_group(q);
 }
 
-/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first of
- * two neighbours (the encoder negates them where needed), so no signs are compared. Cached frames hold rotations as
- * 16-bit integers: they are multiplied by whole weights, exactly, and rounded once to floats, which is why every
- * instruction set gives the same bits. */
+/* Rotations: a weighted sum, normalised. Frames of one segment lie in one hemisphere, and so do the last and first
+ * frames of neighbouring segments (the encoder negates them if needed), so signs need no comparison. Cached frames hold
+ * rotations as 16-bit integers: they are multiplied by whole-number weights, exactly, and rounded once to floats, so
+ * every instruction set gives the same bits. */
 NOH_CLIP_INLINE void blend_rotations(const noh_clip *clip, const uint8_t *a, const uint8_t *b, const weights *w,
                                      uint32_t count, int wide, noh_transform *out)
 {

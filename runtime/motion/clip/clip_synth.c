@@ -34,7 +34,7 @@ static double basis_cosine(uint32_t m, uint32_t n)
     return m <= n ? quarter_cosine(m, n) : -quarter_cosine(2u * n - m, n);
 }
 
-/* The root of a number within the range of floats, by Newton's method from the float's. */
+/* The square root of a number in float range, by Newton's method from the float's root. */
 static double root(double x)
 {
     double r = (double)noh_sqrt((float)x);
@@ -42,7 +42,7 @@ static double root(double x)
     return 0.5 * (r + x / r);
 }
 
-/* The sum over all frames of a product of two rows of the same symmetry, of which the first halves are given. */
+/* The sum over all frames of a product of two rows of the same symmetry, given their first halves. */
 static double product_of(const double *a, const double *b, uint32_t frames)
 {
     double sum = 0.0;
@@ -52,13 +52,12 @@ static double product_of(const double *a, const double *b, uint32_t frames)
     return frames % 2u ? sum + a[frames / 2u] * b[frames / 2u] : sum;
 }
 
-/* The even or the odd rows of the transform that begins with a parabola. Motion does not stop where a segment ends: the
- * DCT takes it for mirrored there, and the kink in its slope keeps coefficients large to the highest frequencies. What
- * x and x^2 leave of a smooth motion has no slope at either end.
+/* The even or the odd rows of the transform that begins with a parabola. Motion does not stop at the end of a segment:
+ * the DCT mirrors it there, and the kink in its slope keeps coefficients large up to the highest frequencies. After x
+ * and x^2 are removed, a smooth motion has no slope at either end.
  *
- * Gram and Schmidt's method in a closed form: `rest` is what is left of the power (x or x^2) after the cosines so far,
- * which are orthogonal to each other already; so of all rows before it a cosine has to be made orthogonal to `rest`
- * alone. */
+ * Gram-Schmidt in closed form: `rest` is what remains of the power (x or x^2) after the cosines so far, which are
+ * already orthogonal to each other; so each new cosine only has to be made orthogonal to `rest`. */
 static void build_parabola(uint32_t frames, uint32_t odd, float *rows)
 {
     const uint32_t half = noh_clip_basis_half(frames), middle = (frames + 1u) / 2u;
@@ -75,7 +74,7 @@ static void build_parabola(uint32_t frames, uint32_t odd, float *rows)
         rest[f] -= mean;
     }
     for (uint32_t k = odd ? 1u : 2u; k < frames; k += 2u) {
-        const uint32_t frequency = k - 2u; /* wraps where k is 1: the power itself, as where k is 2 */
+        const uint32_t frequency = k - 2u; /* wraps if k is 1: the power itself, as for k 2 */
         const double square = product_of(rest, rest, frames);
         if (k <= 2u) {
             size = 1.0 / root(square);
@@ -124,8 +123,8 @@ float noh_clip_step(uint32_t id)
     return power * parts[id % 4u];
 }
 
-/* "Smallest three": the largest component of a unit quaternion is made positive and left out. None of the others is
- * above sqrt(1/2), and the one left out follows from them. Codes that give no unit quaternion (in a broken clip) are
+/* "Smallest three": the largest component of a unit quaternion is made positive and omitted. None of the others is
+ * above sqrt(1/2), and the omitted one follows from them. Codes that give no unit quaternion (in a broken clip) are
  * scaled to one. */
 void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4])
 {
@@ -164,7 +163,7 @@ void noh_clip_quat_unit(const float q[4], float unit[4])
     }
 }
 
-/* A track's components may be coded along other axes, which the encoder chose; the matrix of a quaternion turns them
+/* A track's components may be coded along other axes, chosen by the encoder; the matrix of a quaternion turns them
  * back. */
 void noh_clip_mix_matrix(const float q[4], float m[9])
 {
@@ -204,8 +203,8 @@ typedef struct quad {
     noh_v4 front[3], back[3];
 } quad;
 
-/* The numbers of four slots in a row: neighbours, or every second of eight; `next`: where the last four of these lie.
- */
+/* The values of four slots in a row: neighbours, or every second of eight; `next`: position of the last four of
+ * these. */
 NOH_ALWAYS_INLINE noh_v4 load_slots(const float *row, int halved, uint32_t next)
 {
     return halved ? noh_v4_even(noh_v4_load(row), noh_v4_load(row + next)) : noh_v4_load(row);
@@ -242,7 +241,7 @@ NOH_ALWAYS_INLINE void join(const noh_v4 even[3], const noh_v4 odd[3], quad *out
     out->back[2] = noh_v4_sub(even[2], odd[2]);
 }
 
-/* `two`: of eight slots at once, which share what a coefficient takes to be spread over lanes. */
+/* `two`: eight slots at once, which share the cost of broadcasting coefficients to lanes. */
 NOH_ALWAYS_INLINE void transform_slots(const noh_clip_basis *basis, const float (*coefs)[4], uint32_t last,
                                        uint32_t slot, int halved, int two, quad *out)
 {
@@ -265,7 +264,7 @@ NOH_ALWAYS_INLINE void transform_slots(const noh_clip_basis *basis, const float 
     }
 }
 
-/* The quads of a segment in order, two at a time where both are wanted. */
+/* The quads of a segment in order, two at a time if both are needed. */
 typedef struct quads {
     quad of[2];
     uint32_t ready; /* 1: of[1] is the next */

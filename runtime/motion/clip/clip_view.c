@@ -5,8 +5,8 @@
 #include "motion/clip/clip_cache_internal.h"
 #include "core/base/arena.h"
 
-/* A segment of the view's own. It is kept from one sample to the next, so a clip that plays on without being wanted is
- * decoded once a segment, not once a sample. */
+/* A segment of the view's own. It is kept from sample to sample, so a clip that plays without being requested is
+ * decoded once per segment, not once per sample. */
 typedef struct spill {
     noh_clip_cursor cursor;
     uint8_t *frames;
@@ -17,7 +17,7 @@ typedef struct spill {
 struct noh_clip_view {
     const noh_clip_cache *cache;
     spill spills[2];
-    uint32_t latest; /* index of the spill that was used last */
+    uint32_t latest; /* index of the spill used last */
     noh_clip_cache_stats stats;
 };
 
@@ -72,7 +72,7 @@ noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *
 
 /* ---- sampling ---- */
 
-/* The spill that holds a segment, or the one to decode it into: not the one used last, which is the first half of a
+/* The spill that holds a segment, or the one to decode it into: not the one used last, which may be the first half of a
  * sample between two segments. */
 static spill *find_spill(noh_clip_view *view, uint32_t clip, uint32_t segment)
 {
@@ -92,7 +92,7 @@ static spill *find_spill(noh_clip_view *view, uint32_t clip, uint32_t segment)
     return s;
 }
 
-/* The frames of a segment with at least `tracks` decoded: the cache's, or the view's own. */
+/* The frames of a segment with at least `tracks` decoded: from the cache, or from the view. */
 static const uint8_t *frames_of(noh_clip_view *view, uint32_t clip, uint32_t segment, uint32_t tracks)
 {
     const noh_clip_cache *cache = view->cache;

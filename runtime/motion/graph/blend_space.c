@@ -30,7 +30,7 @@ typedef struct nearest_edge {
     uint32_t a, b;
 } nearest_edge;
 
-/* Keep an edge if it is nearer to (x, y) than the best so far, or as near and shorter. */
+/* Keep an edge if it is nearer to (x, y) than the best so far, or equally near and shorter. */
 static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float x, float y, nearest_edge *best)
 {
     float ex = s->points[2u * b] - s->points[2u * a], ey = s->points[2u * b + 1u] - s->points[2u * a + 1u];
@@ -50,7 +50,7 @@ static void try_edge(const noh_blend_space_2d *s, uint32_t a, uint32_t b, float 
     }
 }
 
-/* A point outside all triangles: the weights of the nearest point on any edge, which is one of the hull's. */
+/* A point outside all triangles: use the weights of the nearest point on any edge, which is one of the hull's. */
 static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *weights)
 {
     nearest_edge best = { -1.0f, 0.0f, 0.0f, 0, 0 };
@@ -59,7 +59,7 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
             try_edge(s, s->triangles[3u * i + k], s->triangles[3u * i + (k + 1) % 3], x, y, &best);
         }
     }
-    if (s->triangle_count == 0) { /* all points on a line: of overlapping edges the shortest joins neighbours */
+    if (s->triangle_count == 0) { /* all points on a line: among overlapping edges, the shortest joins neighbours */
         for (uint32_t a = 0; a < s->point_count; a++) {
             for (uint32_t b = a + 1; b < s->point_count; b++) {
                 try_edge(s, a, b, x, y, &best);
@@ -70,7 +70,7 @@ static void edge_weights(const noh_blend_space_2d *s, float x, float y, float *w
     weights[best.b] += best.t;
 }
 
-/* Barycentric weights in a triangle: the area opposite each corner, over the whole. Returns 0 when the point is
+/* Barycentric weights in a triangle: the area opposite each corner, over the whole. Returns 0 if the point is
  * outside. */
 static int triangle_weights(const noh_blend_space_2d *s, const uint8_t t[3], float x, float y, float *weights)
 {
@@ -110,7 +110,7 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
 
 /* ---- triangulation ----
  *
- * A sweep over the points by x joins each to the hull of those before it; then edges are flipped until all are
+ * A sweep over the points by x joins each to the hull of the previous ones; then edges are flipped until all are
  * Delaunay. There are few points and this runs once, so neither step needs to be fast. */
 
 typedef struct mesh {
@@ -185,8 +185,8 @@ static void sort_points(mesh *m)
     }
 }
 
-/* The first triangles of the sweep: a fan from the first point that is off the line through those before it to all of
- * them. Returns the number of points used; count when all are on one line. */
+/* The first triangles of the sweep: a fan from the first point off the line through the previous points to all of them.
+ * Returns the number of points used; count if all lie on one line. */
 static uint32_t first_fan(mesh *m)
 {
     uint32_t k = 2, tip;
@@ -208,8 +208,8 @@ static uint32_t first_fan(mesh *m)
     return k + 1;
 }
 
-/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of those
- * before it, and the edges that it sees are neighbours: they leave the hull and two new edges take their place. */
+/* Join a point to every hull edge that it sees. Points come in order of x, so each lies outside the hull of the
+ * previous ones, and the edges that it sees are consecutive: they leave the hull and two new edges replace them. */
 static void add_point(mesh *m, uint32_t p)
 {
     uint8_t hull[NOH_BLEND_SPACE_POINTS_MAX + 1u];
@@ -251,7 +251,7 @@ static int flip(mesh *m, uint8_t *s, uint8_t *t)
 static void flip_all(mesh *m)
 {
     /* Lawson's algorithm (1977). Lift each point to the height x^2 + y^2: every flip lowers the surface of lifted
-     * triangles, so no triangulation comes twice and this ends; n^2 passes are far more than it takes. */
+     * triangles, so no triangulation repeats and this terminates; n^2 passes are far more than it needs. */
     uint32_t passes = m->count * m->count, flips = 1;
     while (flips && passes--) {
         flips = 0;
@@ -265,7 +265,7 @@ static void flip_all(mesh *m)
 
 static int in_range(float x)
 {
-    return x >= -NOH_BLEND_SPACE_COORDINATE_MAX && x <= NOH_BLEND_SPACE_COORDINATE_MAX; /* not where it is NaN */
+    return x >= -NOH_BLEND_SPACE_COORDINATE_MAX && x <= NOH_BLEND_SPACE_COORDINATE_MAX; /* false for NaN */
 }
 
 static noh_result check_points(const mesh *m, const float *points, noh_error *error)

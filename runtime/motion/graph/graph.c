@@ -1,5 +1,5 @@
-/* graph.c: the state of a graph: a controller with a track for each of its clips, parameters, and where each state
- * machine stands. The graph itself is constant and shared. A state holds no pointers, so a copy of it is a state. */
+/* graph.c: the state of a graph: a controller with one track per clip, parameters, and the state of each machine. The
+ * graph itself is constant and shared. A state holds no pointers, so it can be copied. */
 #include "motion/graph/graph.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ static noh_controller_desc controller_desc(const noh_graph_shape *g, const noh_c
     memset(&d, 0, sizeof d);
     d.set = set;
     d.track_count = g->clip_count;
-    d.change_count = 1; /* the least: the graph sets weights by itself */
+    d.change_count = 1; /* the minimum: the graph sets weights itself */
     d.flags = g->inertial ? NOH_CONTROLLER_INERTIAL : 0u;
     return d;
 }
@@ -120,8 +120,8 @@ uint32_t noh_graph_choice(const noh_graph_state *state, const noh_graph_node *no
                                                       : (uint32_t)(value + 0.5f);
 }
 
-/* Reset a subtree: clips to their starts, machines to their first states, selects to what their parameter says,
- * one-shots to rest. */
+/* Reset a subtree: clips to their starts, machines to their first states, selects to their parameter's value, one-shots
+ * to rest. */
 noh_result noh_graph_start_subtree(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, uint32_t node,
                                    noh_error *error)
 {

@@ -1,4 +1,4 @@
-/* Checking a graph, and how many pose buffers it needs. */
+/* Checks a graph, and counts the pose buffers it needs. */
 #include <string.h>
 
 #include "core/base/math_internal.h"
@@ -167,8 +167,8 @@ static const char *bad_node(const noh_graph *g, const noh_clip_set *set, const n
 }
 
 /* Post-order, checked with a stack of finished subtrees as in a postfix calculator: a node's children must be the
- * topmost ones, in order, and are replaced by the node. One subtree, the whole graph, remains. That every node has one
- * parent follows, and that the graph has no cycle. */
+ * topmost ones, in order, and are replaced by the node. One subtree, the whole graph, must remain. It follows that
+ * every node has one parent and that the graph has no cycle. */
 static const char *bad_order(const noh_graph *g, uint32_t *where)
 {
     uint16_t done[NOH_GRAPH_NODES_MAX];
@@ -204,7 +204,7 @@ static const char *bad_indices(const noh_graph *g, uint32_t *where)
                                           : NULL;
 }
 
-/* The clip that says when a shot is over has to end: the first of its subtree. After bad_order. */
+/* The clip that determines the end of a one-shot, the first of its subtree, must end. Call after bad_order. */
 static const char *bad_shots(const noh_graph *g, const noh_clip_set *set, uint32_t *where)
 {
     for (uint32_t i = 0; i < g->node_count; i++) {
@@ -243,7 +243,7 @@ noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_
     return what ? noh_fail(error, NOH_ERR_DATA, what, where, 0) : NOH_OK;
 }
 
-/* How many children of a node can have weight at one time. */
+/* The number of a node's children that can have weight at the same time. */
 static uint32_t live_children(const noh_graph_node *n)
 {
     uint32_t most = n->kind == NOH_NODE_SPACE_2D ? 3u : 2u;
@@ -258,7 +258,7 @@ uint32_t noh_graph_count_buffers(const noh_graph_nodes *nodes, const uint16_t *c
         const noh_graph_node *n = noh_graph_node_at(nodes, i);
         need[i] = 1;
         for (uint32_t k = 0; k < n->child_count; k++) {
-            /* While a child is evaluated, the buffers of its elder siblings wait, at most one less than can have
+            /* While a child is evaluated, the buffers of its earlier siblings wait, at most one less than can have
              * weight: the numbering of Sethi and Ullman (1970) for registers, with a fixed order of children. */
             uint32_t waiting = k < live_children(n) - 1 ? k : live_children(n) - 1;
             uint32_t depth = need[children[n->first_child + k]] + waiting;

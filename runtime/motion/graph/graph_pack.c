@@ -9,7 +9,7 @@
 #include "core/base/hash.h"
 #include "motion/graph/graph_weights_internal.h"
 
-/* The numbers of the format are those of the graph. */
+/* The pack format uses the graph's numbers. */
 NOH_STATIC_ASSERT(NOH_PACK_NODE_CLIP == NOH_NODE_CLIP && NOH_PACK_NODE_BLEND == NOH_NODE_BLEND, kinds_first);
 NOH_STATIC_ASSERT(NOH_PACK_NODE_ADD == NOH_NODE_ADD && NOH_PACK_NODE_MASK == NOH_NODE_MASK, kinds_layers);
 NOH_STATIC_ASSERT(NOH_PACK_NODE_SPACE_1D == NOH_NODE_SPACE_1D && NOH_PACK_NODE_SPACE_2D == NOH_NODE_SPACE_2D, spaces);
@@ -70,7 +70,7 @@ static int same_text(const char *a, const char *b)
     return *a == *b;
 }
 
-/* Whether a stored name, whose hash is beside it, is `name`. */
+/* Whether a stored name, given with its hash, is `name`. */
 static int is_named(const noh_pack *pack, uint32_t stored, uint32_t stored_hash, const char *name, uint32_t hash)
 {
     return stored_hash == hash && same_text(noh_pack_string(pack, stored), name);
@@ -111,7 +111,7 @@ static void fill_nodes(const noh_pack_graph *g, noh_graph_node *nodes)
     }
 }
 
-/* Reference clips by name. */
+/* Find reference clips by name. */
 static noh_result fill_references(const noh_pack_graph *g, const noh_clip_set *set, noh_graph_node *nodes,
                                   noh_error *error)
 {
@@ -265,7 +265,7 @@ size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error)
     return check_desc(desc, &g, error) ? 0u : carve(&arena, g.header, desc->set, &p);
 }
 
-/* A node of a pack is its name and then a noh_graph_node. */
+/* A node in a pack is its name followed by a noh_graph_node. */
 NOH_STATIC_ASSERT(sizeof(noh_pack_graph_node) == 8u + sizeof(noh_graph_node), graph_node_of_pack);
 NOH_STATIC_ASSERT(offsetof(noh_pack_graph_node, kind) == 8u, graph_node_kind);
 NOH_STATIC_ASSERT(offsetof(noh_pack_graph_node, value) == 8u + offsetof(noh_graph_node, value), graph_node_value);
@@ -311,7 +311,7 @@ noh_result noh_graph_pack_measure(const noh_graph_pack_desc *desc, noh_graph_pac
                           NOH_TRACKS_MAX);
 }
 
-/* Everything but the clips and the masks, which may fail. */
+/* Everything except the clips and the masks, which may fail. */
 static void join(const noh_pack_graph *g, const noh_clip_set *set, const parts *p)
 {
     const noh_pack_graph_header *h = g->header;
@@ -395,7 +395,7 @@ uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, c
     return NOH_NONE;
 }
 
-/* The node of a name, from `kind` to `last`. */
+/* Find a node by name, of a kind from `kind` to `last`. */
 static const noh_pack_graph_node *find_node(const noh_pack_graph *g, const char *name, uint32_t kind, uint32_t last)
 {
     const uint32_t hash = noh_hash_name(name);
@@ -467,7 +467,7 @@ noh_result noh_graph_pack_set_param(const noh_graph_pack *made, noh_graph_state 
     }
     value = value < p->minimum ? p->minimum : value > p->maximum ? p->maximum : value;
     if ((p->kind == NOH_PARAM_INTEGER || p->kind == NOH_PARAM_ENUM) && value > -8388608.0f && value < 8388608.0f) {
-        value = (float)(int32_t)(value < 0.0f ? value - 0.5f : value + 0.5f); /* larger floats are whole */
+        value = (float)(int32_t)(value < 0.0f ? value - 0.5f : value + 0.5f); /* larger floats are whole already */
     }
     return noh_graph_set_param(state, param, value);
 }

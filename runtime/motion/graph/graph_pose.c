@@ -70,8 +70,8 @@ typedef struct evaluation {
     int64_t ago;
     uint32_t taken; /* a bit per buffer */
     float weights[NOH_GRAPH_NODES_MAX];
-    uint8_t buffer[NOH_GRAPH_NODES_MAX]; /* where a node's pose lies, or NO_BUFFER */
-    /* NOH_CLIP_FLOATS_ONLY, NOH_CLIP_JOINTS_ONLY: what no clip in a buffer's pose animates */
+    uint8_t buffer[NOH_GRAPH_NODES_MAX]; /* the buffer with a node's pose, or NO_BUFFER */
+    /* NOH_CLIP_FLOATS_ONLY, NOH_CLIP_JOINTS_ONLY: what no clip in the buffer's pose animates */
     uint8_t lacks[NOH_GRAPH_BUFFERS_MAX];
 } evaluation;
 
@@ -79,7 +79,7 @@ static uint8_t take_buffer(evaluation *e)
 {
     uint8_t i = 0;
     while (e->taken >> i & 1u) {
-        i++; /* ends: noh_graph_buffers counted the buffers */
+        i++; /* terminates: noh_graph_buffers counted the buffers */
     }
     e->taken |= 1u << i;
     return i;
@@ -122,7 +122,7 @@ static parts parts_of(evaluation *e, const noh_graph_node *node)
     return p;
 }
 
-/* Blend the children by weight, as a controller blends tracks, into the first one's buffer. */
+/* Blend the children by weight, as a controller blends tracks, into the first child's buffer. */
 static void sum_parts(evaluation *e, const parts *p)
 {
     static const noh_mask_view everywhere = { NULL, NULL };
@@ -152,7 +152,7 @@ static int is_difference(const evaluation *e, uint32_t node)
     return (e->set->clips[noh_controller_track(e->c, clip->index)->clip].flags & NOH_CLIP_ADDITIVE) != 0;
 }
 
-/* The second child is added as a difference: as it is, or taken from the reference pose first. */
+/* Add the second child as a difference: directly, or relative to the reference pose. */
 static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
@@ -174,7 +174,8 @@ static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
     e->lacks[p->buffers[0]] &= e->lacks[p->buffers[1]];
 }
 
-/* The second child is laid over the first where the mask allows; what it does not animate stays the first's. */
+/* Lay the second child over the first where the mask allows; joints and floats that it does not animate stay as in the
+ * first. */
 static void mask_part(evaluation *e, const noh_graph_node *node, const parts *p)
 {
     noh_mask_view mask = noh_clip_set_mask(e->set, node->mask);
@@ -207,8 +208,8 @@ static void evaluate_node(evaluation *e, uint32_t i)
     e->buffer[i] = p.count ? p.buffers[0] : (uint8_t)NO_BUFFER;
 }
 
-/* Post-order makes this a walk over an array: children come before their node and leave their poses in buffers; the
- * node combines them in the first one's buffer and frees the others. `before`: as things were before the inertial
+/* In post-order, evaluation is a loop over an array: children come before their node and leave their poses in buffers;
+ * the node combines them in the first one's buffer and frees the others. `before`: the state before the inertial
  * transitions that begin now. */
 static void evaluate(const noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                      noh_graph_scratch *scratch, int before, int64_t ago, noh_transform *pose, float *floats)
@@ -247,8 +248,8 @@ static void evaluate(const noh_graph_state *state, const noh_graph *graph, const
 
 /* ---- transitions by inertia ---- */
 
-/* As a controller's transitions: four poses, of the graph before and after the switch, now and a moment ago; their
- * differences become the offsets that decay. The offsets of a transition that still runs belong to the poses before. */
+/* As for a controller's transitions: four poses, before and after the switch, now and a moment ago; their differences
+ * become the offsets that decay. The offsets of a running transition belong to the poses before the switch. */
 static void begin_inertia(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,
                           noh_graph_scratch *scratch)
 {

@@ -1,9 +1,9 @@
-/* graph_root.c: what a graph moves the root by. */
+/* graph_root.c: the root displacement of a graph. */
 #include "motion/graph/graph_weights_internal.h"
 
 #include "motion/anim/mask.h"
 
-/* Which nodes have a clip in the pose that animates joints. */
+/* Find the nodes with a clip in the pose that animates joints. */
 static void find_movers(const noh_graph_view *v, const noh_clip_set *set, const noh_controller *c, const float *weights,
                         uint8_t *moves)
 {
@@ -19,7 +19,7 @@ static void find_movers(const noh_graph_view *v, const noh_clip_set *set, const 
     }
 }
 
-/* The shares of a node's children in what the node moves the root by: their sum is 1 where any moves it. */
+/* The shares of a node's children in its root displacement: they add up to 1 if any child moves the root. */
 static void shares(const noh_graph_view *v, const noh_clip_set *set, const noh_graph_node *n, const uint8_t *moves,
                    float *local)
 {
@@ -64,7 +64,7 @@ noh_root_pose noh_graph_root_motion(noh_graph_state *state, const noh_graph *gra
     if (!set->roots) {
         return out;
     }
-    noh_graph_weights(&v, weights, moves); /* which nodes are in play is not wanted here */
+    noh_graph_weights(&v, weights, moves); /* which nodes are in play does not matter here */
     find_movers(&v, set, c, weights, moves);
     weights[graph->node_count - 1u] = 1.0f;
     for (uint32_t i = graph->node_count; i-- > 0;) { /* parents come after their children */

@@ -1,4 +1,4 @@
-/* graph_state_check.c: whether a block of bytes is an instance of a graph. */
+/* graph_state_check.c: checks that a block of bytes is an instance of a graph. */
 #include "motion/graph/graph_state_internal.h"
 
 #include "core/base/arena.h"

@@ -1,9 +1,9 @@
-/* graph_step.c: what changes over time: the states of machines, selects and one-shots, their fades, and the step. */
+/* graph_step.c: changes over time: the states of machines, selects and one-shots, their fades, and the step. */
 #include "motion/graph/graph_state_internal.h"
 
 /* ---- state machines ---- */
 
-/* Whether a state's first clip ends within that many ticks, or has ended. */
+/* Whether a state's first clip ends within `ticks`, or has ended. */
 static int is_ending(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, uint32_t child, uint32_t ticks)
 {
     const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, child)];
@@ -34,7 +34,7 @@ typedef struct change {
     uint32_t curve, flags; /* noh_curve, NOH_TRANSITION_* */
 } change;
 
-/* Enter a state: it starts from its beginning, unless it keeps its place; the old one fades out, or is left at once and
+/* Enter a state: it starts from its beginning unless KEEP is set; the old state fades out, or is left immediately and
  * its difference decays. */
 static void enter(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node,
                   change to)
@@ -82,8 +82,8 @@ static void run_machine(noh_graph_state *s, const noh_graph *g, const noh_clip_s
     }
 }
 
-/* To the child that the parameter asks for. A fade turns round where it stands: both curves have c(1 - t) = 1 - c(t),
- * so the weights do not jump. */
+/* Select the child given by the parameter. A fade reverses where it stands: both curves have c(1 - t) = 1 - c(t), so
+ * the weights do not jump. */
 static void run_select(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node)
 {
     noh_machine *m = &noh_graph_state_machines(s)[node->index];
@@ -100,13 +100,14 @@ static void run_select(noh_graph_state *s, const noh_graph *g, const noh_clip_se
     }
 }
 
-/* In when it is triggered, out so that it is gone when its clip has ended. */
+/* Fade in when triggered, and out so that the fade ends with the clip. */
 static void run_one_shot(noh_graph_state *s, const noh_graph *g, const noh_clip_set *set, const noh_graph_node *node)
 {
     const noh_machine *m = &noh_graph_state_machines(s)[node->index];
     float *trigger = &noh_graph_state_params(s)[node->param];
     const change in = { 1, node->fade_ticks, node->curve, 0 };
-    const change out = { 0, node->fade_out_ticks, node->curve, NOH_TRANSITION_KEEP }; /* what lies below plays on */
+    /* the child below continues to play */
+    const change out = { 0, node->fade_out_ticks, node->curve, NOH_TRANSITION_KEEP };
     if (m->previous != NOH_GRAPH_NONE) {
         return;
     }
@@ -118,8 +119,8 @@ static void run_one_shot(noh_graph_state *s, const noh_graph *g, const noh_clip_
     }
 }
 
-/* Inertial transitions that still wait for a pose: there was none since the last step, so they switch without inertia.
- */
+/* Inertial transitions that still wait for a pose: there was none since the last step, so they switch without
+ * inertia. */
 static void drop_switches(noh_graph_state *s)
 {
     for (uint32_t i = 0; i < s->machine_count; i++) {
@@ -154,8 +155,8 @@ static void run_machines(noh_graph_state *s, const noh_graph *g, const noh_clip_
     }
 }
 
-/* The fade of a node goes on. A one-shot that has faded out stays in play for the rest of this step, at weight 0, so
- * that its clip reaches its end. */
+/* Advance a node's fade. A one-shot that has faded out stays in play for the rest of this step, at weight 0, so that
+ * its clip reaches its end. */
 static void run_fade(noh_machine *m, int is_shot, uint32_t ticks)
 {
     if (m->previous == NOH_GRAPH_NONE || m->switched) {

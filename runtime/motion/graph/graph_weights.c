@@ -27,8 +27,8 @@ static float held(float t)
     return t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
 }
 
-/* One state has all the weight, or two share it while a cross-fade runs. In an inertial transition the old state has it
- * as seen from before the switch, the new one from after. */
+/* One state has all the weight, or two share it during a cross-fade. In an inertial transition the old state has it in
+ * the view before the switch, the new one in the view after. */
 static void machine_weights(const noh_graph_view *view, const noh_graph_node *node, float *local)
 {
     const noh_machine *m = &view->machines[node->index];
@@ -70,13 +70,13 @@ void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *n
     case NOH_NODE_SELECT: machine_weights(view, node, local); break;
     case NOH_NODE_ONE_SHOT:
         machine_weights(view, node, local);
-        local[0] = 1.0f; /* what lies below is covered, not faded */
+        local[0] = 1.0f; /* the child below is covered, not faded */
         break;
     default: break;
     }
 }
 
-/* Whether a child is in play: of a machine only the state it is in and the one it leaves; what lies below a one-shot
+/* Whether a child is in play: in a machine only the present state and the one it leaves; the child below a one-shot
  * always is. */
 static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uint32_t child)
 {
@@ -88,8 +88,8 @@ static int lets_live(const noh_graph_view *view, const noh_graph_node *node, uin
     return child == m->current || child == m->previous;
 }
 
-/* A product that is 0 only where a factor is: an underflow would leave a node unsampled whose parent expects its pose.
- */
+/* A product that is 0 only if a factor is: an underflow would skip the sampling of a node whose parent expects its
+ * pose. */
 static float product(float a, float b)
 {
     float p = a * b;

@@ -22,9 +22,9 @@ void noh_blend_begin(noh_blend *blend)
     }
 }
 
-/* Coverage needs two facts for every joint: whether the pose below has any weight there, and the unmasked weight of the
- * poses that take part above. One array holds both: where nothing lies below, the total begins so far under zero that
- * no sum of weights can lift it out (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
+/* Coverage needs two facts per joint: whether the pose below has any weight there, and the unmasked weight of the poses
+ * above. One array holds both: where the pose below has no weight, the total starts so far below zero that no sum of
+ * weights can raise it above (NOH_TRACKS_MAX times NOH_WEIGHT_MAX is 6.4e7). */
 #define NOTHING_BELOW (-1e30f)
 
 static void begin_totals(const noh_blend *blend, const float *below, uint32_t count, float *totals)
@@ -44,8 +44,8 @@ void noh_blend_begin_over(noh_blend *blend)
 }
 
 /* Adding unit quaternions and normalising the sum is normalised linear interpolation for any number of poses. Each is
- * added with the sign that makes its dot product with the sum so far at least 0, so the length of the sum never falls.
- */
+ * added with the sign that makes its dot product with the sum so far at least 0, so the length of the sum never
+ * decreases. */
 static void add_joint(noh_transform *sum, const noh_transform *joint, float weight)
 {
     float turn = noh_quat_dot(sum->rotation, joint->rotation) < 0.0f ? -weight : weight;
@@ -58,7 +58,7 @@ static void add_joint(noh_transform *sum, const noh_transform *joint, float weig
     }
 }
 
-/* The weight of a pose counts in the totals of the joints and floats that it animates and its mask lets through. */
+/* A pose's weight counts in the totals of the joints and floats that it animates and its mask includes. */
 static void add_totals(const uint8_t *mask, uint32_t count, float weight, float *totals)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -125,8 +125,8 @@ static void mix_joint(const noh_transform *a, const noh_transform *b, float t, n
     }
 }
 
-/* How much of the pose below a sum covers at one joint: `amount` times the mean mask, which is the masked over the
- * unmasked weight; all of it where nothing lies below. */
+/* How much a sum covers the pose below at one joint: `amount` times the mean mask, which is the masked over the
+ * unmasked weight; fully if the pose below has no weight. */
 static float cover_of(const noh_blend *blend, float amount, float weight, float total)
 {
     float part = weight / (total < blend->full ? blend->full : total);
@@ -170,8 +170,8 @@ void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, con
     }
 }
 
-/* Differences are taken on the right, in the joint's own axes: reference * difference = pose. Added by noh_pose_add to
- * another pose they turn the joint about the same axes of its own, whichever way that pose has turned it. */
+/* Differences are taken on the right, in the joint's own axes: reference * difference = pose. Added to another pose by
+ * noh_pose_add, they turn the joint about the same axes of its own, however that pose has turned it. */
 void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose,
                          noh_transform *out)
 {

@@ -3,10 +3,9 @@
 #include "core/base/math_internal.h"
 #include "core/base/quat.h"
 
-/* The quintic x(t) with x(0) = x0, x'(0) = v0, x''(0) = a0 and x = x' = x'' = 0 at t1. The initial acceleration a0 is
- * the one that makes the jerk vanish at t1, held at or above 0 so that the offset does not first accelerate outwards.
- * Where v0 is so fast that the curve would cross zero before the duration, t1 is brought forward to -5 x0 / v0. (Bollo
- * 2018.) */
+/* The quintic x(t) with x(0) = x0, x'(0) = v0, x''(0) = a0 and x = x' = x'' = 0 at t1. The initial acceleration a0
+ * makes the jerk vanish at t1, clamped to 0 or more so that the offset does not first accelerate outwards. If v0 is so
+ * fast that the curve would cross zero before the duration, t1 is reduced to -5 x0 / v0. (Bollo 2018.) */
 float noh_inertia_decay(float x0, float v0, float t, float duration)
 {
     float t1 = duration, a0, c3, c4, c5, t1_2, x;
@@ -29,10 +28,10 @@ float noh_inertia_decay(float x0, float v0, float t, float duration)
     c4 = (3.0f * a0 * t1_2 + 16.0f * v0 * t1 + 30.0f * x0) / (2.0f * t1_2 * t1_2);
     c3 = -(3.0f * a0 * t1_2 + 12.0f * v0 * t1 + 20.0f * x0) / (2.0f * t1_2 * t1);
     x = x0 + t * (v0 + t * (0.5f * a0 + t * (c3 + t * (c4 + t * c5))));
-    return x < 0.0f ? 0.0f : x > x0 ? x0 : x; /* only by rounding */
+    return x < 0.0f ? 0.0f : x > x0 ? x0 : x; /* rounding only */
 }
 
-/* The speed of an offset along itself, held at or below 0: an offset that is growing stops at once instead of
+/* The speed of an offset along itself, clamped to 0 or less: a growing offset stops immediately instead of
  * overshooting. */
 static float speed_along(const float offset[3], const float before[3], float delta_s)
 {
@@ -88,7 +87,7 @@ void noh_inertia_begin_floats(uint32_t count, const float *source, const float *
     }
 }
 
-/* The share of a vector that is left: 0..1. */
+/* The remaining share of a vector: 0..1. */
 static float share_left(const float offset[3], float speed, float elapsed_s, float duration_s)
 {
     float length = noh_sqrt(noh_dot3(offset, offset));

@@ -32,9 +32,9 @@ void noh_transform_matrix(const noh_transform *t, float matrix[12])
 }
 
 /* A row of the product is the sum of b's rows, each times one element of a's row, and the row's own translation comes
- * last. Four lanes make one row: each lane does what the plain loop does for its column, product by product and sum by
- * sum in the same order, so the bits are the same. The translation belongs to the last lane only; the others add -0,
- * which leaves every float as it is, where +0 would turn -0 into +0. */
+ * last. Four lanes make one row: each lane computes what the plain loop computes for its column, product by product and
+ * sum by sum in the same order, so the bits are the same. Only the last lane has the translation; the others add -0,
+ * which leaves every float unchanged, where +0 would turn -0 into +0. */
 #if defined(NOH_SSE2)
 
 void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
