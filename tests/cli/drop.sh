@@ -65,7 +65,7 @@ says 'the ragdoll has no body'
 printf 'thigh.L\nhead\n' >"$work/bad.ragdoll"
 noh build "$bones" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
 expect 1 'bodies that do not hang together'
-says 'not below the first'
+says 'not a descendant of the first'
 
 noh drop "$build/mask.noh"
 expect 1 'a mask has no skeleton'

@@ -1,4 +1,3 @@
-/* amplitude.c: see amplitude.h. */
 #include "life/face/amplitude.h"
 
 #include <string.h>
@@ -33,7 +32,7 @@ void noh_amplitude_restart(noh_amplitude *a)
     a->loud = kept.loud;
 }
 
-/* Whole numbers: the n-th window ends where it should, however long the sound is. */
+/* Whole numbers: the n-th window ends exactly where it should, however long the sound is. */
 static int window_is_full(const noh_amplitude *a)
 {
     return a->frames >= (uint64_t)(a->index + 1) * a->rate / NOH_AMPLITUDE_RATE;
@@ -63,7 +62,7 @@ void noh_amplitude_end(noh_amplitude *a)
     if (!a->ended) a->ended = 1;
 }
 
-/* The 95th percentile: 19 steps up for a window that is louder, one down for one that is not. */
+/* The 95th percentile: 19 steps up for a louder window, one down for any other. */
 static void hear_peak(noh_amplitude *a)
 {
     const uint32_t step = a->loud / 128 + 1;
@@ -88,7 +87,7 @@ noh_viseme noh_amplitude_shape(uint32_t mean, uint32_t loud, float *weight)
         if (part < steps[i].from) break;
         viseme = steps[i].viseme;
         *weight = (part - steps[i].from) / steps[i].range;
-        if (*weight < 0.3f) *weight = 0.3f; /* a shape that is chosen can be seen */
+        if (*weight < 0.3f) *weight = 0.3f; /* a selected shape must be visible */
         if (*weight > 1.0f) *weight = 1.0f;
     }
     return viseme;

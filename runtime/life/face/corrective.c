@@ -1,5 +1,5 @@
-/* corrective.c: rows of a pack's recipe whose channel is '+' and a driver's name, to terms and to weights. The row's
- * weight is the peak; rows of one corrective follow each other. */
+/* corrective.c: turns rows of a pack's recipe whose channel is '+' and a driver's name into terms and weights. The
+ * row's weight is the peak; rows of one corrective are consecutive. */
 #include "life/face/corrective.h"
 
 #include "core/base/assert.h"
@@ -16,7 +16,7 @@ static const char *driver_of(const noh_pack *pack, uint32_t row)
     return channel[0] == '+' ? channel + 1 : NULL;
 }
 
-/* The next group from a row on; first = end: there is none. */
+/* The next group from a row on; first = end if there is none. */
 static group group_from(const noh_pack *pack, uint32_t row)
 {
     group g;
@@ -45,7 +45,7 @@ static int are_siblings(const noh_pack *pack, const group *a, const group *b)
     return 1;
 }
 
-/* The peaks of siblings on both sides of a row's. */
+/* Find the peaks of siblings on both sides of a row's peak. */
 static void set_range(const noh_pack *pack, const group *g, uint32_t row, noh_corrective_term *term)
 {
     const float peak = pack->recipe_rows[row].weight;

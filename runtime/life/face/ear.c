@@ -1,4 +1,3 @@
-/* ear.c: see ear.h. */
 #include "life/face/ear.h"
 
 #include <string.h>
@@ -10,23 +9,23 @@
 enum {
     ONE = 32768,
     DECIBEL = 85, /* 1/256 octaves of power */
-    LIPS = 6,     /* shut for p, b, m; lip on teeth, rounded, open, narrow; at rest */
+    LIPS = 6,     /* closed for p, b, m; lip on teeth, rounded, open, narrow; at rest */
     SHUT = 0,
     REST = 5,
-    /* 1/256 octaves of probability that other lips must gather */
+    /* 1/256 octaves of probability that other lips must accumulate */
     TO_SHUT = 800,
     TO_REST = 3400,
     TO_OTHER = 2200,
-    FROM_SHUT = 1300,  /* to others, from lips that are shut or at rest */
-    LEAST_LIKELY = 32, /* 1/32768: no frame counts for less */
-    OTHER_SHAPE = 200, /* halves: by which another shape of the same lips must lead */
+    FROM_SHUT = 1300,  /* from closed or resting lips to others */
+    LEAST_LIKELY = 32, /* 1/32768: minimum weight of a frame */
+    OTHER_SHAPE = 200, /* halves: lead that another shape of the same lips needs */
     SMOOTHED = 3       /* frames whose weights are averaged */
 };
 
 typedef struct ear {
-    uint32_t rate, phase; /* phase: of the sample that is being made, in 1/rate of it */
+    uint32_t rate, phase; /* phase: of the sample being made, in 1/rate of it */
     int64_t area;
-    int32_t last; /* sample heard */
+    int32_t last; /* last input sample */
     int16_t samples[EAR_WINDOW], before;
     uint16_t skipped, filled, heard, ready;
     uint32_t frames;
@@ -34,8 +33,9 @@ typedef struct ear {
     int8_t seen[EAR_SEEN][EAR_FEATURES];
     uint16_t weights[SMOOTHED][NOH_VISEME_COUNT];
     int32_t loud[EAR_AFTER + 1];
-    int32_t cost[LIPS];               /* 1/256 octave: of the likeliest way that ends with these lips; 0: of all */
-    int32_t shapes[NOH_VISEME_COUNT]; /* 1/32768: sums that fade */
+    /* 1/256 octave: of the likeliest path that ends with these lips; 0: the likeliest of all */
+    int32_t cost[LIPS];
+    int32_t shapes[NOH_VISEME_COUNT]; /* 1/32768: decaying sums */
     uint8_t shape;
 } ear;
 
@@ -80,7 +80,7 @@ void noh_ear_restart(noh_ear *memory)
     begin(e);
 }
 
-/* Where between the quietest and the loudest of late: 1/32768. */
+/* Position between the quietest and the loudest recent level: 1/32768. */
 static int32_t level(const ear *e, int32_t loud)
 {
     const int32_t lowest = e->voice.high - 26 * DECIBEL, low = e->voice.low > lowest ? e->voice.low : lowest;
@@ -89,7 +89,7 @@ static int32_t level(const ear *e, int32_t loud)
     return at > range ? ONE : at * ONE / range;
 }
 
-/* Drops the first `drop` bytes; there is no memmove in the library. */
+/* Drop the first `drop` bytes; the library has no memmove. */
 static void drop_first(void *bytes, size_t drop, size_t size)
 {
     uint8_t rest[sizeof(int16_t) * EAR_WINDOW];
@@ -106,7 +106,7 @@ static void analyse(ear *e)
     drop_first(e->seen, sizeof e->seen[0], sizeof e->seen);
     drop_first(e->loud, sizeof e->loud[0], sizeof e->loud);
     noh_ear_scale(t, features, e->seen[EAR_SEEN - 1]);
-    /* before the first frame the sound is taken to have been as it is in it */
+    /* before the first frame the sound is assumed to be like the first frame */
     for (uint32_t f = 0; !e->heard && f < EAR_SEEN - 1; f++) memcpy(e->seen[f], e->seen[EAR_SEEN - 1], EAR_FEATURES);
     e->loud[EAR_AFTER] = loudness;
     e->before = e->samples[EAR_HOP - 1];
@@ -128,7 +128,7 @@ static void add_sample(ear *e, int64_t value)
     if (e->filled == EAR_WINDOW) analyse(e);
 }
 
-/* Fewer samples than wanted: straight lines between them. */
+/* Fewer samples than needed: interpolate linearly. */
 static int32_t between(const ear *e, int32_t sample)
 {
     return e->last + (int32_t)((int64_t)(sample - e->last) * (int32_t)e->phase / EAR_RATE);
@@ -147,7 +147,7 @@ size_t noh_ear_hear(noh_ear *memory, const int16_t *samples, size_t count)
             e->last = sample;
             continue;
         }
-        /* more than wanted: the mean over each one's time */
+        /* more than needed: average over the time of each */
         if (e->phase + EAR_RATE < e->rate) {
             e->area += (int64_t)sample * EAR_RATE;
             e->phase += EAR_RATE;
@@ -161,7 +161,7 @@ size_t noh_ear_hear(noh_ear *memory, const int16_t *samples, size_t count)
     return taken;
 }
 
-/* The network's weights, of which silence takes what is not loud enough to be speech. */
+/* The network's weights; silence replaces what is too quiet to be speech. */
 static void weigh(ear *e, int32_t loudness, int32_t *weights)
 {
     const int32_t speech = loudness * 6 > ONE ? ONE : loudness * 6;
@@ -181,8 +181,8 @@ static int32_t least_of(const int32_t *cost)
     return least;
 }
 
-/* The lips at the end of the likeliest way through those of all frames so far (Viterbi, 1967), where lips that change
- * cost something, and least if they shut. */
+/* The lips at the end of the likeliest path through all frames so far (Viterbi, 1967); changing lips costs something,
+ * and least to close. */
 static uint32_t follow(ear *e, const int32_t *weights)
 {
     const int32_t least = least_of(e->cost), shut = e->cost[SHUT] < e->cost[REST] ? e->cost[SHUT] : e->cost[REST];
@@ -200,13 +200,13 @@ static uint32_t follow(ear *e, const int32_t *weights)
     return best;
 }
 
-/* At rest lips are shut, too. */
+/* Lips at rest are closed, too. */
 static int is_alike(uint32_t a, uint32_t b)
 {
     return a == b || ((a == SHUT || a == REST) && (b == SHUT || b == REST));
 }
 
-/* With other lips, what is likeliest in this frame; else another shape has to lead for a while. */
+/* When lips change, the likeliest shape of this frame; else another shape has to lead for a while. */
 static void choose(ear *e, const int32_t *weights)
 {
     const uint32_t now = follow(e, weights);
@@ -238,7 +238,7 @@ static void smooth(ear *e, int32_t *weights)
     weights[NOH_VISEME_SIL] = rest;
 }
 
-/* What shows leads: the others give way until it does. Beside lips that are shut there is nothing. */
+/* The visible shape leads: others are reduced until it does. Closed lips exclude all others. */
 static void lead(const ear *e, int32_t *weights)
 {
     const int shut = e->shape == NOH_VISEME_SIL || e->shape == NOH_VISEME_PP;

@@ -18,8 +18,8 @@ static int16_t cosine_of(const ear_tables *t, uint32_t step)
     return sine_of(t, step + EAR_FFT / 4);
 }
 
-/* Pre-emphasis and window, as pairs in the order that the transform wants, scaled up to use 20 bits.
- * returns  by how many bits */
+/* Pre-emphasis and window, as pairs in the order that the transform needs, scaled up to 20 bits.
+ * returns  the number of bits of scaling */
 static int prepare(const ear_tables *t, const int16_t *samples, int16_t before, int32_t (*z)[2])
 {
     int32_t largest = 1;
@@ -87,7 +87,7 @@ int32_t noh_ear_log2(uint64_t value)
     return whole * 256 + (int32_t)((part + (part * (32768 - part) >> 15) * 11256 / 32768) >> 7);
 }
 
-/* Of the sound less its mean, without the pre-emphasis that lets noise seem loud. */
+/* Loudness of the sound minus its mean, without pre-emphasis, which would make noise seem loud. */
 static int32_t loudness_of(const int16_t *samples)
 {
     int64_t sum = 0, squares = 0;
@@ -98,7 +98,7 @@ static int32_t loudness_of(const int16_t *samples)
     return noh_ear_log2((uint64_t)(squares - sum * sum / EAR_WINDOW) + 1u);
 }
 
-/* 64 units are one bit of a sample; squares of them, less the 12 bits of power_at. */
+/* 64 units are one bit of a sample; squares of them, minus the 12 bits of power_at. */
 enum { UNIT_BITS = 2 * 6 - 12, FILTER_BITS = 8, FLOOR = 107 };
 
 static void log_mels(const ear_tables *t, const int16_t *samples, int16_t before, int32_t *logs)
@@ -120,7 +120,7 @@ static void log_mels(const ear_tables *t, const int16_t *samples, int16_t before
     }
 }
 
-/* A cosine of c (m + 1/2) / 24 half turns, from the table of 512 steps a turn: within 1/160. */
+/* A cosine of c (m + 1/2) / 24 half turns, from the table of 512 steps per turn: within 1/160. */
 static int16_t basis(const ear_tables *t, uint32_t c, uint32_t m)
 {
     return cosine_of(t, (c * (2 * m + 1) * EAR_FFT + 2 * EAR_MELS) / (4 * EAR_MELS));
@@ -134,7 +134,7 @@ void noh_ear_cepstra(const ear_tables *t, const int16_t *samples, int16_t before
     for (uint32_t c = 0; c < EAR_CEPSTRA; c++) {
         int64_t sum = 0;
         for (uint32_t m = 0; m < EAR_MELS; m++) sum += (int64_t)basis(t, c, m) * logs[m];
-        /* by sqrt(1 / 24) and sqrt(2 / 24): the transform keeps lengths */
+        /* by sqrt(1 / 24) and sqrt(2 / 24): makes the transform orthonormal */
         cepstra[c] = (int32_t)(sum / 32768 * (c ? 4730 : 3344) / 16384);
     }
 }

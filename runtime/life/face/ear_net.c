@@ -1,4 +1,4 @@
-/* ear_net.c: a network of one hidden layer, in integers; and what it is shown. */
+/* ear_net.c: a network with one hidden layer, in integers, and its inputs. */
 #include "life/face/ear_internal.h"
 
 enum { ONE = 32768, OCTAVE = 256, LEVEL_MOST = 12 * OCTAVE };
@@ -12,7 +12,7 @@ void noh_ear_voice_init(const ear_tables *t, ear_voice *v)
     v->high = 31 * OCTAVE;
 }
 
-/* As loud as the peak of late, less 11.5 octaves of coefficient 0, is speech; the mean is of 2 s. */
+/* Speech is as loud as the recent peak minus 11.5 octaves of coefficient 0; the mean is over 2 s. */
 static void take_mean(ear_voice *v, const int32_t *cepstra)
 {
     v->peak = v->peak - 7 > cepstra[0] ? v->peak - 7 : cepstra[0];
@@ -21,7 +21,7 @@ static void take_mean(ear_voice *v, const int32_t *cepstra)
     for (uint32_t c = 0; c < EAR_CEPSTRA; c++) v->mean[c] += (cepstra[c] * 256 - v->mean[c]) / (v->count + 20);
 }
 
-/* A percentile moves by steps up and down whose sizes are as its share of the frames below and above. */
+/* Move a percentile by steps up and down, in proportion to its shares of frames below and above. */
 static void take_loudness(ear_voice *v, int32_t loudness)
 {
     v->low += loudness > v->low ? 3 : -57;
@@ -67,7 +67,7 @@ static int32_t dot(const int8_t *a, const int8_t *b, uint32_t count)
 static int32_t power_of_half(int64_t x)
 {
     const int64_t whole = x >> 15, f = x & 32767;
-    /* 2^-f is a line less a bend over one octave */
+    /* 2^-f is a line minus a parabola over one octave */
     const int64_t line = ONE - f / 2, bend = (f * (ONE - f) >> 15) * 5636 / ONE;
     return whole > 15 ? 0 : (int32_t)((line - bend) >> whole);
 }

@@ -1,8 +1,8 @@
-/* face.c: a face's calls, and the order of its events.
+/* face.c: functions of a face, and the order of its events.
  *
  * A step goes from one event to the next: a blink, a breath, the end of a latency or a saccade, a glance, a
- * microsaccade, the end of an emotion's hold. Between two events everything that moves is a function of the clock. So a
- * face does not depend on how time is cut into steps. */
+ * microsaccade, the end of an emotion's hold. Between two events all motion is a function of the clock. So a face does
+ * not depend on how time is split into steps. */
 #include "life/face/face.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@
 NOH_STATIC_ASSERT(sizeof(noh_face) == 240, face_bytes);
 
 #define NEAREST_M 0.05f
-#define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less in one call is followed without a saccade */
+#define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less per call is followed without a saccade */
 #define HOLD_MAX 0x7fffffffu
 
 /* ---- names ---- */
@@ -38,7 +38,7 @@ const char *noh_emotion_name(noh_emotion emotion)
 
 /* ---- descs ---- */
 
-/* Rates a minute, shares, then angles: each has a largest value that makes sense. */
+/* Rates per minute, shares, then angles, each with a sensible maximum. */
 static const char *bad_desc(const noh_face_desc *d, uint64_t *where)
 {
     const float values[] = { d->blinks_per_minute[0],
@@ -137,7 +137,7 @@ typedef enum event {
     EVENT_MOOD
 } event;
 
-/* The sooner of what is due and `tick`; ticks are compared by what is left of them. */
+/* Keep the sooner of the next event and `tick`; ticks are compared by the time left. */
 static void take_sooner(uint32_t now, uint32_t tick, event e, uint32_t *left, event *next)
 {
     const uint32_t to = tick - now;
@@ -152,7 +152,7 @@ static int does(const noh_face *face, uint32_t flag)
     return !(face->flags & (NOH_FACE_CALM | flag));
 }
 
-/* The first event within `left` ticks. Of several at one tick the first in this order. */
+/* The first event within `left` ticks. At one tick, the first in this order. */
 static event next_event(const noh_face *face, const noh_face_desc *desc, uint32_t *left)
 {
     const uint32_t now = (uint32_t)face->clock;
@@ -205,7 +205,7 @@ static void handle(noh_face *face, const noh_face_desc *desc, event e)
     }
 }
 
-/* What has come to rest is started again long before ticks modulo 2^32 wrap. */
+/* Restart springs at rest, long before ticks modulo 2^32 wrap. */
 static void settle(noh_face *face)
 {
     const uint32_t now = (uint32_t)face->clock;
@@ -230,7 +230,7 @@ void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
     settle(face);
 }
 
-/* What was under way has arrived. */
+/* Move a spring to its goal. */
 static void arrive(noh_face_spring *s, uint32_t now)
 {
     s->from = s->goal;
@@ -325,7 +325,7 @@ noh_result noh_face_look_at(noh_face *face, const noh_face_desc *desc, const flo
     return NOH_OK;
 }
 
-/* The one of this emotion, else a free one, else the weakest. */
+/* The slot of this emotion, else a free one, else the weakest. */
 static noh_face_emotion *emotion_for(noh_face *face, noh_emotion emotion)
 {
     const uint32_t now = (uint32_t)face->clock;

@@ -1,17 +1,17 @@
 /* face_blink.c: when the eyes blink, and how the lids move.
  *
- * Intervals between spontaneous blinks are log-normal, about 17 a minute at rest, 26 in talk and 4.5 in reading
+ * Intervals between spontaneous blinks are log-normal, about 17 per minute at rest, 26 in talk and 4.5 in reading
  * (Bentivoglio and others, "Analysis of blink rate patterns in normal subjects", Movement Disorders 12, 1997). A blink
- * that something else brings about, a large movement of the eyes or the end of a phrase, takes the place of the next
- * spontaneous one, and the one after that is due when it would have been: so the rate stays what it is. */
+ * with another cause, a large eye movement or the end of a phrase, replaces the next spontaneous one, and the following
+ * one stays due when it would have been: so the rate does not change. */
 #include "core/base/trig.h"
 #include "life/face/face_internal.h"
 
-#define SIGMA 0.7f             /* of the logarithm of intervals */
-#define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by then */
-#define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two of a double blink */
+#define SIGMA 0.7f             /* standard deviation of the logarithm of intervals */
+#define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by this time */
+#define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two blinks of a double blink */
 #define STRATA 32u
-#define DEBT_MAX 4.0f /* mean intervals that blinks taken in advance may put off the next one */
+#define DEBT_MAX 4.0f /* mean intervals by which blinks in advance may delay the next one */
 
 static const float rates[NOH_ACTIVITY_COUNT] = { 17.0f, 26.0f, 4.5f };
 
@@ -20,7 +20,7 @@ float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity)
     return 60.0f / noh_face_or(desc->blinks_per_minute[activity], rates[activity]);
 }
 
-/* Each of 0..STRATA-1 once, in an order by the key: every step of it can be undone. */
+/* A permutation of 0..STRATA-1 by the key: every step is invertible. */
 static uint32_t shuffled(uint32_t i, uint32_t key)
 {
     i = (i ^ key) % STRATA;
@@ -30,8 +30,8 @@ static uint32_t shuffled(uint32_t i, uint32_t key)
     return i ^ i >> 2;
 }
 
-/* A uniform number, of each 32 in a row one in each of 32 parts of 0 to 1: so each person's rate is the rate within
- * minutes, and not only the mean of many people's. */
+/* A uniform number: of every 32 in a row, one in each 32nd of 0 to 1. So each face keeps its rate within minutes, and
+ * not only on average over many faces. */
 static float stratum(const noh_face *face, uint32_t blink)
 {
     const float key = noh_face_uniform(face->seed, NOH_FACE_STRATA, blink / STRATA);
@@ -47,7 +47,7 @@ static uint32_t interval(const noh_face *face, const noh_face_desc *desc, uint32
     return noh_face_ticks(s < INTERVAL_MIN_S ? INTERVAL_MIN_S : s < 600.0f ? s : 600.0f);
 }
 
-/* Closing takes 75 to 100 ms, opening 150 to 200. */
+/* Closing takes 75 to 100 ms, opening 150 to 200 ms. */
 noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink)
 {
     noh_face_lid lid;
@@ -57,8 +57,7 @@ noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink)
     return lid;
 }
 
-/* Down along a raised cosine; up fast at first and slower towards the end, as an exponential of 60 ms that is shifted
- * to end at 0. */
+/* Down along a raised cosine; up fast at first and then slower, as an exponential of 60 ms shifted to end at 0. */
 static float lid_at(const noh_face_lid *lid, uint32_t ticks)
 {
     const float rate = 1.44269504f / 0.060f;
@@ -84,8 +83,8 @@ static int is_double(const noh_face *face, const noh_face_desc *desc, uint32_t b
     return noh_face_uniform(face->seed, NOH_FACE_DOUBLE, blink) < noh_face_or(desc->double_blinks, 0.02f);
 }
 
-/* Shut the lids at the face's clock. `due` is when the blink was due by itself, which may be later. A double blink
- * counts as two. */
+/* Close the lids at the face's clock. `due` is the time of the spontaneous blink that it replaces, which may be later.
+ * A double blink counts as two. */
 static void begin(noh_face *face, const noh_face_desc *desc, uint32_t due)
 {
     const uint32_t count = !noh_face_is_four(face) && is_double(face, desc, face->blinks) ? 2u : 1u;
@@ -116,7 +115,7 @@ float noh_face_blink_at(const noh_face *face)
     return 0.0f;
 }
 
-/* One that is under way is enough. */
+/* Whether a blink is in progress; it is not started again. */
 static int is_blinking(const noh_face *face)
 {
     return face->blinking && noh_face_seconds((uint32_t)face->clock - face->blink_start) < INTERVAL_MIN_S;

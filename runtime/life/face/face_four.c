@@ -1,11 +1,11 @@
-/* face_four.c: the mode of four channels, of C. Granberg, Character Animation with Direct3D, 2009, chapter 9 (Animation
- * Channels) and the code that comes with it: one blink, one emotion, two mouth shapes.
+/* face_four.c: the mode of four channels, from C. Granberg, Character Animation with Direct3D, 2009, chapter 9
+ * (Animation Channels) and its code: one blink, one emotion, two mouth shapes.
  *
- * Its timers are kept: between blinks (1500 + r mod 4000) / 1000 s of a clock that runs at 0.8, a lid that is half a
- * sine for 0.15 s of it; emotions that come and go by 1 a second and hold for (2000 + r mod 6000) / 1000 s. What its
- * code gets wrong is not: numbers are by the face's own seed and not by rand(), so that a face is the same whoever else
- * draws; time is in whole ticks and not in frames, so that a blink shorter than a frame is not lost and a fade never
- * passes its goal; mouth shapes are held to 1 together. */
+ * The timers are the book's: between blinks (1500 + r mod 4000) / 1000 s of a clock that runs at 0.8, a lid that is
+ * half a sine for 0.15 s of it; emotions that rise and fade by 1 per second and hold for (2000 + r mod 6000) / 1000 s.
+ * Its errors are corrected: numbers come from the face's own seed and not from rand(), so a face does not depend on
+ * other users of rand(); time is in whole ticks and not in frames, so a blink shorter than a frame is not lost and a
+ * fade never passes its goal; mouth shapes are limited to a sum of 1. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -30,7 +30,7 @@ float noh_face_four_lid(uint32_t ticks)
     return sine < 0.0f ? 0.0f : sine;
 }
 
-/* ---- moods: emotions one after another, in the first emotion ---- */
+/* ---- moods: spontaneous emotions in sequence, in the first slot ---- */
 
 void noh_face_mood_begin(noh_face *face, uint32_t emotion, float amount, uint32_t hold)
 {
@@ -44,7 +44,7 @@ void noh_face_mood_begin(noh_face *face, uint32_t emotion, float amount, uint32_
     f->end = f->amount.start + FADE_TICKS + hold;
 }
 
-/* Another one than before. */
+/* Start a random emotion other than the present one. */
 void noh_face_mood_next(noh_face *face)
 {
     const uint32_t n = face->moods++;
@@ -72,7 +72,7 @@ float noh_face_mood_at(const noh_face *face)
     return f->amount.goal * (least < FADE_TICKS ? (float)least / (float)FADE_TICKS : 1.0f);
 }
 
-/* ---- what the four channels hold ---- */
+/* ---- contents of the four channels ---- */
 
 void noh_face_four_of(const noh_face_pose *pose, const float *visemes, noh_face_four *four)
 {

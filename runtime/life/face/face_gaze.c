@@ -1,24 +1,24 @@
-/* face_gaze.c: where the eyes look, and how far the head goes along.
+/* face_gaze.c: where the eyes look, and how far the head turns with them.
  *
- * A gaze is a direction from the middle of the eyes (yaw, pitch) and 1 / distance; each eye then aims at that point
- * from its own centre, so that near things make the eyes converge. A gaze holds, waits for its latency, or moves in a
- * saccade. Saccades last 21 ms and 2.2 ms for each degree (Carpenter, Movements of the Eyes, 1988), along the
- * fifth-order polynomial of least jerk. Where the eyes would turn further than is comfortable, the head takes four
- * fifths of the rest, as a spring that is slower than they are; they keep their aim while it moves.
+ * A gaze is a direction from the midpoint of the eyes (yaw, pitch) and 1 / distance; each eye then aims at that point
+ * from its own centre, so the eyes converge on near points. A gaze holds, waits for its latency, or moves in a saccade.
+ * Saccades last 21 ms and 2.2 ms per degree (Carpenter, Movements of the Eyes, 1988), along the fifth-order polynomial
+ * of least jerk. When the eyes would turn farther than is comfortable, the head takes four fifths of the rest, as a
+ * slower spring; the eyes keep their aim while it moves.
  *
- * By themselves faces look away now and then: how far and in which directions is of Lee, Badler and Badler, "Eyes
- * Alive", SIGGRAPH 2002, and so is how long they look at whom they talk or listen to. */
+ * Without commands a face looks away now and then: distance and direction follow Lee, Badler and Badler, "Eyes Alive",
+ * SIGGRAPH 2002, as does the time of eye contact while talking or listening. */
 #include "core/base/math_internal.h"
 #include "core/base/quat.h"
 #include "core/base/trig.h"
 #include "life/face/face_internal.h"
 
 #define HEAD_SHARE 0.8f
-#define HEAD_TICKS 24000u /* 0.5 s, to 95 % of its way */
+#define HEAD_TICKS 24000u /* 0.5 s to 95 % of the way */
 #define TREMOR_RAD (0.08f * NOH_DEGREE)
 #define BEHIND (160.0f * NOH_DEGREE)
 #define TURN (360.0f * NOH_DEGREE)
-#define BIG_SHIFT (20.0f * NOH_DEGREE) /* more often than not with a blink */
+#define BIG_SHIFT (20.0f * NOH_DEGREE) /* more likely with a blink than without */
 
 /* ---- the gaze ---- */
 
@@ -30,8 +30,8 @@ void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float m
     noh_quat_rotate(rotation, middle, middle);
 }
 
-/* A yaw to what is behind counts on over the shoulder to which the head has turned: it would else swing from one side
- * to the other with every small motion there. */
+/* For a target behind, the yaw continues over the shoulder to which the head has turned, instead of swinging from side
+ * to side with every small motion. */
 static float over_shoulder(float yaw, float head)
 {
     if (yaw < -BEHIND && head > 0.0f) return yaw + TURN;
@@ -95,7 +95,7 @@ static void direction(const float gaze[3], float way[3])
     way[2] = cy * cp;
 }
 
-/* By the chord, which keeps its digits where an arc cosine loses them. */
+/* The angle by the chord, which is precise where an arc cosine is not. */
 float noh_face_angle(const float a[3], const float b[3])
 {
     float u[3], v[3], d[3], half;
@@ -156,7 +156,7 @@ void noh_face_gaze_event(noh_face *face, const noh_face_desc *desc)
 
 /* ---- the head ---- */
 
-/* How far the head turns for a gaze of `angle`: what is past `from` in part, and all that the eyes cannot reach. */
+/* How far the head turns for a gaze of `angle`: part of the angle beyond `from`, and all that the eyes cannot reach. */
 static float head_goal(float angle, float from, float eye_max, float head_max)
 {
     const float size = angle < 0.0f ? -angle : angle;
@@ -181,9 +181,9 @@ void noh_face_head_follow(noh_face *face, const noh_face_desc *desc)
     if (pitch != face->head[1].goal) noh_face_spring_to(&face->head[1], now, pitch, omega);
 }
 
-/* ---- by itself ---- */
+/* ---- spontaneous gaze ---- */
 
-/* Seconds that a look at the target and one away from it last, in the mean: at rest as in listening, and talking. */
+/* Mean seconds of a look at the target and of one away from it: at rest as in listening, and talking. */
 static const float looks[NOH_ACTIVITY_COUNT][2] = { { 7.92f, 0.43f }, { 3.13f, 0.93f }, { 0.25f, 0.25f } };
 
 static int is_away(const noh_face *face)
@@ -200,8 +200,8 @@ void noh_face_glance_schedule(noh_face *face)
     face->next_glance = (uint32_t)face->clock + noh_face_ticks(s);
 }
 
-/* A glance aside. The size is theirs, -6.9 ln(P / 15.7) degrees with P even over 0..15, and so are the shares of the
- * eight directions, counter-clockwise from the face's left. */
+/* A glance aside. Its size, -6.9 ln(P / 15.7) degrees with P uniform over 0..15, and the shares of the eight
+ * directions, counter-clockwise from the face's left, are from "Eyes Alive". */
 static void look_aside(noh_face *face)
 {
     static const float shares[8] = { 15.5f, 6.5f, 17.7f, 7.4f, 16.8f, 7.9f, 20.4f, 7.8f };
@@ -225,7 +225,7 @@ static void read_on(noh_face *face)
     face->away[1] = (4.0f - 0.7f * (float)line) * NOH_DEGREE;
 }
 
-/* A glance that falls due while the eyes are under way to something else is left out. */
+/* A glance that is due while the eyes move to something else is skipped. */
 void noh_face_glance(noh_face *face, const noh_face_desc *desc)
 {
     float now[3];
@@ -246,8 +246,8 @@ void noh_face_glance(noh_face *face, const noh_face_desc *desc)
     noh_face_glance_schedule(face);
 }
 
-/* Microsaccades. Those of people are 0.1 to 0.5 degrees, once or twice a second; ours stay below a tenth, so that the
- * aim of a face that holds a gaze can be relied on. */
+/* Microsaccades. Human ones are 0.1 to 0.5 degrees, once or twice per second; these stay below 0.1 degrees, so that a
+ * held gaze keeps a reliable aim. */
 void noh_face_tremor(noh_face *face)
 {
     const uint32_t n = face->tremors++;

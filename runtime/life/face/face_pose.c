@@ -1,4 +1,4 @@
-/* face_pose.c: what a face shows at its clock. */
+/* face_pose.c: the visible pose at the face's clock. */
 #include <string.h>
 
 #include "core/base/math_internal.h"
@@ -13,8 +13,8 @@ static float knot(const noh_face *face, uint32_t axis, uint32_t index)
     return 2.0f * noh_face_uniform(face->seed, NOH_FACE_IDLE + axis, index) - 1.0f;
 }
 
-/* Small motions of the head: random values at even times, joined by a Catmull-Rom curve. The three axes have periods
- * that share no multiple, so they never turn round together. */
+/* Small motions of the head: random values at equal intervals, joined by a Catmull-Rom curve. The periods of the three
+ * axes have no common multiple, so they never reverse together. */
 static float idle(const noh_face *face, uint32_t axis)
 {
     static const uint32_t periods[3] = { 62400u, 81600u, 100800u };
@@ -60,7 +60,7 @@ static float clamped(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* The point that is looked at, seen from an eye, as the head holds it. */
+/* Angles of an eye to the point it looks at, in the head's space. */
 static void aim(const noh_face_desc *desc, const float rotation[4], const float point[3], int eye, float out[2])
 {
     const float yaw_max = noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE);
@@ -89,7 +89,7 @@ static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_p
 
 /* ---- the rest ---- */
 
-/* In for two fifths of a breath, out for three. */
+/* In for two fifths of a breath, out for three fifths. */
 float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
 {
     float t, sine, cosine;

@@ -1,10 +1,11 @@
-/* face_random.c: random numbers that are functions of a seed, a stream and an index. There is no generator whose state
- * would have to be kept, and no order in which numbers must be drawn. */
+/* face_random.c: random numbers as functions of a seed, a stream and an index. No generator state is kept, and numbers
+ * may be drawn in any order. */
 #include "core/base/math_internal.h"
 #include "core/base/trig.h"
 #include "life/face/face_internal.h"
 
-/* The finaliser of MurmurHash3 (Austin Appleby), twice: each bit of the result depends on each bit of the three. */
+/* The finaliser of MurmurHash3 (Austin Appleby), twice: each bit of the result depends on each bit of the three
+ * inputs. */
 static uint32_t mixed(uint32_t h)
 {
     h = (h ^ h >> 16) * 0x85ebca6bu;
@@ -42,7 +43,8 @@ float noh_face_normal(float uniform)
         return q * polynomial(middle, 4, r) / polynomial(middle_below, 4, r);
     }
     r = noh_sqrt(-0.69314718f * noh_log2(q < 0.0f ? uniform : 1.0f - uniform)) - 1.6f;
-    value = polynomial(tail, 4, r) / polynomial(tail_below, 3, r); /* good to p = 1e-11: uniform is never nearer to 0 */
+    /* accurate to p = 1e-11: uniform is never nearer to 0 */
+    value = polynomial(tail, 4, r) / polynomial(tail_below, 3, r);
     return q < 0.0f ? -value : value;
 }
 

@@ -1,12 +1,12 @@
 /* face_spring.c: a critically damped spring in closed form.
  *
  * x(t) = goal + (d + (v + omega d) t) e^(-omega t), with d and v the distance from the goal and the speed at the start:
- * the fastest way to a goal without passing it from rest. As a function of the time since its start it can be asked at
- * any tick, so it does not matter how time is cut into steps. */
+ * the fastest way to a goal from rest without overshoot. As a function of the time since its start it can be evaluated
+ * at any tick, however time is split into steps. */
 #include "core/base/trig.h"
 #include "life/face/face_internal.h"
 
-#define SETTLED 90.0f /* omega t from which noh_exp2 gives 0: from then on the value is the goal to the bit */
+#define SETTLED 90.0f /* omega t beyond which noh_exp2 gives 0: the value is then exactly the goal */
 
 static float decay(float omega_t)
 {
@@ -41,8 +41,7 @@ float noh_face_omega(uint32_t ticks)
     return 4.744f / noh_face_seconds(ticks);
 }
 
-/* Ticks are kept modulo 2^32, a day: a spring that has come to rest is started again before its age wraps. Nothing of
- * what it gives changes. */
+/* Ticks are modulo 2^32, a day: restart a spring at rest before its age wraps. Its values do not change. */
 void noh_face_spring_settle(noh_face_spring *s, uint32_t tick)
 {
     if (noh_face_seconds(tick - s->start) * s->omega > SETTLED) {

@@ -1,4 +1,4 @@
-/* identity.c: identity targets grouped and bounded, and people drawn from them. */
+/* identity.c: groups and bounds identity targets, and draws people from them. */
 #include "life/face/identity.h"
 
 #include <string.h>
@@ -50,12 +50,12 @@ static void open_scratch(noh_identity_scratch *s, noh_arena *arena, const noh_me
     (void)carve(arena, mesh, s);
     for (int c = 0; c < 3; c++) diagonal[c] = h->bounds_max[c] - h->bounds_min[c];
     s->size = noh_sqrt(noh_dot3(diagonal, diagonal));
-    if (!(s->size > 0.0f)) s->size = 1.0f; /* all in one point: nothing is stretched */
+    if (!(s->size > 0.0f)) s->size = 1.0f; /* all vertices in one point: nothing can be stretched */
     s->middle = 0.5f * (h->bounds_min[0] + h->bounds_max[0]);
     for (uint32_t t = 0; t < h->target_count; t++) s->names[t] = noh_pack_string(mesh->pack, mesh->targets[t].name);
 }
 
-/* ---- which targets ---- */
+/* ---- identity targets ---- */
 
 static int any_recipe_names(const noh_identity_desc *desc, const char *name)
 {
@@ -97,11 +97,11 @@ static void measure_moments(noh_identity_scratch *s, const noh_identity_target *
     }
 }
 
-/* ---- opposite, mirrored ---- */
+/* ---- opposite and mirrored targets ---- */
 
-#define OPPOSED (-0.2f) /* cosine; that of targets which have nothing to do with each other is about 0 */
+#define OPPOSED (-0.2f) /* cosine; unrelated targets have about 0 */
 
-/* The target that is most opposed to this one among those whose names differ in one word. */
+/* The target most opposed to this one among those whose names differ in one word. */
 static uint32_t most_opposed(noh_identity_scratch *s, const noh_identity_target *targets, uint32_t target)
 {
     float least = OPPOSED;
@@ -120,7 +120,7 @@ static uint32_t most_opposed(noh_identity_scratch *s, const noh_identity_target 
     return found;
 }
 
-/* Two belong together where each is most opposed to the other. */
+/* Two targets are opposite if each is most opposed to the other. */
 static void find_opposites(noh_identity_scratch *s, noh_identity_target *targets)
 {
     const uint32_t count = s->mesh->header->target_count;
@@ -143,7 +143,7 @@ static int near(float a, float b, float within)
     return a - b <= within && b - a <= within;
 }
 
-/* Off the middle, on opposite sides, as much moved, the same way but for the side. */
+/* Off the middle, on opposite sides, with equal size of motion and mirrored direction. */
 static int are_mirrored(const noh_identity_scratch *s, uint32_t a, uint32_t b)
 {
     const noh_identity_moments *m = &s->moments[a], *n = &s->moments[b];
@@ -155,7 +155,7 @@ static int are_mirrored(const noh_identity_scratch *s, uint32_t a, uint32_t b)
            near(m->sum[2], n->sum[2], length);
 }
 
-/* The first of mirrored targets says which way is negative. */
+/* The first of two mirrored targets determines the negative direction. */
 static void find_mirrors(noh_identity_scratch *s, noh_identity_target *targets)
 {
     const uint32_t count = s->mesh->header->target_count;
@@ -172,9 +172,9 @@ static void find_mirrors(noh_identity_scratch *s, noh_identity_target *targets)
     }
 }
 
-/* ---- how far ---- */
+/* ---- ranges ---- */
 
-/* A shift of the whole mesh changes no shape; a sideways one of a part in the middle is an asymmetry. */
+/* A shift of the whole mesh changes no shape; a sideways shift of a central part is an asymmetry. */
 static float first_range(const noh_identity_scratch *s, const noh_identity_target *target, uint32_t index,
                          const noh_identity_desc *desc)
 {
@@ -183,7 +183,7 @@ static float first_range(const noh_identity_scratch *s, const noh_identity_targe
     const float aside = m->sum[0] < 0.0f ? -m->sum[0] : m->sum[0];
     if (!target->used || m->length <= 0.0f) return 0.0f;
     if (m->moved * 2u > s->mesh->header->vertex_count && sum > 0.8f * (float)m->moved * m->square) {
-        return 0.0f; /* all by nearly the same */
+        return 0.0f; /* all vertices move by nearly the same amount */
     }
     if (target->mirror == NOH_IDENTITY_NONE && near(m->centre[0], s->middle, 0.02f * s->size) &&
         aside > 0.4f * m->length) {
@@ -196,7 +196,7 @@ static void add_variance(noh_identity_scratch *s, const noh_identity_target *tar
 {
     memset(s->variance, 0, s->mesh->header->vertex_count * sizeof *s->variance);
     for (uint32_t t = 0; t < s->mesh->header->target_count; t++) {
-        const float square = 0.5f * targets[t].range * targets[t].range; /* half of all people have it */
+        const float square = 0.5f * targets[t].range * targets[t].range; /* half of all people use it */
         if (square <= 0.0f) continue;
         noh_identity_field(s, t, &s->field);
         noh_identity_strain(s);
@@ -206,7 +206,7 @@ static void add_variance(noh_identity_scratch *s, const noh_identity_target *tar
     }
 }
 
-/* The share of a target's range that is left, so that no place is stretched by more than the bound. */
+/* The share of a target's range that keeps every place within the stretch bound. */
 static float share_left(noh_identity_scratch *s, uint32_t target, float bound)
 {
     float all = 0.0f, left = 0.0f;
@@ -220,7 +220,7 @@ static float share_left(noh_identity_scratch *s, uint32_t target, float bound)
     return all > 0.0f ? noh_sqrt(left / all) : 0.0f;
 }
 
-/* Targets that stretch one place take of each other; what is left converges in a few rounds. */
+/* Targets that stretch the same place reduce each other; the ranges converge in a few rounds. */
 static void bound_ranges(noh_identity_scratch *s, noh_identity_target *targets, const noh_identity_desc *desc)
 {
     const float bound = desc->strain > 0.0f ? desc->strain : 0.18f;
@@ -235,9 +235,9 @@ static void bound_ranges(noh_identity_scratch *s, noh_identity_target *targets, 
     }
 }
 
-/* ---- what goes along ---- */
+/* ---- correlations ---- */
 
-/* Of a whole face the leader moves much; what a target has in common with it is looked for only where that one is. */
+/* A leader moves much of the face; the correlation of a target is measured only where that target moves vertices. */
 static void follow(noh_identity_scratch *s, noh_identity_target *targets, uint32_t leader)
 {
     noh_identity_field(s, leader, &s->other);
@@ -260,7 +260,7 @@ static void find_leaders(noh_identity_scratch *s, noh_identity_target *targets)
             follow(s, targets, t);
         }
     }
-    /* a target and its opposite, and mirrored ones, follow as one */
+    /* a target, its opposite and its mirror follow together */
     for (uint32_t t = 0; t < s->mesh->header->target_count; t++) {
         const uint32_t first = targets[t].mirror < t ? targets[t].mirror : t;
         if (first != t) {
@@ -343,11 +343,11 @@ noh_result noh_identity_init(void *memory, size_t bytes, void *scratch, size_t s
 
 /* ---- people ---- */
 
-#define STREAM_COMMON 101u /* numbers of their own, beside those of face_internal.h */
+#define STREAM_COMMON 101u /* separate from the streams of face_internal.h */
 #define STREAM_SIDE 102u
-#define MOST 2.0f /* standard deviations: one in twenty would go further */
+#define MOST 2.0f /* standard deviations: one in twenty draws is beyond */
 
-/* A normal number that is drawn again where it goes too far. */
+/* A normal number, drawn again if it is too large. */
 static float draw(uint32_t seed, uint32_t stream, uint32_t index)
 {
     float value = MOST + 1.0f;
@@ -357,7 +357,7 @@ static float draw(uint32_t seed, uint32_t stream, uint32_t index)
     return value > MOST ? MOST : value < -MOST ? -MOST : value;
 }
 
-/* The target that a group is drawn by: the first of a target, its mirror and the opposites of both. */
+/* The target that represents a group: the first of a target, its mirror and the opposites of both. */
 static uint32_t first_of(const noh_identity *identity, uint32_t target)
 {
     uint32_t first = target;
@@ -369,7 +369,7 @@ static uint32_t first_of(const noh_identity *identity, uint32_t target)
     return first;
 }
 
-/* Standard deviations along a target's group, before its sides differ. */
+/* Standard deviations for a target's group, before its sides differ. */
 static float draw_group(const noh_identity *identity, uint32_t seed, uint32_t first)
 {
     const noh_identity_target *target = &identity->targets[first];
@@ -390,7 +390,7 @@ void noh_identity_random(const noh_identity *identity, uint32_t seed, float amou
         value = draw_group(identity, seed, first_of(identity, t));
         if (target->mirror != NOH_IDENTITY_NONE) value += identity->asymmetry * draw(seed, STREAM_SIDE, pair);
         value = (target->negative ? -value : value) * target->range * amount;
-        /* what has no opposite is rare: a face is not square and oval at once */
+        /* targets without an opposite are used rarely: a face is not square and oval at the same time */
         if (target->opposite == NOH_IDENTITY_NONE) value -= target->range * amount;
         weights[t] = value > 1.0f ? 1.0f : value > 0.0f ? value : 0.0f;
     }

@@ -1,4 +1,5 @@
-/* identity_measure.c: the deltas of identity targets: what they move, against each other and along the mesh's edges. */
+/* identity_measure.c: measures deltas of identity targets: what they move, relative to each other and along the mesh's
+ * edges. */
 #include <string.h>
 
 #include "core/base/math_internal.h"
@@ -9,7 +10,7 @@ static uint32_t texel_count(const noh_identity_scratch *s)
     return s->mesh->header->touched_count;
 }
 
-/* Positions alone, of the words that noh_morph_accumulate reads (morph.c). */
+/* Accumulate positions only, from the words that noh_morph_accumulate reads (morph.c). */
 void noh_identity_field(const noh_identity_scratch *s, uint32_t target, const noh_morph_layers *field)
 {
     const noh_target *t = &s->mesh->targets[target];
@@ -71,11 +72,11 @@ float noh_identity_cosine(const noh_identity_scratch *s, int over)
     return a > 0.0f && b > 0.0f ? dot / (noh_sqrt(a) * noh_sqrt(b)) : 0.0f;
 }
 
-/* ---- what lies next to each other ---- */
+/* ---- neighbours ---- */
 
-#define CHAIN_MAX 64u /* vertices of one cell that are looked at: a bound on the time of hostile meshes */
+#define CHAIN_MAX 64u /* most vertices examined per cell: limits the time for hostile meshes */
 
-/* Cells as wide as what is looked for, in chains by a hash: s->partner holds their heads, s->next the rest. */
+/* Cells as wide as the search radius, in chains by a hash: s->partner holds their heads, s->next the rest. */
 static int32_t cell_of(const noh_identity_scratch *s, const float *p, int axis)
 {
     const float cell = (p[axis] - s->mesh->header->bounds_min[axis]) * (50.0f / s->size);
@@ -134,8 +135,7 @@ void noh_identity_facing(noh_identity_scratch *s)
     }
 }
 
-/* Short edges count as if they were a 200th of the mesh longer: what lies folded in a corner of the mouth may unfold.
- */
+/* Short edges count as if they were longer by a 200th of the mesh: skin folded in a corner of the mouth may unfold. */
 static float edge_strain(const noh_identity_scratch *s, uint32_t a, uint32_t b)
 {
     const float *p = s->mesh->positions + 3u * (size_t)a, *q = s->mesh->positions + 3u * (size_t)b;
@@ -170,8 +170,8 @@ void noh_identity_strain(noh_identity_scratch *s)
 
 /* ---- lids ---- */
 
-/* The vertex that a closing one touches: of the same submesh, hardly moved itself, next to where the other one ends up
- * and not where it began. NOH_NONE: there is none. */
+/* The vertex that a closing one touches: of the same submesh, nearly still itself, near the closing one's end position
+ * and not near its start. NOH_NONE if there is none. */
 static uint32_t touched_by(const noh_identity_scratch *s, const noh_submesh *part, uint32_t vertex, const float move[3])
 {
     const float *p = s->mesh->positions + 3u * (size_t)vertex;
@@ -195,7 +195,8 @@ static uint32_t touched_by(const noh_identity_scratch *s, const noh_submesh *par
     return found;
 }
 
-/* Pairs of vertices that meet as lids shut, s->partner; returns how many. Those that go furthest are the rim. */
+/* Find pairs of vertices that meet as lids close, s->partner; returns their number. Those that move farthest are the
+ * rim. */
 static uint32_t find_partners(noh_identity_scratch *s)
 {
     float furthest = 0.0f;
@@ -220,8 +221,9 @@ static uint32_t find_partners(noh_identity_scratch *s)
     return count;
 }
 
-/* Of the lids that meet at weight 1, the weight at which they meet once identity moved them: what is between partners
- * changes by its deltas, and the closing target goes along its own. Least squares over all pairs. */
+/* For lids that meet at weight 1: the weight at which they meet after identity moved them. The distance between
+ * partners changes by the identity's deltas, and the closing target moves along its own. Least squares over all
+ * pairs. */
 static float closing_of(const noh_identity_scratch *s)
 {
     float along = 0.0f, way = 0.0f;

@@ -1,4 +1,4 @@
-/* identity_words.c: names of targets, as words: noseWidthIncr, nose-width-incr and nose_width.incr have the same. */
+/* identity_words.c: names of targets as words: noseWidthIncr, nose-width-incr and nose_width.incr are equal. */
 #include "life/face/identity_internal.h"
 
 static int is_upper(char c)
@@ -16,7 +16,7 @@ static char lower(char c)
     return is_upper(c) ? (char)(c + ('a' - 'A')) : c;
 }
 
-/* The next word; returns its length, 0 at the end, and moves *name behind it. */
+/* Get the next word and move *name behind it; returns its length, 0 at the end. */
 static uint32_t next_word(const char **name, const char **word)
 {
     const char *p = *name;

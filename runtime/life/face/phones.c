@@ -1,8 +1,8 @@
 /* phones.c: the mouth shape of each phone.
  *
- * ARPABET is told by its capitals; digits of stress are passed over. In the International Phonetic Alphabet a phone is
- * one or several characters: stress, length and other marks are passed over, an affricate is one shape, and of a
- * diphthong the first and the last vowel count. */
+ * ARPABET is recognised by its capitals; stress digits are skipped. In the International Phonetic Alphabet a phone has
+ * one or several characters: stress, length and other marks are skipped, an affricate is one shape, and a diphthong has
+ * the shapes of its first and last vowel. */
 #include "core/base/assert.h"
 #include "life/face/speech.h"
 
@@ -62,7 +62,7 @@ static const entry ipa[] = {
 };
 /* clang-format on */
 
-/* How many characters of `text` are `start`, if it begins with it; else 0. */
+/* The number of characters of `text` that match `start`, if it begins with it; else 0. */
 static uint32_t begins_with(const char *text, const char *start)
 {
     uint32_t length = 0;
@@ -88,7 +88,7 @@ static noh_viseme of_arpabet(const char *phone, noh_viseme *second)
     return NOH_VISEME_COUNT;
 }
 
-/* The entry that `text` begins with, and its length; NULL and 1: a mark, or nothing that is known. */
+/* The entry that `text` begins with, and its length; NULL and 1 for a mark or an unknown character. */
 static const entry *ipa_at(const char *text, uint32_t *length)
 {
     for (uint32_t i = 0; i < sizeof ipa / sizeof ipa[0]; i++) {

@@ -14,7 +14,7 @@ static float unit(float x)
     return x < 0.0f ? 0.0f : x > 1.0f ? 1.0f : x;
 }
 
-/* A share of a limit, in one direction. */
+/* A fraction of a limit, in one direction. */
 static float share(float angle, float limit)
 {
     return unit(angle / limit);
@@ -44,8 +44,8 @@ static void upper_channels(const noh_face_pose *pose, const noh_face_desc *desc,
     channels[NOH_CHANNEL_BREATH] = pose->breath;
 }
 
-/* Shapes that shut the lips are exempt from what the others add up to: they take their share first, and what is left is
- * shared out among the others so that all together are at most 1. */
+/* Shapes that close the lips are exempt from the shared sum: they take their share first, and the rest is divided among
+ * the others so that the total is at most 1. */
 static float speech_channels(const float *visemes, float *channels)
 {
     const float shut = unit(unit(visemes[NOH_VISEME_PP]) + unit(visemes[NOH_VISEME_FF]));
@@ -76,9 +76,9 @@ void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, con
     }
 }
 
-/* ---- ownership ---- */
+/* ---- conflicts ---- */
 
-/* What the emotions that show leave of something. */
+/* The share that the visible emotions leave. */
 static float left_by(const uint8_t *overrides, const float *shows)
 {
     float left = 1.0f;
@@ -129,7 +129,7 @@ typedef struct binding {
     uint32_t link_max, count;
 } binding;
 
-/* A row of a recipe. 0: it is of another channel. */
+/* Get a row of a recipe. Returns 0 if it is for another channel. */
 static int row_of(const noh_face_recipe *recipe, uint32_t i, uint32_t channel, noh_face_row *row)
 {
     const noh_recipe_row *from;
@@ -144,7 +144,7 @@ static int row_of(const noh_face_recipe *recipe, uint32_t i, uint32_t channel, n
     return noh_names_equal(noh_pack_string(recipe->pack, from->channel), noh_face_channel_name(channel));
 }
 
-/* How many rows of a channel a recipe has, and how many of them the mesh has a target for. */
+/* Count a recipe's rows of a channel, and how many of them the mesh has a target for. */
 static void count_rows(const binding *b, const noh_face_recipe *recipe, uint32_t channel, uint32_t *rows,
                        uint32_t *found)
 {
@@ -170,7 +170,7 @@ static const noh_face_recipe *choose(const binding *b, uint32_t channel)
     return some;
 }
 
-/* The mouth shape that looks most like one that a face has no targets for; NOH_VISEME_SIL: there is none. */
+/* The mouth shape that looks most like one without targets; NOH_VISEME_SIL if there is none. */
 static uint32_t nearest(uint32_t channel)
 {
     static const uint8_t other[NOH_VISEME_COUNT] = { NOH_VISEME_SIL, NOH_VISEME_SIL, NOH_VISEME_PP,  NOH_VISEME_DD,
@@ -201,7 +201,7 @@ static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, 
     }
 }
 
-/* The nearest shapes of shapes make a path that ends, at a vowel or at shut lips. */
+/* Following nearest shapes always ends, at a vowel or at closed lips. */
 static void find_source(const binding *b, uint32_t channel, noh_face_source *source)
 {
     memset(source, 0, sizeof *source);
@@ -250,7 +250,7 @@ typedef struct name_list {
     uint32_t count;
 } name_list;
 
-/* The first of a name alone. */
+/* Finds only the first target with a name. */
 static uint32_t find_listed(const void *user, const char *name, uint32_t nth)
 {
     const name_list *list = user;
@@ -284,7 +284,7 @@ void noh_face_recipe_source(const noh_face_recipe *const *recipes, uint32_t reci
 
 /* ---- weights ---- */
 
-/* The most that a target may have: 1, or what a link asks for at most. */
+/* The maximum of a target: 1, or the largest link weight if that is more. */
 static float most_of(const noh_face_link *links, uint32_t link_count, uint32_t target)
 {
     float most = 1.0f;
@@ -294,8 +294,8 @@ static float most_of(const noh_face_link *links, uint32_t link_count, uint32_t t
     return most;
 }
 
-/* Rows of one target are added before the sum is held, so that their order does not matter. What no channel moves is
- * left as it is, beyond 0..1 too. */
+/* Rows of one target are added before the sum is clamped, so that their order does not matter. Targets that no channel
+ * moves keep their weights, even beyond 0..1. */
 void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float *channels, float *weights)
 {
     NOH_ASSERT((links || !link_count) && channels && weights);

@@ -1,4 +1,4 @@
-/* recipe_pack.c: recipes that packs bring, and the names of channels. */
+/* recipe_pack.c: recipes in packs, and the names of channels. */
 #include <string.h>
 
 #include "core/base/assert.h"

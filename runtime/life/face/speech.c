@@ -7,17 +7,17 @@
 #include "core/base/trig.h"
 #include "life/face/face_internal.h"
 
-#define NEIGHBOURS 8u        /* phones on each side of a tick that can be seen at it */
+#define NEIGHBOURS 8u        /* phones on each side of a tick that can affect it */
 #define HARD_TICKS 1632      /* 34 ms */
 #define HARD_RAMP_TICKS 1440 /* 30 ms, on each side */
-#define MEET_TICKS 576       /* 12 ms: the shortest of them */
+#define MEET_TICKS 576       /* 12 ms: the shortest contact */
 
-/* How long before its middle a phone begins to rule, and how fast it lets go (1/s), and how much it rules at all. */
+/* How long before its middle a phone begins to dominate, how fast its influence decays (1/s), and its strength. */
 typedef struct dominance {
     float amount, rise, fall;
 } dominance;
 
-/* Rounding begins early (8/s: a tenth of a second before), vowels rule over consonants that only the tongue makes. */
+/* Rounding begins early (8/s: a tenth of a second before); vowels dominate consonants made by the tongue alone. */
 static const dominance dominances[NOH_VISEME_COUNT] = {
     { 0.6f, 12.0f, 12.0f },                                                 /* sil */
     { 1.0f, 35.0f, 30.0f }, { 1.0f, 30.0f, 25.0f },                         /* PP FF */
@@ -47,7 +47,7 @@ noh_result noh_speech_check(const noh_speech *speech, noh_error *error)
     return NOH_OK;
 }
 
-/* The phone at a tick: the last that has begun, by halving. */
+/* The phone at a tick: the last that has begun, by binary search. */
 static uint32_t phone_at(const noh_speech *s, int64_t tick)
 {
     uint32_t low = 0, high = s->phone_count;
@@ -77,7 +77,7 @@ static float rule(const noh_speech *s, uint32_t phone, int64_t tick)
     return d->amount * noh_exp2(-1.44269504f * (before > 0 ? d->rise : d->fall) * t);
 }
 
-/* Silence rules outside of what is said, as a phone of its own. */
+/* Outside the utterance silence dominates, as a phone of its own. */
 static float silence(const noh_speech *s, int64_t tick)
 {
     const dominance *d = &dominances[NOH_VISEME_SIL];
@@ -86,8 +86,8 @@ static float silence(const noh_speech *s, int64_t tick)
     return d->amount * (within <= 0 ? 1.0f : noh_exp2(-1.44269504f * d->rise * (float)within / NOH_FACE_TICKS_PER_S));
 }
 
-/* How far a tick lies outside of the time in which the lips must be shut for the phone: HARD_TICKS around its middle,
- * or for as long as it lasts, whichever is longer. 0 within. */
+/* The distance of a tick from the time in which the lips must be closed for the phone: HARD_TICKS around its middle, or
+ * its whole length, whichever is longer. 0 within. */
 static int64_t outside(const noh_speech *s, uint32_t phone, int64_t tick)
 {
     const int64_t start = s->phones[phone].start, end = end_of(s, phone), middle = (start + end) / 2;
@@ -101,8 +101,8 @@ static float ramp(int64_t ticks, int64_t length)
     return ticks < length ? 1.0f - (float)ticks / (float)length : 0.0f;
 }
 
-/* Shut lips take their share from all that is there. Where a lip on teeth is near, lips that meet let go and close the
- * faster, down to MEET_TICKS: two that stand side by side each have their time. */
+/* Closed lips reduce all other shapes. Next to a lip on teeth, closed lips open and close faster, down to MEET_TICKS,
+ * so that two neighbouring contacts each have their time. */
 static void shut_lips(const noh_speech *s, uint32_t first, uint32_t end, int64_t tick, float *visemes)
 {
     int64_t away[2] = { HARD_RAMP_TICKS, HARD_RAMP_TICKS };

@@ -1,6 +1,6 @@
-/* weight_rule.c: rows of a pack's recipe that say how far targets go, to rules and to weights. The channel of such a
- * row is `range-min` or `range-max`; '-' and the name of the opposite; or '=' and the name of its group's first target.
- */
+/* weight_rule.c: turns rows of a pack's recipe that limit targets into rules, and applies them. The channel of such a
+ * row is `range-min` or `range-max`; '-' and the name of the opposite; or '=' and the name of its group's first
+ * target. */
 #include "life/face/weight_rule.h"
 
 #include "core/base/assert.h"
@@ -26,7 +26,7 @@ static int is_corrective(const noh_pack *pack, const char *target)
     return 0;
 }
 
-/* The mesh's target of a name; NOH_NONE: it has none, or one that follows from others. */
+/* The mesh's target of a name; NOH_NONE if there is none, or if it follows from other targets. */
 static uint32_t find(const noh_mesh *mesh, const char *name)
 {
     return is_corrective(mesh->pack, name) ? NOH_NONE : noh_mesh_find_target(mesh, name);
@@ -59,7 +59,7 @@ static int read_opposite(const noh_mesh *mesh, uint32_t row, noh_weight_rule *ru
     return 1;
 }
 
-/* A group is named by its rows' channel, and known by the first of its targets that the mesh has. */
+/* A group is named by its rows' channel, and identified by the first of its targets that the mesh has. */
 static int read_share(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
 {
     const noh_pack *pack = mesh->pack;
@@ -120,7 +120,7 @@ static int are_together(const noh_weight_rule *a, const noh_weight_rule *b)
     return b->kind == NOH_WEIGHT_SHARE && b->other == a->other;
 }
 
-/* Returns the rule behind the group's. */
+/* Returns the rule after the group's. */
 static uint32_t keep_shares(const noh_weight_rule *rules, uint32_t first, uint32_t rule_count, float *weights)
 {
     float sum = 0.0f;

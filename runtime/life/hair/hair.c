@@ -1,4 +1,4 @@
-/* hair.c: control hairs at rest, hair from outside, and time. hair_lanes.c moves it. */
+/* hair.c: control hairs at rest, checks of hair from outside, and time. hair_lanes.c moves it. */
 #include "life/hair/hair.h"
 
 #include "core/base/arena.h"
@@ -19,7 +19,7 @@ size_t noh_hair_size(const noh_hair_desc *desc)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
-/* Numbers whose squares, and those of their differences, stay finite. */
+/* Numbers whose squares, and the squares of their differences, stay finite. */
 static int are_sound(const float *v, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -144,7 +144,7 @@ void noh_hair_carry(const noh_hair *h, const noh_hair_desc *d, const noh_hair_ca
     *motion = motion_of(h, d, at);
 }
 
-/* ---- from outside, and curves ---- */
+/* ---- hair from outside, and curves ---- */
 
 const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
 {

@@ -1,11 +1,11 @@
-/* hair_lanes.c: a step of control hairs that follow their roots, and what is shown between two of them, for as many
- * hairs as there are lanes: along a hair each point waits for the one before, beside it others do not. What a lane does
- * nothing with keeps its bits, so width does not matter. */
+/* hair_lanes.c: a step of control hairs that follow their roots, and the result between two steps, for as many hairs as
+ * there are lanes. Along a hair each point depends on the previous one; hairs are independent of each other. A lane
+ * without work keeps its bits, so the width does not matter. */
 #include "life/hair/hair.h"
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_HAIR_SCALAR) /* a float at a time: what the vectors are compared with */
+#if defined(NOH_HAIR_SCALAR) /* scalar: the reference for the SIMD paths */
 #undef NOH_AVX2
 #undef NOH_SSE2
 #undef NOH_NEON
@@ -14,11 +14,11 @@
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/vector_internal.h"
 
-#define FOLLOW 0.9f     /* share of a point's correction that the speed of the one before is relieved of */
-#define SPEED_MAX 20.0f /* metres per second; faster after a leap that was not reset */
+#define FOLLOW 0.9f     /* share of a point's correction that is removed from the velocity of the previous one */
+#define SPEED_MAX 20.0f /* metres per second; exceeded only after a teleport without reset */
 #define PASSES 4        /* over spheres that overlap */
-#define GUST_STEPS 24u  /* from one value of the noise to the next: 0.4 s */
-#define ROW 10u         /* floats of a point */
+#define GUST_STEPS 24u  /* between values of the noise: 0.4 s */
+#define ROW 10u         /* floats per point */
 NOH_STATIC_ASSERT(sizeof(noh_hair_point) == ROW * sizeof(float), point_row);
 
 typedef union per_lane {
@@ -26,10 +26,10 @@ typedef union per_lane {
     float f[NOH_LANES];
 } per_lane;
 
-/* As many hairs as there are lanes; lanes without one read the last and write nowhere. */
+/* As many hairs as there are lanes; lanes without a hair read the last one and write nothing. */
 typedef struct group {
     uint32_t first, used;
-    uint32_t at[NOH_LANES]; /* the first point of each, of all */
+    uint32_t at[NOH_LANES]; /* index of the first point of each */
 } group;
 
 static group group_of(const noh_hair *h, uint32_t first)
@@ -74,7 +74,7 @@ NOH_ALWAYS_INLINE void store_points(const group *g, const lanes row[ROW], noh_ha
     lanes_scatter(row + 6, rows, 6);
 }
 
-/* Point i, from 1 on, of each: four floats end with it. */
+/* Load point i, from 1 on, of each: four floats end with it. */
 NOH_ALWAYS_INLINE lane3 load_rest(const group *g, const float *rest, uint32_t i)
 {
     const float *rows[NOH_LANES];
@@ -95,7 +95,7 @@ NOH_ALWAYS_INLINE lane3 load_roots(const group *g, const float *rest)
 
 /* ---- spheres ---- */
 
-/* The spheres as each hair has them: no larger than to its root. */
+/* The spheres for each hair: no larger than to its root. */
 typedef struct obstacles {
     uint32_t count;
     const noh_hair_sphere *spheres;
@@ -117,7 +117,7 @@ static void find_obstacles(const group *g, const noh_hair_desc *d, obstacles *o)
     }
 }
 
-/* Hair that points straight at a centre turns to any side; one by one. */
+/* Hair that points straight at a centre turns to an arbitrary side, one lane at a time. */
 static NOH_NEVER_INLINE lane3 any_side(lanes mask, lane3 way, lane3 side)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -134,8 +134,8 @@ static NOH_NEVER_INLINE lane3 any_side(lanes mask, lane3 way, lane3 side)
     return r;
 }
 
-/* Turn directions away from a sphere until what lies at `length` along them from `head` is out of the sphere. The heads
- * are outside, so there always is such a direction; none is pushed off its length. Returns the lanes that were in. */
+/* Turn directions away from a sphere until the point at `length` along them from `head` is outside the sphere. The
+ * heads are outside, so such a direction always exists; lengths do not change. Returns the lanes that were inside. */
 NOH_ALWAYS_INLINE lanes turn_away(const obstacles *o, uint32_t i, lane3 head, lanes length, lane3 *direction)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), twice = lanes_add(length, length);
@@ -165,7 +165,7 @@ NOH_ALWAYS_INLINE lane3 unit_or(lane3 v, lane3 fallback)
     return lane3_choose(is_long, lane3_scale(v, lanes_inverse_root(is_long, square)), fallback);
 }
 
-/* Put points at their lengths from those before, as near as may be to where they are, out of all spheres. */
+/* Put points at their lengths from the previous ones, as near as possible to where they are, outside of all spheres. */
 NOH_ALWAYS_INLINE lane3 follow(const obstacles *o, lane3 head, lanes length, lane3 p)
 {
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
@@ -193,7 +193,7 @@ static uint32_t scramble(uint32_t x)
     return x ^ x >> 16;
 }
 
-/* Value noise, 0..1: of a seed, a hair and time, smooth in time. Neighbours by index share half of it. */
+/* Value noise, 0..1, from a seed, a hair and time, smooth in time. Hairs with neighbouring indices share half of it. */
 static float gust(uint32_t seed, uint32_t hair, uint32_t steps)
 {
     const uint32_t at = steps / GUST_STEPS;
@@ -297,7 +297,7 @@ uint32_t NOH_HAIR_STEP(noh_hair *hair, const noh_hair_desc *desc, const noh_hair
     return dropped;
 }
 
-/* ---- what comes out ---- */
+/* ---- results ---- */
 
 static void show_group(const group *g, const noh_hair *h, const noh_hair_desc *d, float *points)
 {

@@ -52,8 +52,8 @@ float noh_haircut_widen(const noh_haircut *cut, uint32_t strips)
 
 /* ---- a vertex ---- */
 
-/* A number in 0..1 of a strip's: a sequence of which any stretch is spread evenly (as common_fade.glsl has it), then
- * mixed where neighbours must differ. */
+/* A number in 0..1 for a strip: from a sequence in which any interval is evenly distributed (as in common_fade.glsl),
+ * then hashed where neighbours must differ. */
 static float share_of(uint32_t bits)
 {
     return (float)(bits >> 8) * (1.0f / 16777216.0f);
@@ -66,7 +66,8 @@ static uint32_t mixed(uint32_t x)
     return x ^ (x >> 16);
 }
 
-/* The four points about a place on a curve, and their weights: of the curve, and of its derivative by the segment. */
+/* The four points around a place on a curve, and their weights: for the curve, and for its derivative by the
+ * segment. */
 typedef struct curve_weights {
     uint32_t at[4];
     float place[4], slope[4];
@@ -104,8 +105,8 @@ static void add_hair(const noh_haircut *cut, const float *points, uint32_t hair,
     }
 }
 
-/* How a strip strays and curls: about the line that its patch has for it, in a frame that is steady but for hair that
- * points straight up (Frisvad: Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012). */
+/* How a strip strays and curls: about its line in the patch, in a frame that is continuous except for hair that points
+ * straight up (Frisvad: Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012). */
 static void stray(const noh_pack_hair_header *h, uint32_t strip, float along, const float tangent[3], float position[3])
 {
     const float a = share_of(mixed(strip * 3u + 1u)), b = share_of(mixed(strip * 3u + 2u));

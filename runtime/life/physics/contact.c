@@ -1,15 +1,15 @@
-/* contact.c: a rounded box against planes, a height field, and obstacles, which are rounded boxes, too.
+/* contact.c: contacts of a rounded box with planes, a height field, and obstacles, which are rounded boxes, too.
  *
- * Two of these touch with corners of the one on the other, or with edges. A corner outside of the other's box leads out
- * along the shortest way; one inside by the side that is cheapest for it and the middle of its body together, so that a
- * body is not caught around what it overlaps.
+ * Two of these touch with corners of one on the other, or with edges. A corner outside the other's box is pushed out
+ * along the shortest way; a corner inside by the side that is cheapest for it and the centre of its body together, so
+ * that a body is not caught around an obstacle.
  * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes) and 5.1.9 (segments) */
 #include "life/physics/contact_internal.h"
 
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 
-#define SAME 1e-3f /* metres: edges that are as far along an axis as the farthest one touch with it */
+#define SAME 1e-3f /* metres: edges within this of the farthest one along an axis also touch */
 
 static float absolute(float x)
 {
@@ -36,7 +36,7 @@ static void add(noh_contacts *c, const float point[3], const float normal[3], fl
 
 /* ---- corners ---- */
 
-/* Corner 0..7; 0: it is one of lower number, of a side of 0. */
+/* Get corner 0..7. Returns 0 for a duplicate of a corner of lower number, where a side is 0. */
 static int corner_of(const noh_obb *box, uint32_t corner, float out[3])
 {
     float local[3];
@@ -58,7 +58,7 @@ static void into(const noh_obb *box, const float point[3], float out[3])
     noh_quat_rotate(back, d, out);
 }
 
-/* The way out of a box for a point inside of it, in the box's space. middle: of the point's body */
+/* The way out of a box for a point inside it, in the box's space. middle: centre of the point's body */
 static float way_out(const float half[3], const float p[3], const float middle[3], float normal[3])
 {
     float least = 1e30f, way = 0.0f;
@@ -75,7 +75,7 @@ static float way_out(const float half[3], const float p[3], const float middle[3
     return -way;
 }
 
-/* How far a point is from a box, below 0 inside, and which way is out. */
+/* The distance of a point from a box, below 0 inside, and the direction out. */
 static float from_box(const noh_obb *box, const float point[3], const float middle[3], float normal[3])
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -143,16 +143,16 @@ static float reach_along(const noh_obb *box, const axes *a, const float axis[3])
     return reach;
 }
 
-/* An axis along which two boxes lie apart, or overlap the least: from the obstacle to the body. */
+/* An axis along which two boxes are separated, or overlap least: from the obstacle to the body. */
 typedef struct parting {
-    float axis[3], far; /* far below 0: by how much they overlap */
-    int edge_a, edge_b; /* of edges along these axes; below 0: of a side */
+    float axis[3], far; /* separation; below 0: overlap */
+    int edge_a, edge_b; /* the two edges whose product is the axis; below 0: the axis is a side */
 } parting;
 
 typedef struct pair {
     const noh_round_box *a, *b; /* body and obstacle */
     axes axes_a, axes_b;
-    float between[3]; /* from the obstacle's middle to the body's */
+    float between[3]; /* from the obstacle's centre to the body's */
 } pair;
 
 static void try_axis(const pair *p, const float axis[3], int edge_a, int edge_b, parting *best)
@@ -167,7 +167,7 @@ static void try_axis(const pair *p, const float axis[3], int edge_a, int edge_b,
     best->edge_b = edge_b;
 }
 
-/* Edges first: a side must be better than these, for its corners are found without it. */
+/* Edges first: a side must be better than these, because its corners are found without it. */
 static parting parting_of(const pair *p)
 {
     parting best = { { 0.0f, 1.0f, 0.0f }, -1e30f, -1, -1 };
@@ -189,7 +189,8 @@ static parting parting_of(const pair *p)
     return best;
 }
 
-/* Edge 0..3 along axis i: its ends, and how far it is along `axis`. 0: it is one of lower number. */
+/* Get edge 0..3 along axis i: its ends, and its distance along `axis`. Returns 0 for a duplicate of an edge of lower
+ * number. */
 static int edge_of(const noh_obb *box, const axes *a, int i, uint32_t edge, const float axis[3], float ends[2][3],
                    float *far)
 {
@@ -211,7 +212,7 @@ static void cross_edges(const pair *p, const parting *best, float a[2][3], float
 {
     float along[2], on_a[3], on_b[3], d[3];
     noh_segments_closest(a[0], a[1], b[0], b[1], along);
-    if (along[0] <= 0.0f || along[0] >= 1.0f || along[1] <= 0.0f || along[1] >= 1.0f) return; /* a corner's */
+    if (along[0] <= 0.0f || along[0] >= 1.0f || along[1] <= 0.0f || along[1] >= 1.0f) return; /* at a corner */
     noh_sub3(a[1], a[0], d);
     noh_madd3(a[0], along[0], d, on_a);
     noh_sub3(b[1], b[0], d);
@@ -236,7 +237,7 @@ static void edges_on(const pair *p, const parting *best, noh_contacts *contacts)
     }
 }
 
-/* ---- what a world is made of ---- */
+/* ---- obstacles of a world ---- */
 
 static void touch_round(const noh_round_box *body, const noh_round_box *on, noh_contacts *contacts)
 {
@@ -250,7 +251,7 @@ static void touch_round(const noh_round_box *body, const noh_round_box *on, noh_
     corners_in(body, on, contacts);
     corners_on(body, on, contacts);
     if (best.edge_a >= 0) edges_on(&p, &best, contacts);
-    if (contacts->count == before && best.far < 0.0f) { /* one is through the other */
+    if (contacts->count == before && best.far < 0.0f) { /* one has passed through the other */
         add(contacts, body->box.centre, best.axis, best.far - body->radius - on->radius);
     }
 }

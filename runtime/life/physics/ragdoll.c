@@ -1,4 +1,4 @@
-/* ragdoll.c: sets of ragdolls: memory, what comes in and out, sleep. */
+/* ragdoll.c: sets of ragdolls: memory, input and output, sleep. */
 #include "life/physics/ragdoll.h"
 
 #include "core/base/arena.h"
@@ -8,15 +8,16 @@
 #include "life/physics/vector_internal.h"
 
 #define STILL_STEPS 30u  /* half a second */
-#define STILL_PART 0.02f /* of its size: 35 mm of 1.75 m */
-#define SLOW_PART 0.15f  /* of its size in a second: 0.26 m/s of 1.75 m */
-#define SLOW_STEPS 6u    /* a tenth of a second, after which what is slow is braked, more and more in another half */
+#define STILL_PART 0.02f /* of its size: 35 mm for 1.75 m */
+#define SLOW_PART 0.15f  /* of its size per second: 0.26 m/s for 1.75 m */
+/* a tenth of a second, after which slow bodies are braked, increasingly over another half second */
+#define SLOW_STEPS 6u
 #define BRAKE_STEPS 30u
-#define BENT 0.02f          /* radians past a limit that are more than rounding */
-#define BENT_STEPS 45.0f    /* for each radian, half as long again as it takes */
-#define SLACK_PART 0.00115f /* of its size: 2 mm of 1.75 m */
-#define PUSH_PART 4.6f      /* of its size in a second, by which a push changes one body alone: 8 m/s of 1.75 m */
-#define SPEED_PART 23.0f    /* of its size in a second: 40 m/s of 1.75 m */
+#define BENT 0.02f          /* radians beyond a limit that are more than rounding */
+#define BENT_STEPS 45.0f    /* per radian, half as long again as it takes */
+#define SLACK_PART 0.00115f /* of its size: 2 mm for 1.75 m */
+#define PUSH_PART 4.6f      /* of its size per second, up to which a push changes one body alone: 8 m/s for 1.75 m */
+#define SPEED_PART 23.0f    /* of its size per second: 40 m/s for 1.75 m */
 
 /* ---- rigs ---- */
 
@@ -44,13 +45,13 @@ static int good_body(const noh_ragdoll_rig *rig, uint32_t i)
            is_positive(b->inertia_along) && is_finite3(b->position) && is_unit4(b->rotation);
 }
 
-/* Around 0, and no more than half a turn. */
+/* Contains 0, and spans no more than half a turn each way. */
 static int good_range(float low, float high)
 {
     return low >= -3.1416f && low <= 0.0f && high >= 0.0f && high <= 3.1416f;
 }
 
-/* How full rest makes the ellipse of swing, 0..1. */
+/* Where rest lies in the ellipse of swing, 0 centre to 1 edge. */
 static float rest_swing(const noh_ragdoll_joint *j)
 {
     float sum = 0.0f;
@@ -143,7 +144,7 @@ void noh_ragdoll_stabilize(noh_ragdoll_rig *rig)
 
 /* ---- constants ---- */
 
-/* A point, a rotation, in a body's space. */
+/* Transform a point and a rotation into a body's space. */
 static void point_into(const noh_ragdoll_body *b, const float point[3], float out[3])
 {
     float back[4], d[3];
@@ -221,7 +222,7 @@ static void set_pair(const noh_ragdoll_rig *rig, uint32_t i, noh_ragdoll_pair *p
     pair->distance = rest < sum ? rest : sum;
 }
 
-/* The longest side of the box round the ends of bodies at rest. */
+/* The longest side of the box around the ends of bodies at rest. */
 static float size_of(const noh_ragdoll_rig *rig)
 {
     float low[3] = { 1e30f, 1e30f, 1e30f }, high[3] = { -1e30f, -1e30f, -1e30f }, size = 0.0f;
@@ -271,7 +272,7 @@ typedef struct layout {
     float *scratch;
 } layout;
 
-/* Shared memory comes last: it may begin 16 bytes later, on a multiple of 32. */
+/* Shared memory comes last: it may begin 16 bytes later, at a multiple of 32. */
 static layout carve(noh_arena *arena, uint32_t count)
 {
     layout l;
@@ -326,7 +327,7 @@ void noh_ragdoll_origin_near(const float at[3], float origin[3])
     for (int k = 0; k < 3; k++) origin[k] = whole(at[k]);
 }
 
-/* A point that counts from one origin, from another one. */
+/* Convert a point from one origin to another. */
 static void from_origin(const float point[3], const float old[3], const float origin[3], float out[3])
 {
     for (int k = 0; k < 3; k++) out[k] = point[k] - (origin[k] - old[k]);
@@ -400,7 +401,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     return NULL;
 }
 
-/* ---- in ---- */
+/* ---- input ---- */
 
 static void wake(noh_ragdoll_doll *doll)
 {
@@ -488,7 +489,7 @@ noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const floa
     return NOH_OK;
 }
 
-/* The body whose surface is nearest to a point from the doll's origin. */
+/* The body whose surface is nearest to a point relative to the doll's origin. */
 static uint32_t nearest_body(const noh_ragdoll_shape *shape, const noh_ragdoll_doll *d, const float point[3])
 {
     uint32_t nearest = 0;
@@ -517,9 +518,9 @@ static void turn_by(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, 
     for (int i = 0; i < 3; i++) out[i] = v[i] / c->inertia_across + extra * axis[i];
 }
 
-/* What is free of a doll, as one rigid body. */
+/* The free bodies of a doll, as one rigid body. */
 typedef struct whole_doll {
-    float mass, centre[3], reach; /* reach: of the farthest body's centre */
+    float mass, centre[3], reach; /* reach: distance of the farthest body's centre */
     float inertia[3][3];          /* about the centre; rows and columns */
 } whole_doll;
 
@@ -569,8 +570,8 @@ static void spin_by(const whole_doll *w, const float v[3], float out[3])
     for (int i = 0; i < 3; i++) out[i] = determinant > 0.0f ? noh_dot3(minors[i], v) / determinant : 0.0f;
 }
 
-/* All free bodies as if they were one: by mass, and turned so far that none gets more than twice the mean speed, or
- * more than a doll may have. */
+/* Push all free bodies as if they were one: by mass, with a spin limited so that none gets more than twice the mean
+ * speed, or more than a doll may have. */
 static void push_whole(const noh_ragdoll_shape *shape, noh_ragdoll_doll *d, const float point[3],
                        const float impulse[3])
 {
@@ -596,7 +597,7 @@ static void push_whole(const noh_ragdoll_shape *shape, noh_ragdoll_doll *d, cons
     }
 }
 
-/* A body alone. */
+/* Push one body. */
 static void push_body(const noh_ragdoll_constants *c, noh_ragdoll_state *s, const float point[3],
                       const float impulse[3])
 {
@@ -630,7 +631,7 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
 
 /* ---- steps ---- */
 
-/* How far an end of a body is at most from where it lay. */
+/* Upper bound on how far an end of a body is from its stored place. */
 static float strayed(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float lain[7])
 {
     float ends[2][3], before[2][3], most = 0.0f;
@@ -651,8 +652,8 @@ static int is_fast(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, f
     return !(square < most * most);
 }
 
-/* What is solved by corrections creeps for seconds where it should lie. So speeds are taken away from a doll all of
- * which has been slow for a while, until each step begins from none. Without a ground under it nothing stays slow. */
+/* A position-based solver makes a resting doll creep for seconds. So the velocities of a doll that has been slow for a
+ * while are reduced, until each step begins from zero. Without ground below it nothing stays slow. */
 static void brake(const noh_ragdolls *set, noh_ragdoll_doll *d)
 {
     int fast = d->held != 0;
@@ -690,7 +691,7 @@ static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
     }
 }
 
-/* Its origin goes along with its first body. */
+/* Move its origin with its first body. */
 static void follow_origin(const noh_ragdolls *set, noh_ragdoll_doll *d)
 {
     for (int k = 0; k < 3; k++) {
@@ -739,7 +740,7 @@ uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint3
     return set->steps.dropped - dropped;
 }
 
-/* ---- out ---- */
+/* ---- output ---- */
 
 void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose *bodies)
 {

@@ -1,15 +1,16 @@
-/* ragdoll_lanes.c: 1/60 s of as many ragdolls as there are lanes.
+/* ragdoll_lanes.c: advances by 1/60 s as many ragdolls as there are lanes.
  *
- * In each substep: predict; pairs of bodies; joints from the first body to the last, each by anchors, hinge or
- * swing, twist, strength; the world, with static friction; velocities from what has moved; no bounce; friction in
- * joints. After the last one positions alone are brought nearer to what they may be. Masked lanes keep their bits: what
- * is corrected nowhere may be left out, so width does not matter.
+ * In each substep: predict; pairs of bodies; joints from the first body to the last, each by anchors, hinge or swing,
+ * twist, strength; the world, with static friction; velocities from the change of position; restitution; friction in
+ * joints.
+ * After the last substep, positions alone are corrected further. Masked lanes keep their bits: a correction that no
+ * lane needs may be skipped, so the width does not matter.
  *
- * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers:
- * I^-1 v = across v + (along - across) z (z . v). */
+ * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers: I^-1 v = across
+ * v + (along - across) z (z . v). */
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_RAGDOLL_SCALAR) /* a float at a time: what the vectors are compared with */
+#if defined(NOH_RAGDOLL_SCALAR) /* scalar: the reference for the SIMD paths */
 #undef NOH_AVX2
 #undef NOH_SSE2
 #undef NOH_NEON
@@ -19,11 +20,11 @@
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 
-#define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin past their limits come back */
+#define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin beyond their limits return */
 #define AT_ONCE 1e3f
-#define DOWN 0.7f    /* a way that leads more steeply than 45 degrees */
-#define NO_WAY 1e12f /* more than the size of any box */
-#define POINTS 3u    /* of a body that touch the world: its two ends, and one between */
+#define DOWN 0.7f    /* a direction steeper than 45 degrees */
+#define NO_WAY 1e12f /* larger than any box */
+#define POINTS 3u    /* contact points of a body with the world: its two ends, and one between */
 
 typedef struct lane_body {
     lane3 p;
@@ -31,22 +32,22 @@ typedef struct lane_body {
     lane3 v, w, goal_p;
     lane4 goal_q;
     lanes hertz;
-    lanes mass, across, along; /* one over them; 0: held */
-    lane3 z;                   /* the axis, of q */
+    lanes mass, across, along; /* inverse mass and inertia; 0: held */
+    lane3 z;                   /* the axis, from q */
     lane3 p_before;
     lane4 q_before;
     lane3 normals[POINTS];
     lanes at[POINTS], pushed[POINTS]; /* where along the axis, and by how much in this substep */
-    lanes approach[POINTS];           /* the speed at which it came, below 0; of a world that bounces */
+    lanes approach[POINTS];           /* approach speed, below 0; for a world that bounces */
 } lane_body;
 NOH_STATIC_ASSERT(sizeof(lane_body) == NOH_RAGDOLL_LANE_FLOATS * sizeof(lanes), lane_body);
 
-/* A world as the dolls of the lanes have it, each from its own origin. */
+/* A world relative to the origins of the lanes' dolls. */
 typedef struct lane_world {
     lane3 origin;
-    lane3 root;      /* where the first body is in this substep */
-    lanes push_out;  /* how far what overlapped before a substep comes apart in it */
-    lanes turn_back; /* as of joints */
+    lane3 root;      /* position of the first body in this substep */
+    lanes push_out;  /* how far overlaps from before a substep separate in it */
+    lanes turn_back; /* likewise for joints */
     lanes plane_distances[NOH_OBSTACLES_MAX];
 } lane_world;
 NOH_STATIC_ASSERT(sizeof(lane_world) == NOH_RAGDOLL_PLACE_FLOATS * sizeof(lanes), lane_world);
@@ -99,7 +100,7 @@ NOH_ALWAYS_INLINE lane3 inverse_inertia(const lane_body *b, lane3 v)
     return lane3_madd(lane3_scale(v, b->across), extra, b->z);
 }
 
-/* One over the mass that a rotation about n, a push along n at r with c = r x n, has to move. */
+/* One over the effective mass of a rotation about n, or of a push along n at r with c = r x n. */
 NOH_ALWAYS_INLINE lanes turn_weight(const lane_body *b, lane3 n)
 {
     const lanes d = lane3_dot(b->z, n);
@@ -111,7 +112,7 @@ NOH_ALWAYS_INLINE lanes push_weight(const lane_body *b, lane3 c)
     return lanes_add(b->mass, turn_weight(b, c));
 }
 
-/* a share / weight, 0 where there is no weight or the mask says no */
+/* a share / weight, 0 if the weight is 0 or the lane is masked out */
 NOH_ALWAYS_INLINE lanes over_weight(lanes mask, lanes value, lanes weight)
 {
     const lanes some = lanes_and(mask, lanes_less(lanes_set(0.0f), weight));
@@ -124,7 +125,7 @@ NOH_ALWAYS_INLINE void turn_body(lane_body *b, lanes mask, lane3 by)
     b->z = lane4_axis_z(b->q);
 }
 
-/* Two bodies by an angle about the unit axis n: a onwards, b back, each by its share. */
+/* Turn two bodies by an angle about the unit axis n: a forwards, b backwards, each by its share. */
 NOH_ALWAYS_INLINE void turn_pair(lane_body *a, lane_body *b, lanes mask, lane3 n, lanes angle)
 {
     const lanes s = over_weight(mask, angle, lanes_add(turn_weight(a, n), turn_weight(b, n)));
@@ -134,7 +135,7 @@ NOH_ALWAYS_INLINE void turn_pair(lane_body *a, lane_body *b, lanes mask, lane3 n
     turn_body(b, mask, by_b);
 }
 
-/* Two bodies by `far` along the unit vector n at ra and rb: a back, b onwards. */
+/* Move two bodies by `far` along the unit vector n at ra and rb: a backwards, b forwards. */
 NOH_ALWAYS_INLINE void push_pair(lane_body *a, lane3 ra, lane_body *b, lane3 rb, lanes mask, lane3 n, lanes far)
 {
     const lane3 ca = lane3_cross(ra, n), cb = lane3_cross(rb, n);
@@ -152,7 +153,7 @@ NOH_ALWAYS_INLINE void push_pair(lane_body *a, lane3 ra, lane_body *b, lane3 rb,
 typedef struct joint {
     const noh_ragdoll_constants *c;
     lane_body *a, *b; /* the parent and the body itself */
-    lanes turn_back;  /* how far what was past a limit before a substep turns back in it, radians */
+    lanes turn_back;  /* how far joints that were beyond a limit before a substep turn back in it, radians */
 } joint;
 
 NOH_ALWAYS_INLINE lane4 frame_a(const joint *j)
@@ -165,7 +166,7 @@ NOH_ALWAYS_INLINE lane4 frame_b(const joint *j)
     return lane4_mul(j->b->q, lane4_set(j->c->frame));
 }
 
-/* The frames as the substep began. */
+/* The frames at the start of the substep. */
 NOH_ALWAYS_INLINE lane4 frame_a_before(const joint *j)
 {
     return lane4_mul(j->a->q_before, lane4_set(j->c->frame_parent));
@@ -176,15 +177,15 @@ NOH_ALWAYS_INLINE lane4 frame_b_before(const joint *j)
     return lane4_mul(j->b->q_before, lane4_set(j->c->frame));
 }
 
-/* Of an angle past a limit: all of what this substep has brought, and of what was there before only so much that
- * nothing is thrown. */
+/* The correction of an angle beyond a limit: all of what this substep added, and only a bounded part of what was there
+ * before, so that nothing is thrown. */
 NOH_ALWAYS_INLINE lanes way_back(const joint *j, lanes past, lanes before)
 {
     const lanes zero = lanes_set(0.0f), left = lanes_max(lanes_sub(before, j->turn_back), zero);
     return lanes_max(lanes_sub(past, left), zero);
 }
 
-/* The axes of a hinge onto each other. */
+/* Align the axes of a hinge. */
 NOH_ALWAYS_INLINE void solve_hinge(const joint *j)
 {
     const lane3 c = lane3_cross(lane4_axis_z(frame_a(j)), lane4_axis_z(frame_b(j)));
@@ -195,7 +196,7 @@ NOH_ALWAYS_INLINE void solve_hinge(const joint *j)
     turn_pair(j->a, j->b, mask, lane3_scale(c, inverse), back);
 }
 
-/* By what angle swing is out of its ellipse; 0 inside. r: of b in the frame of a. */
+/* The angle by which swing is outside its ellipse; 0 inside. r: rotation of b in the frame of a. */
 NOH_ALWAYS_INLINE lanes past_swing(const joint *j, lane4 r, lanes *outside)
 {
     const lanes one = lanes_set(1.0f);
@@ -218,7 +219,7 @@ NOH_ALWAYS_INLINE lanes past_swing(const joint *j, lane4 r, lanes *outside)
     return lanes_choose(mask, angle, lanes_set(0.0f));
 }
 
-/* Swing back into its ellipse, along the shortest way to the middle. */
+/* Turn swing back into its ellipse, by the shortest way to its centre. */
 NOH_ALWAYS_INLINE void solve_swing(const joint *j)
 {
     lanes mask, was;
@@ -232,7 +233,7 @@ NOH_ALWAYS_INLINE void solve_swing(const joint *j)
     turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), angle);
 }
 
-/* By what angle, halved, twist is above its limits, or below 0 under them; 0 between them. */
+/* Half the angle by which twist is above its upper limit, or (negative) below its lower one; 0 between them. */
 NOH_ALWAYS_INLINE lanes past_twist(const joint *j, lane4 r, lanes *outside)
 {
     const lanes zero = lanes_set(0.0f), turned = lanes_less(r.w, zero);
@@ -251,7 +252,7 @@ NOH_ALWAYS_INLINE lanes past_twist(const joint *j, lane4 r, lanes *outside)
     return lanes_choose(mask, lanes_mul(lanes_set(2.0f), ratio), zero);
 }
 
-/* Twist back between its limits: no angle is made while it is. */
+/* Turn twist back between its limits; needs no arc functions while it is within them. */
 NOH_ALWAYS_INLINE void solve_twist(const joint *j)
 {
     const lanes zero = lanes_set(0.0f);
@@ -268,9 +269,9 @@ NOH_ALWAYS_INLINE void solve_twist(const joint *j)
     turn_pair(j->a, j->b, mask, lane3_scale(n, lanes_inverse_root(mask, square)), angle);
 }
 
-/* Towards the angle that the goals have, as a critically damped spring of so many hertz: of the angle it takes
- * (s / (1 + s))^2, of the speed 2 s / (1 + s)^2, with s = 2 pi hertz h.
- * source  Macklin et al. 2016, section 5, with the effective inertia put in */
+/* Turn towards the goals' angle as a critically damped spring of this frequency: by (s / (1 + s))^2 of the angle and 2
+ * s / (1 + s)^2 of the speed, with s = 2 pi hertz h.
+ * source  Macklin et al. 2016, section 5, with the effective inertia inserted */
 NOH_ALWAYS_INLINE void solve_strength(const joint *j, lanes h)
 {
     const lanes one = lanes_set(1.0f), s = lanes_mul(lanes_mul(j->b->hertz, lanes_set(6.2831853f)), h);
@@ -288,7 +289,7 @@ NOH_ALWAYS_INLINE void solve_strength(const joint *j, lanes h)
     turn_pair(j->a, j->b, mask, lane3_scale(back, inverse), lanes_mul(square, inverse));
 }
 
-/* What a sliding joint's anchors are apart by, without what they may be. */
+/* The separation of a sliding joint's anchors beyond its limits. */
 NOH_ALWAYS_INLINE lane3 past_linear(const joint *j, lane3 apart)
 {
     const lane4 q = frame_a(j);
@@ -300,7 +301,7 @@ NOH_ALWAYS_INLINE lane3 past_linear(const joint *j, lane3 apart)
     return lane4_rotate(q, past);
 }
 
-/* The anchors onto each other. */
+/* Bring the anchors together. */
 NOH_ALWAYS_INLINE void solve_anchors(const joint *j)
 {
     const lane3 ra = lane4_rotate(j->a->q, lane3_set(j->c->anchor_parent));
@@ -330,23 +331,23 @@ NOH_ALWAYS_INLINE lane3 contact_arm(const lane_body *b, uint32_t point, lanes ra
     return lane3_madd(lane3_scale(b->z, b->at[point]), lanes_negate(radius), b->normals[point]);
 }
 
-/* How far a point of a body at `arm` has come in this substep. */
+/* How far a point of a body at `arm` has moved in this substep. */
 NOH_ALWAYS_INLINE lane3 moved_at(const lane_body *b, lane3 arm)
 {
     const lane3 turned = lane4_difference(b->q, b->q_before);
     return lane3_add(lane3_sub(b->p, b->p_before), lane3_cross(turned, arm));
 }
 
-/* How far to push where `depth` is below 0 after a way of `moved` along the normal: all of what this substep has
- * brought, and of what was there before only so much that nothing is thrown. */
+/* How far to push where `depth` is below 0, after a move of `moved` along the normal: all of what this substep added,
+ * and only a bounded part of what was there before, so that nothing is thrown. */
 NOH_ALWAYS_INLINE lanes way_out(lanes depth, lanes moved, lanes push_out)
 {
     const lanes zero = lanes_set(0.0f), before = lanes_sub(depth, moved);
     return lanes_max(lanes_sub(lanes_min(zero, lanes_add(before, push_out)), depth), zero);
 }
 
-/* Out of the world along n, as far as `depth` is below 0; then back along the ground by what it has moved there, as far
- * as friction holds. */
+/* Push out of the world along n where `depth` is below 0; then back along the ground by its motion there, as far as
+ * friction holds. */
 static inline void touch(lane_body *b, const noh_ragdoll_constants *c, uint32_t point, lanes at, lane3 n, lanes depth,
                          const noh_world *world, lanes push_out)
 {
@@ -395,7 +396,7 @@ static void touch_planes(lane_body *b, const noh_ragdoll_constants *c, const noh
     }
 }
 
-/* The numbers of one lane. */
+/* The value of one lane. */
 NOH_ALWAYS_INLINE float lane_of(const lanes *v, uint32_t lane)
 {
     return ((const float *)(const void *)v)[lane];
@@ -430,7 +431,7 @@ static void touch_field(lane_body *b, const noh_ragdoll_constants *c, const noh_
     }
 }
 
-/* Where two segments are nearest to each other: middles and half vectors. at: -1..1 along each.
+/* The nearest points of two segments, given as centres and half vectors. at: -1..1 along each.
  * source  Ericson 2005, section 5.1.9 */
 NOH_ALWAYS_INLINE void closest(lane3 a, lane3 half_a, lane3 b, lane3 half_b, lanes at[2])
 {
@@ -450,8 +451,8 @@ NOH_ALWAYS_INLINE void closest(lane3 a, lane3 half_a, lane3 b, lane3 half_b, lan
     at[1] = t;
 }
 
-/* From a capsule's axis to the first body: the way out for all bodies whose axes are inside of it, or they would be
- * caught around it. */
+/* From a capsule's axis to the first body: the common way out for all bodies whose axes are inside it; otherwise the
+ * doll would be caught around it. */
 static lane3 way_to_root(const lane_world *place, const noh_capsule *k, lane3 middle, lane3 half)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -494,7 +495,7 @@ static void touch_capsules(lane_body *b, const noh_ragdoll_constants *c, const n
     }
 }
 
-/* How far one axis of a point in a box's space is past its side, on whichever side it lies. */
+/* How far a point in a box's space is beyond the box's side on one axis, on either side. */
 NOH_ALWAYS_INLINE lanes past_side(lanes at, float half)
 {
     return lanes_sub(lanes_abs(at), lanes_set(half));
@@ -505,9 +506,9 @@ NOH_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
     return lanes_choose(lanes_less(sign, lanes_set(0.0f)), lanes_negate(size), size);
 }
 
-/* What a way out of one side of a box costs a point and the first body together, or where the box holds the first body,
- * that body alone: the side below or above 0. A box that holds it most likely stands on the ground: no way leads down.
- * up: of the axis, in the world */
+/* The cost of a way out through one side of a box, below or above 0, for a point and the first body together, or, if
+ * the box contains the first body, for that body alone. A box that contains it most likely stands on the ground: no way
+ * leads down. up: component along the axis, in the world */
 NOH_ALWAYS_INLINE lanes cost_of_side(lanes at, lanes root, lanes held, float half, lanes up, lanes *below)
 {
     const lanes h = lanes_set(half), zero = lanes_set(0.0f), own = lanes_choose(held, root, at);
@@ -520,8 +521,8 @@ NOH_ALWAYS_INLINE lanes cost_of_side(lanes at, lanes root, lanes held, float hal
     return lanes_min(under, above);
 }
 
-/* Out of a box that holds the point: by one side for all that is inside, or a doll would be caught around it.
- * up: in the box's space */
+/* Push out of a box that contains the point: through one side for all that is inside; otherwise a doll would be caught
+ * around it. up: in the box's space */
 static lanes out_with_root(const noh_obb *box, lane3 l, lane3 root, lane3 up, lane3 *n)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), less = lanes_set(-1.0f);
@@ -541,7 +542,7 @@ static lanes out_with_root(const noh_obb *box, lane3 l, lane3 root, lane3 up, la
     return lanes_sub(lane3_dot(l, *n), half);
 }
 
-/* Outwards from a box, in its space, and how far outside the point is, which the box does not hold. */
+/* Direction out of a box, in its space, and the distance, for a point outside the box. */
 NOH_ALWAYS_INLINE lanes out_of_box(const noh_obb *box, lane3 l, lane3 *n, lanes *outside)
 {
     const lanes zero = lanes_set(0.0f);
@@ -640,8 +641,8 @@ static inline void predict(lane_body *b, lanes h, float seconds, float speed_max
     for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
 }
 
-/* What leaves the world is stopped, or leaves at a share of the speed at which it came; what came at no more than
- * gravity makes in two substeps only rests. */
+/* Stop what separates from the world, or let it leave at a share of its approach speed; approach speeds up to what
+ * gravity adds in two substeps only rest. */
 static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float restitution, float seconds)
 {
     const lanes zero = lanes_set(0.0f);
@@ -671,7 +672,7 @@ static inline void take_velocity(lane_body *b, lanes per_second)
     b->w = lane3_scale(lane4_turned(b->q, b->q_before), per_second);
 }
 
-/* Up to a torque, a joint does not turn. */
+/* A joint does not turn below a torque. */
 static inline void rub_joint(const joint *j, float seconds)
 {
     const lane3 d = lane3_sub(j->b->w, j->a->w);
@@ -717,10 +718,9 @@ static inline void settle_world(const noh_ragdoll_shape *shape, const noh_world 
     solve_world(b, &thinner, world, place);
 }
 
-/* What the substeps have left, brought together without a change of speed: joints once more, then their anchors from
- * the last body to the first, which is the way that they do not come in a substep, or what the ground has pushed apart
- * would stay so as long as it pushes. The world comes last, but takes only what is deeper than its slack: the whole of
- * it would push joints apart again. */
+/* Reduce the remaining errors without changing velocities: joints once more, then their anchors from the last body to
+ * the first, opposite to the order within a substep; otherwise separations caused by the ground would last as long as
+ * it pushes. The world comes last, but only beyond its slack: a full correction would separate joints again. */
 static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies)
 {
     for (uint32_t i = 0; i < shape->body_count; i++) {

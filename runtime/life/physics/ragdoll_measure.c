@@ -1,4 +1,4 @@
-/* ragdoll_measure.c: how far a ragdoll is from what its joints and the world allow. */
+/* ragdoll_measure.c: how far a ragdoll violates its joints' limits and the world. */
 #include "core/base/assert.h"
 #include "core/base/trig.h"
 #include "life/physics/ragdoll_internal.h"
@@ -23,7 +23,7 @@ typedef struct joint {
     const noh_ragdoll_state *a, *b;
 } joint;
 
-/* Radians past the ellipse of swing. r: of the child's frame in the parent's */
+/* Radians beyond the ellipse of swing. r: rotation of the child's frame in the parent's */
 static float past_swing(const noh_ragdoll_constants *c, const float r[4])
 {
     const float rest = r[2] * r[2] + r[3] * r[3], swung = r[0] * r[0] + r[1] * r[1];
@@ -48,7 +48,7 @@ static float past_limits(const joint *j)
     noh_quat_mul(j->b->rotation, j->c->frame, b);
     noh_quat_conjugate(a, back);
     noh_quat_mul(back, b, r);
-    if (j->c->flags & NOH_RAGDOLL_HINGE) { /* swing: its axes off each other */
+    if (j->c->flags & NOH_RAGDOLL_HINGE) { /* swing: the angle between its axes */
         swing = 2.0f * noh_atan2(noh_sqrt(r[0] * r[0] + r[1] * r[1]), noh_sqrt(r[2] * r[2] + r[3] * r[3]));
         return j->c->flags & NOH_RAGDOLL_LOOSE ? swing : larger(swing, past_twist(j->c, r));
     }
@@ -77,7 +77,7 @@ static float separation(const joint *j)
 
 /* ---- the world ---- */
 
-/* How deep a point that is `radius` thick is in a box: out of the nearest side. */
+/* How deep a point of thickness `radius` is in a box, through the nearest side. */
 static float in_box(const noh_obb *at, const float origin[3], const float point[3], float radius)
 {
     noh_obb local = *at;
@@ -97,7 +97,7 @@ static float in_box(const noh_obb *at, const float origin[3], const float point[
     return least + radius;
 }
 
-/* point: from the origin */
+/* point: relative to the origin */
 static float in_ground(const noh_world *world, const float origin[3], const float point[3], float radius)
 {
     float deepest = 0.0f, height, normal[3];

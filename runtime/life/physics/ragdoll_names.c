@@ -1,10 +1,10 @@
-/* ragdoll_names.c: bodies of a ragdoll by the pack's table, or by the names of joints. */
+/* ragdoll_names.c: bodies of a ragdoll from the pack's table, or from the names of joints. */
 #include "core/base/name_internal.h"
 #include "core/base/trig.h"
 #include "motion/clip/pack_clip.h"
 #include "life/physics/ragdoll_rig.h"
 
-/* A hip is a thigh, a shoulder an upper arm, where no joint below it is. */
+/* A hip is a thigh, and a shoulder an upper arm, if no joint below it is. */
 typedef enum part {
     NONE,
     HEAD,
@@ -24,7 +24,7 @@ typedef enum part {
 
 #define DEGREES(a) ((a) * (NOH_PI / 180.0f))
 
-/* As a row has them. */
+/* Fields as in a row. */
 static const struct abilities {
     uint32_t hinge, toward;
     float bend_min, bend_max, side, twist, friction;
@@ -41,7 +41,7 @@ static const struct abilities {
     [CHEST] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-15.0f), DEGREES(25.0f), DEGREES(15.0f), DEGREES(15.0f), 5.0f },
 };
 
-/* The first that a name has, as letters alone: 'upper_arm.L' has "upperarm". */
+/* The first word that a name contains, as letters alone: 'upper_arm.L' contains "upperarm". */
 static const struct word {
     const char *text;
     part means;
@@ -87,7 +87,7 @@ static int is_letter(char c)
     return lower(c) >= 'a' && lower(c) <= 'z';
 }
 
-/* Does `name`, from here on and without all but its letters, begin with the word? */
+/* Whether `name`, from here on and ignoring all but letters, begins with the word. */
 static int begins_with(const char *name, const char *word)
 {
     while (*word && *name) {
@@ -115,8 +115,9 @@ static part name_at(const noh_ragdoll_source *s, uint32_t joint)
     return part_of(noh_pack_joint_name(s->pack, s->skeleton, joint));
 }
 
-/* Is there a joint of `below` whose nearest one above, of the names `weak` and `means`, is this? So 'Hips' and collar
- * bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee' is. */
+/* Whether some joint of kind `below` has this joint as its nearest ancestor among the names `weak` and `means`. So
+ * 'Hips' and collar bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over
+ * 'L_Knee' is. */
 static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part weak, part means, part below)
 {
     for (uint32_t i = joint + 1u; i < s->joints.joint_count; i++) {
@@ -138,7 +139,7 @@ static part part_at(const noh_ragdoll_source *s, uint32_t joint)
     return name;
 }
 
-/* The topmost joint of its part in its chain: fingers' names have "hand" too. */
+/* The topmost joint of its kind in its chain: fingers' names contain "hand" too. */
 static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means)
 {
     uint32_t up = s->joints.parents[joint];
@@ -152,7 +153,7 @@ static int is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)
     return below == joint;
 }
 
-/* The lowest joint above all first joints of a part; NOH_NONE where there are not two. */
+/* The lowest common ancestor of all first joints of a kind; NOH_NONE if there are fewer than two. */
 static uint32_t where_meet(const noh_ragdoll_source *s, part means)
 {
     uint32_t meet = NOH_NONE, count = 0;
@@ -191,7 +192,7 @@ static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
 
 /* ---- a table in the pack ---- */
 
-/* The first joint of that name; NOH_NONE: the skeleton has none. */
+/* The first joint with that name; NOH_NONE if the skeleton has none. */
 static uint32_t joint_of(const noh_ragdoll_source *s, const noh_pack_ragdoll_row *row)
 {
     const char *name = noh_pack_string(s->pack, row->joint);
@@ -201,7 +202,7 @@ static uint32_t joint_of(const noh_ragdoll_source *s, const noh_pack_ragdoll_row
     return NOH_NONE;
 }
 
-/* The pack's rows by rising joint. 0: it has none, or the skeleton lacks a joint. */
+/* The pack's rows by increasing joint. Returns 0 if it has none, or the skeleton lacks a joint. */
 static uint32_t rows_of_pack(const noh_ragdoll_source *s, noh_ragdoll_row *rows)
 {
     for (uint32_t i = 0; i < s->pack->ragdoll_row_count; i++) {

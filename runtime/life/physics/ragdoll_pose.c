@@ -1,4 +1,4 @@
-/* ragdoll_pose.c: between the pose of a skeleton and the bodies of a ragdoll. */
+/* ragdoll_pose.c: converts between poses of a skeleton and bodies of a ragdoll. */
 #include "life/physics/ragdoll_pose.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 
 /* ---- joints ---- */
 
-/* A point and a rotation in a joint's space, in that of its parent. */
+/* Transform a point and a rotation from a joint's space to its parent's. */
 static void out_of_joint(const noh_transform *t, float point[3], float rotation[4])
 {
     for (int i = 0; i < 3; i++) point[i] *= t->scale[i];
@@ -18,14 +18,14 @@ static void out_of_joint(const noh_transform *t, float point[3], float rotation[
     noh_quat_mul(t->rotation, rotation, rotation);
 }
 
-/* In model space. joint: NOH_JOINT_ROOT is model space itself */
+/* Transform to model space. joint: NOH_JOINT_ROOT is model space itself */
 static void out_of(const noh_skeleton *k, const noh_transform *local, uint32_t joint, float point[3], float rotation[4])
 {
     for (; joint != NOH_JOINT_ROOT; joint = k->parents[joint]) out_of_joint(&local[joint], point, rotation);
     noh_quat_normalize(rotation);
 }
 
-/* A point of model space in that of a joint: from the root down, along the way that leads to it. */
+/* Transform a point from model space to a joint's: from the root down, along the path to the joint. */
 static void point_into(const noh_skeleton *k, const noh_transform *local, uint32_t joint, float point[3])
 {
     uint32_t above = NOH_JOINT_ROOT;
@@ -53,7 +53,7 @@ static void joint_at(const noh_skeleton *k, const noh_transform *local, uint32_t
 
 /* ---- bodies on joints ---- */
 
-/* `of` as `in` sees it. */
+/* Express `of` relative to `in`. */
 static void relative(const noh_ragdoll_pose *in, const noh_ragdoll_pose *of, noh_ragdoll_pose *out)
 {
     float back[4], d[3];
@@ -64,7 +64,7 @@ static void relative(const noh_ragdoll_pose *in, const noh_ragdoll_pose *of, noh
     noh_quat_normalize(out->rotation);
 }
 
-/* `of`, which is told in the space of `in`. */
+/* Convert `of`, given relative to `in`, to absolute. */
 static void absolute(const noh_ragdoll_pose *in, const noh_ragdoll_pose *of, noh_ragdoll_pose *out)
 {
     noh_ragdoll_pose made;
@@ -129,7 +129,7 @@ static void joint_of_body(const noh_ragdoll_fit *fit, const noh_ragdoll_frame *f
 void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleton, const noh_ragdoll_frame *frame,
                          const noh_ragdoll_pose *bodies, const float *weights, noh_transform *local)
 {
-    for (uint32_t i = 0; i < fit->body_count; i++) { /* by rising joint: what is above a body is done before it */
+    for (uint32_t i = 0; i < fit->body_count; i++) { /* by increasing joint: ancestors are done first */
         const float weight = weights ? weights[i] : 1.0f;
         const uint32_t at = fit->joints[i], parent = skeleton->parents[at];
         noh_ragdoll_pose joint, above;
@@ -168,7 +168,7 @@ void noh_ragdoll_motions_of(const noh_ragdoll_pose *before, const noh_ragdoll_po
 
 /* ---- getting up ---- */
 
-/* What is up, for a body. */
+/* The up direction in a body's space. */
 static void up_of(const noh_ragdoll_pose *body, float up[3])
 {
     static const float y[3] = { 0.0f, 1.0f, 0.0f };
@@ -185,8 +185,8 @@ float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *
     return noh_dot3(ups[0], ups[1]);
 }
 
-/* The half turn about +Y, as sine and cosine, that brings the bodies of one about the first most nearly to the other's:
- * least squares of their distances, seen from above. */
+/* Half of the turn about +Y, as sine and cosine, that brings one doll's bodies, about the first, nearest to the
+ * other's: least squares of their distances, seen from above. */
 static void heading_between(const noh_ragdoll_pose *from, const noh_ragdoll_pose *to, uint32_t count, float turn[4])
 {
     float along = 0.0f, across = 0.0f;

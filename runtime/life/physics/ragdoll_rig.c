@@ -1,4 +1,4 @@
-/* ragdoll_rig.c: capsules, masses and joints of a ragdoll out of a skeleton and the skin that hangs on it. */
+/* ragdoll_rig.c: makes capsules, masses and joints of a ragdoll from a skeleton and its skin. */
 #include "life/physics/ragdoll_rig.h"
 
 #include "core/base/assert.h"
@@ -7,12 +7,12 @@
 
 #define BINS 64u
 #define DENSITY 1000.0f
-#define MARGIN 0.02f /* radians that rest stays within a hinge's limits */
+#define MARGIN 0.02f /* radians that rest keeps from a hinge's limits */
 
 /* A body while it is made. */
 typedef struct bone {
-    float start[3], direction[3]; /* of its joint, metres; where its limb goes */
-    float length;                 /* to the next body, or to where its skin ends */
+    float start[3], direction[3]; /* start of its joint, metres; direction of its limb */
+    float length;                 /* to the next body, or to the end of its skin */
     uint32_t child_count, child;  /* the last of them */
 } bone;
 
@@ -40,7 +40,8 @@ void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float positi
     noh_quat_normalize(rotation);
 }
 
-/* The body that a joint moves with: of itself or of the next one above it that has one; the first for those above. */
+/* The body that a joint moves with: its own, or that of its nearest ancestor with one; the first body for joints above
+ * all bodies. */
 static uint32_t owner_of(const maker *m, uint32_t joint)
 {
     while (joint != NOH_JOINT_ROOT) {
@@ -54,12 +55,12 @@ static uint32_t owner_of(const maker *m, uint32_t joint)
 
 /* ---- skin ---- */
 
-/* What is taken of each vertex of a body. */
+/* What to measure at each vertex of a body. */
 typedef struct probe {
     uint32_t body;
     const float *origin, *axis; /* axis unit */
-    int across;                 /* distances from the axis, else along it */
-    float low, high;            /* of the values, found before they are counted */
+    int across;                 /* 1: distances from the axis; 0: along it */
+    float low, high;            /* range of the values, found before they are counted */
     float sum[3];
     uint32_t count, bins[BINS];
 } probe;
@@ -82,7 +83,7 @@ static void take(probe *p, const float point[3], int counts)
     }
 }
 
-/* A vertex where its heaviest joint carries it in the bind pose, metres. */
+/* A vertex as placed by its heaviest joint in the bind pose, metres. */
 static void place_vertex(const maker *m, const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, uint32_t slot,
                          float point[3])
 {
@@ -120,7 +121,7 @@ static void probe_skin(const maker *m, probe *p, int counts)
     }
 }
 
-/* So much of a body's vertices lie below. */
+/* The value below which a share of a body's vertices lie. */
 static float percentile(const probe *p, float share)
 {
     const float wanted = share * (float)p->count;
@@ -145,7 +146,7 @@ static probe probe_body(const maker *m, uint32_t body, const float origin[3], co
 
 /* ---- bones ---- */
 
-/* Where bodies begin, and which follow which. */
+/* Find where bodies begin, and which follows which. */
 static void find_bones(maker *m)
 {
     for (uint32_t i = 0; i < m->rig->body_count; i++) {
@@ -171,7 +172,7 @@ static float apart(const float a[3], const float b[3])
     return noh_length3(d);
 }
 
-/* Of a body without skin of its own, or hardly any: as long as three tenths of the one above it. */
+/* The length of a body with little or no skin of its own: three tenths of its parent's. */
 static float parent_length(const maker *m, uint32_t i)
 {
     const uint32_t parent = m->rig->bodies[i].parent;
@@ -179,7 +180,7 @@ static float parent_length(const maker *m, uint32_t i)
     return above > 0.0f ? 0.3f * above : 0.1f;
 }
 
-/* The limb's direction and length: to the next body; without one, or with several, to where its skin lies. */
+/* The limb's direction and length: to the next body; without one, or with several, to the end of its skin. */
 static void aim_bone(maker *m, uint32_t i)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -205,7 +206,7 @@ static void aim_bone(maker *m, uint32_t i)
 
 /* ---- capsules ---- */
 
-/* The line of a body with several others on it lies between the two that are farthest apart: hips, shoulders. */
+/* The line of a body with several children runs between the two that are farthest apart: hips, shoulders. */
 static int widest(const maker *m, uint32_t body, float axis[3], float middle[3])
 {
     float most = 0.0f;
@@ -232,7 +233,7 @@ static void place_capsule(noh_ragdoll_body *b, const float centre[3], const floa
     noh_quat_between(z, axis, x, b->rotation);
 }
 
-/* A trunk's body: across, as wide as its skin; from one bone on it to the other, where it has little skin itself. */
+/* A trunk's body: across, as wide as its skin; from one child bone to the other if it has little skin itself. */
 static int wide_capsule(const maker *m, uint32_t i)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
@@ -264,7 +265,7 @@ static void long_capsule(const maker *m, uint32_t i)
 
 /* ---- masses ---- */
 
-/* A cylinder and two half balls, of water. */
+/* A cylinder and two half balls, with the density of water. */
 static void weigh(noh_ragdoll_body *b)
 {
     const float r = b->radius, l = 2.0f * b->half, r2 = r * r;
@@ -306,7 +307,8 @@ static float scale_masses(maker *m)
 
 /* ---- joints ---- */
 
-/* Up is from the first body to the farthest above it, forward where feet point: what bends upwards. */
+/* Up is from the first body to its farthest descendant above; forward is where the feet point: the bodies that bend
+ * upwards. */
 static void find_directions(maker *m)
 {
     static const float y[3] = { 0.0f, 1.0f, 0.0f }, z[3] = { 0.0f, 0.0f, 1.0f };
@@ -332,11 +334,11 @@ static void bend_axis(const maker *m, uint32_t i, float axis[3])
     noh_perpendicular3(b->direction, hint, axis);
     noh_cross3(parent->direction, b->direction, bent);
     if (m->rows[i].hinge && noh_length3(bent) > 0.17f && noh_dot3(bent, axis) > 0.5f * noh_length3(bent)) {
-        noh_perpendicular3(b->direction, bent, axis); /* bent in the bind pose already: that way */
+        noh_perpendicular3(b->direction, bent, axis); /* already bent in the bind pose: that way */
     }
 }
 
-/* A rotation whose z axis is `z` and whose x axis is `x`, both unit and at right angles. */
+/* A rotation whose z axis is `z` and whose x axis is `x`, both unit and perpendicular. */
 static void frame_of(const float x[3], const float z[3], float q[4])
 {
     static const float unit_z[3] = { 0.0f, 0.0f, 1.0f }, unit_x[3] = { 1.0f, 0.0f, 0.0f };
@@ -348,7 +350,7 @@ static void frame_of(const float x[3], const float z[3], float q[4])
     noh_quat_normalize(q);
 }
 
-/* Limits of a hinge count from the straight limb: by how much it is bent in the bind pose they are less. */
+/* Limits of a hinge count from the straight limb: subtract its bend in the bind pose. */
 static void hinge_limits(const maker *m, uint32_t i, const float axis[3], noh_ragdoll_joint *j)
 {
     const bone *b = &m->bones[i], *parent = &m->bones[m->rig->bodies[i].parent];
@@ -384,8 +386,8 @@ static void make_joint(maker *m, uint32_t i, float mass)
     j->twist_max = row->twist;
 }
 
-/* A small body that has far joints would be spun about by them in each correction: its inertia is at least a tenth of
- * what its mass has at the farthest one, about each axis. */
+/* A small body with distant joints would be spun by them in each correction: its inertia is at least a tenth of its
+ * mass at the farthest one, about each axis. */
 static void spread_inertia(noh_ragdoll_rig *rig)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
@@ -404,9 +406,8 @@ static void spread_inertia(noh_ragdoll_rig *rig)
     }
 }
 
-/* A small body gets a good part of its parent's mass, and would turn far more easily than that: in a fall it spins by
- * more in a substep than its limits can take back. Its inertia is at least a twelfth of its parent's, about each axis.
- */
+/* A small body gets a good part of its parent's mass, and would turn far more easily than that: in a fall it spins more
+ * in a substep than its limits can correct. Its inertia is at least a twelfth of its parent's, about each axis. */
 static void stabilize_inertia(noh_ragdoll_rig *rig)
 {
     for (uint32_t i = 1; i < rig->body_count; i++) {
@@ -420,7 +421,7 @@ static void stabilize_inertia(noh_ragdoll_rig *rig)
 
 /* ---- pairs ---- */
 
-/* How far from each other two capsules are at rest. */
+/* The distance of two capsules at rest. */
 static float gap(const noh_ragdoll_body *a, const noh_ragdoll_body *b)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
@@ -439,7 +440,7 @@ static float gap(const noh_ragdoll_body *a, const noh_ragdoll_body *b)
     return apart(p, q) - a->radius - b->radius;
 }
 
-/* Neighbours overlap by nature, as do bodies that a third one joins, but for two of the same parent. */
+/* Neighbours overlap by nature, as do bodies joined by a third one, except two children of the same parent. */
 static int may_collide(const noh_ragdoll_rig *rig, uint32_t a, uint32_t b)
 {
     const uint32_t pa = rig->bodies[a].parent, pb = rig->bodies[b].parent;
@@ -447,10 +448,10 @@ static int may_collide(const noh_ragdoll_rig *rig, uint32_t a, uint32_t b)
     return (pa == NOH_NONE || rig->bodies[pa].parent != b) && (pb == NOH_NONE || rig->bodies[pb].parent != a);
 }
 
-/* The pairs that are nearest to each other at rest, by their sizes. */
+/* The pairs nearest to each other at rest, relative to their sizes. */
 static void find_pairs(noh_ragdoll_rig *rig)
 {
-    float taken = -1.0f; /* what was taken last; the next one is no nearer */
+    float taken = -1.0f; /* the last one taken; the next one is no nearer */
     uint32_t last = 0;
     while (rig->pair_count < NOH_RAGDOLL_PAIRS_MAX) {
         float best = 1e30f;

@@ -1,4 +1,4 @@
-/* rigid.c: a free rigid body: exact flight, turns by splitting, contacts by impulses. */
+/* rigid.c: a free rigid body: exact flight, rotation by splitting, contacts by impulses. */
 #include "life/physics/rigid.h"
 
 #include "core/base/assert.h"
@@ -11,9 +11,9 @@
 #define SECONDS ((float)NOH_RIGID_STEP_TICKS / 48000.0f)
 #define STEPS_MAX 150u /* a quarter of a second */
 #define SWEEPS 10u
-#define SLACK 1e-4f /* metres of overlap that stay, so that what rests keeps touching */
+#define SLACK 1e-4f /* metres of overlap that remain, so that resting bodies keep touching */
 #define PUSH_PART 0.2f
-#define BOUNCE_STEPS 4.0f /* what comes no faster than gravity makes it in so many substeps only rests */
+#define BOUNCE_STEPS 4.0f /* an approach speed up to what gravity adds in this many substeps does not bounce */
 #define STILL_SPEED 0.08f
 #define STILL_STEPS 300u /* half a second */
 NOH_STATIC_ASSERT(sizeof(noh_rigid) == 144, rigid);
@@ -23,9 +23,9 @@ static int is_finite3(const float v[3])
     return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
 }
 
-/* ---- made ---- */
+/* ---- making a body ---- */
 
-/* Of a solid of the shape, by the box around it where it is no ball or capsule. */
+/* Inertia of a solid of the shape; of the box around it unless it is a ball or capsule. */
 static void solid_inertia(const noh_rigid_desc *d, float inertia[3])
 {
     const float r = d->radius, m = d->mass, x = d->half[0] + r, y = d->half[1] + r, z = d->half[2] + r;
@@ -81,7 +81,7 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
 
 /* ---- spin and momentum ---- */
 
-/* Of the world, in the body's axes, each times or over its inertia, and back. */
+/* Multiply or divide a vector of the world by the inertia, in the body's axes. */
 static void by_inertia(const noh_rigid *b, const float v[3], int over, float out[3])
 {
     float back[4];
@@ -138,7 +138,7 @@ void noh_rigid_push(noh_rigid *body, const float point[3], const float impulse[3
 
 /* ---- a substep ---- */
 
-/* By what its momentum about one of its axes makes it turn in so long, exactly. */
+/* Turn a body by its momentum about one of its axes for a time, exactly. */
 static void turn_about(noh_rigid *b, const float momentum[3], int axis, float seconds)
 {
     float back[4], own[3], by[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
@@ -158,15 +158,15 @@ static void turn_free(noh_rigid *b, const float momentum[3])
     noh_quat_normalize(b->rotation);
 }
 
-/* A contact as impulses see it. */
+/* A contact for the impulse solver. */
 typedef struct hold {
-    float arm[3], wanted; /* speed along the normal that it is to have at least */
+    float arm[3], wanted; /* least speed along the normal */
     float push, rub[3];   /* impulses so far: along the normal, across it */
 } hold;
 
 typedef struct solver {
     noh_rigid *body;
-    float velocity[3], spin[3]; /* what is solved: of the motion, or of what comes apart */
+    float velocity[3], spin[3]; /* the motion being solved: velocities, or the separation of overlaps */
     float momentum[3];
     noh_contacts contacts;
     hold holds[NOH_CONTACTS_MAX];
@@ -187,7 +187,7 @@ static void apply(solver *s, const float arm[3], float size, const float along[3
     by_inertia(s->body, s->momentum, 1, s->spin);
 }
 
-/* The speed that an impulse of 1 along n makes there. */
+/* The speed that a unit impulse along n makes at a point. */
 static float ease(const solver *s, const float arm[3], const float n[3])
 {
     float twist[3], spin[3];
@@ -230,8 +230,8 @@ static void rub(solver *s, uint32_t i, float friction)
     apply(s, h->arm, 1.0f, change);
 }
 
-/* The speed at which a point leaves that comes at `speed`, is `depth` inside already, and is pulled towards the world
- * by `gravity`: as if it had bounced at the surface, or small bounces would never end. */
+/* The speed at which a point leaves that arrives at `speed`, is `depth` inside already, and is pulled towards the world
+ * by `gravity`: as if it had bounced at the surface; otherwise small bounces would never end. */
 static float bounced(float restitution, float speed, float depth, float gravity)
 {
     const float before = speed - gravity * SECONDS, lift = 2.0f * gravity * depth;
@@ -241,7 +241,7 @@ static float bounced(float restitution, float speed, float depth, float gravity)
     return leaves > 0.0f ? leaves : 0.0f;
 }
 
-/* Velocities: nothing goes on into the world, and what came fast bounces. */
+/* Velocities: none into the world remains, and fast ones bounce. */
 static void meet(solver *s, const noh_world *world, const float gravity[3])
 {
     const float slow = BOUNCE_STEPS * SECONDS * noh_length3(gravity);
@@ -263,19 +263,19 @@ static void meet(solver *s, const noh_world *world, const float gravity[3])
     }
 }
 
-/* No longer than `most`. */
+/* Limit a vector to a length. */
 static void shorten(float v[3], float most)
 {
     const float length = noh_length3(v);
     if (length > most) noh_madd3(v, most / length - 1.0f, v, v);
 }
 
-/* Out of what it overlaps, at a bounded speed that it does not keep. */
+/* Separate overlaps, at a bounded speed that the body does not keep. */
 static void come_apart(solver *s)
 {
     const float reach = noh_length3(s->body->half) + s->body->radius;
     int some = 0;
-    for (uint32_t i = 0; i < s->contacts.count; i++) { /* what leaves by itself needs no more than what it lacks */
+    for (uint32_t i = 0; i < s->contacts.count; i++) { /* points that separate by themselves need only the rest */
         hold *h = &s->holds[i];
         float v[3], speed = PUSH_PART * (-s->contacts.at[i].gap - SLACK) / SECONDS;
         speed_at(s, h->arm, v);
@@ -306,7 +306,7 @@ static void turn_by(noh_rigid *b, const float spin[3])
     noh_quat_normalize(b->rotation);
 }
 
-/* Returns the square of the speed at which it comes out of what it overlaps; below 0 where it touches nothing. */
+/* Returns the squared speed of separation from overlaps; below 0 if it touches nothing. */
 static float substep(noh_rigid *b, const noh_world *world, const float gravity[3])
 {
     solver s;
@@ -324,7 +324,7 @@ static float substep(noh_rigid *b, const noh_world *world, const float gravity[3
         shape.radius = b->radius;
         noh_contacts_find(world, b->origin, &shape, &s.contacts);
     }
-    if (!s.contacts.count) { /* by the mean of both speeds, which is exact under a constant force */
+    if (!s.contacts.count) { /* by the mean of both velocities, which is exact under a constant force */
         noh_madd3(b->position, 0.5f * SECONDS, before, b->position);
         noh_madd3(b->position, 0.5f * SECONDS, b->velocity, b->position);
         for (int k = 0; k < 3; k++) turned[k] = 0.5f * (turned[k] + b->momentum[k]);
@@ -387,7 +387,7 @@ uint32_t noh_rigid_step(noh_rigid *body, const noh_world *world, const float gra
     return body->steps.dropped - dropped;
 }
 
-/* ---- out ---- */
+/* ---- output ---- */
 
 void noh_rigid_place(const noh_rigid *body, float position[3], float rotation[4])
 {

@@ -31,7 +31,7 @@ int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b)
     return 1;
 }
 
-/* A point or, about the origin, a direction in the space of a rotation. */
+/* Transform a point or, about the origin, a direction into the space of a rotation. */
 static void into(const float rotation[4], const float v[3], float out[3])
 {
     float back[4];
@@ -66,7 +66,7 @@ void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3])
     noh_madd3(box->centre, 1.0f, p, closest);
 }
 
-/* Box b in the space of box a: its centre, its axes as columns, and their magnitudes with the margin. */
+/* Box b in the space of box a: its centre, its axes as columns, and their magnitudes plus the margin. */
 typedef struct pair {
     float centre[3], axes[3][3], sizes[3][3];
 } pair;
@@ -88,7 +88,7 @@ static pair pair_of(const noh_obb *a, const noh_obb *b)
     return p;
 }
 
-/* Apart along a side of a, of b? */
+/* Whether the boxes are separated along a side of a or of b. */
 static int sides_part(const pair *p, const float a[3], const float b[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -103,7 +103,7 @@ static int sides_part(const pair *p, const float a[3], const float b[3])
     return 0;
 }
 
-/* Apart along the product of edge i of a and edge j of b? */
+/* Whether the boxes are separated along the product of edge i of a and edge j of b. */
 static int edges_part(const pair *p, const float a[3], const float b[3], int i, int j)
 {
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
@@ -130,7 +130,7 @@ float noh_ray_aabb(const noh_ray *ray, const noh_aabb *box)
     float enter = 0.0f, leave = ray->distance_max;
     for (int i = 0; i < 3; i++) {
         const float d = ray->direction[i];
-        if (d == 0.0f) { /* along the slab: inside it or not at all */
+        if (d == 0.0f) { /* parallel to the slab: inside it or never */
             if (ray->from[i] < box->min[i] || ray->from[i] > box->max[i]) return -1.0f;
             continue;
         }
@@ -155,7 +155,7 @@ float noh_ray_obb(const noh_ray *ray, const noh_obb *box)
     return noh_ray_aabb(&local, &sides);
 }
 
-/* The first root of a t^2 + 2 b t + c from 0 on, with c > 0: it begins outside. Below 0: there is none. */
+/* The first root of a t^2 + 2 b t + c from 0 on, with c > 0: it begins outside. Below 0 if there is none. */
 static float first_root(float a, float b, float c)
 {
     const float square = b * b - a * c;
@@ -170,7 +170,7 @@ static float ray_ball(const noh_ray *ray, const float centre[3], float radius)
     return c <= 0.0f ? 0.0f : first_root(noh_dot3(ray->direction, ray->direction), noh_dot3(from, ray->direction), c);
 }
 
-/* Against the round side of a capsule, between its ends. */
+/* Intersect with the round side of a capsule, between its ends. */
 static float ray_side(const noh_ray *ray, const float from[3], const float axis[3], float radius)
 {
     const float length = noh_dot3(axis, axis);

@@ -1,4 +1,4 @@
-/* spring.c: chains at rest, chains from outside, and where they end. spring_lanes.c moves them. */
+/* spring.c: chains at rest, checks of chains from outside, and the ends of joints. spring_lanes.c moves them. */
 #include "life/physics/spring.h"
 
 #include "core/base/arena.h"
@@ -96,9 +96,9 @@ void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh
     memcpy(spring->turned, carrier->rotation, sizeof spring->turned);
 }
 
-/* ---- from outside ---- */
+/* ---- springs from outside ---- */
 
-/* Numbers that steps can go on from: squares of their differences stay finite. */
+/* Numbers that steps can continue from: squares of their differences stay finite. */
 static int are_sound(const float *v, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -141,25 +141,25 @@ const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *de
     return NULL;
 }
 
-/* ---- what is shown ---- */
+/* ---- results ---- */
 
 static void mix3(const float a[3], const float b[3], float t, float out[3])
 {
     for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
 }
 
-/* From the first joint to the end of joint i, between the last two steps, turned along with what carries the chain: a
- * chain that is carried stiffly does not lag behind. `turn` is that rotation. */
+/* From the first joint to the end of joint i, interpolated between the last two steps and turned with the carrier: a
+ * chain that is carried rigidly does not lag behind. `turn` is the carrier's rotation since. */
 static void shown(const noh_spring *s, uint32_t i, float t, const float turn[4], float out[3])
 {
     const noh_spring_point *p = &noh_spring_const_points(s)[i];
     float before[3];
-    noh_madd3(p->before, 1.0f, s->moved, before); /* from where the first joint was then */
+    noh_madd3(p->before, 1.0f, s->moved, before); /* relative to the first joint at that time */
     mix3(before, p->now, t, out);
     noh_quat_rotate(turn, out, out);
 }
 
-/* From the carrier's rotation of what is shown to that of the last call. */
+/* The rotation from the interpolated carrier to the carrier of the last call. */
 static float begin_shown(const noh_spring *s, float turn[4])
 {
     const float t = (float)s->left / (float)NOH_SPRING_STEP_TICKS;
@@ -180,7 +180,8 @@ void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, floa
         shown(spring, i, t, turn, tail);
         noh_sub3(tail, head, bone);
         noh_normalize3(bone, desc->joints[i].bone);
-        noh_madd3(at, noh_spring_const_points(spring)[i].length, bone, at); /* mixed directions, whole lengths */
+        /* directions are interpolated, lengths are kept */
+        noh_madd3(at, noh_spring_const_points(spring)[i].length, bone, at);
         memcpy(ends + 3 * (size_t)i, at, sizeof at);
         memcpy(head, tail, sizeof head);
     }

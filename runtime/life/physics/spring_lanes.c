@@ -1,14 +1,14 @@
-/* spring_lanes.c: the reference's algorithm at a fixed rate, and what is shown between two of its steps, for as many
- * chains as there are lanes.
+/* spring_lanes.c: the reference's algorithm at a fixed rate, and the result between two steps, for as many chains as
+ * there are lanes.
  *
- * What a lane is done with keeps its bits, so chains of different lengths, times and colliders go side by side, and it
- * does not matter which. Colliders that no joint of a group can reach are passed over: a joint's end is no farther from
- * the chain's start than the bones up to it are long. */
+ * A finished lane keeps its bits, so chains of different lengths, times and colliders are stepped together in any
+ * combination. Colliders that no joint of a group can reach are skipped: a joint's end is no farther from the chain's
+ * start than the total length of the bones up to it. */
 #include "life/physics/spring.h"
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_SPRING_SCALAR) /* a float at a time: what the vectors are compared with */
+#if defined(NOH_SPRING_SCALAR) /* scalar: the reference for the SIMD paths */
 #undef NOH_AVX2
 #undef NOH_SSE2
 #undef NOH_NEON
@@ -20,8 +20,8 @@
 #define STEP_SECONDS ((float)NOH_SPRING_STEP_TICKS / 48000.0f)
 #define ROW 7u         /* floats of a point, a carrier and a collider */
 #define JOINT_ROW 13u  /* of a joint */
-#define BEYOND 1.0001f /* more than reach, for what rounding adds to it */
-#define FAR_AWAY 1e15f /* a collider that a lane does not have */
+#define BEYOND 1.0001f /* margin on reach, for rounding */
+#define FAR_AWAY 1e15f /* position of a collider that a lane does not have */
 NOH_STATIC_ASSERT(sizeof(noh_spring_point) == ROW * sizeof(float), point_row);
 NOH_STATIC_ASSERT(sizeof(noh_spring_carrier) == ROW * sizeof(float), carrier_row);
 NOH_STATIC_ASSERT(sizeof(noh_spring_collider) == ROW * sizeof(float), collider_row);
@@ -32,20 +32,20 @@ typedef union per_lane {
     float f[NOH_LANES];
 } per_lane;
 
-/* A collider as a step looks at it: from the first joint. */
+/* A collider for a step: relative to the first joint. */
 typedef struct obstacle {
     lane3 from, axis;
     lanes per_square; /* 1 over the square of the axis; 0 for a sphere */
     lanes radius;
-    lanes near; /* how far from the first joint it begins */
+    lanes near; /* its least distance from the first joint */
 } obstacle;
 NOH_STATIC_ASSERT(sizeof(obstacle) * 8u <= 72u * sizeof(float) * NOH_LANES, scratch);
 
-/* As many chains as there are lanes; lanes without one read the first and write nowhere. */
+/* As many chains as there are lanes; lanes without one read the first and write nothing. */
 typedef struct group {
     const noh_spring_move *moves[NOH_LANES];
-    per_lane joints;      /* of each; 0 without one */
-    per_lane restitution; /* of each */
+    per_lane joints;      /* per chain; 0 without one */
+    per_lane restitution; /* per chain */
     uint32_t joint_count, collider_count, used, bounces;
 } group;
 
@@ -113,7 +113,7 @@ NOH_ALWAYS_INLINE lane4 lane4_nlerp(lane4 a, lane4 b, lanes t)
 
 /* ---- rotations ---- */
 
-/* Bones that are bent back by more than a right angle, one by one. */
+/* Rotate bones that are bent back by more than a right angle, one lane at a time. */
 static NOH_NEVER_INLINE lane4 bent_back(lanes mask, lane3 a, lane3 b, lane4 q)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -132,8 +132,8 @@ static NOH_NEVER_INLINE lane4 bent_back(lanes mask, lane3 a, lane3 b, lane4 q)
     return r;
 }
 
-/* The shortest rotation from direction a to b; size: the product of their lengths, which is known before they are. The
- * square of (a x b, size + a.b) is twice the last part by the size. */
+/* The shortest rotation from direction a to b; size: the product of their lengths, known beforehand. The square of (a x
+ * b, size + a.b) is twice its last component times the size. */
 NOH_ALWAYS_INLINE lane4 between(lane3 a, lane3 b, lanes size)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), cosine = lane3_dot(a, b), w = lanes_add(size, cosine);
@@ -148,14 +148,14 @@ NOH_ALWAYS_INLINE lane4 between(lane3 a, lane3 b, lanes size)
 
 /* ---- one step ---- */
 
-/* Of a group: the share of the call's time at which this step ends, and the lanes that take it. */
+/* Of a group: the fraction of the call's time at the end of this step, and the lanes that take it. */
 typedef struct moment {
     lanes t, live;
     lane3 moved;
     lane4 rotation;
 } moment;
 
-/* What carries the chains, at this step. */
+/* Interpolate the carriers at this step. */
 static void move_carriers(const group *g, moment *m, lane3 *position)
 {
     const float *last_rows[NOH_LANES], *next_rows[NOH_LANES], *stepped_rows[NOH_LANES], *was_rows[NOH_LANES];
@@ -235,8 +235,8 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
     return lane3_choose(lanes_and(hit, is_long), lane3_madd(head, scale, bone), tail);
 }
 
-/* Where an end was before, so that it leaves what it has hit: the way out of it is from `free` to `tail`, and `inertia`
- * is its speed, without what pulls it, or it would never rest. */
+/* The previous position of an end, set so that it rebounds: it was pushed from `free` to `tail`, and `inertia` is its
+ * velocity without pulls; otherwise it would never rest. */
 NOH_ALWAYS_INLINE lane3 bounce(const group *g, lane3 before, lane3 inertia, lane3 free, lane3 tail)
 {
     const lane3 out = lane3_sub(tail, free);
@@ -274,7 +274,7 @@ NOH_ALWAYS_INLINE lane_joint load_joint(const float *const *rows)
     return j;
 }
 
-/* Where the ends of joints go, from the first joint to the last. */
+/* Move the ends of joints, from the first joint to the last. */
 static void step_joints(const group *g, moment *m, const obstacle *obstacles)
 {
     const lanes one = lanes_set(1.0f), seconds = lanes_set(STEP_SECONDS), beyond = lanes_set(BEYOND);
@@ -333,8 +333,8 @@ typedef struct span {
     uint32_t steps, kept, dropped;
 } span;
 
-/* How many steps a spring has to take in so many ticks. Of more than the limit it takes the last ones, at the speed at
- * which it is carried, from rest where it is carried then. */
+/* How many steps a spring takes in this many ticks. Beyond the limit only the last ones are taken, at the carrier's
+ * speed, from rest at its place then. */
 static span begin(const noh_spring_move *move, uint32_t ticks)
 {
     noh_spring *s = move->spring;
@@ -412,10 +412,10 @@ uint32_t NOH_SPRING_STEP(const noh_spring_move *moves, uint32_t count, uint32_t 
     return dropped;
 }
 
-/* ---- what is shown ---- */
+/* ---- results ---- */
 
-/* Between the last two steps, turned along with what carries the chain, which turns nothing within it: a chain that is
- * carried stiffly does not lag behind. */
+/* Interpolate between the last two steps, turned with the carrier, which turns nothing within the chain: a chain that
+ * is carried rigidly does not lag behind. */
 static void show_group(const group *g)
 {
     const float *rows[NOH_LANES], *was_rows[NOH_LANES];

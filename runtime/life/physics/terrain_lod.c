@@ -49,7 +49,7 @@ static float height_at(const noh_field *f, uint32_t column, uint32_t row)
     return (float)f->heights[(size_t)row * f->width + column];
 }
 
-/* How far the heights of one cell of a level are from its two triangles, in steps of the field. */
+/* The largest distance of the heights of one cell of a level from its two triangles, in steps of the field. */
 static float error_of_cell(const noh_field *f, uint32_t column, uint32_t row, uint32_t step)
 {
     const uint32_t right = least(column + step, f->width - 1u), next = least(row + step, f->depth - 1u);
@@ -137,7 +137,7 @@ static void box_of(const noh_terrain_lod *l, uint32_t block, float low[3], float
     }
 }
 
-/* A box is out of the picture where all of it is beyond one of the six planes. */
+/* A box is outside the picture if all of it is beyond one of the six planes. */
 static int is_seen(const float m[16], const float low[3], const float high[3])
 {
     for (int plane = 0; plane < 6; plane++) {

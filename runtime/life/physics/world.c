@@ -1,4 +1,4 @@
-/* world.c: a world's numbers, and its height field. */
+/* world.c: checks of a world, and its height field. */
 #include "life/physics/world.h"
 
 #include "core/base/assert.h"
@@ -71,7 +71,7 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
 
 /* ---- height field ---- */
 
-/* The four heights of a cell; base: of a height of 0. */
+/* The four heights of a cell; base: y of height 0. */
 static void corners_of(const noh_field *f, uint32_t column, uint32_t row, float base, float h[4])
 {
     const uint16_t *at = f->heights + (size_t)row * f->width + column;
@@ -81,7 +81,7 @@ static void corners_of(const noh_field *f, uint32_t column, uint32_t row, float 
     h[3] = (float)at[f->width + 1u] * f->scale + base;
 }
 
-/* Which cell, and where in it. */
+/* The cell, and the position within it. */
 static uint32_t cell_of(float at, uint32_t count, float *part)
 {
     uint32_t cell = (uint32_t)at;
@@ -90,7 +90,7 @@ static uint32_t cell_of(float at, uint32_t count, float *part)
     return cell;
 }
 
-/* At u, v in a cell. */
+/* Height at u, v in a cell. */
 static void height_in_cell(const noh_field *f, const float h[4], float u, float v, float *height, float normal[3])
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };
@@ -116,7 +116,7 @@ int noh_field_height(const noh_field *f, float x, float z, float *height, float 
     return 1;
 }
 
-/* A double has the digits that a float far away lacks. */
+/* A double has digits that a float far from the origin lacks. */
 static double along_grid(const noh_field *f, const float origin[3], int axis, float at)
 {
     return (((double)origin[axis] - (double)f->origin[axis]) + (double)at) / (double)f->spacing;
@@ -143,11 +143,11 @@ float noh_plane_distance(const noh_plane *p, const float origin[3])
     return (float)distance;
 }
 
-/* A ray in cells: x and z in spacings, y as it is. */
+/* A ray in cells: x and z in spacings, y unchanged. */
 typedef struct walk {
     const noh_field *field;
     float from[3], step[3];
-    float enter, leave; /* of the whole grid */
+    float enter, leave; /* for the whole grid */
 } walk;
 
 /* The first t in t0..t1 at which the ray is at or below the cell's surface: its height above it is a parabola in t. */

@@ -1,7 +1,7 @@
-/* feet.c: where feet stand, how high they and the pelvis are, and the legs that follow.
+/* feet.c: planted feet, heights of feet and pelvis, and the legs that follow.
  *
- * All of it is in the world's space. A foot is moved as a whole: turned about its lowest part by what it leans, along
- * the ground by what holds it, and up by `shift`. */
+ * All of it is in world space. A foot is moved as a whole: turned about its lowest part by its lean, along the ground
+ * to stay planted, and up by `shift`. */
 #include "life/reach/feet.h"
 
 #include "core/base/assert.h"
@@ -9,27 +9,27 @@
 #include "life/reach/ik.h"
 #include "life/physics/vector_internal.h"
 
-/* Lengths are in legs, speeds in legs a second, times in seconds. */
+/* Lengths are in leg lengths, speeds in leg lengths per second, times in seconds. */
 #define REACH_UP 0.6f
 #define REACH_DOWN 0.9f
-#define STAND_LIFT 0.045f /* a foot whose clip has it lower and slower than this stands */
+#define STAND_LIFT 0.045f /* a foot lower and slower than this in its clip is planted */
 #define STAND_SPEED 0.35f
-#define LEAVE_LIFT 0.09f /* higher, faster or farther off than this: no longer */
+#define LEAVE_LIFT 0.09f /* a foot higher, faster or farther off than this is released */
 #define LEAVE_SPEED 1.2f
 #define LEAVE_DRIFT 0.23f
-#define PART_MARGIN 0.006f /* lower than the lowest by so much: it is the lowest */
-#define LEVEL_MIN 0.643f   /* the cosine of 50 degrees: steeper is no place to stand on */
+#define PART_MARGIN 0.006f /* lower than the lowest part by this much: becomes the lowest */
+#define LEVEL_MIN 0.643f   /* the cosine of 50 degrees: steeper ground is no place to stand on */
 #define LAND_HALF_LIFE 0.015f
 #define LEAN_HALF_LIFE 0.04f
 #define DRIFT_HALF_LIFE 0.05f
 #define ROWS 4
 #define AHEAD 0.06f       /* twice */
-#define HEIGHT_RATE 35.0f /* of springs, 1/s */
+#define HEIGHT_RATE 35.0f /* rates of springs, 1/s */
 #define PELVIS_RATE 12.0f
 #define PELVIS_ACCELERATION 20.0f
 #define PELVIS_MARGIN 0.01f
 #define STANDS 0.5f
-#define PELVIS_BRAKE 0.7f /* of that, so that what is left brakes in time */
+#define PELVIS_BRAKE 0.7f /* share of it for braking, so that the rest brakes in time */
 #define STRAIGHT 0.9995f
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f }, side_axis[3] = { 1.0f, 0.0f, 0.0f };
@@ -45,27 +45,27 @@ typedef struct step {
     int cut;
 } step;
 
-/* A leg as its clip has it. */
+/* A leg as in its clip. */
 typedef struct leg_now {
     const noh_feet_leg *leg;
     float hip[3], knee[3], ankle[3];
-    float modelled[3]; /* where the knee points by its model */
+    float modelled[3]; /* direction of the knee in the model */
     float rotation[4]; /* of the foot */
     float points[NOH_FEET_POINTS][3], parts[3][3];
     float shift;
-    float soon; /* its shift on the lowest ground that it comes to soon; `shift` where it stands */
+    float soon; /* shift for the lowest ground that it reaches soon; `shift` if it is planted */
 } leg_now;
 
-/* What is under a foot. */
+/* The ground under a foot. */
 typedef struct under {
-    float need; /* up by so much, and no point of the sole is below the ground */
+    float need; /* shift that brings all points of the sole out of the ground */
     float normal[3];
     int has_ground;
 } under;
 
 /* ---- joints ---- */
 
-/* A point of a joint's space in the world, and the joint's rotation there. */
+/* Transform a point from a joint's space to the world, with the joint's rotation there. */
 static void joint_at(const step *s, uint32_t joint, const float *offset, float rotation[4], float at[3])
 {
     const noh_transform *local = s->local;
@@ -89,7 +89,7 @@ static void joint_at(const step *s, uint32_t joint, const float *offset, float r
     noh_quat_normalize(rotation);
 }
 
-/* The rotation of what a joint hangs on. */
+/* The rotation of a joint's parent. */
 static void carrier_of(const step *s, uint32_t joint, float rotation[4])
 {
     const uint32_t above = s->skeleton->parents[joint];
@@ -101,7 +101,7 @@ static void carrier_of(const step *s, uint32_t joint, float rotation[4])
     }
 }
 
-/* Give a joint a rotation in the world. */
+/* Set a joint's rotation in the world. */
 static void set_rotation(const step *s, uint32_t joint, const float rotation[4])
 {
     float carrier[4];
@@ -139,7 +139,7 @@ static void read_leg(const step *s, const noh_feet_leg *leg, leg_now *n)
 
 /* ---- the ground under a foot ---- */
 
-/* Where the foot's transform takes a point, but for its shift. */
+/* Transform a point by the foot's motion, without its shift. */
 static void carry(const noh_foot *f, const leg_now *n, const float point[3], float out[3])
 {
     const float *about = n->parts[f->part];
@@ -152,7 +152,7 @@ static void carry(const noh_foot *f, const leg_now *n, const float point[3], flo
     out[2] += f->moved[1];
 }
 
-/* Take the ground under a point of a sole into what is known of it. */
+/* Add the ground under a point of a sole to the result. */
 static void take_ground(const step *s, const noh_foot *f, const float at[3], const float ahead[2], under *u)
 {
     const float high = f->height > s->floor ? f->height : s->floor, top = high + REACH_UP * s->leg;
@@ -166,8 +166,8 @@ static void take_ground(const step *s, const noh_foot *f, const float at[3], con
     if (normal[1] > LEVEL_MIN) noh_madd3(u->normal, 1.0f, normal, u->normal);
 }
 
-/* The ground under a sole that is `ahead` of where it is: under its six points, or also between them, for edges of
- * steps may lie there. */
+/* The ground under a sole that is `ahead` of its place: under its six points, or also between them, where edges of
+ * steps may lie. */
 static under look_down(const step *s, const noh_foot *f, const leg_now *n, const float ahead[2], int rows)
 {
     under u = { -1e30f, { 0.0f, 0.0f, 0.0f }, 0 };
@@ -188,7 +188,7 @@ static under look_down(const step *s, const noh_foot *f, const leg_now *n, const
     return u;
 }
 
-/* ---- standing ---- */
+/* ---- planting ---- */
 
 static float decay(float seconds, float half_life)
 {
@@ -204,7 +204,7 @@ static void follow(float *x, float *speed, float goal, float rate, float seconds
     *speed = (*speed - rate * part) * shrink;
 }
 
-/* Towards a goal, with an acceleration of at most `most` and braking in time; slower, near to it, by the rate. */
+/* Move towards a goal, with an acceleration of at most `most`, braking in time; slower near the goal, by the rate. */
 static void drive(float *x, float *speed, float goal, float most, float seconds)
 {
     const float time = seconds < 1.0f ? seconds : 1.0f;
@@ -225,7 +225,7 @@ static float length2(float x, float z)
     return noh_sqrt(x * x + z * z);
 }
 
-/* The foot goes on from where it is when another of its parts becomes the lowest. */
+/* Find the foot's lowest part; when it changes, the foot continues from where it is. */
 static void find_part(const step *s, noh_foot *f, const leg_now *n)
 {
     uint32_t lowest = f->part;
@@ -243,7 +243,7 @@ static void find_part(const step *s, noh_foot *f, const leg_now *n)
     f->held[1] = at[2];
 }
 
-/* Of the lowest part, along the ground. */
+/* The speed of the lowest part, along the ground. */
 static void speed_of(const step *s, const noh_foot *f, const leg_now *n, float speed[2])
 {
     speed[0] = s->seconds > 0.0f ? (n->parts[f->part][0] - f->was[f->part][0]) / s->seconds : 0.0f;
@@ -258,7 +258,7 @@ static void move_held(noh_foot *f, const leg_now *n)
 
 typedef enum keeping { AS_ITS_CLIP = 0, IS_KEPT, SWINGS } keeping;
 
-/* A foot that its place keeps still is where its clip has it. */
+/* A foot that the caller's placement keeps still is where its clip has it. */
 static void let_go(noh_foot *f)
 {
     f->is_held = 0;
@@ -294,7 +294,7 @@ static void lean(const step *s, noh_foot *f, const under *u)
     noh_normalize3(f->normal, up);
 }
 
-/* The highest ground that a foot comes to soon, and the lowest, for the pelvis. */
+/* The highest ground that a foot reaches soon, and the lowest, for the pelvis. */
 static float need_ahead(const step *s, const noh_foot *f, leg_now *n, float need)
 {
     float speed[2];
@@ -309,7 +309,7 @@ static float need_ahead(const step *s, const noh_foot *f, leg_now *n, float need
     return need;
 }
 
-/* How far the foot is moved up: as high over the ground as its clip has it over the floor, or standing on it. */
+/* How far the foot is moved up: to its clip's height above the ground, or planted on it. */
 static void raise(const step *s, noh_foot *f, leg_now *n)
 {
     static const float here[2] = { 0.0f, 0.0f };
@@ -352,7 +352,7 @@ static void target_of(const noh_foot *f, const leg_now *n, float target[3])
     target[1] += n->shift;
 }
 
-/* The most that the pelvis may be above the floor of the clip so that a leg reaches its target. */
+/* The greatest height of the pelvis above the floor of the clip at which a leg reaches its target. */
 static float highest(const noh_foot *f, const leg_now *n)
 {
     float target[3], upper[3], lower[3];
@@ -365,8 +365,8 @@ static float highest(const noh_foot *f, const leg_now *n)
     return target[1] + (room > 0.0f ? noh_sqrt(room) : 0.0f) - n->hip[1];
 }
 
-/* The pelvis goes with the foot that is lowest or soon will be: it is on its way when the foot comes down. A foot in
- * the air waits for it; only one that stands pulls it down at once. */
+/* The pelvis follows the foot that is lowest or soon will be: it is on its way when the foot comes down. A foot in the
+ * air does not pull it; only a planted one pulls it down immediately. */
 static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
 {
     float goal = 0.0f;
@@ -375,7 +375,7 @@ static float move_pelvis(const step *s, noh_feet *feet, const leg_now *now)
         if (!feet->feet[i].has_ground) continue;
         goal = !known++ || now[i].soon < goal ? now[i].soon : goal;
     }
-    for (uint32_t i = 0; i < s->rig->leg_count; i++) { /* before a leg is straight: then it is pulled at once */
+    for (uint32_t i = 0; i < s->rig->leg_count; i++) { /* before a leg is straight: then it is pulled immediately */
         const float most = highest(&feet->feet[i], &now[i]) - PELVIS_MARGIN * s->leg;
         if (feet->feet[i].has_ground && feet->feet[i].stands > STANDS && most < goal) goal = most;
     }
@@ -406,8 +406,8 @@ static void move_top(const step *s, float by)
     noh_madd3(at, by / s->place->scale, way, at);
 }
 
-/* Where the knee shall point: to where it is bent; a leg that gets shorter than its clip has it may have been straight,
- * and bends as it was modelled. */
+/* Direction of the knee: where it is bent; a leg that gets shorter than in its clip may have been straight, and bends
+ * as in the model. */
 static void find_pole(const step *s, const leg_now *n, const noh_ik_limb *limb, const float target[3], float pole[3])
 {
     float along[3], way[3];

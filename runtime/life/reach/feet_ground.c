@@ -1,4 +1,4 @@
-/* feet_ground.c: what is straight below a point. */
+/* feet_ground.c: finds the ground straight below a point. */
 #include "core/base/assert.h"
 #include "life/reach/feet.h"
 #include "life/physics/vector_internal.h"
@@ -25,7 +25,7 @@ static void take_plane(nearest *n, const noh_ray *ray, const noh_plane *p)
     if (distance <= ray->distance_max) take(n, distance, p->normal);
 }
 
-/* The side of the box on which a point of its surface lies: where it is farthest out, by the box's size. */
+/* The side of the box on which a point of its surface lies: where it is farthest out, relative to the box's size. */
 static void take_box(nearest *n, const noh_ray *ray, const noh_obb *b)
 {
     const float distance = noh_ray_obb(ray, b);

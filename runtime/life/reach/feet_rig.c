@@ -1,4 +1,4 @@
-/* feet_rig.c: legs by the names of joints, soles by the skin of feet. */
+/* feet_rig.c: legs by joint names, soles by the skin of feet. */
 #include "core/base/assert.h"
 #include "life/reach/feet.h"
 #include "life/reach/rig_internal.h"
@@ -16,7 +16,7 @@ static uint32_t row_above(const noh_ragdoll_source *s, const noh_ragdoll_row *ro
     return NOH_NONE;
 }
 
-/* A row of a foot, the only ones that bend upwards, with a shin and a thigh above it. */
+/* Find a leg from the row of a foot, the only kind that bends upwards, with a shin and a thigh above it. */
 static int leg_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t foot,
                   noh_feet_leg *leg)
 {
@@ -33,13 +33,13 @@ static int leg_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint
 
 /* ---- soles ---- */
 
-/* The skin of a foot, looked through several times: each pass knows what the ones before have found. */
+/* Measurements of a foot's skin, taken in several passes: each uses the results of earlier ones. */
 typedef struct sole {
     const noh_ragdoll_source *source;
     uint32_t foot, count;
-    float low, high;           /* all of its skin */
-    float sum[3], ankle[3];    /* of places; where the foot begins */
-    float ahead[3], across[3]; /* unit, level */
+    float low, high;           /* range over all of its skin */
+    float sum[3], ankle[3];    /* sum of positions; start of the foot */
+    float ahead[3], across[3]; /* unit, horizontal */
     float along[2];            /* heel to toes, from the ankle */
     struct third {
         float low, low_at, side[2], tip;
@@ -55,7 +55,7 @@ static void take_extent(sole *s, const float p[3])
     s->count++;
 }
 
-/* Of what is low: uppers of shoes reach out over soles. */
+/* Uses only low vertices: the uppers of shoes reach beyond their soles. */
 static int is_low(const sole *s, const float p[3])
 {
     return p[1] <= s->low + 0.25f * (s->high - s->low);
@@ -118,7 +118,7 @@ static void probe(sole *s, int pass)
     }
 }
 
-/* Two points of a third, a fifth of its width within its edges, for feet are round. */
+/* Two points of a third of the sole, a fifth of its width inside its edges, because feet are round. */
 static void points_of(const sole *s, int third, noh_feet_point out[2])
 {
     const struct third *t = &s->thirds[third];
@@ -139,7 +139,7 @@ static void points_of(const sole *s, int third, noh_feet_point out[2])
     }
 }
 
-/* 0: there is no skin, or it has no length. */
+/* Returns 0 if there is no skin, or it has no length. */
 static int find_sole(const noh_ragdoll_source *source, noh_feet_leg *leg)
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f }, up[3] = { 0.0f, 1.0f, 0.0f };
@@ -176,7 +176,7 @@ static float apart(const float a[3], const float b[3])
     return noh_length3(d);
 }
 
-/* The leg's length, and its knee's direction from that of the foot, in the thigh's space. */
+/* Measure the leg's length, and the direction of its knee from the foot's, in the thigh's space. */
 static float measure(const noh_ragdoll_source *s, noh_feet_leg *leg)
 {
     float hip[3], knee[3], ankle[3], rotation[4], unused[4];

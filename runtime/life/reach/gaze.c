@@ -1,4 +1,4 @@
-/* gaze.c: the head turns, spine and neck with it, and eyes ahead of both. */
+/* gaze.c: turns the head, with spine and neck, and eyes ahead of them. */
 #include "life/reach/gaze.h"
 
 #include "core/base/assert.h"
@@ -9,9 +9,9 @@
 
 #define EYES_ANGLE_MAX (35.0f * NOH_PI / 180.0f)
 #define EYES_SPEED 12.0f /* radians per second */
-#define HEAD_PART 0.75f  /* of the way, where there are eyes that go the rest */
+#define HEAD_PART 0.75f  /* share of the turn, if eyes take the rest */
 #define NEAR_HALF_LIFE 0.1f
-#define ENOUGH_SECONDS 100.0f /* for any turn */
+#define ENOUGH_SECONDS 100.0f /* enough for any turn */
 
 /* ---- the rig ---- */
 
@@ -47,7 +47,7 @@ static int has_legs_below(const noh_ragdoll_source *s, uint32_t joint)
     return 0;
 }
 
-/* How much a joint above the head turns beside the others; 0: it is neither neck nor spine. */
+/* The relative share of a joint above the head; 0 if it is neither neck nor spine. */
 static float part_of(const noh_ragdoll_source *s, uint32_t joint)
 {
     static const char *const necks[] = { "neck", NULL };
@@ -56,7 +56,7 @@ static float part_of(const noh_ragdoll_source *s, uint32_t joint)
     return has_any(name_of(s, joint), spines) && !has_legs_below(s, joint) ? 1.0f : 0.0f;
 }
 
-/* From the head down, then turned about, so that parents come before their children. */
+/* Collect joints from the head down, then reverse them, so that parents come before their children. */
 static void find_chain(const noh_ragdoll_source *s, uint32_t head, noh_gaze_rig *rig)
 {
     float sum = 0.0f;
@@ -81,7 +81,7 @@ static void find_chain(const noh_ragdoll_source *s, uint32_t head, noh_gaze_rig 
     for (uint32_t i = 0; i < rig->joint_count; i++) rig->shares[i] /= sum;
 }
 
-/* The first two below the head, none of which hangs on the other. */
+/* The first two eye joints below the head, neither of which is a descendant of the other. */
 static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[2])
 {
     static const char *const no_eye[] = {
@@ -97,7 +97,7 @@ static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[
     if (count < 2u) eyes[0] = eyes[1] = NOH_NONE;
 }
 
-/* A box round the skin of the head. 0: there is none. */
+/* The box around the skin of the head. Returns 0 if there is none. */
 static int find_skin(const noh_ragdoll_source *s, uint32_t head, float low[3], float high[3])
 {
     uint32_t count = 0;
@@ -124,7 +124,7 @@ static int find_skin(const noh_ragdoll_source *s, uint32_t head, float low[3], f
     return count > 0;
 }
 
-/* In model space at rest: between the eyes, in the middle of the head's skin, or where the head turns. */
+/* In model space at rest: between the eyes, at the middle of the head's skin, or at the head joint. */
 static void find_middle(const noh_ragdoll_source *s, const noh_gaze_rig *rig, uint32_t head, float middle[3])
 {
     float a[3], b[3], unused[4];
@@ -237,8 +237,7 @@ static void look_near(noh_gaze *g, float size, const float *toward, float second
     g->near += (goal - g->near) * (cut ? 1.0f : 1.0f - noh_exp2(-seconds / NEAR_HALF_LIFE));
 }
 
-/* Spine, neck and head have taken the head away from where it was: the last of the way is the head's, which moves the
- * eyes once more. */
+/* Spine, neck and head have moved the head: it turns the rest of the way, which moves the eyes once more. */
 static void aim_head(const noh_gaze *g, const noh_gaze_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
                      const float from[3])
 {
@@ -252,7 +251,7 @@ static void aim_head(const noh_gaze *g, const noh_gaze_rig *rig, const noh_skele
     noh_rig_turn(skeleton, local, rig->joints[rig->joint_count - 1u], by);
 }
 
-/* Each eye from its own place to one point. */
+/* Aim each eye from its own place at one point. */
 static void aim_eyes(const noh_gaze *g, const noh_gaze_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
                      const face_now *n)
 {

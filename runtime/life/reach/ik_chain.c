@@ -1,4 +1,4 @@
-/* ik_chain.c: three solvers over one chain of joints. Each iteration leaves positions that its rotations have. */
+/* ik_chain.c: three solvers over one chain of joints. After each iteration, positions match rotations. */
 #include "life/reach/ik_chain.h"
 
 #include "core/base/assert.h"
@@ -7,7 +7,7 @@
 
 static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
 
-/* A chain being solved. All in the space of its root, but for `local`. */
+/* A chain being solved. All in the space of its root, except `local`. */
 typedef struct work {
     const noh_ik_chain *chain;
     float target[3], length;
@@ -18,7 +18,7 @@ typedef struct work {
 
 /* ---- limits ---- */
 
-/* Bring an angle within a range. Beyond it, the nearer end counts round the circle. */
+/* Clamp an angle to a range. Outside it, the nearer end around the circle counts. */
 static float within(float angle, float least, float most)
 {
     if (angle >= least && angle <= most) return angle;
@@ -84,7 +84,7 @@ static void place_from(work *w, uint32_t j)
     for (; j < w->chain->count; j++) place_joint(w, j);
 }
 
-/* Turn a joint by a rotation of the root's space, within its limits. What hangs on it stays where it was. */
+/* Turn a joint by a rotation in the root's space, within its limits. Its descendants keep their old positions. */
 static void turn(work *w, uint32_t j, const float q[4])
 {
     float back[4];
@@ -123,8 +123,8 @@ static void iterate_ccd(work *w)
     }
 }
 
-/* From the target back to the root by lengths alone; then from the root on, each joint towards where its bone shall
- * end, within its limits. */
+/* From the target back to the root by lengths alone; then from the root on, turn each joint towards the new end of its
+ * bone, within its limits. */
 static void iterate_fabrik(work *w)
 {
     const uint32_t count = w->chain->count;
@@ -144,8 +144,8 @@ static void iterate_fabrik(work *w)
 }
 
 /* f = (J J^T + lambda^2)^-1 e, symmetric 3 x 3, by cofactors. A joint that turns freely by a rotation vector u moves
- * the end by u x r, so that J J^T is the sum of |r|^2 - r r^T, and its turn is J^T f = r x f. lambda is a share of the
- * length, so that the solution does not depend on units. */
+ * the end by u x r, so J J^T is the sum of |r|^2 - r r^T, and its turn is J^T f = r x f. lambda is a share of the
+ * length, so the solution does not depend on units. */
 static void least_squares(const work *w, const float e[3], float f[3])
 {
     float a[6] = { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f };
@@ -183,7 +183,8 @@ static void iterate_dls(work *w)
         noh_cross3(r, f, by);
         noh_quat_from_rotation(by, turns[j]);
     }
-    /* Turns add up along the chain; each joint is turned as it stands, which differs in the second order only. */
+    /* Turns add up along the chain; each joint is turned from its present rotation, which differs only in second
+     * order. */
     for (uint32_t j = 0; j < count; j++) {
         place_joint(w, j);
         turn(w, j, turns[j]);
@@ -191,7 +192,7 @@ static void iterate_dls(work *w)
     }
 }
 
-/* A straight chain whose target lies on its line has no direction to bend in: bend it a little, to one side. */
+/* A straight chain with its target on its line has no direction to bend in: bend it a little, to one side. */
 static void unbend(work *w)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f };

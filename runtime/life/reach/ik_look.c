@@ -12,7 +12,7 @@ void noh_ik_look_init(noh_ik_look *look, const float ahead[3])
     look->follows = 0;
 }
 
-/* Radians between two directions: by sine and cosine, which keeps its digits near 0 and near pi. */
+/* Radians between two directions, by sine and cosine, which is precise near 0 and near pi. */
 static float angle_between(const float a[3], const float b[3])
 {
     float normal[3];
@@ -36,14 +36,14 @@ static void turn_towards(const float a[3], const float b[3], float most, float o
     noh_normalize3(out, a);
 }
 
-/* Behind, where a small motion of the target is a large one of the way to it, the side is kept: noh_ik_look.follows. */
+/* Behind, where a small motion of the target makes a large turn, the side is kept: noh_ik_look.follows. */
 #define BEHIND_RAD (8.0f * NOH_PI / 9.0f)
 #define BEHIND_SINE 0.34202014f
 
 enum { LOOKS_AHEAD = 0, LOOKS_AT, LOOKS_LEFT, LOOKS_RIGHT };
 
-/* A target behind, moved to the side on which it came there, and as far aside as where it counts as behind. One that
- * leapt there is looked at over the shoulder to which the look has turned already. */
+/* Move a target behind to the side from which it came, as far aside as the limit of "behind". One that was teleported
+ * there is looked at over the shoulder to which the look has turned already. */
 static void keep_side(noh_ik_look *look, const float ahead[3], float target[3])
 {
     float left[3], aside;
@@ -62,8 +62,7 @@ static void keep_side(noh_ik_look *look, const float ahead[3], float target[3])
     }
 }
 
-/* Where to look: at the target, or towards it as far as the cone lets it; ahead where there is none or it was let go
- * of. */
+/* Where to look: at the target, or towards it as far as the cone allows; ahead if there is none or it was released. */
 static void wanted_of(noh_ik_look *look, float angle_max, float release_max, const float ahead[3], const float *target,
                       float wanted[3])
 {
@@ -89,8 +88,8 @@ static void wanted_of(noh_ik_look *look, float angle_max, float release_max, con
     turn_towards(ahead, direction, angle_max, wanted);
 }
 
-/* Whether the short way from one direction to another one leaves a cone that is wider than a right angle: whether it
- * comes nearer to what is behind than the cone's edge is. */
+/* Whether the short way from one direction to another leaves a cone that is wider than a right angle: whether it comes
+ * nearer to straight behind than the cone's edge. */
 static int leads_behind(const float from[3], const float to[3], const float ahead[3], float angle_max)
 {
     float normal[3], nearest[3], a[3], b[3];
@@ -125,7 +124,7 @@ void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const flo
     } else {
         turn_towards(look->direction, wanted, speed_max * seconds, next);
     }
-    turn_towards(ahead, next, angle_max, look->direction); /* what is ahead may have moved */
+    turn_towards(ahead, next, angle_max, look->direction); /* the direction ahead may have moved */
     noh_quat_between(ahead, look->direction, up, rotation);
 }
 

@@ -1,4 +1,4 @@
-/* ik_two_bone.c: where the middle joint has to lie, then the rotations that bring it there. */
+/* ik_two_bone.c: finds the position of the middle joint, then the rotations that bring it there. */
 #include "core/base/assert.h"
 #include "core/base/trig.h"
 #include "life/reach/ik.h"
@@ -8,7 +8,7 @@
 #define POINT 1e-12f
 #define SQUARED_POINT 1e-24f
 
-/* Of both bones: lengths, and from start to end when straight. */
+/* Lengths of both bones, and from start to end when straight. */
 typedef struct lengths {
     float upper, lower, whole;
 } lengths;
@@ -22,7 +22,8 @@ static float distance_at(const lengths *l, float bend)
     return square > 0.0f ? noh_sqrt(square) : 0.0f;
 }
 
-/* How far from the start the end shall come. Just short of straight and of folded: there the bend's side is lost. */
+/* The reachable distance of the end from the start. Just short of straight and of folded, where the side of the bend
+ * would be lost. */
 static float reachable(const noh_ik_limb *limb, const lengths *l, float wanted)
 {
     const float soft = limb->soft > 0.0f ? limb->soft * l->whole : l->whole, room = l->whole - soft;
@@ -41,8 +42,8 @@ static float reachable(const noh_ik_limb *limb, const lengths *l, float wanted)
     return wanted > least ? wanted : least;
 }
 
-/* The rotation about a unit axis that brings direction a over b; both are taken at right angles to it. Of the two forms
- * of half an angle by its sine and cosine, the one that loses no digits. */
+/* The rotation about a unit axis that brings direction a over b; both are projected perpendicular to it. Of the two
+ * half-angle forms, the one that loses no digits. */
 static void turn_about(const float axis[3], const float a[3], const float b[3], float q[4])
 {
     float from[3], to[3], normal[3];
@@ -77,9 +78,8 @@ static void quat_of_rows(float m[3][3], float q[4])
     noh_quat_normalize(q);
 }
 
-/* The rotation that turns the whole limb so that the upper bone lies along new_upper, and the plane of its bend at
- * right angles to `normal`: from the frame of bone, plane and what is left, to the new one. A straight limb has no
- * plane. */
+/* The rotation of the whole limb that puts the upper bone along new_upper, and the plane of its bend perpendicular to
+ * `normal`: from the frame of bone, plane normal and their product, to the new frame. A straight limb has no plane. */
 static void turn_frame(const float upper[3], const float lower[3], const float new_upper[3], const float normal[3],
                        float length, float q[4])
 {
@@ -102,7 +102,7 @@ static void turn_frame(const float upper[3], const float lower[3], const float n
     quat_of_rows(m, q);
 }
 
-/* The rotation that turns the lower bone in the plane of the bend, and what the plane lacks. */
+/* The rotation of the lower bone in the plane of the bend, plus the remaining rotation of the plane. */
 static void turn_lower(const float lower[3], const float new_lower[3], const float normal[3], float q[4])
 {
     float turned[3], off[3], rest[4];
@@ -115,9 +115,9 @@ static void turn_lower(const float lower[3], const float new_lower[3], const flo
     }
 }
 
-/* The unit direction, at right angles to the target's, in which the middle joint shall lie. Of itself it stays in the
- * plane of the bend: with e along the limb, p the side, x + x' its length and h the height of the bend, the bones are
- * x e + h p and x' e - h p, so that upper x lower points against e x p, and e x (upper x lower) along p. */
+/* The unit direction, perpendicular to the target's, in which the middle joint must lie. Without a pole it stays in the
+ * plane of the bend: with e along the limb, p the side, x + x' its length and h the height of the bend, the bones are x
+ * e + h p and x' e - h p, so upper x lower points against e x p, and e x (upper x lower) along p. */
 static void side_of(const float along[3], const float upper[3], const float lower[3], const float pole[3],
                     float side[3])
 {
@@ -133,7 +133,7 @@ static void side_of(const float along[3], const float upper[3], const float lowe
     noh_perpendicular3(along, now, side);
 }
 
-/* The direction of the first of them that has one, else of the last. */
+/* The direction of the first vector that has one, else of the last. */
 static void direction_of(const float *const from[], int count, float along[3])
 {
     static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
@@ -149,7 +149,7 @@ static void weigh(float weight, float q[4])
     if (weight < 1.0f) noh_quat_nlerp(identity, q, weight, q);
 }
 
-/* Where the middle and the end shall be, from the start. */
+/* The goals of the middle and the end, relative to the start. */
 static void place(const lengths *l, float distance, const float along[3], const float side[3], float middle[3],
                   float end[3])
 {
@@ -180,7 +180,7 @@ void noh_ik_two_bone(const noh_ik_limb *limb, const float target[3], const float
     bend->missed = noh_length3(wanted);
     if (!(l.whole > POINT)) return;
 
-    noh_sub3(limb->end, limb->start, rest); /* a target on the root: towards where the end is */
+    noh_sub3(limb->end, limb->start, rest); /* a target on the root: towards the present end */
     direction_of((const float *const[]){ wanted, rest, upper, lower }, 4, along);
     side_of(along, upper, lower, pole, side);
     noh_cross3(along, side, normal);

@@ -1,4 +1,4 @@
-/* reach.c: arms by names, and their bends. */
+/* reach.c: arms by joint names, and their bends. */
 #include "life/reach/reach.h"
 
 #include "core/base/assert.h"
@@ -9,7 +9,7 @@
 #define REACH_SECONDS 0.35f
 #define SOFT 0.97f
 #define BEND_MAX (150.0f * NOH_PI / 180.0f)
-#define STRAIGHT 0.05f /* an elbow less bent than this, in shares of the arm, points as it was modelled */
+#define STRAIGHT 0.05f /* an elbow bent less than this, in shares of the arm, points as in the model */
 
 /* ---- the rig ---- */
 
@@ -23,7 +23,7 @@ static uint32_t row_above(const noh_ragdoll_source *s, const noh_ragdoll_row *ro
     return NOH_NONE;
 }
 
-/* Forearms are the only hinges that bend forwards. A row below one is a hand. */
+/* Find an arm: forearms are the only hinges that bend forwards, and a row below one is a hand. */
 static int arm_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t hand,
                   noh_reach_arm *arm)
 {
@@ -38,7 +38,7 @@ static int arm_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint
     return 1;
 }
 
-/* As it is bent in the bind pose; a straight one backwards and a little down. */
+/* The elbow's direction from its bend in the bind pose; for a straight arm backwards and a little down. */
 static void find_elbow(const noh_ragdoll_source *s, noh_reach_arm *arm)
 {
     static const float back[3] = { 0.0f, -0.4f, -1.0f };
@@ -112,7 +112,7 @@ const char *noh_reach_check(const noh_reach *reach)
 
 /* ---- a step ---- */
 
-/* What of the hand is to be on the point goes along as a part of the forearm. */
+/* The point of the hand moves as part of the forearm. */
 static void bend_arm(const noh_reach_arm *arm, const noh_skeleton *skeleton, noh_transform *local, const float point[3],
                      float weight)
 {
@@ -141,7 +141,8 @@ void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skelet
 {
     NOH_ASSERT(reach && rig && skeleton && local && points && seconds >= 0.0f);
     NOH_ASSERT(rig->arm_count <= NOH_REACH_ARMS_MAX && rig->last < skeleton->joint_count);
-    for (uint32_t i = 0; i < rig->arm_count && i < NOH_REACH_ARMS_MAX; i++) { /* which gcc cannot see at -O3 */
+    /* the second condition is for gcc, which warns without it at -O3 */
+    for (uint32_t i = 0; i < rig->arm_count && i < NOH_REACH_ARMS_MAX; i++) {
         noh_reach_hand *h = &reach->hands[i];
         const float goal = h->wants ? 1.0f : 0.0f, way = seconds / REACH_SECONDS, left = goal - h->part;
         h->part = cut || (left < way && left > -way) ? goal : h->part + (left > 0.0f ? way : left < 0.0f ? -way : 0.0f);

@@ -552,7 +552,7 @@ static void skeleton_fields_broken_in_turn(void **state)
     k = s.skeleton, k.bind_pose = NULL;
     bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
     s.parents[3] = 3;
-    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come first");
+    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come before");
     s.parents[3] = 1, s.bind[2].scale[0] = INFINITY;
     bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind pose is not finite");
     s.bind[2].scale[0] = 1.0f, s.bind[2].rotation[0] = 0.5f;

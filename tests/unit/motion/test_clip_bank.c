@@ -904,12 +904,12 @@ static void lies_are_told_with_the_clip(void **state)
     event = (noh_clip_event *)(void *)(copy + ((const uint8_t *)(const void *)m.events - copy)) + 2;
     tick = event->tick;
     event->tick += 1;
-    expect_error(&desc, NOH_ERR_DATA, "event tick past the duration");
+    expect_error(&desc, NOH_ERR_DATA, "event's tick is after the end");
     event->tick = tick;
     noh_pack_clip_at(&p, 1, &m, NULL);
     marker = (noh_clip_marker *)(void *)(copy + ((const uint8_t *)(const void *)m.markers - copy)) + 1;
     marker->tick = 1u << 30;
-    expect_error(&desc, NOH_ERR_DATA, "marker tick past the duration");
+    expect_error(&desc, NOH_ERR_DATA, "marker's tick is not before");
     copy[m.bytes - copy + 1] ^= 0x80u; /* a flag that does not exist */
     assert_int_equal(noh_clip_bank_size(&desc, &error), 0);
     assert_int_not_equal(error.result, NOH_OK);

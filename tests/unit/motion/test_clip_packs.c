@@ -337,7 +337,7 @@ static void errors_say_which_pack(void **state)
     event = (noh_clip_event *)(void *)(more.bytes + ((const uint8_t *)(const void *)clip.events - more.bytes));
     tick = event->tick;
     event->tick = 1u << 30;
-    expect_error(&desc, NOH_ERR_DATA, "event tick past the duration", IN_PACK(1, 1));
+    expect_error(&desc, NOH_ERR_DATA, "event's tick is after the end", IN_PACK(1, 1));
     event->tick = tick;
     codec = more.bytes + (clip.bytes - more.bytes);
     codec[1] ^= 0x80u; /* a flag that does not exist */
@@ -374,7 +374,7 @@ static void lists_of_packs_are_checked(void **state)
     desc = desc_of(packs, 2);
     expect_error(&desc, NOH_ERR_ARG, "clip_packs", 1);
     desc = desc_of(packs, 0);
-    expect_error(&desc, NOH_ERR_ARG, "clip_pack_count is 0", 0);
+    expect_error(&desc, NOH_ERR_ARG, "clip_pack_count above 0", 0);
     desc = desc_of(NULL, 1);
     expect_error(&desc, NOH_ERR_ARG, "clip_packs", 0);
     desc = desc_of(packs, 1), desc.clips = &game.pack;

@@ -234,7 +234,7 @@ static void node_fields_broken_in_turn(void **state)
     r.nodes[machine].child_count = NOH_GRAPH_CHILDREN_MAX + 1u;
     bad_graph(&r, NOH_ERR_DATA, "child_count");
     r.nodes[2].first_child = 400;
-    bad_graph(&r, NOH_ERR_DATA, "child range");
+    bad_graph(&r, NOH_ERR_DATA, "children of the node lie outside");
     r.nodes[2].value = INFINITY;
     bad_graph(&r, NOH_ERR_DATA, "value");
     r.nodes[2].param = PARAMS;
@@ -250,11 +250,11 @@ static void node_fields_broken_in_turn(void **state)
     r.nodes[mask].mask = MASKS + 1u;
     bad_graph(&r, NOH_ERR_DATA, "mask");
     r.nodes[2].first_item = 1;
-    bad_graph(&r, NOH_ERR_DATA, "threshold range");
+    bad_graph(&r, NOH_ERR_DATA, "thresholds of the node lie outside");
     r.thresholds[1] = 0.0f;
-    bad_graph(&r, NOH_ERR_DATA, "threshold order");
+    bad_graph(&r, NOH_ERR_DATA, "thresholds must increase");
     r.thresholds[0] = NAN;
-    bad_graph(&r, NOH_ERR_DATA, "threshold order");
+    bad_graph(&r, NOH_ERR_DATA, "thresholds must increase");
     r.nodes[space2].first_item = 1;
     bad_graph(&r, NOH_ERR_DATA, "space");
     r.nodes[space2].param_y = PARAMS;
@@ -270,7 +270,7 @@ static void node_fields_broken_in_turn(void **state)
     r.nodes[machine].index = 1;
     bad_graph(&r, NOH_ERR_DATA, "machine index");
     r.nodes[machine].first_item = 1;
-    bad_graph(&r, NOH_ERR_DATA, "transition range");
+    bad_graph(&r, NOH_ERR_DATA, "transitions of the machine lie outside");
     r.transitions[0].to = 4;
     bad_graph(&r, NOH_ERR_DATA, "transition states");
     r.transitions[0].from = 4;
@@ -290,9 +290,9 @@ static void node_fields_broken_in_turn(void **state)
     r.transitions[2].duration_ticks = 0;
     bad_graph(&r, NOH_ERR_DATA, "transition duration");
     r.children[0] = 1;
-    bad_graph(&r, NOH_ERR_DATA, "children first");
+    bad_graph(&r, NOH_ERR_DATA, "node order");
     r.children[0] = 5;
-    bad_graph(&r, NOH_ERR_DATA, "children first");
+    bad_graph(&r, NOH_ERR_DATA, "node order");
     r.g.node_count = NODES - 1u;
     bad_graph(&r, NOH_ERR_DATA, "more than one root");
 }
