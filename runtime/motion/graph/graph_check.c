@@ -72,12 +72,12 @@ static const char *bad_space_2d(const noh_graph *g, const noh_graph_node *n)
         return "space triangles are NULL, or more than NOH_BLEND_SPACE_TRIANGLES_MAX";
     for (uint32_t i = 0; i < s->point_count; i++) {
         if (!is_coordinate(s->points[2u * i]) || !is_coordinate(s->points[2u * i + 1u]))
-            return "a space point is not finite, or beyond NOH_BLEND_SPACE_COORDINATE_MAX";
+            return "space point is not finite, or beyond NOH_BLEND_SPACE_COORDINATE_MAX";
     }
     for (uint32_t i = 0; i < s->triangle_count; i++) {
         const uint8_t *t = s->triangles + 3u * i;
         if (t[0] >= s->point_count || t[1] >= s->point_count || t[2] >= s->point_count)
-            return "a space triangle names a point that does not exist";
+            return "space triangle names a point that does not exist";
     }
     return NULL;
 }

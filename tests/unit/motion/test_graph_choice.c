@@ -430,9 +430,9 @@ static void fields_broken_in_turn(void **state)
     g.nodes[N_SHOT].index = 2;
     bad(&g, "machine index");
     g.clips[T_JUMP].loop = NOH_LOOP_REPEAT;
-    bad(&g, "shot");
+    bad(&g, "ONE_SHOT");
     g.clips[T_JUMP].clip = WALK;
-    bad(&g, "shot");
+    bad(&g, "ONE_SHOT");
     assert_int_equal(noh_graph_check(&g.g, &g.s.set, NULL), NOH_OK);
 }
 
