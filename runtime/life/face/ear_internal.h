@@ -1,4 +1,4 @@
-/* ear_internal.h: what an ear measures of sound, and the network that was taught to read shapes from it. */
+/* ear_internal.h (private to face/): features of sound, and the network trained to read shapes from them. */
 #ifndef NOH_FACE_EAR_INTERNAL_H
 #define NOH_FACE_EAR_INTERNAL_H
 
@@ -12,11 +12,11 @@ enum {
     EAR_FFT = 512,
     EAR_MELS = 24,
     EAR_CEPSTRA = 13,
-    EAR_FEATURES = EAR_CEPSTRA + 2, /* and the loudness above the quietest and the loudest of late */
-    EAR_BEFORE = 9,                 /* frames that the network sees before its own, and after */
+    EAR_FEATURES = EAR_CEPSTRA + 2, /* and the loudness above the quietest and the loudest recent levels */
+    EAR_BEFORE = 9,                 /* frames that the network uses before its own, and after */
     EAR_AFTER = 2,
     EAR_SEEN = EAR_BEFORE + 1 + EAR_AFTER,
-    EAR_TAPS = 6, /* the frames among them that it looks at */
+    EAR_TAPS = 6, /* the number of these frames that it reads */
     EAR_INPUTS = EAR_TAPS * EAR_FEATURES,
     EAR_HIDDEN = 24
 };
@@ -24,21 +24,21 @@ enum {
 typedef struct ear_tables {
     int16_t window[EAR_WINDOW / 2]; /* Hamming, 1/32768 */
     int16_t sine[EAR_FFT / 4 + 1];  /* a quarter wave, 1/32767 */
-    uint8_t mel[EAR_FFT / 2 + 1];   /* the lower of the two filters that a bin is in; 255: none */
-    uint8_t share[EAR_FFT / 2 + 1]; /* of the upper one, 1/256 */
+    uint8_t mel[EAR_FFT / 2 + 1];   /* the lower of the two filters of a bin; 255: none */
+    uint8_t share[EAR_FFT / 2 + 1]; /* share of the upper one, 1/256 */
     int16_t mean[EAR_CEPSTRA];      /* of speech, 1/256 octave */
-    uint16_t scale[EAR_FEATURES];   /* 1/4096: 32 are a standard deviation then */
+    uint16_t scale[EAR_FEATURES];   /* 1/4096: scales a standard deviation to 32 */
     int8_t hidden[EAR_HIDDEN][EAR_INPUTS];
     int32_t hidden_bias[EAR_HIDDEN];
     int8_t output[NOH_VISEME_COUNT][EAR_HIDDEN];
     int32_t output_bias[NOH_VISEME_COUNT];
-    int32_t unit; /* of the outputs: as many are an octave of probability */
+    int32_t unit; /* scale of the outputs: this many units are an octave of probability */
 } ear_tables;
 
 extern const ear_tables noh_ear_tables;
 
-/* What an ear learns of a speaker and a room: the running mean of cepstra over frames that are loud enough to be speech
- * and the percentiles of loudness. */
+/* Adaptation to a speaker and a room: the running mean of cepstra over frames that are loud enough to be speech, and
+ * the percentiles of loudness. */
 typedef struct ear_voice {
     int32_t mean[EAR_CEPSTRA]; /* 1/65536 octave */
     int32_t peak;              /* of the first cepstral coefficient, 1/256 */
@@ -52,13 +52,13 @@ void noh_ear_cepstra(const ear_tables *t, const int16_t *samples, int16_t before
 int32_t noh_ear_log2(uint64_t value);
 
 void noh_ear_voice_init(const ear_tables *t, ear_voice *v);
-/* A frame: cepstra less their mean, and loudness against what it is of late. 1/256 octave */
+/* Get a frame: cepstra minus their mean, and loudness relative to recent loudness. 1/256 octave */
 void noh_ear_measure(ear_voice *v, const int32_t *cepstra, int32_t loudness, int32_t *features);
 void noh_ear_scale(const ear_tables *t, const int32_t *features, int8_t *scaled);
 
-/* The n-th frame that the network looks at, among those that are seen. */
+/* Get the index of the n-th frame that the network reads. */
 uint32_t noh_ear_tap(uint32_t n);
-/* The probabilities of shapes, 1/32768. */
+/* Compute the probabilities of shapes, 1/32768. */
 void noh_ear_read(const ear_tables *t, const int8_t (*seen)[EAR_FEATURES], int32_t *weights);
 
 #endif

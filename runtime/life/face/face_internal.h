@@ -1,11 +1,11 @@
-/* face_internal.h (private to face/): the parts of a face.
+/* face_internal.h (private to face/): the modules of a face.
  *
  *   face.c         descs, calls, the order of events
- *   face_random.c  numbers by seed
- *   face_spring.c  what moves as a damped spring
+ *   face_random.c  random numbers by seed
+ *   face_spring.c  damped springs
  *   face_blink.c   blinks
- *   face_gaze.c    where the eyes look, and how far the head goes along
- *   face_pose.c    what shows
+ *   face_gaze.c    gaze, and how far the head turns with it
+ *   face_pose.c    the visible pose
  *   face_four.c    the mode of four channels */
 #ifndef NOH_FACE_FACE_INTERNAL_H
 #define NOH_FACE_FACE_INTERNAL_H
@@ -21,9 +21,9 @@ extern "C" {
 #define NOH_DEGREE 0.0174532925f
 #define NOH_FACE_TICKS_PER_S 48000.0f
 
-/* ---- numbers by seed ---- */
+/* ---- random numbers by seed ---- */
 
-/* What a number is for. Each has a sequence of its own, so that the times of blinks do not depend on where it looks. */
+/* The use of a number. Each stream is independent, so that the times of blinks do not depend on the gaze. */
 typedef enum noh_face_stream {
     NOH_FACE_INTERVAL = 1,
     NOH_FACE_SHAPE,
@@ -51,7 +51,7 @@ float noh_face_log_normal(float uniform, float mean, float sigma);
 
 float noh_face_spring_at(const noh_face_spring *s, uint32_t tick);
 void noh_face_spring_to(noh_face_spring *s, uint32_t tick, float goal, float omega);
-float noh_face_omega(uint32_t ticks); /* of a spring that has gone 95 % of its way after so many ticks */
+float noh_face_omega(uint32_t ticks); /* for a spring that covers 95 % of its way in this many ticks */
 void noh_face_spring_settle(noh_face_spring *s, uint32_t tick);
 
 /* ---- blinks ---- */
@@ -62,10 +62,10 @@ typedef struct noh_face_lid {
 
 noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink);
 float noh_face_blink_at(const noh_face *face);                        /* 0 open .. 1 shut */
-void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* the one that is due */
-void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* the next one, now */
+void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* begin the blink that is due */
+void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* begin the next blink now */
 void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc);
-float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* seconds between two */
+float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* mean seconds between two blinks */
 
 /* ---- the mode of four channels ---- */
 
@@ -85,9 +85,9 @@ float noh_face_mood_at(const noh_face *face);
 
 enum { NOH_GAZE_HOLD = 0, NOH_GAZE_WAIT, NOH_GAZE_MOVE };
 
-/* Yaw, pitch and 1 / distance from the middle of the eyes, as the head stands at the face's clock. */
+/* Get yaw, pitch and 1 / distance from the midpoint of the eyes, with the head at the face's clock. */
 void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
-/* The same where the head's rotation is known. */
+/* Get the gaze for a known rotation of the head. */
 void noh_face_gaze_from(const noh_face *face, const noh_face_desc *desc, const float head[4], float gaze[3]);
 void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3]);
 /* Leave the gaze `from` for the target after a latency. */
@@ -98,14 +98,14 @@ void noh_face_glance_schedule(noh_face *face);
 void noh_face_tremor(noh_face *face);
 void noh_face_head_follow(noh_face *face, const noh_face_desc *desc);
 uint32_t noh_face_latency(const noh_face *face);
-float noh_face_angle(const float a[3], const float b[3]); /* between two gazes, radians */
+float noh_face_angle(const float a[3], const float b[3]); /* angle between two gazes, radians */
 
 uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, uint32_t breath);
 
 /* ---- the head ---- */
 
 void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4]);
-/* The middle of the eyes, neck space. */
+/* Get the midpoint of the eyes, neck space. */
 void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float middle[3]);
 
 /* The desc's value, or the default where it is 0. */

@@ -1,4 +1,4 @@
-/* identity_internal.h (private to face/): how identity targets are found to belong together.
+/* identity_internal.h (private to face/): grouping of identity targets.
  *
  *   identity.c          descs, memory, people
  *   identity_words.c    names
@@ -13,13 +13,13 @@
 extern "C" {
 #endif
 
-/* 1 where two names have as many words, and all but one of them are equal. Words begin at capitals and behind anything
- * that is no letter or digit. */
+/* Returns 1 if two names have the same number of words and differ in one. Words begin at capitals and after characters
+ * other than letters and digits. */
 int noh_identity_one_word_apart(const char *a, const char *b);
-/* 1 where a word of the name says what goes through a whole face: age and its like. */
+/* Returns 1 if a word of the name is a property of the whole face: age and similar. */
 int noh_identity_name_leads(const char *name);
 
-/* A target's deltas as a whole. Sums are over the vertices that targets move. */
+/* Moments of a target's deltas. Sums are over the vertices that targets move. */
 typedef struct noh_identity_moments {
     float square;    /* of |delta|^2 */
     float length;    /* of |delta| */
@@ -28,7 +28,7 @@ typedef struct noh_identity_moments {
     uint32_t moved;  /* vertices */
 } noh_identity_moments;
 
-/* What only init needs. */
+/* Working memory of init. */
 typedef struct noh_identity_scratch {
     const noh_mesh *mesh;
     noh_morph_layers field, other; /* positions only: the deltas of two targets */
@@ -40,22 +40,22 @@ typedef struct noh_identity_scratch {
     float middle, size;            /* x of the mesh's middle; the diagonal of its bounds */
 } noh_identity_scratch;
 
-/* The deltas of one target into a field. */
+/* Accumulate the deltas of one target into a field. */
 void noh_identity_field(const noh_identity_scratch *s, uint32_t target, const noh_morph_layers *field);
-/* Of s->field. */
+/* Get the moments of s->field. */
 noh_identity_moments noh_identity_moments_of(const noh_identity_scratch *s);
-/* The cosine between s->field and s->other; over: 1, only where s->field moves anything. */
+/* Get the cosine between s->field and s->other. over: 1 uses only vertices that s->field moves. */
 float noh_identity_cosine(const noh_identity_scratch *s, int over);
-/* The vertices that lie next to each other and face each other, as lips and lids do: s->facing. */
+/* Find vertices that are close and face each other, as lips and lids do: s->facing. */
 void noh_identity_facing(noh_identity_scratch *s);
-/* How much s->field stretches the edges and moves apart what faces each other, at each vertex, at weight 1: s->strain.
- */
+/* Compute how much s->field, at weight 1, stretches edges and separates facing vertices, per vertex: s->strain. */
 void noh_identity_strain(noh_identity_scratch *s);
-/* A delta of a vertex; zeros where no target moves it. */
+/* Get the delta of a vertex; zeros if no target moves it. */
 void noh_identity_delta(const noh_identity_scratch *s, const noh_morph_layers *field, uint32_t vertex, float delta[3]);
 
-/* The weight at which the closing target's lids touch, as a function of identity weights: targets[].closing[index].
- * Returns how many pairs of vertices touch; 0: that target closes nothing, and is left alone. */
+/* Compute the weight at which the closing target's lids touch, as a function of identity weights:
+ * targets[].closing[index]. Returns the number of touching pairs of vertices; 0: that target closes nothing and is
+ * ignored. */
 uint32_t noh_identity_closing(noh_identity_scratch *s, noh_identity_target *targets, uint32_t closing, uint32_t index);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* hair_internal.h (private to sim/): hair's bytes, and its step. Threads: as hair.h. */
+/* hair_internal.h (private to hair/): the layout of hair, and its step. Threads: as hair.h. */
 #ifndef NOH_SIM_HAIR_INTERNAL_H
 #define NOH_SIM_HAIR_INTERNAL_H
 
@@ -7,18 +7,18 @@
 
 #define NOH_HAIR_STEP_SECONDS ((float)NOH_HAIR_STEP_TICKS / 48000.0f)
 
-/* All in head space as of the step. */
+/* All in the head's space at the step. */
 typedef struct noh_hair_point {
-    float now[3], before[3]; /* of the last two steps */
+    float now[3], before[3]; /* in the last two steps */
     float velocity[3];       /* in the world, along the head's axes */
-    float length;            /* from the point before; of a root 0 */
+    float length;            /* from the previous point; 0 for a root */
 } noh_hair_point;
 
-/* Behind it noh_hair_point[hair_count][point_count]. */
+/* Followed by noh_hair_point[hair_count][point_count]. */
 struct noh_hair {
     uint32_t hair_count, point_count;
     uint32_t left;            /* ticks since the last step */
-    uint32_t steps;           /* of all time, for gusts */
+    uint32_t steps;           /* in total, for gusts */
     noh_hair_carrier last;    /* of the last call */
     noh_hair_carrier stepped; /* of the last step */
     uint32_t reserved[4];
@@ -26,11 +26,12 @@ struct noh_hair {
 NOH_STATIC_ASSERT(sizeof(noh_hair) == 112, hair);
 NOH_STATIC_ASSERT(sizeof(noh_hair_point) == 40, hair_point);
 
-/* What a step knows of the head: from its space in the last step to that in this one, and what pulls. */
+/* The head's motion in a step: the transform from its space in the last step to its space in this one, and
+ * accelerations. */
 typedef struct noh_hair_motion {
     float turn[3][3], moved[3]; /* columns */
     float gravity[3], wind[3];  /* head space */
-    float keep;                 /* of a speed */
+    float keep;                 /* share of a velocity that is kept */
 } noh_hair_motion;
 
 static inline noh_hair_point *noh_hair_points_of(noh_hair *h)
@@ -43,10 +44,10 @@ static inline const noh_hair_point *noh_hair_const_points_of(const noh_hair *h)
     return (const noh_hair_point *)(const void *)(h + 1);
 }
 
-/* The origin of its world moves by `by`, metres: so much less is where the head was. */
+/* Move the origin of its world by `by`, metres: the head's position becomes p - by. */
 void noh_hair_shift(noh_hair *hair, const float by[3]);
 
-/* Where the head is at a share `t` of a call's time, and what a step to there knows of it. */
+/* Interpolate the carrier at a fraction `t` of a call's time, and compute the motion of a step to there. */
 void noh_hair_carry(const noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, float t,
                     noh_hair_carrier *at, noh_hair_motion *motion);
 

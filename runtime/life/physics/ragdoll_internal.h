@@ -1,5 +1,5 @@
-/* ragdoll_internal.h (private to sim/): what a set of ragdolls holds, and the step that lanes share.
- * Threads: as ragdoll.h. */
+/* ragdoll_internal.h (private to physics/): the layout of a set of ragdolls, and the step of a group of lanes. Threads:
+ * as ragdoll.h. */
 #ifndef NOH_SIM_RAGDOLL_INTERNAL_H
 #define NOH_SIM_RAGDOLL_INTERNAL_H
 
@@ -7,8 +7,8 @@
 #include "life/physics/ragdoll.h"
 
 #define NOH_RAGDOLL_LANES_MAX 8u
-#define NOH_RAGDOLL_LANE_FLOATS 52u                       /* of a body in the shared memory, for each lane */
-#define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* of the doll: its origin, and planes from there */
+#define NOH_RAGDOLL_LANE_FLOATS 52u                       /* per body in the shared memory, for each lane */
+#define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* per doll: its origin, and planes relative to it */
 #define NOH_RAGDOLL_SCRATCH_FLOATS \
     ((NOH_RAGDOLL_BODIES_MAX * NOH_RAGDOLL_LANE_FLOATS + NOH_RAGDOLL_PLACE_FLOATS) * NOH_RAGDOLL_LANES_MAX)
 
@@ -22,24 +22,25 @@ typedef struct noh_ragdoll_state {
 
 typedef struct noh_ragdoll_doll {
     noh_ragdoll_state bodies[NOH_RAGDOLL_BODIES_MAX];
-    float lain[NOH_RAGDOLL_BODIES_MAX][7]; /* where bodies were when the doll was last seen to move */
+    float lain[NOH_RAGDOLL_BODIES_MAX][7]; /* transforms of bodies when the doll last moved */
     float hertz[NOH_RAGDOLL_BODIES_MAX];
     uint32_t held;
     uint32_t asleep;
     uint32_t still;  /* steps since then */
-    uint32_t slow;   /* steps since anything of it was fast */
-    float origin[3]; /* of all its positions, near its first body: floats have as many digits everywhere */
-    uint32_t bent;   /* steps for which joints that began past their limits are brought back slowly */
+    uint32_t slow;   /* steps since any body was fast */
+    float origin[3]; /* of all its positions, near its first body: keeps the precision of floats everywhere */
+    uint32_t bent;   /* steps for which joints placed beyond their limits are brought back slowly */
 } noh_ragdoll_doll;
 
-/* What dolls share of a body and of the joint to its parent, in the bodies' own spaces. */
+/* Shared data of a body and of the joint to its parent, in the bodies' own spaces. */
 typedef struct noh_ragdoll_constants {
     float half, radius, mass, inertia_across, inertia_along;
     uint32_t parent, flags;
     float anchor_parent[3], anchor[3];
-    float rest_parent[4]; /* the frame in the parent's space at rest; and as the middle of the ellipse of swing lies, */
+    float
+        rest_parent[4]; /* the frame in the parent's space at rest; the next two: at the centre of the swing ellipse */
     float frame_parent[4], frame[4];
-    float swing[2];                   /* one over the square of the sine of half of the ellipse's half axes */
+    float swing[2];                   /* one over the squared sine of half of the ellipse's half axes */
     float twist_min[2], twist_max[2]; /* sine and cosine of half of it */
     float linear_min[3], linear_max[3];
     float friction;
@@ -47,13 +48,13 @@ typedef struct noh_ragdoll_constants {
 
 typedef struct noh_ragdoll_pair {
     uint32_t a, b;
-    float distance; /* of their axes, at least: their radii, or less where they lie nearer at rest */
+    float distance; /* least distance of their axes: the sum of their radii, or less if they are closer at rest */
 } noh_ragdoll_pair;
 
 typedef struct noh_ragdoll_shape {
     uint32_t body_count, pair_count, substeps;
     float speed_max; /* metres per second */
-    float slack;     /* metres by which a doll may be in the world at the end of a step */
+    float slack;     /* metres by which a doll may overlap the world at the end of a step */
     noh_ragdoll_constants bodies[NOH_RAGDOLL_BODIES_MAX];
     noh_ragdoll_pair pairs[NOH_RAGDOLL_PAIRS_MAX];
 } noh_ragdoll_shape;
@@ -76,8 +77,8 @@ struct noh_ragdolls {
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                       uint32_t count, float *scratch);
 
-/* A set without the memory that its dolls share, which a stage keeps apart from its state. It can be used as any other,
- * but is stepped by noh_ragdolls_step_with alone.
+/* A set without the memory that its dolls share, which a stage stores apart from its state. It can be used like any
+ * other, but stepped only by noh_ragdolls_step_with.
  * memory   noh_ragdolls_state_size bytes, aligned to 16; rig checked, count and substeps in range */
 size_t noh_ragdolls_state_size(uint32_t count);
 noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
@@ -85,26 +86,26 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
 /* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; undefined before and after */
 uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch);
 
-/* The public calls of these names, with positions that count from `origin`, a point of the bodies' space. */
+/* Variants of the public functions with positions relative to `origin`, a point of the bodies' space. */
 noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
                                    const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error);
 noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
                                     const noh_ragdoll_pose *goals, uint32_t held, const float *hertz, noh_error *error);
 
-/* As they are kept: *origin is where they count from.
+/* Get the bodies as stored, relative to *origin.
  * shapes  bodies[body_count] */
 void noh_ragdoll_bodies_local(const noh_ragdolls *set, uint32_t doll, float origin[3], noh_ragdoll_pose *bodies);
 
-/* The origin for what is at `at`, in whole metres while floats have them. */
+/* Get the origin to use for a position `at`, in whole metres as far as floats hold them. */
 void noh_ragdoll_origin_near(const float at[3], float origin[3]);
 
-/* An origin moves; lost: what its floats cannot hold, for all that counts from it to be moved by. */
+/* Move an origin. lost: the part that its floats cannot hold, to be added to all positions relative to it. */
 void noh_ragdoll_origin_shift(float origin[3], const float by[3], float lost[3]);
 
-/* What is wrong with a copy of the set from outside; NULL: it is good. */
+/* Check a copy of the set from outside; returns NULL or a message. */
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy);
 
-/* The dolls of a set, and the memory that they share. */
+/* Get the dolls of a set, and the memory that they share. */
 noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set);
 float *noh_ragdoll_scratch(noh_ragdolls *set);
 

@@ -1,31 +1,31 @@
-/* spring_internal.h (private to sim/): a spring's bytes, and its step. Threads: as spring.h. */
+/* spring_internal.h (private to physics/): the layout of a spring, and its step. Threads: as spring.h. */
 #ifndef NOH_SIM_SPRING_INTERNAL_H
 #define NOH_SIM_SPRING_INTERNAL_H
 
 #include "core/base/assert.h"
 #include "life/physics/spring.h"
 
-/* The end of a joint. Positions count from where the first joint was in the last step, so that a character far from the
+/* The end of a joint. Positions are relative to the first joint in the last step, so that a character far from the
  * origin loses no digits. */
 typedef struct noh_spring_point {
-    float now[3], before[3]; /* of the last two steps */
+    float now[3], before[3]; /* in the last two steps */
     float length;
 } noh_spring_point;
 
-/* Behind it noh_spring_point[joint_count], then noh_spring_collider[collider_count] as of the last call. */
+/* Followed by noh_spring_point[joint_count], then noh_spring_collider[collider_count] of the last call. */
 struct noh_spring {
     uint32_t joint_count, collider_count, collides;
     uint32_t left;              /* ticks since the last step */
     noh_spring_carrier last;    /* of the last call */
     noh_spring_carrier stepped; /* of the last step */
-    float moved[3];             /* by which the carrier moved in the last step */
-    float turned[4];            /* its rotation in the step before */
+    float moved[3];             /* motion of the carrier in the last step */
+    float turned[4];            /* its rotation in the previous step */
     uint32_t reserved;
 };
 NOH_STATIC_ASSERT(sizeof(noh_spring) == 104, spring);
 NOH_STATIC_ASSERT(sizeof(noh_spring_point) == 28, spring_point);
 
-/* The origin of its world moves by `by`: so much less is where all is. */
+/* Move the origin of its world by `by`: all positions p become p - by. */
 void noh_spring_shift(noh_spring *spring, const float by[3]);
 
 static inline noh_spring_point *noh_spring_points(noh_spring *s)

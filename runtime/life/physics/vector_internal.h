@@ -1,4 +1,4 @@
-/* vector_internal.h: vectors of three floats, as the solvers use them. Threads: no state; any thread. */
+/* vector_internal.h: vectors of three floats for the solvers. Threads: no state; any thread. */
 #ifndef NOH_SIM_VECTOR_INTERNAL_H
 #define NOH_SIM_VECTOR_INTERNAL_H
 
@@ -35,22 +35,22 @@ static inline float noh_length3(const float v[3])
     return noh_sqrt(noh_dot3(v, v));
 }
 
-/* v without its part along the unit vector `axis`; out may be v. */
+/* v without its component along the unit vector `axis`; out may be v. */
 static inline void noh_reject3(const float v[3], const float axis[3], float out[3])
 {
     noh_madd3(v, -noh_dot3(v, axis), axis, out);
 }
 
-/* A unit vector at right angles to the unit vector v: `hint` where it has such a part, else whichever is handy. */
+/* A unit vector perpendicular to the unit vector v: from `hint` if possible, else any. */
 NOH_UNUSED static inline void noh_perpendicular3(const float v[3], const float hint[3], float out[3])
 {
     static const float axes[3][3] = { { 1.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 1.0f } };
     const float x = v[0] * v[0], y = v[1] * v[1], z = v[2] * v[2];
-    const float *least = axes[x <= y && x <= z ? 0 : y <= z ? 1 : 2]; /* has at least 0.8 at right angles to v */
+    const float *least = axes[x <= y && x <= z ? 0 : y <= z ? 1 : 2]; /* its perpendicular part is at least 0.8 long */
     float part[3];
     noh_reject3(hint, v, part);
     if (noh_dot3(part, part) > 1e-8f * noh_dot3(hint, hint)) {
-        noh_reject3(part, v, part); /* once more, because what was left may be small beside what was taken away */
+        noh_reject3(part, v, part); /* a second time, because the rest may be small relative to what was subtracted */
         noh_normalize3(part, least);
     } else {
         noh_reject3(least, v, part);
@@ -59,10 +59,10 @@ NOH_UNUSED static inline void noh_perpendicular3(const float v[3], const float h
     memcpy(out, part, sizeof part);
 }
 
-/* The shortest rotation from direction a to b, of any lengths; the identity where one has none. `hint` says about which
- * axis where they are opposed.
- * Past a right angle it is taken in two steps, half a turn about the axis and then what is left: the sum of nearly
- * opposed vectors has few digits, and the second step corrects what the axis lacks. */
+/* The shortest rotation from direction a to b, of any lengths; the identity if either is 0. `hint` selects the axis if
+ * they are opposed.
+ * Beyond a right angle it takes two steps, half a turn about the axis and then the rest: the sum of nearly opposed
+ * vectors has few digits, and the second step corrects the error of the axis. */
 NOH_UNUSED static inline void noh_quat_between(const float a[3], const float b[3], const float hint[3], float q[4])
 {
     static const float none[3] = { 0.0f, 0.0f, 0.0f };

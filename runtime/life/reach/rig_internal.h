@@ -1,5 +1,5 @@
-/* rig_internal.h: joints of a pose, and skin in the bind pose, as rigs and solvers of whole bodies use them.
- * Threads: no state; any thread. */
+/* rig_internal.h: joints of a pose, and skin in the bind pose, for rigs and solvers of whole bodies. Threads: no state;
+ * any thread. */
 #ifndef NOH_SIM_RIG_INTERNAL_H
 #define NOH_SIM_RIG_INTERNAL_H
 
@@ -12,7 +12,7 @@ NOH_UNUSED static inline int noh_rig_is_below(const noh_skeleton *k, uint32_t jo
     return joint == above;
 }
 
-/* Where its heaviest joint carries a vertex in the bind pose. */
+/* The position of a vertex in the bind pose, by its heaviest joint. */
 NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
                                              uint32_t vertex, uint32_t slot, float point[3])
 {
@@ -24,7 +24,7 @@ NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_me
     noh_madd3(position, 1.0f, local, point);
 }
 
-/* A joint in model space, as a pose has it. */
+/* The transform of a pose's joint in model space. */
 NOH_UNUSED static inline void noh_rig_joint(const noh_skeleton *k, const noh_transform *local, uint32_t joint,
                                             float position[3], float rotation[4])
 {
@@ -33,7 +33,7 @@ NOH_UNUSED static inline void noh_rig_joint(const noh_skeleton *k, const noh_tra
     noh_ragdoll_bind(&posed, joint, position, rotation);
 }
 
-/* Turn a joint and what hangs on it, in model space. */
+/* Turn a joint with its descendants, in model space. */
 NOH_UNUSED static inline void noh_rig_turn(const noh_skeleton *k, noh_transform *local, uint32_t joint,
                                            const float by[4])
 {

@@ -1,6 +1,6 @@
-/* clock_internal.h (private to anim/ and character/): sums and differences of clocks that stop at the ends of int64
- * instead of overflowing. At 48,000 ticks a second a clock takes six million years to get there; a forged or damaged
- * snapshot may be there at once. */
+/* clock_internal.h (private to anim/ and character/): sums and differences of clocks that saturate at the ends of
+ * int64. At 48,000 ticks per second a clock takes six million years to get there, but a forged or damaged snapshot may
+ * start there. */
 #ifndef NOH_ANIM_CLOCK_INTERNAL_H
 #define NOH_ANIM_CLOCK_INTERNAL_H
 
@@ -14,7 +14,7 @@ static inline int64_t noh_clock_add(int64_t clock, int64_t ticks)
     return clock < INT64_MIN - ticks ? INT64_MIN : clock + ticks;
 }
 
-/* From `start` to `clock`; below 0 when the start lies ahead. */
+/* Ticks from `start` to `clock`; below 0 if the start lies ahead. */
 static inline int64_t noh_clock_since(int64_t clock, int64_t start)
 {
     if (start < 0) {

@@ -1,5 +1,5 @@
-/* clip_bank_bind_internal.h (private to bank/): which clips of packs fit a skeleton and the nodes of a mesh pack.
- * Reads only the packs' bytes, so that sizes are known before there is memory. */
+/* clip_bank_bind_internal.h (private to bank/): matches the clips of packs with a skeleton and the nodes of a mesh
+ * pack. Reads only the packs' bytes, so that sizes are known before any memory is allocated. */
 #ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 
@@ -7,7 +7,7 @@
 #include "motion/clip/clip_internal.h"
 
 typedef struct noh_bank_binding {
-    const noh_pack *const *packs; /* [pack_count] of clips */
+    const noh_pack *const *packs; /* [pack_count] packs of clips */
     uint32_t pack_count;
     const noh_pack *mesh;
     noh_skeleton skeleton;             /* joint_count 0: none */
@@ -21,13 +21,13 @@ typedef struct noh_bank_place {
     uint32_t pack, index;
 } noh_bank_place;
 
-/* The place as errors tell it. */
+/* The place as reported in errors. */
 static inline uint64_t noh_bank_where(noh_bank_place at)
 {
     return (uint64_t)at.pack << 32 | at.index;
 }
 
-/* A clip of the bank: where it lies, and the desc that opens it. */
+/* A clip of the bank: its place, and the desc to open it with. */
 typedef struct noh_bank_found {
     noh_bank_place at;
     noh_pack_clip packed;
@@ -38,22 +38,22 @@ typedef struct noh_bank_found {
  * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its place) */
 noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error);
 
-/* The next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 when there is none. A clip
- * of which a later pack has one of the same name is replaced by that. */
+/* Get the next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 if there is none. A
+ * clip is replaced by one of the same name in a later pack. */
 int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found);
 
-/* How many clips of all packs fit, the replaced ones too. */
+/* Count the clips of all packs that fit, including replaced ones. */
 uint32_t noh_bank_count_fitting(const noh_bank_binding *b);
 
-/* The next node with targets, from *node on, as a group of floats at *first. Advances both; returns 0 when there is
+/* Get the next node with targets, from *node on, as a group of floats at *first. Advances both; returns 0 if there is
  * none. */
 int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group);
 
-/* The bank's group that a clip's group of weights moves: that of the node of the same index if it has the name and
- * width, else the first of that name and width. Returns 0 when there is none. */
+/* Find the bank's group that a clip's group of weights moves: the node of the same index if it has the same name and
+ * width, else the first node that has. Returns 0 if there is none. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
 
-/* Count the named groups of the bank's clips, those of one name and width as one, and their floats: added to both. The
+/* Count the named groups of the bank's clips, equal names and widths once, and their floats; adds to both counts. The
  * clips were checked. */
 void noh_bank_count_names(const noh_bank_binding *b, uint32_t *group_count, uint32_t *float_count);
 

@@ -1,10 +1,10 @@
-/* clip_bank_internal.h (private to bank/): where the floats of a clip lie among the bank's. */
+/* clip_bank_internal.h (private to bank/): the mapping from the floats of a clip to the bank's. */
 #ifndef NOH_BANK_CLIP_BANK_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_INTERNAL_H
 
 #include "motion/bank/clip_bank.h"
 
-/* A run of a clip's floats, and where it goes among the bank's. */
+/* A run of a clip's floats, and its place among the bank's. */
 typedef struct noh_bank_floats {
     uint16_t from, to, width;
 } noh_bank_floats;
@@ -15,7 +15,7 @@ struct noh_bank_clip {
     uint32_t joint_count;
 };
 
-/* Let bank->clips sample through the bank's cache. Sampling then changes the cache. */
+/* Let bank->clips sample through the bank's cache; sampling then changes the cache. */
 void noh_clip_bank_sample_cache(noh_clip_bank *bank);
 
 #endif

@@ -1,7 +1,7 @@
 /* clip_bits_internal.h (private to clip/ and the encoder): reading bits, lowest first.
  *
- * Past the end a reader gives zeros and keeps counting, so that it never reads outside its bytes and noh_bits_overrun
- * can tell afterwards. */
+ * Past the end a reader returns zeros and keeps counting, so that it never reads outside its bytes and noh_bits_overrun
+ * can report it afterwards. */
 #ifndef NOH_CLIP_CLIP_BITS_INTERNAL_H
 #define NOH_CLIP_CLIP_BITS_INTERNAL_H
 
@@ -12,7 +12,7 @@
 typedef struct noh_bits {
     uint64_t word; /* the next bits, lowest first; above `count` the stream's own, or zeros */
     uint32_t count;
-    size_t at, end; /* next byte to load, and where the bytes end */
+    size_t at, end; /* next byte to load, and the end of the bytes */
     const uint8_t *bytes;
 } noh_bits;
 
@@ -44,8 +44,8 @@ static inline uint64_t noh_bits_load8(const uint8_t *p)
 #endif
 }
 
-/* Make at least NOH_BITS_READY bits ready. With 8 bytes left that is one load: the word is filled up to 56 bits or more
- * by whole bytes, and what the load brought above `count` is the stream's next bits, which the next load repeats. */
+/* Make at least NOH_BITS_READY bits ready. With 8 bytes left this is one load: the word is filled to 56 bits or more by
+ * whole bytes, and the loaded bits above `count` are the stream's next bits, which the next load repeats. */
 static inline void noh_bits_refill(noh_bits *b)
 {
     if (b->end - b->at >= 8u && b->at <= b->end) {
@@ -64,7 +64,7 @@ static inline void noh_bits_refill(noh_bits *b)
     }
 }
 
-/* The next `width` bits, 0..32, of those that a refill has made ready. */
+/* Take the next `width` bits, 0..32, after a refill. */
 static inline uint32_t noh_bits_take(noh_bits *b, uint32_t width)
 {
     const uint32_t v = (uint32_t)(b->word & (((uint64_t)1 << width) - 1u));
@@ -80,7 +80,7 @@ static inline uint32_t noh_bits_get(noh_bits *b, uint32_t width)
     return noh_bits_take(b, width);
 }
 
-/* A varint: see clip_format.h. */
+/* Read a varint (clip_format.h). */
 static inline uint32_t noh_bits_varint(noh_bits *b)
 {
     uint32_t v = 0;
@@ -93,7 +93,7 @@ static inline uint32_t noh_bits_varint(noh_bits *b)
     return v;
 }
 
-/* Bits read so far, counted from the block's first byte. */
+/* Get the number of bits read, from the block's first byte. */
 static inline size_t noh_bits_position(const noh_bits *b)
 {
     return b->at * 8u - b->count;
@@ -104,7 +104,7 @@ static inline int noh_bits_overrun(const noh_bits *b)
     return noh_bits_position(b) > b->end * 8u;
 }
 
-/* Go back to a position that noh_bits_position gave. */
+/* Go back to a position from noh_bits_position. */
 static inline void noh_bits_seek(noh_bits *b, size_t position)
 {
     b->word = 0;

@@ -1,4 +1,4 @@
-/* clip_cache_internal.h (private to clip/): what a cache and its views share. */
+/* clip_cache_internal.h (private to clip/): data that a cache and its views share. */
 #ifndef NOH_CLIP_CLIP_CACHE_INTERNAL_H
 #define NOH_CLIP_CLIP_CACHE_INTERNAL_H
 
@@ -19,22 +19,22 @@ typedef struct noh_cached_segment {
     noh_clip_cursor cursor;
     uint8_t *frames;
     uint32_t clip;
-    uint32_t stamp;         /* the frame of the game in which it was last touched */
+    uint32_t stamp;         /* the frame of the game that last touched it */
     uint32_t wanted;        /* decode up to this track */
-    uint32_t glimpsed;      /* tracks that are decoded at the frames that `skipped` leaves, beside the cursor's ... */
+    uint32_t glimpsed;      /* tracks decoded only at the frames not in `skipped`, besides the cursor's ... */
     uint32_t skipped;       /* ... as noh_clip_basis.skip */
     uint16_t older, newer;  /* in its size's list */
-    uint16_t before, after; /* in the list of wants, while it is in it */
+    uint16_t before, after; /* in the list of requests, while it is in it */
     uint8_t size;           /* index of its noh_clip_size_class */
-    uint8_t used, waits;    /* 1: holds a segment; is in the list of wants */
+    uint8_t used, waits;    /* 1: holds a segment; is in the list of requests */
 } noh_cached_segment;
 
 /* A clip of the cache. */
 typedef struct noh_cached_clip {
     const noh_clip *clip;
-    uint32_t first; /* place of its first segment in `cached_of` */
-    uint32_t size;  /* index of the smallest noh_clip_size_class that its segments fit in */
-    uint32_t frame; /* the frame of the sample before */
+    uint32_t first; /* index of its first segment in `cached_of` */
+    uint32_t size;  /* index of the smallest noh_clip_size_class that fits its segments */
+    uint32_t frame; /* the frame of the previous sample */
 } noh_cached_clip;
 
 struct noh_clip_cache {
@@ -45,19 +45,20 @@ struct noh_clip_cache {
     uint32_t clip_count, cached_count, size_count;
     uint32_t segment_bytes; /* of the largest segment of any clip */
     uint32_t stamp;
-    uint32_t samples_begun, samples_before; /* stats.samples when this frame began; samples of the frame before */
+    /* stats.samples at the start of this frame; samples of the previous frame */
+    uint32_t samples_begun, samples_before;
     uint16_t first_want, last_want;
     noh_clip_cache_stats stats;
-    /* by transform and by frames of a segment; only those that the clips have */
+    /* by transform and by frames of a segment; only those that the clips use */
     const float *rows[NOH_CLIP_BASES][NOH_CLIP_SEGMENT_FRAMES_MAX + 1u];
 };
 
-/* Where a sample lies in its clip. */
+/* The place of a sample in its clip. */
 typedef struct noh_clip_place {
     const noh_clip *clip;
-    uint32_t joints, tracks; /* to be sampled, and to be decoded for that */
+    uint32_t joints, tracks; /* joints to sample, and tracks to decode for them */
     uint32_t segment, frame; /* frame: in the segment */
-    uint32_t slot, slots;    /* where it is decoded, and how many the segment has */
+    uint32_t slot, slots;    /* where it is decoded, and the number of slots in the segment */
     float fraction;          /* towards the next slot */
     int crosses;             /* 1: the next frame is the first of the next segment */
 } noh_clip_place;
@@ -84,7 +85,7 @@ static inline noh_clip_place noh_clip_place_of(const noh_clip *clip, int64_t tic
     return p;
 }
 
-/* Blend two slots. `next`: the frames of the next segment, read only where the place crosses into it. */
+/* Blend two slots. `next`: the frames of the next segment, read only if the place crosses into it. */
 static inline void noh_clip_blend_place(const noh_clip_place *p, const uint8_t *frames, const uint8_t *next,
                                         noh_transform *out, float *floats)
 {
@@ -102,7 +103,7 @@ static inline noh_clip_basis noh_clip_cache_basis(const noh_clip_cache *cache, c
     return basis;
 }
 
-/* Decode a segment from where its cursor stands up to a track. Returns how many track-frames that was. */
+/* Decode a segment from its cursor up to a track. Returns the number of track-frames. */
 static inline uint32_t noh_clip_decode_up_to(const noh_clip_cache *cache, const noh_clip *clip, noh_clip_cursor *cursor,
                                              uint32_t track_end, uint8_t *out)
 {

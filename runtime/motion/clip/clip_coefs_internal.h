@@ -3,12 +3,12 @@
  * Frequencies run from high to low. A triple (the same frequency of three components) is one symbol, made of its
  * components' quotients, 0..3 each, from the table of context
  *   bit c: e_c >= NOH_CLIP_BUSY, e_c = sum of component c's last three magnitudes;
- * the first triple has a table of its own. But a low part (clip_format.h) that has all its frequencies most likely goes
- * on above: its first triple is coded as if one of NOH_CLIP_LOW_NEIGHBOUR in each component stood before it. Then come,
- * in the order of the components: for each quotient of 3 an Exp-Golomb number, which is added to it; s_c low bits of
- * each magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not zero. Frequency 0 (the mean,
- * which is large, and which its neighbours say little about) is coded for each component as the bit length of its
- * magnitude, the bits below the highest, and a sign. */
+ * the first triple has its own table. Exception: a low part (clip_format.h) with all its frequencies most likely
+ * continues above, so its first triple is coded as if it followed a triple with NOH_CLIP_LOW_NEIGHBOUR in each
+ * component. After the symbol, in the order of the components: for each quotient of 3 an Exp-Golomb number, which is
+ * added to it; s_c low bits of each magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not
+ * zero. Frequency 0 (the mean, which is large, and which its neighbours hardly predict) is coded for each component as
+ * the bit length of its magnitude, the bits below the highest, and a sign. */
 #ifndef NOH_CLIP_CLIP_COEFS_INTERNAL_H
 #define NOH_CLIP_CLIP_COEFS_INTERNAL_H
 
@@ -22,7 +22,7 @@
 #define NOH_CLIP_TRIPLE_BITS 9u
 #define NOH_CLIP_TRIPLE_SYMBOLS 64u
 #define NOH_CLIP_QUOTIENT_MAX 3u
-#define NOH_CLIP_LAST_BEFORE 7u /* contexts that follow from the track before */
+#define NOH_CLIP_LAST_BEFORE 7u /* contexts that depend on the previous track */
 #define NOH_CLIP_LAST_LOW 7u    /* the context of a low part */
 #define NOH_CLIP_LOW_NEIGHBOUR 2u
 #define NOH_CLIP_LAST_CONTEXTS 8u
@@ -47,15 +47,15 @@ static inline uint32_t noh_clip_bit_length(uint32_t v)
     return v ? 32u - noh_leading_zeros(v) : 0u;
 }
 
-/* How many low bits of a magnitude stay out of the symbol; e is the sum of its neighbours. That is one more than would
- * cost the fewest bytes, so that few quotients need an escape. */
+/* The number of low bits of a magnitude outside the symbol; e is the sum of its neighbours. It is one more than the
+ * most compact choice, so that few quotients need an escape. */
 static inline uint32_t noh_clip_shift(uint32_t e)
 {
-    /* the bit length of e / 2, without the branch that 0 would take */
+    /* the bit length of e / 2, without a branch for 0 */
     return 31u - noh_leading_zeros(e | 1u);
 }
 
-/* The context of `last`: how many frequencies the track before had. */
+/* The context of `last`: by the number of frequencies of the previous track. */
 static inline uint32_t noh_clip_last_context(uint32_t before)
 {
     const uint32_t length = before ? noh_clip_bit_length(before - 1u) + 1u : 0u; /* 0, 1, 2, 3-4, 5-8, 9-16, more */
@@ -76,10 +76,10 @@ static inline uint32_t noh_clip_symbol(noh_bits *b, const uint16_t *table, uint3
     return (uint32_t)entry >> 4;
 }
 
-/* Read one track's coefficients from frequency `first` on; where that is 0, its means too. `context`: of their number,
- * by noh_clip_last_context or NOH_CLIP_LAST_LOW.
- * shapes  out[count][4]: component c of frequency first + k at out[k][c]; out[k][3] stays untouched
- * returns how many frequencies there are, at most `count`; those above are not written
+/* Read one track's coefficients from frequency `first` on, including its means if that is 0. `context`: of their
+ * number, from noh_clip_last_context or NOH_CLIP_LAST_LOW.
+ * shapes  out[count][4]: component c of frequency first + k at out[k][c]; out[k][3] is unchanged
+ * returns the number of frequencies, at most `count`; higher ones are not written
  * ranges  any bits: magnitudes stay below 2^NOH_CLIP_MAGNITUDE_BITS, loops within `count` */
 uint32_t noh_clip_read_coefs(noh_bits *b, uint32_t first, uint32_t count, uint32_t context, int32_t out[][4]);
 

@@ -7,9 +7,10 @@
 
 typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCALE, NOH_CLIP_ROTATION } noh_clip_kind;
 
-#define NOH_CLIP_GROUP 4u          /* rotations that are sampled together; a frame has room for whole groups */
-#define NOH_CLIP_WEIGHT_MAX 32767u /* of weight_one: two whole weights times 16-bit values stay within 32 bits */
-#define NOH_CLIP_WEIGHT_PARTS 8u   /* eighths of a frame are whole weights: there errors were measured */
+#define NOH_CLIP_GROUP 4u /* rotations that are sampled together; a frame has room for whole groups */
+/* limit of weight_one: two whole-number weights times 16-bit values fit in 32 bits */
+#define NOH_CLIP_WEIGHT_MAX 32767u
+#define NOH_CLIP_WEIGHT_PARTS 8u /* eighths of a frame have whole-number weights: errors were measured there */
 
 #define NOH_CLIP_TRACK_MIX 1u
 #define NOH_CLIP_TRACK_WILD 2u
@@ -18,18 +19,18 @@ typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCA
 typedef struct noh_clip_track {
     uint8_t kind, flags;
     uint16_t target; /* joint, or first float of the triple */
-    uint16_t entry;  /* among rotations, or among linear tracks (floats included) */
+    uint16_t entry;  /* among rotations, or among linear tracks (including floats) */
     int16_t step;    /* id, where the clip has several segments */
     float reference[4];
     float mix[9]; /* floats: two scales in mix[4] and mix[8] */
 } noh_clip_track;
 
-/* How many of each come before a joint. */
+/* The number of tracks of each kind before a joint. */
 typedef struct noh_clip_prefix {
     uint16_t tracks, rotations, linears;
 } noh_clip_prefix;
 
-/* Where the three floats of a linear joint track go. */
+/* Destination of the three floats of a linear joint track. */
 typedef struct noh_clip_linear {
     uint16_t joint, kind; /* noh_clip_kind: translation or scale */
 } noh_clip_linear;
@@ -40,19 +41,20 @@ struct noh_clip {
     uint32_t rotation_count, linear_count;
     uint64_t segments_per_frame;         /* times 2^32, rounded down */
     uint32_t frame_bytes, linear_offset; /* of one frame in the cache: rotations, in whole groups, then linear floats */
-    uint32_t weight_one;                 /* what the whole weights of two frames add up to: a tick and an eighth of a
-                                          * frame are whole where the sample rate allows it */
-    const noh_transform *pose;           /* [joint_count] the values that are not animated */
-    const noh_clip_track *tracks;        /* [track_count] */
-    const noh_clip_prefix *prefixes;     /* [joint_count + 1]; the last counts everything */
-    const uint32_t *rotation_offsets;    /* [rotation_count] where each goes in a pose, bytes */
-    const noh_clip_linear *linears;      /* [linear_count]; those of float triples come first and are not used */
-    const uint32_t *segment_offsets;     /* [segment_count + 1] bytes */
-    const uint32_t *segment_firsts;      /* [segment_count + 1] frames */
-    const noh_clip_group *groups;        /* [group_count] */
+    /* the sum of the whole-number weights of two frames: a tick and an eighth of a frame are whole if the sample rate
+     * allows it */
+    uint32_t weight_one;
+    const noh_transform *pose;        /* [joint_count] values of joints that are not animated */
+    const noh_clip_track *tracks;     /* [track_count] */
+    const noh_clip_prefix *prefixes;  /* [joint_count + 1]; the last counts everything */
+    const uint32_t *rotation_offsets; /* [rotation_count] byte offset of each in a pose */
+    const noh_clip_linear *linears;   /* [linear_count]; float triples come first and are unused */
+    const uint32_t *segment_offsets;  /* [segment_count + 1] bytes */
+    const uint32_t *segment_firsts;   /* [segment_count + 1] frames */
+    const noh_clip_group *groups;     /* [group_count] */
 };
 
-/* Reads the float groups of a clip that noh_clip_measure has accepted from its bytes, before it is opened. */
+/* Reads the float groups of a clip from its bytes, before it is opened; noh_clip_measure must have accepted it. */
 typedef struct noh_clip_group_reader {
     noh_bits bits;
     uint32_t left, first;
@@ -62,7 +64,7 @@ noh_clip_group_reader noh_clip_groups_of(const noh_clip_desc *desc);
 /* Read the next group; returns 0 after the last one. */
 int noh_clip_next_group(noh_clip_group_reader *reader, noh_clip_group *group);
 
-/* Which of the NOH_CLIP_BASES a clip is coded in. */
+/* Get the index of the transform, below NOH_CLIP_BASES, that a clip is coded in. */
 static inline uint32_t noh_clip_basis_of(const noh_clip_info *info)
 {
     return (info->flags & NOH_CLIP_FLAG_PARABOLA) != 0u;
@@ -78,8 +80,8 @@ static inline uint32_t noh_clip_segment_frames(const noh_clip *clip, uint32_t se
     return noh_clip_segment_first(clip, segment + 1u) - noh_clip_segment_first(clip, segment);
 }
 
-/* The segment that holds a frame (below frame_count). Multiplied by a reciprocal that was rounded down, the guess is
- * never too high and hardly ever too low. */
+/* Get the segment with a frame (below frame_count). Multiplied by a reciprocal that was rounded down, the guess is
+ * never too high and rarely too low. */
 static inline uint32_t noh_clip_segment_of(const noh_clip *clip, uint32_t frame)
 {
     uint32_t segment = (uint32_t)((uint64_t)frame * clip->segments_per_frame >> 32);

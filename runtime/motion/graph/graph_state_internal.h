@@ -1,4 +1,4 @@
-/* graph_state_internal.h (private to graph/): the parts of an instance that graph.c makes and graph_step.c changes. */
+/* graph_state_internal.h (private to graph/): functions on an instance shared by graph.c and graph_step.c. */
 #ifndef NOH_GRAPH_GRAPH_STATE_INTERNAL_H
 #define NOH_GRAPH_GRAPH_STATE_INTERNAL_H
 
@@ -8,10 +8,10 @@ float *noh_graph_state_params(noh_graph_state *state);
 noh_machine *noh_graph_state_machines(noh_graph_state *state);
 noh_graph_view noh_graph_view_of(const noh_graph_state *state, const noh_graph *graph);
 
-/* The head of a new instance of a checked graph. Of the set only the counts are read. */
+/* Fill the head of a new instance of a checked graph. Reads only the counts of the set. */
 void noh_graph_state_head(const noh_graph *graph, const noh_clip_set *set, noh_graph_state *head);
 
-/* The child that a SELECT's parameter asks for. */
+/* Get the child selected by a SELECT's parameter. */
 uint32_t noh_graph_choice(const noh_graph_state *state, const noh_graph_node *node);
 
 noh_result noh_graph_start_subtree(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set,

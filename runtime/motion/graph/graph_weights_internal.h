@@ -8,7 +8,7 @@ typedef struct noh_graph_view {
     const noh_graph *graph;
     const float *params;
     const noh_machine *machines;
-    int before; /* 1: as it was before the inertial transitions that begin with the next pose */
+    int before; /* 1: the state before the inertial transitions that begin with the next pose */
 } noh_graph_view;
 
 const noh_controller *noh_graph_controller_of(const noh_graph_state *state);
@@ -21,7 +21,7 @@ static inline int noh_graph_is_machine(uint32_t kind)
     return kind == NOH_NODE_MACHINE || kind == NOH_NODE_SELECT || kind == NOH_NODE_ONE_SHOT;
 }
 
-/* Nodes in an array whose elements may be longer: those of a pack begin with their names. */
+/* Nodes in an array with a stride: nodes in packs begin with their names. */
 typedef struct noh_graph_nodes {
     const uint8_t *first; /* a noh_graph_node */
     size_t stride;
@@ -33,31 +33,31 @@ static inline const noh_graph_node *noh_graph_node_at(const noh_graph_nodes *nod
     return (const noh_graph_node *)(const void *)(nodes->first + i * nodes->stride);
 }
 
-/* noh_graph_buffers of nodes that were checked. */
+/* noh_graph_buffers for nodes that were checked. */
 uint32_t noh_graph_count_buffers(const noh_graph_nodes *nodes, const uint16_t *children);
 
 /* Whether any change of state may be inertial, so that instances and scratches need room for it. */
 int noh_graph_is_inertial(const noh_graph *graph);
 
-/* What the sizes of instances and scratches depend on. */
+/* The inputs for the sizes of instances and scratches. */
 typedef struct noh_graph_shape {
     uint32_t clip_count, param_count, machine_count, buffer_count;
     int inertial;
 } noh_graph_shape;
 
-noh_graph_shape noh_graph_shape_of(const noh_graph *graph); /* of a checked one */
+noh_graph_shape noh_graph_shape_of(const noh_graph *graph); /* of a checked graph */
 size_t noh_graph_shape_state_size(const noh_graph_shape *shape, const noh_clip_set *set);
 size_t noh_graph_shape_scratch_size(const noh_graph_shape *shape, const noh_clip_set *set);
 
-/* A node's t or x. */
+/* Get a node's t or x. */
 float noh_graph_amount(const noh_graph_view *view, const noh_graph_node *node);
 
-/* The weight of each child in its node. ADD and MASK: 1 and t.
+/* Compute the weight of each child in its node. ADD and MASK: 1 and t.
  * shapes  local[child_count] */
 void noh_graph_child_weights(const noh_graph_view *view, const noh_graph_node *node, float *local);
 
-/* The products of these weights from the root down, and which nodes are in play: all but those in states that their
- * machine is not in.
+/* Compute the products of these weights from the root down, and which nodes are in play: all except nodes in inactive
+ * states of a machine.
  * shapes  weights[node_count], active[node_count] */
 void noh_graph_weights(const noh_graph_view *view, float *weights, uint8_t *active);
 

@@ -1,9 +1,9 @@
-/* inertial_internal.h (private to pose/ and anim/): transitions by a pose of offsets that decays.
+/* inertial_internal.h (private to pose/ and anim/): transitions by decaying offsets.
  *
  * At the switch the difference between the old and the new animation is stored for each joint, with its speed. From
- * then on only the new one is sampled, and the difference is added, shrinking along a quintic that starts with that
- * speed and ends with neither speed nor acceleration. It never grows and never overshoots. Rotation, translation and
- * scale are each a direction and a length.
+ * then on only the new one is sampled, and the difference is added, decaying along a quintic that starts with that
+ * speed and ends with zero speed and acceleration. It never grows and never overshoots. Rotation, translation and scale
+ * are each a direction and a length.
  *
  * source  D. Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018
  *
@@ -27,11 +27,11 @@ typedef struct noh_inertia_float {
     float offset, speed;
 } noh_inertia_float;
 
-/* What is left at time t of an offset x0 >= 0 that begins with speed v0 <= 0: x0 at 0, 0 from the duration on.
+/* Get the remainder at time t of an offset x0 >= 0 that begins with speed v0 <= 0: x0 at 0, 0 from the duration on.
  * units   seconds */
 float noh_inertia_decay(float x0, float v0, float t, float duration);
 
-/* Offsets from the poses at the switch and those `delta_s` seconds before it.
+/* Compute offsets from the poses at the switch and the poses `delta_s` seconds before it.
  * shapes  all [joint_count]
  * ranges  delta_s > 0 */
 void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const noh_transform *source_before,
@@ -40,7 +40,7 @@ void noh_inertia_begin(uint32_t joint_count, const noh_transform *source, const 
 void noh_inertia_begin_floats(uint32_t count, const float *source, const float *source_before, const float *target,
                               const float *target_before, float delta_s, noh_inertia_float *out);
 
-/* Add the offsets that are left to the pose, in place. */
+/* Add the remaining offsets to the pose, in place. */
 void noh_inertia_apply(uint32_t joint_count, const noh_inertia_joint *joints, float elapsed_s, float duration_s,
                        noh_transform *pose);
 void noh_inertia_apply_floats(uint32_t count, const noh_inertia_float *offsets, float elapsed_s, float duration_s,
