@@ -9,7 +9,7 @@
  * The mean of |sample| over a tenth of a second, relative to 0.3 of the recent peak level, selects one of three shapes
  * and its weight (Granberg, "Character Animation with Direct3D", 2009, ch. 10, with its errors corrected: a partial
  * window is divided by its own length, there is no division by silence, windows do not drift, and the peak level is a
- * percentile of peaks, which one click does not change). ear.h tells shapes apart; this needs one addition per sample.
+ * percentile of peaks, which one click does not change). ear.h recognises shapes; this needs one addition per sample.
  *
  * Threads: one thread at a time. */
 #ifndef NOH_FACE_AMPLITUDE_H

@@ -38,8 +38,8 @@ typedef struct noh_weight_rule {
     float low, high; /* RANGE: low at most 0, high at least 0; else 0 */
 } noh_weight_rule;
 
-/* Get the rules for targets of the mesh, in the order in which they are applied. A group contains those of its targets
- * that the mesh has.
+/* Get the rules for targets of the mesh, in the order in which they are applied. A group contains
+ * only its targets in the mesh.
  * shapes   rules[rule_max]
  * returns  the number of rules; rules past rule_max are not written */
 uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);

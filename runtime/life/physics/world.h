@@ -50,7 +50,7 @@ typedef struct noh_world {
     uint32_t plane_count, capsule_count, box_count; /* each 0..NOH_OBSTACLES_MAX */
     const noh_field *field;                         /* NULL: none */
     float friction;                                 /* 0.., of everything */
-    float restitution; /* 0..1: the share of its speed towards an obstacle with which a body leaves it; 0: no bounce */
+    float restitution; /* 0..1: share of its velocity towards an obstacle that a body rebounds with; 0: no bounce */
 } noh_world;
 
 /* Check a world.

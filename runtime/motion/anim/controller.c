@@ -161,7 +161,7 @@ static void settle(noh_controller *c, const noh_change_target *t)
 
 /* ---- tracks ---- */
 
-/* Whether the markers of a joining track match those of its sync group. */
+/* Whether the markers of a joining track match its sync group's. */
 static int sync_fits(const noh_controller *c, const noh_clip_set *set, uint32_t track, const noh_track *joining)
 {
     for (uint32_t i = 0; i < c->track_count; i++) {

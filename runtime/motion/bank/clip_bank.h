@@ -94,7 +94,7 @@ typedef struct noh_clip_bank {
 } noh_clip_bank;
 
 /* Check a desc and the headers of all clips; find the clips that fit and all sizes.
- * errors  as noh_clip_bank_init, except those of memory */
+ * errors  as noh_clip_bank_init, except for memory */
 noh_result noh_clip_bank_measure(const noh_clip_bank_desc *desc, noh_clip_bank_needs *needs, noh_error *error);
 
 /* Exact size of a bank in bytes, including its clips and cache; 0 on error. */
