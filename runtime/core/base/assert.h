@@ -1,8 +1,7 @@
 /* assert.h: checks for the caller's bugs, in two tiers; never for file bytes.
  *
- *   NOH_ASSERT         cheap: a null pointer, an index past a count
- *   NOH_VALIDATE       costly: walks a whole structure
- *   NOH_STATIC_ASSERT  at compile time
+ *   NOH_ASSERT    cheap: a null pointer, an index past a count
+ *   NOH_VALIDATE  costly: walks a whole structure
  *
  * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check
  * calls NOH_ASSERT_FAILED(condition, file, line), which a build may define; the default traps, because the library
@@ -32,8 +31,5 @@
 #else
 #define NOH_VALIDATE(condition) ((void)0)
 #endif
-
-/* A compile-time check that works in C99. */
-#define NOH_STATIC_ASSERT(condition, name) typedef char noh_static_assert_##name[(condition) ? 1 : -1]
 
 #endif

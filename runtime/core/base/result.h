@@ -15,6 +15,9 @@
 extern "C" {
 #endif
 
+/* A check at compile time that works in C99. */
+#define NOH_STATIC_ASSERT(condition, name) typedef char noh_static_assert_##name[(condition) ? 1 : -1]
+
 typedef enum noh_result {
     NOH_OK = 0,
     NOH_ERR_ARG,         /* an argument or a field of a desc is out of its range: `what` names it */
