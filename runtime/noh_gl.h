@@ -43,6 +43,7 @@
 #include "gl/stage/stage_terrain.h"   /* a height field as their ground */
 #include "gl/device/gl_api.h"         /* the functions that noh calls */
 #include "gl/device/gl_caps.h"        /* what this GPU can do, found by trying it */
+#include "gl/device/gl_open.h"        /* all of that in one object */
 #include "gl/morph/gl_morph.h"        /* morph targets of many instances, accumulated on the GPU */
 #include "gl/draw/gl_skin.h"          /* joint palettes of many instances on the GPU */
 #include "gl/draw/gl_light.h"         /* light for it: an environment, a shadow map */

@@ -32,7 +32,7 @@ typedef struct cast {
     double ns;          /* of steps and jobs */
 } cast;
 
-static start gl;
+static noh_gl gl;
 
 static void bind_toon(void *user, const noh_gl_api *api, GLuint program, const noh_material *material)
 {
@@ -140,11 +140,11 @@ static int frame(cast *c, uint32_t number)
     c->keys += number % 2u ? 0 : count;
     c->late_frames += noh_stage_stats_of(c->stage)->decoded_late > 0;
     if (number % 60u == 30u) pick(c);
-    target_clear(&gl.gl, &c->shadow);
+    target_clear(&gl.api, &c->shadow);
     if (noh_stage_draw(c->stage, NOH_PASS_DEPTH, 1, NULL, &e)) return start_fail(&gl, "shadow", &e);
-    target_clear(&gl.gl, &c->picture);
+    target_clear(&gl.api, &c->picture);
     if (noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, c->toon, &e)) return start_fail(&gl, "colour", &e);
-    c->gl_errors += gl.gl.GetError() != GL_NO_ERROR;
+    c->gl_errors += gl.api.GetError() != GL_NO_ERROR;
     return 0;
 }
 
@@ -182,8 +182,8 @@ int main(int argc, char **argv)
             return 2;
     }
     if (!pack_count || start_gl(&gl)) return 2;
-    target_make(&gl.gl, WIDTH, HEIGHT, 0, &c.picture);
-    target_make(&gl.gl, SHADOW, SHADOW, 1, &c.shadow);
+    target_make(&gl.api, WIDTH, HEIGHT, 0, &c.picture);
+    target_make(&gl.api, SHADOW, SHADOW, 1, &c.shadow);
     if (open_stage(&c, &packs[0], clips, pack_count, bytes)) return 1;
     before = measure_allocations; /* those of the packs and the stage */
     if (!before) return fprintf(stderr, "allocations are not counted: see measure.h\n"), 1;
@@ -192,5 +192,5 @@ int main(int argc, char **argv)
         if (frame(&c, i)) return 1;
     }
     if (json) print(&c, frames, measure_allocations - before);
-    return out && target_save(&gl.gl, &c.picture, out);
+    return out && target_save(&gl.api, &c.picture, out);
 }

@@ -7,23 +7,15 @@
 
 #include "egl_context.h"
 
-typedef struct start {
-    noh_gl_api gl;
-    noh_gl_caps caps;
-    noh_gl_ledger ledger;
-    noh_gl_device device; /* of the three above */
-    char log[4096];       /* what the driver said of shaders */
-} start;
-
-static int start_fail(const start *s, const char *what, const noh_error *e)
+static int start_fail(const noh_gl *gl, const char *what, const noh_error *e)
 {
     fprintf(stderr, "%s: %s (at %llu, need %llu)\n%s", what, e->what, (unsigned long long)e->where,
-            (unsigned long long)e->need, s->log);
+            (unsigned long long)e->need, gl->log);
     return 1;
 }
 
 /* A pack, in memory that stays; 0 on success. */
-static int start_pack(const start *s, const char *path, noh_pack *pack)
+static int start_pack(const noh_gl *gl, const char *path, noh_pack *pack)
 {
     FILE *in = fopen(path, "rb");
     long length = in && fseek(in, 0, SEEK_END) == 0 ? ftell(in) : -1;
@@ -31,18 +23,14 @@ static int start_pack(const start *s, const char *path, noh_pack *pack)
     size_t bytes = in && data && fseek(in, 0, SEEK_SET) == 0 ? fread(data, 1, (size_t)length, in) : 0;
     noh_error e;
     if (in) fclose(in);
-    return noh_pack_open(data, bytes, pack, &e) ? start_fail(s, path, &e) : 0;
+    return noh_pack_open(data, bytes, pack, &e) ? start_fail(gl, path, &e) : 0;
 }
 
-/* A context without a window; 0 on success. */
-static int start_gl(start *s)
+/* A context without a window, and GL's functions in it; 0 on success. */
+static int start_gl(noh_gl *gl)
 {
     noh_error e = { NOH_ERR_GL, "there is no context of OpenGL ES 3", 0, 0 };
-    s->device = (noh_gl_device){ &s->gl, &s->caps, &s->ledger, s->log, sizeof s->log };
-    return egl_context_open() || noh_gl_api_load(&s->gl, egl_context_get, NULL, &e) ||
-                   noh_gl_caps_probe(&s->gl, &s->caps, &e)
-               ? start_fail(s, "GL", &e)
-               : 0;
+    return egl_context_open() || noh_gl_open(gl, egl_context_get, NULL, &e) ? start_fail(gl, "GL", &e) : 0;
 }
 
 #endif

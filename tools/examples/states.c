@@ -9,7 +9,7 @@
 #include "start.h"
 #include "target.h"
 
-static start gl;
+static noh_gl gl;
 
 static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
 {
@@ -52,7 +52,7 @@ int main(int argc, char **argv)
     bows = noh_stage_find(stage, 0, NOH_NAME_MACHINE, "bows");
     if (noh_stage_spawn(stage, 0, NULL, &actor, &e) || noh_actor_play_graph(stage, actor, 0, graph, NULL, &e))
         return start_fail(&gl, "actor", &e);
-    target_make(&gl.gl, 960, 720, 0, &picture);
+    target_make(&gl.api, 960, 720, 0, &picture);
     for (int i = 0; i < 400; i++) {
         noh_stage_view view;
         now += (speed_at(i) - now) * 0.08f; /* no one starts at full speed */
@@ -64,7 +64,7 @@ int main(int argc, char **argv)
         noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 960, 720);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
-        target_clear(&gl.gl, &picture); /* after the frame, which draws into textures of its own */
+        target_clear(&gl.api, &picture); /* after the frame, which draws into textures of its own */
         if (noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e)) return start_fail(&gl, "draw", &e);
         is = noh_actor_state(stage, actor, bows);
         if (is && strcmp(is, was) != 0) printf("%5.2f s  %s\n", i / 60.0, is);
@@ -73,5 +73,5 @@ int main(int argc, char **argv)
     (void)noh_actor_place(stage, actor, &place, NULL);
     printf("%.2f m from where it began, in %llu bytes and %llu on the GPU\n", (double)place.position[2],
            (unsigned long long)plan.cpu_bytes, (unsigned long long)noh_gl_ledger_bytes(&gl.ledger));
-    return out && target_save(&gl.gl, &picture, out);
+    return out && target_save(&gl.api, &picture, out);
 }

@@ -8,7 +8,7 @@
 #include "start.h"
 #include "target.h"
 
-static start gl;
+static noh_gl gl;
 
 static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
 {
@@ -38,7 +38,7 @@ int main(int argc, char **argv)
     if (noh_stage_spawn(stage, 0, NULL, &actor, &e) || noh_actor_play(stage, actor, 0, "walk", NULL, &e))
         return start_fail(&gl, "actor", &e);
     (void)noh_actor_play(stage, actor, 1, "speak", NULL, NULL); /* where there is such a clip */
-    target_make(&gl.gl, 960, 720, 0, &picture);
+    target_make(&gl.api, 960, 720, 0, &picture);
     for (int i = 0; i < 120; i++) {
         noh_stage_view view;
         (void)noh_actor_place(stage, actor, &place, NULL);
@@ -46,11 +46,11 @@ int main(int argc, char **argv)
         noh_view_orbit(&view, place.position, 0.6f, 0.1f, 3.0f, 960, 720);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
-        target_clear(&gl.gl, &picture); /* after the frame, which draws into textures of its own */
+        target_clear(&gl.api, &picture); /* after the frame, which draws into textures of its own */
         if (noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e)) return start_fail(&gl, "draw", &e);
     }
     (void)noh_actor_place(stage, actor, &place, NULL);
     printf("%.2f m from where it began, in %llu bytes and %llu on the GPU\n", (double)place.position[2],
            (unsigned long long)plan.cpu_bytes, (unsigned long long)noh_gl_ledger_bytes(&gl.ledger));
-    return out && target_save(&gl.gl, &picture, out);
+    return out && target_save(&gl.api, &picture, out);
 }
