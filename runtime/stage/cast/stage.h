@@ -92,14 +92,14 @@ typedef struct noh_kind_desc {
                             * Default (NULL) all. Read by plans and init */
     uint32_t node_count;
     uint32_t skeleton;    /* in `mesh`; default 0; NOH_NONE: only rigid meshes. Meshes skinned to another skeleton are
-                            * ignored */
+                           * ignored */
     uint32_t actor_count; /* most actors of this kind at one time; required */
     uint32_t seen_max;    /* most actors drawn per frame; the farthest are culled (noh_stage_stats.left_out). Sizes
-                            * slots and palettes. Default (0) actor_count */
+                           * slots and palettes. Default (0) actor_count */
     uint32_t near_count;  /* most actors at the finest level at once */
     uint32_t
         middle_count; /* most at the next level. Both 0: 16, or more for actors spread evenly over 100 m; a bound may
-                            * reduce them */
+                       * reduce them */
     uint32_t finest_level; /* finest level used (noh_stage_plan.kinds[].levels); default 0 */
     int levels_by_number;  /* 1: level k of an actor is level k of each of its meshes, or their coarsest; 0: each mesh
                             * takes its coarsest level within the actor's error */
@@ -476,7 +476,7 @@ uint32_t noh_stage_find_value(const noh_stage *stage, uint32_t kind, uint32_t pa
 
 /* The name of the state that a machine, select or one-shot of the graph is in or fading to; NULL where
  * noh_actor_set_parameter would be NOT_FOUND.
- * ranges  machine an index of NOH_NAME_MACHINE */
+ * ranges  machine: an index of NOH_NAME_MACHINE */
 const char *noh_actor_state(const noh_stage *stage, noh_actor actor, uint32_t machine);
 
 struct noh_graph_pack;
