@@ -1,11 +1,11 @@
-/* assert.h: checks for the caller's bugs, in two tiers; never for file bytes.
+/* assert.h: checks for bugs of the caller, in two tiers; never for file bytes.
  *
  *   NOH_ASSERT    cheap: a null pointer, an index past a count
  *   NOH_VALIDATE  costly: walks a whole structure
  *
- * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (a debug build), 2 both (the tests). A failed check
- * calls NOH_ASSERT_FAILED(condition, file, line), which a build may define; the default traps, because the library
- * links nothing that could print.
+ * NOH_ASSERT_LEVEL 0 (default) compiles neither, 1 the cheap ones (debug builds), 2 both (tests). A failed check calls
+ * NOH_ASSERT_FAILED(condition, file, line), which a build may define; by default it traps, because the library links
+ * nothing that prints.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_ASSERT_H
 #define NOH_BASE_ASSERT_H

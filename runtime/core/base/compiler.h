@@ -1,15 +1,15 @@
-/* compiler.h: everything that depends on the compiler, each with a fallback in plain C.
+/* compiler.h: all compiler-dependent definitions, each with a fallback in plain C.
  *
  *   NOH_PLAIN_C          define it to build without builtins, attributes, pragmas and SIMD, with any C99 compiler
  *   NOH_ALWAYS_INLINE    for a function that must be inlined to be fast
- *   NOH_NEVER_INLINE     before a function that is called from so many places that inlining it would cost kilobytes
+ *   NOH_NEVER_INLINE     for a function with many callers, where inlining would cost kilobytes
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
- *   NOH_UNUSED           of a function that a file need not call
+ * NOH_UNUSED           for a function that a file may leave unused
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
- *   noh_leading_zeros, noh_trailing_zeros   of a word that is not 0
+ *   noh_leading_zeros, noh_trailing_zeros   of a nonzero word
  *
- * The fallbacks are always compiled, as noh_..._plain, so that a test can hold them equal to what replaces them.
+ * The fallbacks are always compiled, as noh_..._plain, so that tests can compare them with the builtins.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_COMPILER_H
 #define NOH_BASE_COMPILER_H
@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 #if defined(__GNUC__) && !defined(NOH_PLAIN_C)
-#define NOH_GNU 1 /* gcc, clang and those that follow them */
+#define NOH_GNU 1 /* gcc, clang and compatible compilers */
 #endif
 
 #if !defined(NOH_PLAIN_C)
@@ -30,7 +30,7 @@ extern "C" {
 #endif
 #if defined(__SSE2__)
 #define NOH_SSE2 1
-#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals: other bits */
+#elif defined(__ARM_NEON) && defined(__aarch64__) /* 32-bit NEON flushes subnormals, which changes bits */
 #define NOH_NEON 1
 #endif
 #endif
@@ -47,7 +47,7 @@ extern "C" {
 #define NOH_UNUSED
 #endif
 
-/* gcc's -O2 leaves short loops over arrays of lanes as they are, in memory; unrolled they stay in registers. */
+/* At -O2 gcc keeps short loops over arrays of lanes in memory; unrolled they stay in registers. */
 #if defined(NOH_GNU) && !defined(__clang__)
 #define NOH_UNROLL _Pragma("GCC unroll 8")
 #else
@@ -74,7 +74,7 @@ static inline uint32_t noh_trailing_zeros_plain(uint64_t word)
     return zeros;
 }
 
-/* How many zero bits lie above the highest set bit.
+/* Count the zero bits above the highest set bit.
  * ranges  word is not 0 */
 static inline uint32_t noh_leading_zeros(uint32_t word)
 {
@@ -85,7 +85,7 @@ static inline uint32_t noh_leading_zeros(uint32_t word)
 #endif
 }
 
-/* How many zero bits lie below the lowest set bit.
+/* Count the zero bits below the lowest set bit.
  * ranges  word is not 0 */
 static inline uint32_t noh_trailing_zeros(uint64_t word)
 {

@@ -1,26 +1,25 @@
-/* limits.h: the numbers that bound everything. A pack over a limit is refused when it is built, with the limit in the
- * message, and again when it is opened; a desc over a limit is NOH_ERR_ARG or NOH_ERR_LIMIT, with the number asked for.
+/* limits.h: all limits. Building a pack over a limit fails with the limit in the message; opening one fails too. A desc
+ * over a limit is NOH_ERR_ARG or NOH_ERR_LIMIT, with the number requested.
  *
- * Limits that follow from the width of a field stand where the field is described: those of a compressed clip
- * (NOH_CLIP_*_MAX) in clip_format.h, those of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in
- * time.h.
+ * Limits set by the width of a field are with the field: limits of a compressed clip (NOH_CLIP_*_MAX) in clip_format.h,
+ * limits of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in time.h.
  * Threads: constants. */
 #ifndef NOH_BASE_LIMITS_H
 #define NOH_BASE_LIMITS_H
 
-#define NOH_NONE 0xffffffffu /* an index that is none: above every count */
+#define NOH_NONE 0xffffffffu /* no index; above every count */
 
-/* No call of the library uses more stack than this: tests/check_stack.sh adds up what the compiler reports. */
+/* Most stack that any call of the library uses, by the compiler's reports. */
 #define NOH_STACK_BYTES 8192u
 
 /* ---- a pack ---- */
 
-/* Chunks start at multiples of this in the file. In memory a pack is aligned as any block is (NOH_MEMORY_ALIGN). */
+/* Chunks start at multiples of this in the file. In memory a pack is aligned to NOH_MEMORY_ALIGN. */
 #define NOH_PACK_ALIGN 64u
 #define NOH_PACK_CHUNKS_MAX 4096u
 #define NOH_PACK_BYTES_MAX 0x7fffffffu
-/* The largest number of a mesh, skeleton, skin, node, material or place, either sign: sums and products of a frame then
- * stay finite. Scales of joints and nodes, and where they lead, are held to it along the whole chain. */
+/* The largest absolute value of a number in a mesh, skeleton, skin, node, material or place, so that sums and products
+ * stay finite. It also bounds scales and positions accumulated along chains of joints and nodes. */
 #define NOH_NUMBER_MAX 1e12f
 #define NOH_NAME_BYTES_MAX 256u /* with the final zero */
 #define NOH_NODES_MAX 65535u
@@ -29,13 +28,13 @@
 
 /* ---- a mesh ---- */
 
-#define NOH_VERTICES_MAX (1u << 22) /* a texture of 2048 x 2048, which every ES 3.0 has */
+#define NOH_VERTICES_MAX (1u << 22) /* a 2048 x 2048 texture, which ES 3.0 guarantees */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
-#define NOH_PIXELS_MAX 1e6f             /* of an error that may show */
-#define NOH_LOD_LEVELS_MAX 8u           /* of a mesh, of a skeleton, and rows of a table of LOD levels */
-#define NOH_TARGETS_MAX 1024u           /* the gather list keeps 10 bits for a target */
-#define NOH_DELTA_TEXELS_MAX (1u << 22) /* delta texels; the gather list keeps 22 bits */
+#define NOH_PIXELS_MAX 1e6f             /* of an allowed error on screen */
+#define NOH_LOD_LEVELS_MAX 8u           /* of a mesh or skeleton, and rows of an LOD table */
+#define NOH_TARGETS_MAX 1024u           /* the gather list has 10 bits for a target */
+#define NOH_DELTA_TEXELS_MAX (1u << 22) /* the gather list has 22 bits for a delta texel */
 #define NOH_MORPH_WIDTH_LOG2_MIN 2u     /* of the texture of accumulation texels */
 #define NOH_MORPH_WIDTH_LOG2_MAX 11u    /* ES 3.0 guarantees textures of 2048 */
 #define NOH_MORPH_HEIGHT_MAX 2048u
@@ -45,17 +44,17 @@
 
 #define NOH_JOINTS_MAX 4096u      /* of a skeleton */
 #define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
-/* a uniform block of 12 KiB; ES 3.0 guarantees 16. A vertex has 8 bits for an index into its palette */
+/* a uniform block of 12 KiB; ES 3.0 guarantees 16 KiB. A vertex has 8 bits for an index into its palette */
 #define NOH_PALETTE_JOINTS_MAX 256u
-#define NOH_INFLUENCES_MAX 8u /* joints that move one vertex, as the GPU and the SIMD kernels have it */
-#define NOH_SKIN_LIST_MAX 32u /* joints that move one vertex of a list (skin_list.h), on the CPU */
+#define NOH_INFLUENCES_MAX 8u /* joints per vertex on the GPU and in the SIMD kernels */
+#define NOH_SKIN_LIST_MAX 32u /* joints per vertex of a list (skin_list.h), on the CPU */
 
 /* ---- clips, their sets and banks ---- */
 
 #define NOH_CLIP_EVENTS_MAX 65536u /* callback keys of one clip in a pack */
 #define NOH_CLIP_MARKERS_MAX 4096u /* sync markers of one clip in a pack */
 #define NOH_CLIPS_MAX 65535u       /* clips of one set */
-#define NOH_FLOATS_MAX 4096u       /* of one set: morph weights of all nodes, and named floats */
+#define NOH_FLOATS_MAX 4096u       /* of one set: morph weights of all nodes and named floats */
 #define NOH_MASKS_MAX 255u         /* of one set */
 #define NOH_CLIP_CACHE_CLIPS_MAX 4096u
 #define NOH_CLIP_CACHE_SEGMENTS_MIN 2u /* cached segments; a sample between two segments needs both */
@@ -64,35 +63,35 @@
 /* ---- faces ---- */
 
 #define NOH_SPEECH_PHONES_MAX 65536u
-#define NOH_FACE_ROWS_MAX 1024u       /* of a recipe in a pack */
+#define NOH_FACE_ROWS_MAX 1024u       /* of a pack's recipe */
 #define NOH_CORRECTIVE_DRIVERS_MAX 8u /* targets that drive one corrective */
-#define NOH_FACE_EMOTIONS_MAX 3u      /* emotions that a face shows at once; one more takes the place of the weakest */
+#define NOH_FACE_EMOTIONS_MAX 3u      /* emotions at once on a face; another replaces the weakest */
 
 /* ---- bodies ---- */
 
 #define NOH_TERRAIN_SIZE_MAX 4097u /* heights along a side of a pack's terrain */
-#define NOH_OBSTACLES_MAX 16u      /* of a kind in a world */
-#define NOH_FEET_LEGS_MAX 2u       /* that are put on the ground */
-#define NOH_GAZE_JOINTS_MAX 8u     /* of spine, neck and head that turn together */
-#define NOH_REACH_ARMS_MAX 2u      /* whose hands reach for something */
-#define NOH_RAGDOLL_BODIES_MAX 16u /* of one doll */
-#define NOH_RAGDOLL_PAIRS_MAX 24u  /* of bodies of a doll that collide */
+#define NOH_OBSTACLES_MAX 16u      /* of each kind in a world */
+#define NOH_FEET_LEGS_MAX 2u       /* placed on the ground */
+#define NOH_GAZE_JOINTS_MAX 8u     /* joints of spine, neck and head that turn together */
+#define NOH_REACH_ARMS_MAX 2u      /* arms that reach */
+#define NOH_RAGDOLL_BODIES_MAX 16u /* of one ragdoll */
+#define NOH_RAGDOLL_PAIRS_MAX 24u  /* pairs of colliding bodies of a ragdoll */
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
-#define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s in one call; what is left of a longer time is dropped, and counted */
+#define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s per call; the rest of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */
-#define NOH_RISE_CLIPS_MAX 16u       /* of which one is chosen to get up by; those after are not tried */
+#define NOH_RISE_CLIPS_MAX 16u       /* clips to choose from for getting up; later ones are ignored */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
-#define NOH_SPRING_COLLIDERS_MAX 32u /* that it stays out of */
-#define NOH_SPRING_STEPS_MAX 60u     /* of 1/60 s in one call: of a longer time the last second is run */
+#define NOH_SPRING_COLLIDERS_MAX 32u /* of one spring */
+#define NOH_SPRING_STEPS_MAX 60u     /* of 1/60 s per call; of a longer time only the last second is simulated */
 #define NOH_HAIRS_MAX 256u           /* control hairs of one head */
 #define NOH_HAIR_POINTS_MAX 32u      /* of a control hair */
-#define NOH_HAIR_SPHERES_MAX 8u      /* that stand for the head */
-#define NOH_HAIR_PATCHES_MAX 256u    /* of four control hairs, of one haircut */
+#define NOH_HAIR_SPHERES_MAX 8u      /* collision spheres of a head */
+#define NOH_HAIR_PATCHES_MAX 256u    /* patches of four control hairs, of one haircut */
 #define NOH_HAIR_STRIPS_MAX 16384u   /* of one haircut */
 #define NOH_HAIR_SEGMENTS_MAX 64u    /* of a strip */
-#define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind whose hair moves at once (wigs.h) */
-#define NOH_HAIR_STEPS_MAX 60u       /* of 1/60 s in one call; what is left of a longer time is dropped */
+#define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind with moving hair at once (wigs.h) */
+#define NOH_HAIR_STEPS_MAX 60u       /* of 1/60 s per call; the rest of a longer time is dropped */
 
 /* ---- crowds ---- */
 
@@ -101,7 +100,7 @@
 #define NOH_CROWD_JOBS_MAX 64u
 #define NOH_CROWD_FIELDS_MAX 255u            /* flow fields of one crowd */
 #define NOH_CROWD_FIELD_CELLS_MAX (1u << 20) /* of one flow field */
-#define NOH_CROWD_STEPS_MAX 4u               /* of 1/30 s in one call; what is left of a longer time is dropped */
+#define NOH_CROWD_STEPS_MAX 4u               /* of 1/30 s per call; the rest of a longer time is dropped */
 #define NOH_SMART_NEEDS_MAX 8u
 #define NOH_SMART_OBJECTS_MAX 1024u
 #define NOH_SMART_SLOTS_MAX 8192u
@@ -111,21 +110,21 @@
 #define NOH_TRACKS_MAX 64u
 #define NOH_CHANGES_MAX 1024u /* waiting or running at one time */
 #define NOH_WEIGHT_MAX 1e6f   /* of a track */
-/* Callback keys that one step looks at. A track can pass billions (a seek a day away in a clip of 10 ms); a step that
- * reaches this many delivers no more, and only moves time on. */
+/* Most callback keys that one step examines. A track can pass billions (a seek a day ahead in a clip of 10 ms); a step
+ * that reaches this limit delivers no more and only advances time. */
 #define NOH_STEP_EVENTS_MAX (1u << 20)
 #define NOH_SYNC_GROUPS_MAX 15u
-#define NOH_SYNC_DURATION_MIN 480u       /* ticks, of a clip in a sync group: 10 ms */
+#define NOH_SYNC_DURATION_MIN 480u       /* ticks of a clip in a sync group: 10 ms */
 #define NOH_SYNC_DURATION_MAX (1u << 28) /* ticks: 93 minutes */
 #define NOH_GRAPH_NODES_MAX 256u
 #define NOH_GRAPH_CHILDREN_MAX 32u /* of one node */
 #define NOH_GRAPH_PARAMS_MAX 256u
 #define NOH_GRAPH_BUFFERS_MAX 32u       /* pose buffers */
 #define NOH_GRAPH_TRANSITIONS_MAX 1024u /* of one graph in a pack */
-#define NOH_GRAPH_NAMES_MAX 4096u       /* values of parameters, and joints of masks, of one graph in a pack */
+#define NOH_GRAPH_NAMES_MAX 4096u       /* values of parameters and joints of masks, of one graph in a pack */
 #define NOH_BLEND_SPACE_POINTS_MAX 32u  /* of a blend space */
 #define NOH_BLEND_SPACE_TRIANGLES_MAX (2u * NOH_BLEND_SPACE_POINTS_MAX)
-#define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f /* of points and thresholds: squares of differences stay finite */
+#define NOH_BLEND_SPACE_COORDINATE_MAX 1e18f /* of points and thresholds, so that squares of differences stay finite */
 
 /* ---- characters ---- */
 
@@ -142,16 +141,16 @@
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
-#define NOH_ATTACH_DEPTH_MAX 8u             /* attachments between an actor and the one that stands by itself */
+#define NOH_ATTACH_DEPTH_MAX 8u             /* length of a chain of attachments */
 #define NOH_LAYERS_MAX 16u                  /* of a kind */
 #define NOH_STAGE_PARTS_MAX 16u             /* of a kind */
-#define NOH_STAGE_PART_BYTES_MAX (1u << 20) /* state of one actor, scratch of one job */
+#define NOH_STAGE_PART_BYTES_MAX (1u << 20) /* state of one actor, or scratch of one job */
 #define NOH_STAGE_GRAPHS_MAX 16u            /* of a kind */
 #define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u             /* of a plan */
-#define NOH_BLOBS_MAX 24u                   /* of an actor: parts that darken the ground */
+#define NOH_BLOBS_MAX 24u                   /* blob shadows of an actor */
 #define NOH_DECALS_MAX 64u                  /* of a ring */
-#define NOH_DECAL_TRIANGLES 96u             /* of a mark that is grown, in the mean, where a game asks for no room */
+#define NOH_DECAL_TRIANGLES 96u             /* default room for each grown mark, as a mean */
 
 /* ---- light ---- */
 
@@ -163,14 +162,14 @@
 
 /* ---- GL ---- */
 
-/* of a renderer: a kind of mesh needs 2 to 8 for each kind of material on it; with fades or depth twice that */
+/* of a renderer: a type of mesh needs 2 to 8 for each type of material on it; twice as many with fades or depth */
 #define NOH_GL_VARIANTS_MAX 192u
-#define NOH_MORPH_STREAMS_MAX 4u    /* targets that the path streams adds to a draw */
-#define NOH_GL_FETCHES_MAX 8u       /* texture fetches of a pixel, whatever its material has */
-#define NOH_MATERIAL_MAPS_MAX 5u    /* of them, maps beside the base colour, the environment and the shadow */
-#define NOH_GL_OWN_INPUTS_MAX 8u    /* attributes of a game's own that its shaders read */
-#define NOH_GL_OWN_SAMPLERS_MAX 13u /* of a game's shaders: ES 3.0 promises 16, of which such a shader has 3 */
-#define NOH_GL_LABEL_BYTES 96u      /* of an object's name; longer ones are cut. GL takes at least 256 */
-#define NOH_GL_PIECES_MAX 56u       /* of a shader's text; PIECES_MAX in tools/embed is the same number */
+#define NOH_MORPH_STREAMS_MAX 4u    /* targets per draw on the path streams */
+#define NOH_GL_FETCHES_MAX 8u       /* texture fetches per pixel, for any material */
+#define NOH_MATERIAL_MAPS_MAX 5u    /* of these, maps besides the base colour, the environment and the shadow */
+#define NOH_GL_OWN_INPUTS_MAX 8u    /* a game's own attributes for its shaders */
+#define NOH_GL_OWN_SAMPLERS_MAX 13u /* of a game's own shaders: ES 3.0 guarantees 16, and the library uses 3 */
+#define NOH_GL_LABEL_BYTES 96u      /* of an object's name; longer ones are cut. GL accepts at least 256 */
+#define NOH_GL_PIECES_MAX 56u       /* of a shader's text; equal to PIECES_MAX in tools/embed */
 
 #endif

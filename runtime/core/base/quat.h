@@ -1,9 +1,9 @@
-/* quat.h: quaternions x, y, z, w; unit unless said otherwise.
+/* quat.h: quaternions x, y, z, w; of unit length unless noted.
  *
  *   noh_quat_mul          first b, then a
  *   noh_quat_conjugate    the inverse of a unit quaternion
  *   noh_quat_dot
- *   noh_quat_normalize    to length 1; the identity where there is no length
+ *   noh_quat_normalize    to length 1; the identity for length 0
  *   noh_quat_rotate       a vector
  *   noh_quat_nlerp        between two rotations, along the shorter arc
  *   noh_quat_to_rotation  to axis times angle, 0 to pi
@@ -23,22 +23,22 @@ void noh_quat_mul(const float a[4], const float b[4], float out[4]);
 void noh_quat_conjugate(const float q[4], float out[4]);
 void noh_quat_normalize(float q[4]);
 
-/* out may be v. q need not be exactly unit: the error is of second order. */
+/* Rotate a vector. out may be v. q need not be exactly unit: the error is of second order. */
 void noh_quat_rotate(const float q[4], const float v[3], float out[3]);
 
-/* Interpolate linearly and normalise: the arc of slerp at a speed that varies slightly. b is negated where dot(a, b) is
- * negative, since q and -q are one rotation and the other arc is the longer one.
+/* Interpolate linearly and normalise: the arc of slerp at a speed that varies slightly. b is negated if dot(a, b) is
+ * negative, to take the shorter arc: q and -q are the same rotation.
  * ranges  t 0..1; out may be a or b
- * source  Granberg, Character Animation with Direct3D, 2009, chapter 4 (which leaves the sign out) */
+ * source  Granberg, Character Animation with Direct3D, 2009, chapter 4 (which omits the sign) */
 void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4]);
 
-/* The rotation as a vector: unit axis times angle, the angle 0 to pi. */
+/* Convert to and from a rotation vector: unit axis times angle, 0 to pi. */
 void noh_quat_to_rotation(const float q[4], float rotation[3]);
 void noh_quat_from_rotation(const float rotation[3], float q[4]);
 
-/* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity where q turns by pi about an axis orthogonal
- * to it (the twist is then undefined).
- * source  swing-twist decomposition: the projection of the vector part on the axis */
+/* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity if q turns by pi about an axis orthogonal to
+ * it (the twist is then undefined).
+ * source  swing-twist decomposition: projection of the vector part on the axis */
 void noh_quat_twist(const float q[4], unsigned axis, float out[4]);
 
 static inline float noh_quat_dot(const float a[4], const float b[4])

@@ -1,7 +1,7 @@
 /* result.h: how the library reports errors.
  *
- * Bad data, too little memory, a missing capability and a driver's refusal are reported as a noh_result; outputs are
- * then untouched. A caller's bug (a null pointer where none is allowed, an index past a count) is an assert: assert.h.
+ * Bad data, too little memory, missing capabilities and driver errors are reported as a noh_result; outputs are then
+ * untouched. A caller's bug (a NULL that is not allowed, an index past a count) is an assert: assert.h.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_RESULT_H
 #define NOH_BASE_RESULT_H
@@ -20,20 +20,20 @@ extern "C" {
 
 typedef enum noh_result {
     NOH_OK = 0,
-    NOH_ERR_ARG,         /* an argument or a field of a desc is out of its range: `what` names it */
+    NOH_ERR_ARG,         /* an argument or a field of a desc is out of range: `what` names it */
     NOH_ERR_MEMORY,      /* memory is too small: `need` is the bytes needed */
-    NOH_ERR_DATA,        /* a pack, clip or table is broken: `where` is the byte offset, or the index of the part */
-    NOH_ERR_VERSION,     /* the pack is of another format version: `need` is ours */
-    NOH_ERR_LIMIT,       /* more than the format or this GPU can hold: `need` is what was asked for */
-    NOH_ERR_NOT_FOUND,   /* no object of that name or index: `where` is the index, `need` how many there are */
-    NOH_ERR_UNSUPPORTED, /* the GPU or driver cannot do it: `what` says what is missing */
-    NOH_ERR_GL           /* the driver refused: `where` is the GL error */
+    NOH_ERR_DATA,        /* a pack, clip or table is damaged: `where` is the byte offset, or the index at fault */
+    NOH_ERR_VERSION,     /* the pack has another format version: `need` is the version of this library */
+    NOH_ERR_LIMIT,       /* more than the format or this GPU can hold: `need` is the number requested */
+    NOH_ERR_NOT_FOUND,   /* no object has this name or index: `where` is the index, `need` the count */
+    NOH_ERR_UNSUPPORTED, /* the GPU or driver lacks a capability: `what` names it */
+    NOH_ERR_GL           /* the driver refused a call: `where` is the GL error */
 } noh_result;
 
-/* What went wrong, without formatting: the library has no stdio. Only a failing call writes it.
- *   what   a sentence: a string constant, or text in the caller's memory (a shader's log); never NULL after a failure
- *   where  the byte or index at fault, else 0
- *   need   the size or count that was wanted, else 0 */
+/* An error, without formatting: the library has no stdio. Only a failing call writes it.
+ * what   a sentence: a string constant, or text in the caller's memory (a shader's log); never NULL after a failure
+ * where  the byte or index at fault, or 0
+ * need   the size or count required, or 0 */
 typedef struct noh_error {
     noh_result result;
     const char *what;
@@ -41,7 +41,7 @@ typedef struct noh_error {
     uint64_t need;
 } noh_error;
 
-/* The result's name in words: "too little memory". Never NULL. */
+/* The result in words: "too little memory". Never NULL. */
 const char *noh_result_text(noh_result result);
 
 /* Fill `error` (which may be NULL) and return its result. */

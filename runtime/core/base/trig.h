@@ -1,18 +1,18 @@
-/* trig.h: the trigonometry of the sampling and simulation paths, without libm.
+/* trig.h: trigonometry for sampling and simulation, without libm.
  *
  *   noh_sin_cos        sine and cosine of an angle in radians
- *   noh_sin_cos_turn   the same of a 32-bit fraction of a turn
+ *   noh_sin_cos_turn   sine and cosine of a 32-bit fraction of a turn
  *   noh_atan2          the angle of a direction
  *   noh_acos           the angle of a cosine, clamped
  *   noh_exp2           a power of two
  *   noh_log2           the logarithm to base two
  *   noh_turn_from_radians, noh_radians_from_turn
  *
- * Polynomials of our own (Chebyshev fits of the reduced functions), made of sums, products, quotients and square roots
- * only: the same bits on every machine. Errors are those of the float result against the exact function of the float
- * argument, measured over the stated range by the tests.
+ * Chebyshev fits of the reduced functions, from sums, products, quotients and square roots only: the same bits on every
+ * machine. Errors compare the float result with the exact function of the float argument, measured by the tests over
+ * the stated range.
  *
- * A turn is an angle as a uint32_t, 2^32 to the full circle: it wraps by itself and adds without rounding, so that a
+ * A turn is an angle as a uint32_t, 2^32 for the full circle. It wraps by itself and adds without rounding, so a
  * heading never drifts.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_TRIG_H
@@ -26,11 +26,12 @@ extern "C" {
 
 #define NOH_PI 3.14159265358979f
 
-/* ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
+/* Sine and cosine of an angle.
+ * ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
  * errors  at most 1.2e-7 absolute */
 void noh_sin_cos(float radians, float *sine, float *cosine);
 
-/* ranges  any
+/* Sine and cosine of a turn.
  * errors  at most 1.2e-7 absolute; exact at quarter turns; the sine near 0 at most 3e-7 relative */
 void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine);
 
@@ -40,7 +41,7 @@ void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine);
 float noh_atan2(float y, float x);
 
 /* The angle whose cosine is x, 0 to pi.
- * ranges  x is clamped to -1..1, because a dot product of unit vectors strays
+ * ranges  x is clamped to -1..1, because rounding can move a dot product of unit vectors outside
  * errors  at most 4e-7 */
 float noh_acos(float x);
 
@@ -54,10 +55,11 @@ float noh_exp2(float x);
  * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
 float noh_log2(float x);
 
-/* ranges  |radians| <= 1e6 */
+/* Radians to a turn.
+ * ranges  |radians| <= 1e6 */
 uint32_t noh_turn_from_radians(float radians);
 
-/* -pi to pi. */
+/* A turn to radians, -pi to pi. */
 float noh_radians_from_turn(uint32_t turn);
 
 #ifdef __cplusplus
