@@ -4,7 +4,7 @@
  *
  *   noh_arena_open      the block of an init, checked
  *   noh_arena_check     checks an address for a block
- * noh_arena_over      a block known to be valid
+ *   noh_arena_over      a block known to be valid
  *   noh_arena_measure   no block: count only
  *   noh_arena_carve     the next bytes
  *

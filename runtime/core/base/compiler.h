@@ -5,7 +5,7 @@
  *   NOH_NEVER_INLINE     for a function with many callers, where inlining would cost kilobytes
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
- * NOH_UNUSED           for a function that a file may leave unused
+ *   NOH_UNUSED           for a function that a file may leave unused
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a nonzero word
  *

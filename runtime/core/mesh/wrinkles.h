@@ -2,7 +2,7 @@
  *
  *   noh_wrinkles_of       the matrix of a mesh
  *   noh_wrinkles_weights  region weights from morph weights
- * noh_wrinkles_area     a triangle's weight from its change of area
+ *   noh_wrinkles_area     a triangle's weight from its change of area
  *   noh_wrinkles_normal   a normal with wrinkles, blended as in shaders_es/common_wrinkle.glsl
  *
  * source   "character wrinkle" (region weights from expressions, for which it gives no formula)
