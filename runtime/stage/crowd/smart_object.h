@@ -1,34 +1,32 @@
-/* smart_object.h: things that agents use: a bench to sit on, a stall to eat at, a drum to listen to.
+/* smart_object.h: objects that agents use: a bench to sit on, a stall to eat at, a drum to listen to.
  *
- *   noh_smart_size, noh_smart_init      objects and the agents who may use them, in one block
- *   noh_smart_enter, noh_smart_leave    an agent comes, goes (or dies)
- *   noh_smart_ask                       it wants a slot for a need, the best one that is free
- *   noh_smart_arrive                    it stands at its slot
- *   noh_smart_release                   it has changed its mind
- *   noh_smart_step                      time moves on: needs grow, uses end, slots are passed on
- *   noh_smart_use_of, noh_smart_most    what an agent is about; what it needs most
+ *   noh_smart_size, noh_smart_init      objects and their agents, in one block
+ *   noh_smart_enter, noh_smart_leave    add and remove an agent
+ *   noh_smart_ask                       request the best free slot for a need
+ *   noh_smart_arrive                    the agent has reached its slot
+ *   noh_smart_release                   cancel a request or a use
+ *   noh_smart_step                      advance time: needs grow, uses end, free slots are assigned
+ *   noh_smart_use_of, noh_smart_most    the phase of an agent; its largest need
  *
- * The object holds the knowledge: where its slots are, which way one faces there, by which clips one enters, uses and
- * leaves it, and which need it satisfies at what rate. Agents hold needs, 0 to 1, which grow.
+ * An object stores where its slots are, the direction to face there, the clips to enter, use and leave a slot, and
+ * which need it satisfies at what rate. Agents have needs, 0 to 1, which grow.
  *
  * An agent is in one of these phases:
- *   FREE      it wants nothing
- *   WAITING   no slot for its need is free: it is in the queue of that need
- *   GOING     a slot is reserved for it; noh_smart_arrive ends it
+ *   FREE      no request
+ *   WAITING   in the queue for its need, because no slot is free
+ *   GOING     a slot is reserved; ends with noh_smart_arrive
  *   ENTERING  for enter_ticks of the slot
  *   USING     until the need is gone, or use_ticks have passed
  *   LEAVING   for leave_ticks; then it is FREE
- * A slot is one agent's from GOING to the end of LEAVING, and no other's. Who does not arrive within the object's
- * going_ticks loses it, and is FREE. Who leaves the crowd, or dies, gives it back at once.
+ * An agent holds its slot alone from GOING to the end of LEAVING. If it does not arrive within the object's
+ * going_ticks, it loses the slot and is FREE. noh_smart_leave frees its slot at once.
  *
- * Nobody starves: a slot that becomes free goes to whoever waits longest for its need, before any that ask later. So
- * with n agents, s slots of a need and no slot held longer than h ticks (noh_smart_hold_ticks), none waits longer than
- * ceil(n / s) h.
+ * No agent starves: a free slot goes to the agent that has waited longest for its need. With n agents, s slots for a
+ * need and no slot held longer than h ticks (noh_smart_hold_ticks), no agent waits longer than ceil(n / s) h.
  *
- * What follows does not depend on addresses, and the order of equal ones is that of their indices: the same bits
- * everywhere. A block without pointers: a copy goes on as it would.
- * source  Granberg, Character Animation with Direct3D, 2009, chapter 13, which names smart objects and leaves their
- *         reservation open
+ * Results do not depend on addresses, and ties are broken by index: the same bits everywhere. The block has no
+ * pointers, so a copy continues identically.
+ * source  Granberg, Character Animation with Direct3D, 2009, chapter 13 (smart objects, without reservation)
  * Threads: smart objects belong to one thread at a time. */
 #ifndef NOH_CROWD_SMART_OBJECT_H
 #define NOH_CROWD_SMART_OBJECT_H
@@ -43,19 +41,19 @@
 extern "C" {
 #endif
 
-/* A place for one agent. Clips are numbers of the game's: hashes of names, indices; 0 for none. */
+/* A place for one agent. Clips are numbers chosen by the game, such as name hashes or indices; 0: none. */
 typedef struct noh_smart_slot {
     float at[2];   /* x, z in the world */
-    float face[2]; /* the way one faces there: unit x, z */
+    float face[2]; /* direction to face: unit x, z */
     uint32_t enter_clip, use_clip, leave_clip;
     uint32_t enter_ticks, leave_ticks;
-    uint32_t use_ticks; /* at most; above 0 */
+    uint32_t use_ticks; /* longest use; above 0 */
 } noh_smart_slot;
 
 typedef struct noh_smart_object {
-    uint32_t need;                   /* that it satisfies, 0..need_count - 1 */
-    float rate;                      /* by so much a second, above 0 */
-    uint32_t going_ticks;            /* within which one has to arrive; above 0 */
+    uint32_t need;                   /* the need it satisfies, 0..need_count - 1 */
+    float rate;                      /* satisfaction per second, above 0 */
+    uint32_t going_ticks;            /* time to arrive; above 0 */
     uint32_t first_slot, slot_count; /* in the desc's slots */
 } noh_smart_object;
 
@@ -64,9 +62,9 @@ typedef struct noh_smart_desc {
     uint32_t need_count;               /* 1..NOH_SMART_NEEDS_MAX */
     uint32_t object_count;             /* 1..NOH_SMART_OBJECTS_MAX */
     uint32_t slot_count;               /* 1..NOH_SMART_SLOTS_MAX */
-    const noh_smart_object *objects;   /* [object_count]; copied by init, as are slots */
+    const noh_smart_object *objects;   /* [object_count]; copied by init, like slots */
     const noh_smart_slot *slots;       /* [slot_count] */
-    float growth[NOH_SMART_NEEDS_MAX]; /* of each need in a second, 0.. */
+    float growth[NOH_SMART_NEEDS_MAX]; /* of each need per second, 0.. */
 } noh_smart_desc;
 
 typedef enum noh_smart_phase {
@@ -79,61 +77,62 @@ typedef enum noh_smart_phase {
     NOH_SMART_LEAVING
 } noh_smart_phase;
 
-/* What an agent is about. */
+/* The phase of an agent and its slot. */
 typedef struct noh_smart_use {
     noh_smart_phase phase;
     uint32_t need;         /* from WAITING on */
-    uint32_t object, slot; /* from GOING on; else NOH_NONE. slot: in the desc's slots */
+    uint32_t object, slot; /* from GOING on; otherwise NOH_NONE. slot: index in the desc's slots */
     uint32_t ticks;        /* in this phase so far */
 } noh_smart_use;
 
 typedef struct noh_smart noh_smart;
 
-/* The exact bytes: 160, 20 an object, 44 a slot, and for each agent 36 and 4 a need; rounded up to 16. 0 for an
- * impossible desc. */
+/* The exact bytes: 160, plus 20 per object, 44 per slot, and per agent 36 and 4 per need; rounded up to 16. 0 for an
+ * invalid desc. */
 size_t noh_smart_size(const noh_smart_desc *desc);
 
-/* Nobody is there.
- * errors  ARG memory is NULL or misaligned, a number is out of its range (where: the object or slot), or a slot is no
- *         object's or two objects'; LIMIT; MEMORY it is too small */
+/* Build smart objects without agents.
+ * errors  ARG memory is NULL or misaligned, a number is out of range (where: the object or slot), or a slot belongs to
+ *         no object or to two; LIMIT; MEMORY memory is too small */
 noh_result noh_smart_init(void *memory, size_t bytes, const noh_smart_desc *desc, noh_smart **smart, noh_error *error);
 
-/* An agent comes, FREE, in place of the one that was there.
- * needs  [need_count] 0..1: what is outside is clamped; NULL: all 0 */
+/* Add an agent, FREE, replacing the agent at this index.
+ * needs   [need_count] clamped to 0..1; NULL: all 0 */
 void noh_smart_enter(noh_smart *smart, uint32_t agent, const float *needs);
-/* It is gone, wherever it was: its slot is free. */
+/* Remove an agent in any phase and free its slot. */
 void noh_smart_leave(noh_smart *smart, uint32_t agent);
 
-/* An agent that is FREE wants a slot for a need. Of the objects with a free slot the one with the largest rate / (1 +
- * distance in metres) is taken, of its slots the nearest; but where others wait for that need it waits behind them.
- * at       [2] x, z, where it is
- * returns  1: it is GOING or WAITING now; 0: it was not FREE, or no object satisfies the need: nothing has changed */
+/* Request a slot for a need of a FREE agent. The object with a free slot and the largest rate / (1 + distance in
+ * metres) is chosen, and its nearest free slot; but if other agents already wait for this need, the agent queues behind
+ * them.
+ * at       [2] the agent's position, x, z
+ * returns  1: it is now GOING or WAITING; 0: it was not FREE, or no object satisfies the need; nothing has changed */
 int noh_smart_ask(noh_smart *smart, uint32_t agent, uint32_t need, const float at[2]);
-/* returns  1: it was GOING, and ENTERs; 0: nothing has changed */
+/* Report that an agent has reached its slot.
+ * returns  1: it was GOING and is now ENTERING; 0: nothing has changed */
 int noh_smart_arrive(noh_smart *smart, uint32_t agent);
-/* An agent no longer wants what it waits or goes for: it is FREE. Who has arrived LEAVES.
- * returns  1: it has changed its phase */
+/* Cancel the request of an agent, which is then FREE; an agent that has arrived is then LEAVING.
+ * returns  1: its phase has changed */
 int noh_smart_release(noh_smart *smart, uint32_t agent);
 
-/* Time passes: needs grow and are satisfied, phases end, free slots are passed on to those who wait. Ends within the
- * step count as its end. */
+/* Advance time: needs grow or are satisfied, phases end, and free slots go to waiting agents. Phases that end during
+ * the step count as ending at its end. */
 void noh_smart_step(noh_smart *smart, uint32_t ticks);
 
 void noh_smart_use_of(const noh_smart *smart, uint32_t agent, noh_smart_use *use);
-/* [need_count] NULL: there is no such agent. */
+/* An agent's needs [need_count]; NULL: there is no such agent. */
 const float *noh_smart_needs(const noh_smart *smart, uint32_t agent);
-/* The largest of the needs that an object satisfies, the first of equal ones. returns NOH_NONE: none is above `least`
- */
+/* The agent's largest need that some object satisfies, the first of equal ones; NOH_NONE: none is above `least`. */
 uint32_t noh_smart_most(const noh_smart *smart, uint32_t agent, float least);
 
-/* As the desc had it. */
+/* A slot and an object, as in the desc. */
 const noh_smart_slot *noh_smart_slot_at(const noh_smart *smart, uint32_t slot);
 const noh_smart_object *noh_smart_object_at(const noh_smart *smart, uint32_t object);
-/* Who holds a slot; NOH_NONE: it is free. */
+/* The agent that holds a slot; NOH_NONE: it is free. */
 uint32_t noh_smart_holder(const noh_smart *smart, uint32_t slot);
 
-/* The longest that a slot for a need may be held, steps of `step_ticks` at most: what the bound of waiting follows
- * from. 0: no object satisfies it. */
+/* The longest time that a slot for a need may be held, with steps of at most `step_ticks`; the bound on waiting follows
+ * from it. 0: no object satisfies the need. */
 uint32_t noh_smart_hold_ticks(const noh_smart *smart, uint32_t need, uint32_t step_ticks);
 
 #ifdef __cplusplus
