@@ -1,16 +1,16 @@
-/* gl_api.h: the table of OpenGL ES functions that noh uses.
+/* gl_api.h: the table of OpenGL ES functions used by noh.
  *
  *   noh_gl_api_load       fill the table through the caller's lookup function
  *   noh_gl_has_extension  whether the context lists an extension
- *   noh_gl_error_take     return the oldest GL error and clear them all
- *   noh_gl_error_check    the same as a noh_result
+ *   noh_gl_error_take     return the oldest GL error and clear all
+ *   noh_gl_error_check    return pending GL errors as a noh_result
  *
  * The library links no GL: the application makes a context current and passes a lookup function. The table is a plain
- * struct in the caller's memory and belongs to that context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
+ * struct in the caller's memory and belongs to the context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
  *
- * No header of noh includes one of GL's, defines a GL_ name or declares a GL type, so noh goes with every GL header and
- * loader, in any order. Include the one that you use for names such as GL_TRIANGLES. Here GLenum and GLuint are
- * unsigned, GLint and GLsizei int, GLsizeiptr ptrdiff_t, as they are in all of them.
+ * noh's headers include no GL header, define no GL_ names and declare no GL types, so noh works with any GL header and
+ * loader, in any order. Include your own for names such as GL_TRIANGLES. In noh's headers GLenum and GLuint are
+ * unsigned, GLint and GLsizei int, GLsizeiptr ptrdiff_t, as in all GL headers.
  *
  * Threads: the context's own thread, for every function. */
 #ifndef NOH_GL_GL_API_H
@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-/* How GL functions are called; GL_APIENTRY in GL's headers. */
+/* The calling convention of GL functions; GL_APIENTRY in GL headers. */
 #if defined(_WIN32) && !defined(_WIN64)
 #define NOH_GL_CALL __stdcall
 #else
@@ -37,11 +37,10 @@ struct __GLsync; /* GLsync points to it */
 typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, unsigned, int, const char *,
                                                  const void *);
 
-/* Of desktop OpenGL: the vertex shader says how large points are. In OpenGL ES it always does. */
+/* Desktop OpenGL: vertex shaders set the point size, as they always do in OpenGL ES. */
 #define NOH_GL_PROGRAM_POINT_SIZE 0x8642u
 
-/* What the library itself calls: all of it is OpenGL ES 3.0 core, and noh_gl_api_load refuses a context that lacks any.
- * tests/check_gl_calls.sh compares the list with the calls in runtime/; platform/README.md prints it for porters.
+/* The functions that the library calls. All are OpenGL ES 3.0 core, and noh_gl_api_load fails if one is missing.
  * X(field, result, parameters) */
 #define NOH_GL_REQUIRED(X)                                                                                  \
     /* state */                                                                                             \
@@ -150,7 +149,7 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     /* transform feedback */                                                                                \
     X(TransformFeedbackVaryings, void, (unsigned, int, const char *const *, unsigned))
 
-/* More of ES 3.0, for renderers: NULL where the lookup does not know a function. The library never calls these. */
+/* More ES 3.0 functions for renderers, which the library never calls; NULL if the lookup does not find them. */
 #define NOH_GL_EXTRA(X)                                                                     \
     /* state */                                                                             \
     X(PolygonOffset, void, (float, float))                                                  \
@@ -207,8 +206,8 @@ typedef void(NOH_GL_CALL *noh_gl_debug_callback)(unsigned, unsigned, unsigned, u
     X(EndQuery, void, (unsigned))                                                           \
     X(GetQueryObjectuiv, void, (unsigned, unsigned, unsigned *))
 
-/* Functions that a context may lack: NULL if so. The loader goes by the version and the extension strings, because most
- * lookups return a stub for any name. A field may hold the core function or its KHR, EXT or OES form.
+/* Optional functions; NULL if the context lacks them. The loader decides by the version and the extension strings,
+ * because most lookups return a stub for any name. A field may hold the core function or its KHR, EXT or OES form.
  * X(field, result, parameters, name without suffix, group) */
 #define NOH_GL_OPTIONAL(X)                                                                                             \
     X(MapBufferRange, void *, (unsigned, ptrdiff_t, ptrdiff_t, unsigned), "glMapBufferRange", NOH_GL_GROUP_MAP)        \
@@ -243,38 +242,38 @@ typedef struct noh_gl_api {
 
     int version;      /* major * 100 + minor * 10: ES 3.2 is 320, desktop 4.5 is 450 */
     int is_es;        /* 0 on a desktop GL that also compiles ES shaders (OSMesa) */
-    int geometry_ext; /* geometry shaders need "#extension GL_EXT_geometry_shader" (1) or
-                       * "GL_OES_geometry_shader" (2); 0 where core or where absent */
-    int etc2;         /* the context reads ETC2 and EAC textures: OpenGL ES does, desktop GL from 4.3 or with
-                       * GL_ARB_ES3_compatibility, WebGL 2 with WEBGL_compressed_texture_etc */
+    int geometry_ext; /* geometry shaders need "#extension GL_EXT_geometry_shader" (1) or "GL_OES_geometry_shader" (2);
+                       * 0 if core or absent */
+    int etc2;         /* 1: the context supports ETC2 and EAC textures, as OpenGL ES does, desktop GL from 4.3 or with
+                       * GL_ARB_ES3_compatibility, and WebGL 2 with WEBGL_compressed_texture_etc */
 
-    /* Decodes them where it does not. NULL after noh_gl_api_load: set it to noh_etc2_decode (etc2.h), which is not
-     * linked otherwise, before textures are made. */
+    /* Decoder for contexts without ETC2. NULL after noh_gl_api_load: set it to noh_etc2_decode (etc2.h) before making
+     * textures; otherwise the decoder is not linked. */
     void (*decode)(uint32_t format, const uint8_t *blocks, uint32_t count, uint8_t *texels);
 } noh_gl_api;
 
 /* Any GL function; cast it to its own type before the call. */
 typedef void (*noh_gl_proc)(void);
 
-/* The caller's lookup, for instance a wrapper of eglGetProcAddress. Returns NULL for an unknown name. */
+/* The caller's lookup function, such as a wrapper of eglGetProcAddress. Returns NULL for an unknown name. */
 typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
 
-/* Fill the table for the context that is current on this thread. `user` is passed to `get`.
+/* Fill the table for the current context of this thread. `user` is passed to `get`.
  * memory  none; `api` is untouched on error
- * errors  ARG api or get is NULL; UNSUPPORTED the context is below ES 3.0, or lacks a function of NOH_GL_REQUIRED,
- *         which `what` names; GL no context is current */
+ * errors  ARG api or get is NULL; UNSUPPORTED the context is below ES 3.0, or lacks a function of NOH_GL_REQUIRED
+ *         (named by `what`); GL no context is current */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
 
-/* 1 if the context lists the extension, else 0. `name` in full: "GL_EXT_...". */
+/* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
 int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 
 /* Return the oldest pending GL error, or GL_NO_ERROR, and clear the rest. Calls glGetError at most 16 times, because a
- * lost context may report an error for ever. */
+ * lost context may report errors forever. */
 unsigned noh_gl_error_take(const noh_gl_api *api);
 
-/* The same as a result. Every create clears pending errors first and calls this last, so it never returns NOH_OK after
- * the driver refused one of its calls.
- * errors  MEMORY GL_OUT_OF_MEMORY; GL any other. `where` is the GL error; `what` and `need` are the arguments */
+/* Return pending GL errors as a noh_result and clear them. Every create function clears pending errors first and calls
+ * this last, so it never returns NOH_OK after the driver refused a call.
+ * errors  MEMORY GL_OUT_OF_MEMORY; GL any other error. `where` is the GL error; `what` and `need` are the arguments */
 noh_result noh_gl_error_check(const noh_gl_api *api, const char *what, uint64_t need, noh_error *error);
 
 #ifdef __cplusplus
