@@ -31,14 +31,14 @@
  *   noh_gl_morph_bind_streams
  *   all others                    nothing                         nothing                       what was there
  *
- * (1) None bound: program, vertex array, renderbuffer, uniform buffer 0, the array, uniform, pixel and copy buffers that
- *     were used, and textures and samplers of the used units (below NOH_UNIT_USER, and units that your shader shares
- *     with noh). Undefined: the active unit and the current values of vertex attributes.
- * (2) GL_LESS and GL_GREATER are drawn as GL_LEQUAL and GL_GEQUAL, so that colours can follow a depth pass. For reversed
- *     depth use your own projection, a clear to 0 and GL_GREATER. With GL_EQUAL draw only NOH_PASS_OPAQUE, after
- *     NOH_PASS_DEPTH, which has the same depths to the bit, and NOH_PASS_BLENDED with another function.
- * (3) If GL_BLEND is on, its functions and equations are yours, for each draw buffer. If it is off, blended passes blend
- *     straight alpha, and restore the state of draw buffer 0 for all.
+ * (1) None bound: program, vertex array, renderbuffer, uniform buffer 0, the array, uniform, pixel and copy buffers
+ *     that were used, and textures and samplers of the used units (below NOH_UNIT_USER, and units that your shader
+ *     shares with noh). Undefined: the active unit and the current values of vertex attributes.
+ * (2) GL_LESS and GL_GREATER are drawn as GL_LEQUAL and GL_GEQUAL, so that colours can follow a depth pass. For
+ *     reversed depth use your own projection, a clear to 0 and GL_GREATER. With GL_EQUAL draw only NOH_PASS_OPAQUE,
+ *     after NOH_PASS_DEPTH, which has the same depths to the bit, and NOH_PASS_BLENDED with another function.
+ * (3) If GL_BLEND is on, its functions and equations are yours, for each draw buffer. If it is off, blended passes
+ *     blend straight alpha, and restore the state of draw buffer 0 for all.
  *
  * No transform feedback may be active. On desktop GL, polygons must be filled (glPolygonMode).
  *
