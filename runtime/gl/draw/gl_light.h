@@ -82,8 +82,8 @@ typedef struct noh_gl_light {
 uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc);
 
 /* Upload the reflection and make the shadow map.
- * errors  ARG no reflection; MEMORY, GL as noh_gl_texture_create, or the shadow map cannot be drawn to. All GL objects made
- *         so far are then deleted */
+ * errors  ARG no reflection; MEMORY, GL as noh_gl_texture_create, or the shadow map cannot be drawn to. All GL objects
+ *         made so far are then deleted */
 noh_result noh_gl_light_create(const noh_gl_device *device, const noh_gl_light_desc *desc, noh_gl_light *out,
                                noh_error *error);
 void noh_gl_light_delete(noh_gl_light *light);
