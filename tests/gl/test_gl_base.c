@@ -748,13 +748,13 @@ static void a_program_reads_what_is_there(void **state)
         { "layout(location = 1) in vec2 a;\nvoid main() { gl_Position = vec4(a, 0.0, float(gl_VertexID)); }\n", NOH_OK,
           NULL },
         { "layout(location = 1) in highp ivec3 a;\nvoid main() { gl_Position = vec4(a, 1.0); }\n", NOH_ERR_DATA,
-          "floats, integers or unsigned" },
+          "another kind" },
         { "layout(location = 2) in highp uvec2 a;\nvoid main() { gl_Position = vec4(a, 1.0, 1.0); }\n", NOH_ERR_DATA,
-          "floats, integers or unsigned" },
+          "another kind" },
         { "layout(location = 2) in highp ivec4 a;\nvoid main() { gl_Position = vec4(a); }\n", NOH_ERR_DATA,
           "more components" },
         { "layout(location = 3) in vec3 a;\nvoid main() { gl_Position = vec4(a, 1.0); }\n", NOH_ERR_DATA,
-          "does not have" },
+          "is not in the desc" },
         { "layout(location = 3) in vec3 a;\nvoid main() { gl_Position = vec4(1.0); }\n", NOH_OK, NULL }, /* not read */
     };
     static const char *const white[] = { "out mediump vec4 o;\nvoid main() { o = vec4(1.0); }\n" };

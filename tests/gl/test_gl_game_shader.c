@@ -415,7 +415,7 @@ static void a_shader_reads_what_meshes_have(void **state)
     noh_error error;
     (void)state;
     assert_int_equal(create_with(&own, log, sizeof log, &error), NOH_ERR_DATA);
-    assert_string_equal(error.what, "a vertex shader reads an attribute that what it draws does not have");
+    assert_string_equal(error.what, "a vertex shader reads an attribute that is not in the desc's inputs");
     assert_int_equal(error.where, 15);
     assert_true(strncmp(log, "toon: vertex: mine: ", 20) == 0);
     own.inputs = &(noh_gl_input){ 15, GL_FLOAT_VEC4 };

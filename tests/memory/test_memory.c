@@ -387,9 +387,9 @@ static void a_desc_needs_meshes(void **state)
     noh_gl_morph_desc desc;
     (void)state;
     memset(&desc, 0, sizeof desc);
-    expect_plan(&desc, &caps, NOH_ERR_ARG, "no meshes");
+    expect_plan(&desc, &caps, NOH_ERR_ARG, "mesh_count is 0");
     desc.mesh_count = 1;
-    expect_plan(&desc, &caps, NOH_ERR_ARG, "no meshes");
+    expect_plan(&desc, &caps, NOH_ERR_ARG, "mesh_count is 0");
 }
 
 static void fields_of_a_desc_are_checked(void **state)
@@ -427,11 +427,11 @@ static void instance_counts_have_a_limit(void **state)
     fixture_meshes_open(&f);
     desc = desc_of(&f, automatic);
     desc.instance_counts = none;
-    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "no instances");
+    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "1 to NOH_MORPH_INSTANCES_MAX");
     desc.instance_counts = many;
-    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "more than the limit");
+    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "1 to NOH_MORPH_INSTANCES_MAX");
     desc.instance_counts = wrap;
-    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "more than the limit");
+    expect_plan(&desc, &caps, NOH_ERR_LIMIT, "1 to NOH_MORPH_INSTANCES_MAX");
     fixture_meshes_close(&f);
 }
 

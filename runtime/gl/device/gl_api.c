@@ -99,7 +99,9 @@ static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *use
 static noh_result read_version(noh_gl_api *api, noh_error *error)
 {
     const char *text = (const char *)api->GetString(GL_VERSION);
-    if (!text) return noh_fail(error, NOH_ERR_GL, "no current GL context", noh_gl_error_take(api), 0);
+    if (!text)
+        return noh_fail(error, NOH_ERR_GL, "no GL context is current on this thread: make one current first",
+                        noh_gl_error_take(api), 0);
     GLint major = 0, minor = 0;
     api->GetIntegerv(GL_MAJOR_VERSION, &major);
     api->GetIntegerv(GL_MINOR_VERSION, &minor);
@@ -107,8 +109,8 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     api->version = major * 100 + minor * 10;
     /* ES 2.0 does not know GL_MAJOR_VERSION: it raises an error, and the zeros stay. */
     if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is older than OpenGL ES 3.0", (uint64_t)api->version,
-                        300);
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is below OpenGL ES 3.0: create a newer one",
+                        (uint64_t)api->version, 300);
     }
     return NOH_OK;
 }
@@ -186,8 +188,8 @@ static void load_optional(noh_gl_api *api, noh_gl_get_proc get, void *user)
 
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
 {
-    if (!api) return noh_fail(error, NOH_ERR_ARG, "the GL table to fill is NULL", 0, 0);
-    if (!get) return noh_fail(error, NOH_ERR_ARG, "the lookup function is NULL", 0, 0);
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "api is NULL", 0, 0);
+    if (!get) return noh_fail(error, NOH_ERR_ARG, "get is NULL: pass a lookup function", 0, 0);
     noh_gl_api table;
     memset(&table, 0, sizeof table);
     const char *missing = load_required(&table, get, user);

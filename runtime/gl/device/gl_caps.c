@@ -480,7 +480,8 @@ static noh_result start(probe *p, noh_error *error)
     const noh_gl_api *gl = p->api;
     noh_gl_error_take(gl);
     if (make_programs(p, error) != NOH_OK) {
-        return noh_fail(error, NOH_ERR_GL, "the probe's programs do not build", noh_gl_error_take(gl), 0);
+        return noh_fail(error, NOH_ERR_GL, "cannot build the programs of the capability probe", noh_gl_error_take(gl),
+                        0);
     }
     gl->GenVertexArrays(1, &p->vertex_array);
     gl->GenFramebuffers(1, &p->framebuffer);
@@ -497,7 +498,8 @@ static noh_result start(probe *p, noh_error *error)
     }
     p->first_row = gl->GetUniformLocation(p->floats, "first_row");
     GLenum code = noh_gl_error_take(gl);
-    if (code != GL_NO_ERROR) return noh_fail(error, NOH_ERR_GL, "the driver refuses the texture of the probe", code, 0);
+    if (code != GL_NO_ERROR)
+        return noh_fail(error, NOH_ERR_GL, "the driver refused the texture of the capability probe", code, 0);
     return NOH_OK;
 }
 
@@ -540,8 +542,8 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
 
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error)
 {
-    if (!api) return noh_fail(error, NOH_ERR_ARG, "the GL table is NULL", 0, 0);
-    if (!out) return noh_fail(error, NOH_ERR_ARG, "the struct for the capabilities is NULL", 0, 0);
+    if (!api) return noh_fail(error, NOH_ERR_ARG, "api is NULL", 0, 0);
+    if (!out) return noh_fail(error, NOH_ERR_ARG, "out is NULL", 0, 0);
     noh_gl_caps caps;
     probe p;
     noh_gl_offscreen kept;

@@ -96,7 +96,7 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
                                 const void *data, GLenum usage, noh_gl_buffer *out, noh_error *error)
 {
     NOH_ASSERT(api && ledger && out);
-    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "a buffer has no bytes", 0, 0);
+    if (bytes == 0) return noh_fail(error, NOH_ERR_ARG, "the size of a buffer is 0", 0, 0);
     if (bytes > (uint64_t)PTRDIFF_MAX)
         return noh_fail(error, NOH_ERR_LIMIT, "a buffer is larger than the address space", (uint64_t)PTRDIFF_MAX,
                         bytes);
@@ -106,7 +106,7 @@ noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, GL
     api->BindBuffer(target, name);
     api->BufferData(target, (GLsizeiptr)bytes, data, usage);
     api->BindBuffer(target, 0);
-    noh_result result = noh_gl_error_check(api, "the driver refuses a buffer", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refused a buffer", bytes, error);
     if (result != NOH_OK) {
         api->DeleteBuffers(1, &name);
         return result;
@@ -148,8 +148,7 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     NOH_ASSERT(api && ledger && desc && out);
     uint64_t bytes = noh_gl_texture_bytes(desc);
     if (bytes == 0)
-        return noh_fail(error, NOH_ERR_ARG,
-                        "a texture desc has an unknown format, no size, or more levels than its size has", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "texture desc: unknown format, size of 0, or too many levels", 0, 0);
     const int array = desc->layers && desc->layers != NOH_GL_CUBE;
     GLenum target = array ? GL_TEXTURE_2D_ARRAY : desc->layers ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D;
     GLsizei width = (GLsizei)desc->width, height = (GLsizei)desc->height;
@@ -166,7 +165,7 @@ noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     }
     set_parameters(api, target, desc);
     api->BindTexture(target, 0);
-    noh_result result = noh_gl_error_check(api, "the driver refuses a texture", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refused a texture", bytes, error);
     if (result != NOH_OK) {
         api->DeleteTextures(1, &name);
         return result;
@@ -198,7 +197,7 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
     NOH_ASSERT(api && ledger && out);
     uint64_t bytes = noh_gl_renderbuffer_bytes(format, width, height, samples);
     if (bytes == 0)
-        return noh_fail(error, NOH_ERR_ARG, "a renderbuffer has an unknown format, no size, or too many samples", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "renderbuffer: unknown format, size of 0, or too many samples", 0, 0);
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenRenderbuffers(1, &name);
@@ -206,7 +205,7 @@ noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledg
     GLsizei sample_count = samples > 1 ? (GLsizei)samples : 0;
     api->RenderbufferStorageMultisample(GL_RENDERBUFFER, sample_count, format, (GLsizei)width, (GLsizei)height);
     api->BindRenderbuffer(GL_RENDERBUFFER, 0);
-    noh_result result = noh_gl_error_check(api, "the driver refuses a renderbuffer", bytes, error);
+    noh_result result = noh_gl_error_check(api, "the driver refused a renderbuffer", bytes, error);
     if (result != NOH_OK) {
         api->DeleteRenderbuffers(1, &name);
         return result;
@@ -236,9 +235,9 @@ noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledge
     noh_gl_error_take(api);
     GLuint name = 0;
     api->GenFramebuffers(1, &name);
-    noh_result result = noh_gl_error_check(api, "the driver refuses a framebuffer", 0, error);
+    noh_result result = noh_gl_error_check(api, "the driver refused a framebuffer", 0, error);
     if (result == NOH_OK && !name)
-        result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a framebuffer", 0, 0);
+        result = noh_fail(error, NOH_ERR_GL, "the driver returned no name for a framebuffer", 0, 0);
     if (result != NOH_OK) {
         if (name) api->DeleteFramebuffers(1, &name);
         return result;

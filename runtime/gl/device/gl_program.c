@@ -43,7 +43,7 @@ static const char *check_source(const noh_gl_source *source)
 {
     if (!source->version || !source->pieces) return "a shader stage has no text";
     if (source->piece_count == 0 || source->piece_count > NOH_GL_PIECES_MAX)
-        return "a shader stage has no pieces, or more than NOH_GL_PIECES_MAX";
+        return "piece_count of a shader stage must be 1 to NOH_GL_PIECES_MAX";
     return NULL;
 }
 
@@ -75,7 +75,7 @@ static noh_result compile(const noh_gl_api *api, const noh_gl_program_desc *desc
     for (uint32_t i = 0; i < source->piece_count; i++) strings[count++] = source->pieces[i];
 
     GLuint shader = api->CreateShader(types[stage]);
-    if (!shader) return noh_fail(error, NOH_ERR_GL, "the driver gives no name for a shader", 0, 0);
+    if (!shader) return noh_fail(error, NOH_ERR_GL, "the driver returned no name for a shader", 0, 0);
     api->ShaderSource(shader, count, strings, NULL);
     api->CompileShader(shader);
     GLint compiled = GL_FALSE;
@@ -137,12 +137,12 @@ static const char *check_input(const noh_gl_program_desc *desc, GLuint location,
         const input_kind has = kind_of(desc->inputs[i].type);
         if (desc->inputs[i].location != location) continue;
         if (wants.scalar != has.scalar)
-            return "a vertex shader reads an attribute as floats, integers or unsigned ones, which it is not";
+            return "a vertex shader reads an attribute of another kind (float, integer or unsigned)";
         if (wants.components > has.components && wants.scalar != GL_FLOAT)
-            return "a vertex shader reads more components of an attribute than there are";
+            return "a vertex shader reads more components than the attribute has";
         return NULL;
     }
-    return "a vertex shader reads an attribute that what it draws does not have";
+    return "a vertex shader reads an attribute that is not in the desc's inputs";
 }
 
 static noh_result check_inputs(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
@@ -211,8 +211,9 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
     if (wrong) return noh_fail(error, NOH_ERR_ARG, wrong, 0, 0);
     noh_gl_error_take(api);
     GLuint name = api->CreateProgram();
-    noh_result result = noh_gl_error_check(api, "the driver refuses a program", 0, error);
-    if (result == NOH_OK && !name) result = noh_fail(error, NOH_ERR_GL, "the driver gives no name for a program", 0, 0);
+    noh_result result = noh_gl_error_check(api, "the driver refused a program", 0, error);
+    if (result == NOH_OK && !name)
+        result = noh_fail(error, NOH_ERR_GL, "the driver returned no name for a program", 0, 0);
     if (result != NOH_OK) {
         if (name) api->DeleteProgram(name);
         return result;
@@ -222,7 +223,7 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
     if (result == NOH_OK) result = check_inputs(api, desc, name, &words, error);
     if (result == NOH_OK) bind_names(api, desc, name);
     /* A refused call is the cause, a failed compile may be its effect: text that never arrived does not compile. */
-    noh_result refused = noh_gl_error_check(api, "the driver refuses a call that makes a program", 0, error);
+    noh_result refused = noh_gl_error_check(api, "the driver refused a call while making a program", 0, error);
     if (refused != NOH_OK) result = refused;
     if (result != NOH_OK) {
         api->DeleteProgram(name);

@@ -106,7 +106,7 @@ noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error)
     }
     noh_gl_unpack_end(l->gl, &kept);
     l->gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
-    return noh_gl_error_check(l->gl, "the driver refuses a reflection's texels", l->cube.bytes, error);
+    return noh_gl_error_check(l->gl, "the driver refused the texels of a reflection", l->cube.bytes, error);
 }
 
 static noh_result create_cube(noh_gl_light *l, noh_error *error)
@@ -149,7 +149,7 @@ static noh_result create_shadow(noh_gl_light *l, noh_error *error)
         }
         noh_gl_framebuffers_put_back(l->gl, kept);
     }
-    return result == NOH_OK ? noh_gl_error_check(l->gl, "the driver refuses a shadow map", l->shadow.bytes, error)
+    return result == NOH_OK ? noh_gl_error_check(l->gl, "the driver refused a shadow map", l->shadow.bytes, error)
                             : result;
 }
 
@@ -166,7 +166,7 @@ noh_result noh_gl_light_create(const noh_gl_device *device, const noh_gl_light_d
 {
     NOH_ASSERT(device && device->api && device->ledger && desc && out);
     if (!desc->reflection) {
-        return noh_fail(error, NOH_ERR_ARG, "a light wants a reflection", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "light desc: reflection is NULL", 0, 0);
     }
     memset(out, 0, sizeof *out);
     out->gl = device->api;

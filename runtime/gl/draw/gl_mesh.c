@@ -227,7 +227,7 @@ static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_m
     m.index_type = room->header->index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     noh_gl_error_take(api);
     api->BindVertexArray(0);
-    result = noh_gl_error_check(api, "the driver refuses to unbind a vertex array", 0, error);
+    result = noh_gl_error_check(api, "the driver refused to unbind a vertex array", 0, error);
     if (!result) {
         result = noh_gl_buffer_create(api, ledger, GL_ARRAY_BUFFER, position_bytes(room),
                                       contents ? contents->positions : NULL, GL_STATIC_DRAW, &m.positions, error);
@@ -254,7 +254,7 @@ static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_m
     }
     m.vertex_array = noh_gl_mesh_make_array(api, &m, NULL);
     label_mesh(api, &m);
-    result = noh_gl_error_check(api, "the driver refuses a mesh's vertex array", 0, error);
+    result = noh_gl_error_check(api, "the driver refused the vertex array of a mesh", 0, error);
     if (result) {
         noh_gl_mesh_delete(api, ledger, &m);
         return result;

@@ -375,7 +375,7 @@ noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const noh_g
         *array = noh_gl_mesh_make_array(morph->gl, drawn, &at);
         if (*array) noh_gl_label(morph->gl, GL_VERTEX_ARRAY, *array, "morphed", own->mesh.name);
     }
-    result = noh_gl_error_check(morph->gl, "the driver refuses vertex arrays of morphed vertices", 0, error);
+    result = noh_gl_error_check(morph->gl, "the driver refused vertex arrays of morphed vertices", 0, error);
     if (result) delete_arrays(morph, morph->gl, own->first_instance, own->instance_count);
     return result;
 }

@@ -99,8 +99,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     NOH_ASSERT(api && ledger && texture && texture->header && out);
     if (texture->header->format && !api->etc2 && !api->decode) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED,
-                        "the context cannot read ETC2 textures, and noh_gl_api.decode is not set (noh_etc2_decode)", 0,
-                        0);
+                        "the context does not support ETC2: set noh_gl_api.decode to noh_etc2_decode", 0, 0);
     }
     noh_gl_texture_desc desc = picture_desc(texture, api->etc2);
     result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
@@ -115,7 +114,7 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
-    result = noh_gl_error_check(api, "the driver refuses a texture's pixels", picture.bytes, error);
+    result = noh_gl_error_check(api, "the driver refused the pixels of a texture", picture.bytes, error);
     if (result) {
         noh_gl_texture_delete(api, ledger, &picture);
         return result;

@@ -24,7 +24,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
         r->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
         noh_gl_unpack_end(r->gl, &kept);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
-        result = noh_gl_error_check(r->gl, "the driver refuses the renderer's white texel", r->white.bytes, error);
+        result = noh_gl_error_check(r->gl, "the driver refused the renderer's white texel", r->white.bytes, error);
     }
     return result; /* on error, create_objects deletes */
 }
@@ -63,7 +63,7 @@ static noh_result want_one(const wish *w, noh_gl_variant_key key)
         }
     }
     if (list->count == NOH_GL_VARIANTS_MAX) {
-        return noh_fail(w->error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit",
+        return noh_fail(w->error, NOH_ERR_LIMIT, "the meshes need more shader variants than NOH_GL_VARIANTS_MAX",
                         NOH_GL_VARIANTS_MAX, 0);
     }
     list->keys[list->count++] = key;
@@ -173,10 +173,10 @@ static noh_result check_desc(const noh_gl_renderer_desc *desc, noh_error *error)
 {
     NOH_ASSERT(desc && (desc->meshes || !desc->mesh_count));
     if ((unsigned)desc->passes > NOH_PASSES_DEPTH) {
-        return noh_fail(error, NOH_ERR_ARG, "renderer desc has unknown passes", (uint64_t)desc->passes, 0);
+        return noh_fail(error, NOH_ERR_ARG, "renderer desc: unknown passes", (uint64_t)desc->passes, 0);
     }
     if (desc->crowds && desc->palettes != NOH_PALETTE_TEXTURE) {
-        return noh_fail(error, NOH_ERR_ARG, "crowds want palettes in a texture", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "crowds need palettes in a texture: use NOH_PALETTE_TEXTURE", 0, 0);
     }
     return NOH_OK;
 }

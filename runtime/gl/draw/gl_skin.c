@@ -156,7 +156,7 @@ float noh_gl_normal_rows(const float w[12], float rows[12])
 
 static noh_result no_crowds(uint32_t instance, noh_error *error)
 {
-    return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds want NOH_PALETTE_TEXTURE",
+    return noh_fail(error, NOH_ERR_UNSUPPORTED, "palettes are in a uniform buffer: crowds need NOH_PALETTE_TEXTURE",
                     instance, 0);
 }
 
@@ -250,7 +250,7 @@ noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const floa
     if (!skin->user_rows) {
         return skin->plan.mode != NOH_PALETTE_TEXTURE
                    ? no_crowds(instance, error)
-                   : noh_fail(error, NOH_ERR_UNSUPPORTED, "the desc of the palettes has no user_values", instance, 0);
+                   : noh_fail(error, NOH_ERR_UNSUPPORTED, "skin desc: user_values is 0", instance, 0);
     }
     put_rows(skin, first_row(m, instance) + m->stride - 1u, values, 1, &changed);
     send(skin, &changed);
@@ -298,7 +298,7 @@ static noh_result create_object(noh_gl_skin *skin, noh_error *error)
         return NOH_OK;
     }
     if (!result) {
-        result = noh_gl_error_check(skin->gl, "the driver refuses the palettes", skin->plan.gpu_bytes, error);
+        result = noh_gl_error_check(skin->gl, "the driver refused the palettes", skin->plan.gpu_bytes, error);
     }
     if (result) {
         noh_gl_skin_delete(skin);
@@ -328,7 +328,7 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *dev
     NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && skin);
     result = noh_gl_skin_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
-        result = noh_fail(error, NOH_ERR_LIMIT, "the palettes need more memory than this processor addresses", 0,
+        result = noh_fail(error, NOH_ERR_LIMIT, "the palettes need more memory than this processor can address", 0,
                           plan.cpu_bytes);
     }
     if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);

@@ -30,16 +30,17 @@ static noh_result check_desc(const noh_gl_skin_desc *desc, noh_error *error)
 {
     uint64_t instances = 0;
     if (!desc->meshes || !desc->mesh_count) {
-        return noh_fail(error, NOH_ERR_ARG, "skin desc has no meshes", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "skin desc: meshes is NULL, or mesh_count is 0", 0, 0);
     }
     if ((unsigned)desc->mode > NOH_PALETTE_TEXTURE) {
-        return noh_fail(error, NOH_ERR_ARG, "skin desc has an unknown mode", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "skin desc: unknown mode", 0, 0);
     }
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         instances += count_of(desc, i);
     }
     if (!instances || instances > NOH_MORPH_INSTANCES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "skin desc asks for no instances, or more than the limit", 0, instances);
+        return noh_fail(error, NOH_ERR_LIMIT, "skin desc: instances must be 1 to NOH_MORPH_INSTANCES_MAX in all", 0,
+                        instances);
     }
     return NOH_OK;
 }
@@ -69,13 +70,13 @@ static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *c
         several |= count_of(desc, i) > 1u;
     }
     if (desc->mode == NOH_PALETTE_UNIFORM && !fits) {
-        return noh_fail(error, NOH_ERR_UNSUPPORTED, "uniform blocks here are smaller than a palette",
+        return noh_fail(error, NOH_ERR_UNSUPPORTED, "uniform blocks of this GPU are smaller than a palette",
                         caps->uniform_block_bytes_max, block);
     }
     plan->mode = desc->mode ? desc->mode : several || !fits ? NOH_PALETTE_TEXTURE : NOH_PALETTE_UNIFORM;
-    plan->reason = desc->mode ? "asked for"
-                   : several  ? "several instances of a mesh: one draw can have them all"
-                   : !fits    ? "uniform blocks here are smaller than a palette"
+    plan->reason = desc->mode ? "chosen by the desc"
+                   : several  ? "a mesh has several instances, which one draw can contain"
+                   : !fits    ? "uniform blocks of this GPU are smaller than a palette"
                               : "one instance of each mesh";
     return NOH_OK;
 }
@@ -97,7 +98,8 @@ static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_pl
         height = (rows + (1u << log2) - 1u) >> log2;
     }
     if (height > side_max) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes do not fit a texture of this GPU", side_max,
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "the palettes of the instances do not fit a texture of this GPU: use fewer instances", side_max,
                         height);
     }
     plan->width = 1u << log2;
@@ -187,7 +189,8 @@ noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps
     }
     rows = noh_gl_skin_layout(desc, p.mode, noh_gl_skin_align(&p, caps), NULL);
     if (rows > NOH_SKIN_ROWS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' palettes have more rows than the limit",
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "the palettes of the instances have more rows than the limit: use fewer instances",
                         NOH_SKIN_ROWS_MAX, rows);
     }
     if (p.mode == NOH_PALETTE_TEXTURE) {

@@ -375,12 +375,12 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
     own = own ? own : &library;
     if (own->sampler_count > NOH_GL_OWN_SAMPLERS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a shader desc has more samplers than the limit", NOH_GL_OWN_SAMPLERS_MAX,
-                        own->sampler_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "shader desc: sampler_count is above NOH_GL_OWN_SAMPLERS_MAX",
+                        NOH_GL_OWN_SAMPLERS_MAX, own->sampler_count);
     }
     if (own->input_count > NOH_GL_OWN_INPUTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a shader desc has more inputs than the limit", NOH_GL_OWN_INPUTS_MAX,
-                        own->input_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "shader desc: input_count is above NOH_GL_OWN_INPUTS_MAX",
+                        NOH_GL_OWN_INPUTS_MAX, own->input_count);
     }
     memset(&v, 0, sizeof v);
     memset(&desc, 0, sizeof desc);
@@ -390,7 +390,8 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     result = create_program(device, &v, own, &desc, &v.program, error);
     if (!result) {
         find_uniforms(device->api, &v);
-        result = noh_gl_error_check(device->api, "the driver refuses to tell a shader variant's uniforms", 0, error);
+        result = noh_gl_error_check(device->api, "the driver refused to return the uniforms of a shader variant", 0,
+                                    error);
         if (result) {
             noh_gl_variant_delete(device->api, device->ledger, &v);
         } else {

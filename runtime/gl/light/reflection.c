@@ -235,7 +235,7 @@ noh_result noh_reflection_init(void *memory, size_t bytes, void *scratch, size_t
     NOH_ASSERT(desc && out);
     const uint32_t side = desc->side ? desc->side : 64u;
     if (!is_side(side) || !desc->radiance) {
-        return noh_fail(error, NOH_ERR_ARG, "a reflection wants a radiance and a side that is a power of 2, 16 to 128",
+        return noh_fail(error, NOH_ERR_ARG, "reflection: radiance is NULL, or side is not a power of 2 from 16 to 128",
                         side, 0);
     }
     result = noh_arena_open(&arena, scratch, scratch_bytes, noh_reflection_scratch_size(side), error);

@@ -58,7 +58,7 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
     }
     if (!result) {
         label_objects(m);
-        result = noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulator", m->plan.gpu_bytes,
+        result = noh_gl_error_check(m->gl, "the driver refused a call while making the accumulator", m->plan.gpu_bytes,
                                     error);
     }
     return result;
@@ -135,7 +135,7 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
     NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && morph);
     result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
-        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor addresses", 0,
+        result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor can address", 0,
                           plan.cpu_bytes);
     }
     if (!result) result = noh_arena_open(&arena, memory, bytes, (size_t)plan.cpu_bytes, error);
@@ -242,7 +242,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
     NOH_ASSERT(weights || !count);
     for (uint32_t i = 0; i < count; i++) {
         if (weights[i] - weights[i] != 0.0f) { /* NaN for infinities and NaN */
-            return noh_fail(error, NOH_ERR_ARG, "weight is not finite", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "a weight is not finite", i, 0);
         }
     }
     if (memcmp(own, weights, sizeof *own * count) != 0) {

@@ -100,7 +100,7 @@ static noh_result create_indices(noh_gl_morph *m, noh_error *error)
         m->gl->BufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)(2u * at), (GLsizeiptr)(2u * now), indices);
     }
     m->gl->BindVertexArray(0);
-    return noh_gl_error_check(m->gl, "the driver refuses the indices of the accumulator", 0, error);
+    return noh_gl_error_check(m->gl, "the driver refused the indices of the accumulator", 0, error);
 }
 
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)

@@ -38,7 +38,7 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
         return NULL;
     }
     if (path == NOH_MORPH_STREAMS) {
-        return half ? "streams are summed in the vertex shader, in f32: there is nothing to keep in f16" : NULL;
+        return half ? "the path streams sums in f32 in the vertex shader: it does not support f16" : NULL;
     }
     if (path == NOH_MORPH_GATHER) {
         if (!caps->mrt3) {
@@ -52,11 +52,11 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
         return caps->render_f32 || caps->render_u32 ? NULL : "gather needs renderable RGBA32F or RGBA32UI";
     }
     if (!(half ? caps->blend_f16 : caps->blend_f32)) {
-        return half ? "no blending into RGBA16F here (EXT_color_buffer_half_float or EXT_color_buffer_float)"
-                    : "no blending into RGBA32F here (EXT_color_buffer_float and EXT_float_blend)";
+        return half ? "cannot blend into RGBA16F on this GPU (EXT_color_buffer_half_float or EXT_color_buffer_float)"
+                    : "cannot blend into RGBA32F on this GPU (EXT_color_buffer_float and EXT_float_blend)";
     }
     if (path == NOH_MORPH_LAYERED && !caps->layered) {
-        return "no layered drawing here (geometry shader with gl_Layer: ES 3.2 or EXT_geometry_shader)";
+        return "no layered drawing on this GPU (geometry shader with gl_Layer: ES 3.2 or EXT_geometry_shader)";
     }
     if (path == NOH_MORPH_MRT && !caps->mrt3) {
         return "mrt needs three draw buffers into one texture array";
@@ -77,20 +77,20 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, const noh_g
         return NOH_MORPH_GATHER;
     }
     if (can_gather && (!can_mrt || plan->costs.gather <= plan->costs.mrt)) {
-        *reason = can_mrt ? "gather: summing lists of the expected targets in registers is less work than blending them"
-                          : "gather: no blending into this format here; sums in registers need none";
+        *reason = can_mrt ? "gather: cheaper than blending for the expected targets"
+                          : "gather: this GPU cannot blend into this format";
         return NOH_MORPH_GATHER;
     }
     if (can_mrt) {
-        *reason = can_gather ? "mrt: rectangles are so small that blending them is less work than summing whole blocks"
-                             : "mrt: float blending works here, and this format cannot be written without it";
+        *reason = can_gather ? "mrt: cheaper than summing whole blocks, because rectangles are small"
+                             : "mrt: this format can only be blended on this GPU";
         return NOH_MORPH_MRT;
     }
     if (!missing(NOH_MORPH_PER_LAYER, accumulate, caps)) {
-        *reason = "per-layer: blending works here, three draw buffers do not";
+        *reason = "per-layer: this GPU can blend, but not into three draw buffers";
         return NOH_MORPH_PER_LAYER;
     }
-    *reason = "cpu: this format cannot be rendered here";
+    *reason = "cpu: this GPU cannot render to this format";
     return NOH_MORPH_CPU;
 }
 
@@ -102,7 +102,7 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
         *reason = "layered: one additive draw into all three layers";
         return NOH_MORPH_LAYERED;
     }
-    *reason = "per-layer: three additive passes, layered drawing is not supported here";
+    *reason = "per-layer: three additive passes, because this GPU cannot draw layered";
     return NOH_MORPH_PER_LAYER;
 }
 
@@ -117,9 +117,9 @@ static int has_uv_targets(const noh_gl_morph_desc *desc)
 
 static const char *missing_of_streams(const noh_gl_morph_desc *desc)
 {
-    if (desc->coarse) return "streams are not loaded later: give the accumulator all levels";
-    if (has_uv_targets(desc)) return "streams do not carry what targets change of texture coordinates";
-    return has_occlusion(desc) ? "streams do not carry what targets change of a transfer's occlusion" : NULL;
+    if (desc->coarse) return "the path streams cannot load levels later: pass all levels";
+    if (has_uv_targets(desc)) return "the path streams does not support targets that move texture coordinates";
+    return has_occlusion(desc) ? "the path streams does not support changes of occlusion (transfer)" : NULL;
 }
 
 static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
@@ -130,12 +130,12 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
     plan->layer_count = desc->without_tangents ? 2u : 3u;
     noh_gl_morph_weigh(desc, caps, plan);
     plan->path = desc->path;
-    plan->reason = "forced by the caller";
+    plan->reason = "chosen by the desc";
     if (desc->path == NOH_MORPH_AUTO) {
         const noh_gl_quirk *software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
         if (plan->pair_count == 0) {
             plan->path = NOH_MORPH_CPU;
-            plan->reason = "cpu: no target moves anything, there is nothing to accumulate";
+            plan->reason = "cpu: no target moves a vertex";
         } else if (software) {
             plan->path = NOH_MORPH_CPU;
             plan->reason = software->reason;
@@ -187,22 +187,22 @@ static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
 {
     uint64_t instances = 0;
     if (!desc->meshes || !desc->mesh_count) {
-        return noh_fail(error, NOH_ERR_ARG, "morph desc has no meshes", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "morph desc: meshes is NULL, or mesh_count is 0", 0, 0);
     }
     if ((unsigned)desc->path >= NOH_MORPH_PATH_COUNT || (unsigned)desc->accumulate > NOH_ACCUMULATE_F16 ||
         !(desc->expected_active >= 0.0f && desc->expected_active <= 1.0f)) {
-        return noh_fail(error, NOH_ERR_ARG,
-                        "morph desc has an unknown path or accumulate, or expected_active outside 0..1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "morph desc: unknown path or accumulate, or expected_active is not in 0..1",
+                        0, 0);
     }
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         instances += desc->instance_counts ? desc->instance_counts[i] : 1u;
     }
     if (desc->coarse && (!desc->later_blocks || !desc->later_strips) && desc->meshes[0].header->rect_count) {
-        return noh_fail(error, NOH_ERR_ARG,
-                        "morph desc has levels that come later, and does not say how many blocks and strips", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "morph desc: with coarse, set later_blocks and later_strips", 0, 0);
     }
     if (!instances || instances > NOH_MORPH_INSTANCES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "morph desc asks for no instances, or more than the limit", 0, instances);
+        return noh_fail(error, NOH_ERR_LIMIT, "morph desc: instances must be 1 to NOH_MORPH_INSTANCES_MAX in all", 0,
+                        instances);
     }
     return NOH_OK;
 }
@@ -260,8 +260,9 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
         }
     }
     if (width > texture_size_max || height > 0xffffu) {
-        return noh_fail(error, NOH_ERR_LIMIT, "the instances' tiles do not fit a texture of this GPU", texture_size_max,
-                        height);
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "the tiles of the instances do not fit a texture of this GPU: use fewer instances",
+                        texture_size_max, height);
     }
     stack_bands(desc, width, meshes);
     plan->atlas_width = width;
@@ -372,7 +373,7 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
         weights += (uint64_t)count * h->target_count;
     }
     if (weights > NOH_GL_TABLE_TEXELS_MAX || sums.tiles * 16u >= NOH_GL_TABLE_TEXELS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "more weights or delta texels than a table texture holds",
+        return noh_fail(error, NOH_ERR_LIMIT, "more weights or delta texels than a texture of this GPU can hold",
                         NOH_GL_TABLE_TEXELS_MAX, weights > sums.tiles * 16u ? weights : sums.tiles * 16u);
     }
     plan->weight_count = (uint32_t)weights;
@@ -611,7 +612,7 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
                         p.delta_bytes);
     }
     if (p.stream_bytes > INT32_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "what one update of all instances draws takes more than 2 GiB", INT32_MAX,
+        return noh_fail(error, NOH_ERR_LIMIT, "one update of all instances needs more than 2 GiB", INT32_MAX,
                         p.stream_bytes);
     }
     if (p.vertex_bytes / (p.vertex_ring ? p.vertex_ring : 1u) > UINT32_MAX) {

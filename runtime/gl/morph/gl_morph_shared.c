@@ -91,9 +91,9 @@ noh_result noh_gl_morph_framebuffer(noh_gl_morph *m, int which, GLuint *framebuf
     noh_gl_framebuffers_put_back(m->gl, kept);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
         noh_gl_error_take(m->gl);
-        return noh_fail(error, NOH_ERR_GL, "the driver refuses the accumulation framebuffer", status, 0);
+        return noh_fail(error, NOH_ERR_GL, "the driver refused the accumulation framebuffer", status, 0);
     }
-    return noh_gl_error_check(m->gl, "the driver refuses a call that makes the accumulation framebuffer", 0, error);
+    return noh_gl_error_check(m->gl, "the driver refused a call while making the accumulation framebuffer", 0, error);
 }
 
 noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, uint64_t bytes,
@@ -116,7 +116,7 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
     noh_gl_label(m->gl, GL_VERTEX_ARRAY, m->vertex_array, "morph stream", NULL);
     m->gl->BindVertexArray(0);
     m->gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    return noh_gl_error_check(m->gl, "the driver refuses the vertex array of the accumulator", 0, error);
+    return noh_gl_error_check(m->gl, "the driver refused the vertex array of the accumulator", 0, error);
 }
 
 /* ---- the state around a draw ---- */

@@ -274,5 +274,5 @@ noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error)
         }
     }
     return result ? result
-                  : noh_gl_error_check(m->gl, "the driver refuses the delta texels", m->plan.delta_bytes, error);
+                  : noh_gl_error_check(m->gl, "the driver refused the delta texels", m->plan.delta_bytes, error);
 }

@@ -7,41 +7,42 @@ static const char *bad_lod(const noh_lod *d, const noh_lod_table *table)
 {
     const uint32_t levels = table->mesh_level_count ? table->mesh_level_count : 1u;
     if (d->mesh >= levels || d->mesh_before >= levels || d->mesh_wanted >= levels)
-        return "character: a mesh level that the table has not";
+        return "character: its mesh level is not in the LOD table";
     if (d->joints >= (table->joint_level_count ? table->joint_level_count : 1u))
-        return "character: a joint level that the table has not";
+        return "character: its joint level is not in the LOD table";
     if (d->influences >= (table->influence_level_count ? table->influence_level_count : 1u))
-        return "character: an influence level that the table has not";
-    if (d->update_rate >= NOH_UPDATE_RATE_COUNT) return "character: a bad update rate";
-    if (!(d->pixels_per_metre >= 0.0f)) return "character: a negative scale";
+        return "character: its influence level is not in the LOD table";
+    if (d->update_rate >= NOH_UPDATE_RATE_COUNT) return "character: unknown update rate";
+    if (!(d->pixels_per_metre >= 0.0f)) return "character: pixels_per_metre is negative or NaN";
     return NULL;
 }
 
 static const char *bad_time(const noh_time_lod *t)
 {
     if (t->chosen_rate >= NOH_UPDATE_RATE_COUNT || t->shown_rate >= NOH_UPDATE_RATE_COUNT)
-        return "character: a bad update rate";
-    return t->to_pose > 1u || t->posed > 1u ? "character: a bad pose index" : NULL;
+        return "character: unknown update rate";
+    return t->to_pose > 1u || t->posed > 1u ? "character: a pose index is not 0 or 1" : NULL;
 }
 
 /* The head against that of a new character with the same controller. */
 static const char *bad_head(const noh_character *ch, size_t bytes, const noh_clip_set *set)
 {
     uint64_t at;
-    if (bytes < sizeof *ch || ch->bytes > bytes) return "character: its bytes do not suit its counts";
+    if (bytes < sizeof *ch || ch->bytes > bytes) return "character: its size does not match its counts";
     if (ch->joint_count != set->joint_count || ch->float_count != set->float_count)
-        return "character: made for another set";
+        return "character: made for another clip set";
     if (ch->controller_offset != sizeof *ch || ch->palette_offsets[0] < sizeof *ch || ch->palette_offsets[0] > bytes)
-        return "character: bad offset of a part";
+        return "character: an offset does not match its counts";
     at = ch->palette_offsets[0];
     for (int i = 0; i < 2; i++) {
-        if (ch->palette_offsets[i] != at) return "character: bad offset of a part";
+        if (ch->palette_offsets[i] != at) return "character: an offset does not match its counts";
         at += 48u * (uint64_t)set->joint_count;
         at = (at + 4u * (uint64_t)set->float_count + 15u) & ~(uint64_t)15;
     }
-    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f)) return "character: a negative stretch of a pose";
-    if (ch->multiplied > 3u) return "character: bad flags of its palettes";
-    return ch->bytes != at ? "character: its bytes do not suit its counts" : NULL;
+    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f))
+        return "character: the stretch of a pose is negative or NaN";
+    if (ch->multiplied > 3u) return "character: unknown palette flags";
+    return ch->bytes != at ? "character: its size does not match its counts" : NULL;
 }
 
 noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,

@@ -78,7 +78,7 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
     work w;
     noh_result result;
     if (what || bad_counts(probe->skeleton, counts, level_count)) {
-        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must fall, and hold all joints that have no parent",
+        return noh_fail(error, NOH_ERR_ARG, what ? what : "counts must decrease, and each must include all root joints",
                         clip, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, noh_joint_lod_measure_size(probe), error);

@@ -39,17 +39,17 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
     double sum = 0.0;
     NOH_ASSERT(s);
     if (!(s->pixels >= 0.0f && s->pixels <= NOH_PIXELS_MAX))
-        return noh_fail(error, NOH_ERR_ARG, "pixels is not in 0..1e6", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "pixels must be 0 to 1e6", 0, 0);
     for (uint32_t i = 0; i < NOH_LOD_KIND_COUNT; i++) {
         if (!(s->shares[i] >= 0.0f && s->shares[i] <= 1.0f))
-            return noh_fail(error, NOH_ERR_ARG, "shares are not in 0..1", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "shares must each be 0 to 1", i, 0);
         sum += (double)s->shares[i];
     }
-    if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares sum to more than 1", 0, 0);
+    if (sum > 1.0 + 1e-6) return noh_fail(error, NOH_ERR_ARG, "shares must sum to at most 1", 0, 0);
     if (!(s->hysteresis >= 0.0f && s->hysteresis < 1.0f))
-        return noh_fail(error, NOH_ERR_ARG, "hysteresis is negative, or not below 1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "hysteresis must be at least 0 and below 1", 0, 0);
     if (!(s->lead >= 0.0f && lead_of(s) < hysteresis_of(s)))
-        return noh_fail(error, NOH_ERR_ARG, "lead is not below the hysteresis", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "lead must be at least 0 and below hysteresis", 0, 0);
     return NOH_OK;
 }
 
@@ -84,27 +84,29 @@ static int is_list(const void *levels, uint32_t count)
 
 static const char *bad_counts(const noh_lod_table *t)
 {
-    if (!is_list(t->meshes, t->mesh_level_count)) return "meshes: NULL, or more than NOH_LOD_LEVELS_MAX";
+    if (!is_list(t->meshes, t->mesh_level_count))
+        return "meshes is NULL, or mesh_level_count is above NOH_LOD_LEVELS_MAX";
     if (t->mesh_level_first && t->mesh_level_first >= t->mesh_level_count)
-        return "mesh_level_first is not below mesh_level_count";
-    if (!is_list(t->joints, t->joint_level_count)) return "joints: NULL, or more than NOH_LOD_LEVELS_MAX";
-    if (!is_list(t->influences, t->influence_level_count)) return "influences: NULL, or more than NOH_LOD_LEVELS_MAX";
+        return "mesh_level_first must be below mesh_level_count";
+    if (!is_list(t->joints, t->joint_level_count))
+        return "joints is NULL, or joint_level_count is above NOH_LOD_LEVELS_MAX";
+    if (!is_list(t->influences, t->influence_level_count))
+        return "influences is NULL, or influence_level_count is above NOH_LOD_LEVELS_MAX";
     return NULL;
 }
 
 static const char *bad_level(const noh_lod_table *t, noh_lod_kind kind, uint32_t level)
 {
     static const char *const what[] = {
-        "error of a mesh level is not finite, negative, or below that of a finer one",
-        "error of a joint level is not finite, negative, or below that of a finer one",
-        "error of an influence level is not finite, negative, or below that of a finer one"
+        "error of a mesh level is negative, not finite, or below a finer level's",
+        "error of a joint level is negative, not finite, or below a finer level's",
+        "error of an influence level is negative, not finite, or below a finer level's"
     };
     const errors e = errors_of(t, kind);
     if (!(e.error_m[level] >= (level ? e.error_m[level - 1u] : 0.0f) && e.error_m[level] <= 1e30f)) return what[kind];
-    if (kind == NOH_LOD_JOINTS && t->joints[level].joint_count == 0)
-        return "joints of a joint level: there must be at least one";
+    if (kind == NOH_LOD_JOINTS && t->joints[level].joint_count == 0) return "joint_count of a joint level is 0";
     if (kind == NOH_LOD_INFLUENCES && t->influences[level].influence_count == 0) {
-        return "influences of an influence level: there must be at least one";
+        return "influence_count of an influence level is 0";
     }
     return NULL;
 }
@@ -125,7 +127,7 @@ noh_result noh_lod_table_check(const noh_lod_table *t, noh_error *error)
         }
     }
     if (!(t->clip_error_m >= 0.0f && t->clip_error_m <= 1e30f)) {
-        return noh_fail(error, NOH_ERR_DATA, "error of the clips is negative or not finite", 0, 0);
+        return noh_fail(error, NOH_ERR_DATA, "clip_error_m is negative or not finite", 0, 0);
     }
     return NOH_OK;
 }

@@ -39,7 +39,7 @@ static const char *resolve(const noh_lod_pack_desc *desc, source *s)
 {
     if (!desc->set) return "set is NULL";
     if (!desc->set_desc || (!desc->set_desc->clips && !(desc->set_desc->clip_packs && desc->set_desc->clip_pack_count)))
-        return "set_desc: NULL, without clips, or not what the set was made by";
+        return "set_desc is NULL, has no clips, or is not the desc of the set";
     s->packs = desc->set_desc->clips ? &desc->set_desc->clips : desc->set_desc->clip_packs;
     s->pack = desc->set_desc->mesh ? desc->set_desc->mesh : s->packs[0];
     s->skeleton = desc->set_desc->skeleton;
@@ -50,13 +50,13 @@ static const char *resolve(const noh_lod_pack_desc *desc, source *s)
     if (s->joint_count) {
         s->levels = noh_pack_joint_levels(s->pack, s->skeleton, &s->level_count);
         if (!s->levels || s->levels[0] != s->joint_count)
-            return "set_desc: NULL, without clips, or not what the set was made by";
+            return "set_desc is NULL, has no clips, or is not the desc of the set";
     }
     s->mesh_level_count = desc->mesh ? desc->mesh->header->level_count : 0;
     s->target_count = desc->mesh ? desc->mesh->header->target_count : 0;
     s->skinned = desc->mesh && desc->mesh->header->skin != NOH_NONE;
     return s->skinned && !(s->joint_count && is_of_skeleton(s, desc->mesh))
-               ? "mesh is not moved by the skeleton of the set"
+               ? "the skeleton of the set does not move the mesh"
                : NULL;
 }
 

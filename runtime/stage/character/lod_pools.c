@@ -43,18 +43,18 @@ static const char *bad_field(const noh_lod_pools_desc *d, uint32_t *slots)
 {
     uint64_t sum = 0;
     if (d->instance_count == 0 || d->instance_count > NOH_LOD_POOL_SLOTS_MAX)
-        return "instance_count of LOD pools is not in 1..NOH_LOD_POOL_SLOTS_MAX";
+        return "LOD pools: instance_count must be 1 to NOH_LOD_POOL_SLOTS_MAX";
     if (d->pool_count == 0 || d->pool_count > NOH_LOD_POOLS_MAX)
-        return "pool_count of LOD pools is not in 1..NOH_LOD_POOLS_MAX";
-    if (!d->levels) return "levels of LOD pools is NULL";
-    if (!d->slot_counts) return "slot_counts of LOD pools is NULL";
+        return "LOD pools: pool_count must be 1 to NOH_LOD_POOLS_MAX";
+    if (!d->levels) return "LOD pools: levels is NULL";
+    if (!d->slot_counts) return "LOD pools: slot_counts is NULL";
     for (uint32_t i = 0; i < d->pool_count; i++) {
         if (d->levels[i] >= NOH_LOD_LEVELS_MAX || (i && d->levels[i] <= d->levels[i - 1u]))
-            return "levels of LOD pools do not rise";
-        if (d->slot_counts[i] == 0) return "slot_counts of LOD pools: a pool without slots";
+            return "LOD pools: levels must increase and be below NOH_LOD_LEVELS_MAX";
+        if (d->slot_counts[i] == 0) return "LOD pools: each of slot_counts must be at least 1";
         sum += d->slot_counts[i];
     }
-    if (sum > NOH_LOD_POOL_SLOTS_MAX) return "slot_counts of LOD pools: more than NOH_LOD_POOL_SLOTS_MAX in all";
+    if (sum > NOH_LOD_POOL_SLOTS_MAX) return "LOD pools: the sum of slot_counts is above NOH_LOD_POOL_SLOTS_MAX";
     *slots = (uint32_t)sum;
     return NULL;
 }
@@ -182,9 +182,10 @@ noh_result noh_lod_pools_check(const void *copy, const noh_lod_pools *like, noh_
     const noh_lod_pools *p = (const noh_lod_pools *)copy;
     NOH_ASSERT(copy && like);
     if (!same_desc(p, like)) {
-        return noh_fail(error, NOH_ERR_DATA, "LOD pools: a copy of others", 0, 0);
+        return noh_fail(error, NOH_ERR_DATA, "LOD pools: the copy was made with a different desc", 0, 0);
     }
-    return are_slots_sound(p) ? NOH_OK : noh_fail(error, NOH_ERR_DATA, "LOD pools: a slot out of range, or lost", 0, 0);
+    return are_slots_sound(p) ? NOH_OK
+                              : noh_fail(error, NOH_ERR_DATA, "LOD pools: a slot is out of range, or missing", 0, 0);
 }
 
 /* ---- asking ---- */

@@ -8,8 +8,8 @@
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t clip)
 {
     if (!p->set || !p->skeleton || p->skeleton->joint_count != p->set->joint_count)
-        return "probe: NULL set or skeleton, or a skeleton of other joints";
-    if (clip >= p->set->clip_count) return "clip is not a clip of the set";
+        return "probe: set or skeleton is NULL, or their joint counts differ";
+    if (clip >= p->set->clip_count) return "clip must be below the set's clip_count";
     return noh_clip_set_excess(p->set);
 }
 

@@ -18,7 +18,7 @@ noh_result noh_schedule_init(void *memory, size_t bytes, uint32_t capacity, noh_
     noh_result result;
     NOH_ASSERT(s);
     if (need == 0) {
-        return noh_fail(error, NOH_ERR_ARG, "capacity is not in 1..NOH_SCHEDULE_MAX", capacity, NOH_SCHEDULE_MAX);
+        return noh_fail(error, NOH_ERR_ARG, "capacity must be 1 to NOH_SCHEDULE_MAX", capacity, NOH_SCHEDULE_MAX);
     }
     result = noh_arena_open(&arena, memory, bytes, need, error);
     if (result == NOH_OK) {

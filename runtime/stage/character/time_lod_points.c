@@ -112,11 +112,12 @@ static const char *bad_argument(const noh_time_probe *p, const noh_time_lod_poin
     *where = clip;
     if (what) return what;
     *where = 0;
-    if (!points->holds || !points->point_count || !points->holds_per_point) return "points: NULL, or none";
+    if (!points->holds || !points->point_count || !points->holds_per_point)
+        return "points: holds is NULL, or a count is 0";
     for (size_t i = 0; i < (size_t)points->point_count * points->holds_per_point; i++) {
         *where = i;
         if (points->holds[i].weight > 0.0f && points->holds[i].joint >= p->set->joint_count)
-            return "points: a joint that is not in the skeleton";
+            return "points: a joint is not in the skeleton";
     }
     return NULL;
 }

@@ -47,20 +47,17 @@ static noh_result check_fields(const noh_crowd_desc *desc, noh_error *error)
     crowd_cells cells;
     const noh_crowd_desc d = with_defaults(desc);
     if (d.field_count > NOH_CROWD_FIELDS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more flow fields than the limit", 0, d.field_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "crowd: field_count is above NOH_CROWD_FIELDS_MAX", 0, d.field_count);
     }
     if (!(desc->field_cell >= 0.0f && desc->field_cell <= FAR) ||
         !(d.field_radius >= 0.0f && d.field_radius <= 0.5f * d.reach) || !(0.5f * d.field_cell <= d.reach)) {
-        return noh_fail(error, NOH_ERR_ARG, "the cells of flow fields, or the radius that they are for, are too large",
-                        0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "crowd: field_cell or field_radius is too large", 0, 0);
     }
     if (!(desc->slope_max >= 0.0f && desc->slope_max <= 2.0f) || (desc->ground && !is_ground(desc->ground))) {
-        return noh_fail(error, NOH_ERR_ARG, "a crowd's ground has no area, or its steepest slope is out of its range",
-                        0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "crowd: the ground has no area, or slope_max is not in 0..2", 0, 0);
     }
     if ((d.field_count || d.ground) && !noh_crowd_flow_cells(&d, &cells)) {
-        return noh_fail(error, NOH_ERR_LIMIT,
-                        "flow fields, or the ground, have more cells than the limit: give them larger ones", 0,
+        return noh_fail(error, NOH_ERR_LIMIT, "crowd: too many cells of flow fields or ground: increase field_cell", 0,
                         NOH_CROWD_FIELD_CELLS_MAX);
     }
     return NOH_OK;
@@ -69,23 +66,23 @@ static noh_result check_fields(const noh_crowd_desc *desc, noh_error *error)
 static noh_result check(const noh_crowd_desc *desc, noh_error *error)
 {
     if (!desc->agent_max || desc->agent_max > NOH_CROWD_AGENTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has no agents, or more than the limit", 0, desc->agent_max);
+        return noh_fail(error, NOH_ERR_LIMIT, "crowd: agent_max must be 1 to NOH_CROWD_AGENTS_MAX", 0, desc->agent_max);
     }
     if (desc->job_count > NOH_CROWD_JOBS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more jobs than the limit", 0, desc->job_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "crowd: job_count is above NOH_CROWD_JOBS_MAX", 0, desc->job_count);
     }
     if (desc->obstacle_count > NOH_CROWD_OBSTACLES_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "a crowd has more obstacles than the limit", 0, desc->obstacle_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "crowd: obstacle_count is above NOH_CROWD_OBSTACLES_MAX", 0,
+                        desc->obstacle_count);
     }
     if (!is_place(desc->origin) || !is_length(desc->extent[0]) || !is_length(desc->extent[1]) ||
         !(desc->reach >= 0.0f && desc->reach <= FAR)) {
-        return noh_fail(error, NOH_ERR_ARG, "a crowd's origin, extent or reach is out of its range", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "crowd: origin, extent or reach is out of range", 0, 0);
     }
     for (uint32_t i = 0; i < desc->obstacle_count; i++) {
         const noh_crowd_obstacle *o = &desc->obstacles[i];
         if (!is_place(o->from) || !is_place(o->to) || !(o->radius >= 0.0f && o->radius <= FAR)) {
-            return noh_fail(error, NOH_ERR_ARG, "an obstacle of a crowd is not where one can be, or has no radius", i,
-                            0);
+            return noh_fail(error, NOH_ERR_ARG, "crowd: an obstacle's position or radius is out of range", i, 0);
         }
     }
     return check_fields(desc, error);
@@ -207,8 +204,8 @@ noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent
         !(agent->radius > 0.0f && agent->radius <= 0.5f * crowd->reach) || agent->flags > NOH_CROWD_FLOCK ||
         !(agent->speed >= 0.0f && agent->speed <= SPEED_MAX * agent->radius)) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "an agent is too far away, too fast, or its radius is not within 0 and half "
-                        "of the crowd's reach",
+                        "agent: a position, goal or velocity is too large, speed is not 0 to 15 radii per second, "
+                        "flags are unknown, or radius is not above 0 and at most half of the reach",
                         index, 0);
     }
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;

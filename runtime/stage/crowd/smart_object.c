@@ -70,11 +70,10 @@ static noh_result check_slot(const noh_smart_slot *s, uint32_t index, noh_error 
     const float face = s->face[0] * s->face[0] + s->face[1] * s->face[1];
     if (!is_within(s->at[0], -PLACE_MAX, PLACE_MAX) || !is_within(s->at[1], -PLACE_MAX, PLACE_MAX) ||
         !is_within(face, 0.99f, 1.01f)) {
-        return noh_fail(error, NOH_ERR_ARG, "a slot is not where one can be, or faces no way", index, 0);
+        return noh_fail(error, NOH_ERR_ARG, "slot: position is out of range, or face is not a unit vector", index, 0);
     }
     if (!s->use_ticks || s->use_ticks > TICKS_MAX || s->enter_ticks > TICKS_MAX || s->leave_ticks > TICKS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "the times of a slot are out of their range, or it is not used at all",
-                        index, s->use_ticks);
+        return noh_fail(error, NOH_ERR_ARG, "slot: times are out of range, or use_ticks is 0", index, s->use_ticks);
     }
     return NOH_OK;
 }
@@ -84,11 +83,10 @@ static noh_result check_object(const noh_smart_desc *d, uint32_t index, uint32_t
     const noh_smart_object *o = &d->objects[index];
     if (o->need >= d->need_count || !is_within(o->rate, 1e-6f, RATE_MAX) || !o->going_ticks ||
         o->going_ticks > TICKS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "the need, rate or going_ticks of a smart object is out of its range",
-                        index, o->need);
+        return noh_fail(error, NOH_ERR_ARG, "smart object: need, rate or going_ticks is out of range", index, o->need);
     }
     if (o->first_slot != next_slot || !o->slot_count || o->slot_count > d->slot_count - next_slot) {
-        return noh_fail(error, NOH_ERR_ARG, "the slots of smart objects do not follow one another, each in one object",
+        return noh_fail(error, NOH_ERR_ARG, "smart objects: slots of objects must be consecutive and not overlap",
                         index, o->first_slot);
     }
     return NOH_OK;
@@ -99,12 +97,12 @@ static noh_result check_counts(const noh_smart_desc *d, noh_error *error)
     if (!d->agent_max || d->agent_max > NOH_CROWD_AGENTS_MAX || !d->need_count || d->need_count > NOH_SMART_NEEDS_MAX ||
         !d->object_count || d->object_count > NOH_SMART_OBJECTS_MAX || !d->slot_count ||
         d->slot_count > NOH_SMART_SLOTS_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "smart objects have no agents, needs, objects or slots, or too many", 0,
-                        0);
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "smart objects: a count of agents, needs, objects or slots is 0 or above its limit", 0, 0);
     }
     for (uint32_t n = 0; n < d->need_count; n++) {
         if (!is_within(d->growth[n], 0.0f, RATE_MAX)) {
-            return noh_fail(error, NOH_ERR_ARG, "a need does not grow, or out of its range", n, 0);
+            return noh_fail(error, NOH_ERR_ARG, "smart objects: growth of a need is negative or out of range", n, 0);
         }
     }
     return NOH_OK;
@@ -120,7 +118,8 @@ static noh_result check(const noh_smart_desc *d, noh_error *error)
         if (result) return result;
         slot += d->objects[i].slot_count;
     }
-    if (slot != d->slot_count) return noh_fail(error, NOH_ERR_ARG, "a slot is no object's", slot, 0);
+    if (slot != d->slot_count)
+        return noh_fail(error, NOH_ERR_ARG, "smart objects: a slot belongs to no object", slot, 0);
     for (uint32_t i = 0; i < d->slot_count && !result; i++) result = check_slot(&d->slots[i], i, error);
     return result;
 }

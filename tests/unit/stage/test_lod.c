@@ -60,7 +60,7 @@ static void table_fields_broken_in_turn(void **state)
     t = fine, t.mesh_level_count = NOH_LOD_LEVELS_MAX + 1u, bad_table(t, NOH_ERR_ARG, "meshes");
     t = fine, t.joints = NULL, bad_table(t, NOH_ERR_ARG, "joints");
     t = fine, t.influence_level_count = 99, bad_table(t, NOH_ERR_ARG, "influences");
-    t = fine, t.clip_error_m = -1.0f, bad_table(t, NOH_ERR_DATA, "error of the clips");
+    t = fine, t.clip_error_m = -1.0f, bad_table(t, NOH_ERR_DATA, "clip_error_m");
     memcpy(m, meshes, sizeof m);
     t = fine, t.meshes = m;
     m[2].error_m = 0.0005f, bad_table(t, NOH_ERR_DATA, "error of a mesh level");
@@ -68,11 +68,11 @@ static void table_fields_broken_in_turn(void **state)
     m[2].error_m = -1.0f, bad_table(t, NOH_ERR_DATA, "error of a mesh level");
     memcpy(j, joints, sizeof j);
     t = fine, t.joints = j;
-    j[1].joint_count = 0, bad_table(t, NOH_ERR_DATA, "joints of a joint level");
+    j[1].joint_count = 0, bad_table(t, NOH_ERR_DATA, "joint_count of a joint level");
     j[1].error_m = INFINITY, bad_table(t, NOH_ERR_DATA, "error of a joint level");
     memcpy(i, influences, sizeof i);
     t = fine, t.influences = i;
-    i[2].influence_count = 0, bad_table(t, NOH_ERR_DATA, "influences of an influence level");
+    i[2].influence_count = 0, bad_table(t, NOH_ERR_DATA, "influence_count of an influence level");
     i[0].error_m = -0.5f, bad_table(t, NOH_ERR_DATA, "error of an influence level");
 }
 
@@ -91,7 +91,7 @@ static void settings_fields_broken_in_turn(void **state)
     s = fine, s.pixels = -1.0f, bad_settings(s, "pixels");
     s = fine, s.pixels = NAN, bad_settings(s, "pixels");
     s = fine, s.shares[1] = 1.5f, bad_settings(s, "shares");
-    s = fine, s.shares[1] = s.shares[4] = 0.6f, bad_settings(s, "shares sum to more than 1");
+    s = fine, s.shares[1] = s.shares[4] = 0.6f, bad_settings(s, "shares must sum to at most 1");
     s = fine, s.hysteresis = 1.0f, bad_settings(s, "hysteresis");
     s = fine, s.lead = 0.3f, bad_settings(s, "lead");
     s = fine, s.hysteresis = 0.5f, s.lead = 0.49f;

@@ -47,8 +47,8 @@ static void descs_are_checked(void **state)
     d = three, d.levels = falling, bad(d, "levels");
     d = three, d.levels = high, bad(d, "levels");
     d = three, d.slot_counts = NULL, bad(d, "slot_counts");
-    d = three, d.slot_counts = none, bad(d, "without slots");
-    d = three, d.slot_counts = many, bad(d, "more than");
+    d = three, d.slot_counts = none, bad(d, "at least 1");
+    d = three, d.slot_counts = many, bad(d, "NOH_LOD_POOL_SLOTS_MAX");
 }
 
 static void the_size_is_exact(void **state)

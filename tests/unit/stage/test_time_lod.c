@@ -423,9 +423,9 @@ static void points_have_the_errors_of_their_own_sagittas(void **state)
     points.holds_per_point = 1;
     assert_int_equal(noh_time_lod_points_measure(memory, sizeof memory, &t.probe, &points, 0, errors, &error),
                      NOH_ERR_ARG);
-    assert_int_equal(strncmp(error.what, "points: a joint that is not in the skeleton",
-                             strlen("points: a joint that is not in the skeleton")),
-                     0);
+    assert_int_equal(
+        strncmp(error.what, "points: a joint is not in the skeleton", strlen("points: a joint is not in the skeleton")),
+        0);
 }
 
 static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joints, noh_transform *pose, uint32_t floats,
