@@ -37,7 +37,7 @@ $(BUILD)/kernel/skin_%.o: $(call kernel_c,skin)
 $(BUILD)/kernel/ragdoll_lanes_scalar.o: $(call kernel_c,ragdoll_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_RAGDOLL_SCALAR -DNOH_RAGDOLL_STEP=noh_ragdoll_step_dolls_scalar -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SIMD_SCALAR -DNOH_RAGDOLL_STEP=noh_ragdoll_step_dolls_scalar -MMD -MP -c $< -o $@
 
 $(BUILD)/kernel/ragdoll_lanes_%.o: $(call kernel_c,ragdoll_lanes)
 	@mkdir -p $(@D)
@@ -47,7 +47,7 @@ $(BUILD)/kernel/ragdoll_lanes_%.o: $(call kernel_c,ragdoll_lanes)
 $(BUILD)/kernel/spring_lanes_scalar.o: $(call kernel_c,spring_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SPRING_SCALAR -DNOH_SPRING_STEP=noh_spring_step_scalar -DNOH_SPRING_ROTATIONS=noh_spring_rotations_scalar -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SIMD_SCALAR -DNOH_SPRING_STEP=noh_spring_step_scalar -DNOH_SPRING_ROTATIONS=noh_spring_rotations_scalar -MMD -MP -c $< -o $@
 
 $(BUILD)/kernel/spring_lanes_%.o: $(call kernel_c,spring_lanes)
 	@mkdir -p $(@D)
@@ -57,7 +57,7 @@ $(BUILD)/kernel/spring_lanes_%.o: $(call kernel_c,spring_lanes)
 $(BUILD)/kernel/hair_lanes_scalar.o: $(call kernel_c,hair_lanes)
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_HAIR_SCALAR -DNOH_HAIR_STEP=noh_hair_step_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_SIMD_SCALAR -DNOH_HAIR_STEP=noh_hair_step_scalar -DNOH_HAIR_POINTS=noh_hair_points_scalar -MMD -MP -c $< -o $@
 
 $(BUILD)/kernel/hair_lanes_%.o: $(call kernel_c,hair_lanes)
 	@mkdir -p $(@D)

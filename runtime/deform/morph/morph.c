@@ -58,7 +58,7 @@ noh_result noh_morph_layers_init(void *memory, size_t bytes, const noh_mesh *mes
 
 const char *noh_morph_simd(void)
 {
-    return NOH_MORPH_SIMD;
+    return NOH_SIMD_NAME;
 }
 
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
@@ -118,7 +118,7 @@ noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh
 #ifdef NOH_AVX2_AT_RUN_TIME
         { "avx2", noh_processor_has_avx2() ? accumulate_wide : NULL, accumulate_some_wide, finish_wide },
 #endif
-        { NOH_MORPH_SIMD, noh_morph_accumulate, accumulate_some, finish },
+        { NOH_SIMD_NAME, noh_morph_accumulate, accumulate_some, finish },
         { "scalar", noh_morph_accumulate_scalar, accumulate_some_scalar, finish_scalar },
     };
     NOH_ASSERT(kernel);

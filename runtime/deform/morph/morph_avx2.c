@@ -13,7 +13,7 @@ NOH_TARGET_AVX2 void noh_morph_accumulate_wide(const noh_mesh *mesh, const float
 NOH_TARGET_AVX2 void noh_morph_accumulate_some_wide(const noh_mesh *mesh, const float *weights,
                                                     const noh_morph_layers *layers, const uint8_t *groups)
 {
-    noh_accumulate_targets(mesh, weights, layers, groups, noh_add_rows8);
+    noh_accumulate_targets(mesh, weights, layers, groups, noh_v8_add_rows);
 }
 
 #endif

@@ -7,7 +7,7 @@
 NOH_TARGET_AVX2 void noh_morph_finish_wide(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first,
                                            uint32_t count, void *out)
 {
-    wide_finish(mesh, layers, first, count, out);
+    noh_v8_finish(mesh, layers, first, count, out);
 }
 
 #endif

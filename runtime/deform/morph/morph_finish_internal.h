@@ -2,7 +2,7 @@
 #ifndef NOH_DEFORM_MORPH_FINISH_INTERNAL_H
 #define NOH_DEFORM_MORPH_FINISH_INTERNAL_H
 
-#include "core/base/lanes_internal.h"
+#include "core/base/simd_internal.h"
 #include "core/base/processor_internal.h"
 #include "deform/morph/morph_finish.h"
 

@@ -1,5 +1,5 @@
 /* morph_finish_template.h (private to deform/): the kernel that finishes vertices, for lanes of any width; included once
- * for each. Names and types are those of lanes_internal.h behind LANES(); LANES_COUNT of them are side by side, in
+ * for each. Names and types are those of simd_internal.h behind LANES(); LANES_COUNT of them are side by side, in
  * functions marked by LANES_INLINE.
  *
  * One vertex is in each lane. Of a record four words are loaded, which may be more than it has: the last vertices of a
@@ -22,7 +22,7 @@ LANES_INLINE void LANES(unfold)(LANES_TYPE word, int is_tangent, LANES_TYPE out[
     const LANES_TYPE y = is_tangent ? LANES(mul)(LANES(field)(word, 0, 17), LANES(set)(1.0f / 16383.0f))
                                     : LANES(mul)(LANES(field)(word, 0, 16), LANES(set)(1.0f / 32767.0f));
     const LANES_TYPE z = LANES(sub)(LANES(sub)(LANES(set)(1.0f), LANES(abs)(x)), LANES(abs)(y));
-    const LANES_TYPE fold = LANES(larger)(LANES(negate)(z), zero);
+    const LANES_TYPE fold = LANES(max)(zero, LANES(negate)(z));
     out[0] = LANES(sub)(x, LANES(with_sign)(fold, x));
     out[1] = LANES(sub)(y, LANES(with_sign)(fold, y));
     out[2] = z;

@@ -9,39 +9,46 @@
  * twice as long. Nor can it know that no layer lies over the words or the fields, so the words of a step are loaded once
  * for all layers by hand, and the fields are copied. */
 
-ROWS_INLINE void ROWS(add)(ROWS_WORDS words, morph_field f, float *layer)
+/* A layer and what words add to it. */
+LANES_INLINE LANES_TYPE LANES(with_field)(LANES_TYPE words, morph_field f, LANES_TYPE layer)
 {
-    ROWS(store)(layer, ROWS(sum)(words, f, ROWS(load)(layer)));
+    const LANES_TYPE value = LANES(field)(words, (int)f.left, (int)f.right);
+    return LANES(add)(layer, LANES(mul)(value, LANES(set)(f.weight)));
 }
 
-ROWS_INLINE void ROWS(add_some)(ROWS_WORDS words, ROWS_MASK mask, morph_field f, float *layer)
+LANES_INLINE void LANES(add_field)(LANES_TYPE words, morph_field f, float *layer)
 {
-    const ROWS_TYPE before = ROWS(load)(layer);
-    ROWS(store)(layer, ROWS(choose)(mask, ROWS(sum)(words, f, before), before));
+    LANES(store)(layer, LANES(with_field)(words, f, LANES(load)(layer)));
 }
 
-ROWS_INLINE void ROWS(add_step)(const uint32_t *from, const morph_field f[3], float *const layers[3], size_t at)
+LANES_INLINE void LANES(add_some)(LANES_TYPE words, LANES_TYPE mask, morph_field f, float *layer)
 {
-    const ROWS_WORDS words = ROWS(words)(from);
-    ROWS(add)(words, f[0], layers[0] + at);
-    ROWS(add)(words, f[1], layers[1] + at);
-    if (layers[2]) ROWS(add)(words, f[2], layers[2] + at);
+    const LANES_TYPE before = LANES(load)(layer);
+    LANES(store)(layer, LANES(choose)(mask, LANES(with_field)(words, f, before), before));
 }
 
-ROWS_INLINE void ROWS(add_end)(const uint32_t *from, ROWS_MASK mask, const morph_field f[3], float *const layers[3],
-                               size_t at)
+LANES_INLINE void LANES(add_step)(const uint32_t *from, const morph_field f[3], float *const layers[3], size_t at)
 {
-    const ROWS_WORDS words = ROWS(words)(from);
-    ROWS(add_some)(words, mask, f[0], layers[0] + at);
-    ROWS(add_some)(words, mask, f[1], layers[1] + at);
-    if (layers[2]) ROWS(add_some)(words, mask, f[2], layers[2] + at);
+    const LANES_TYPE words = LANES(words)(from);
+    LANES(add_field)(words, f[0], layers[0] + at);
+    LANES(add_field)(words, f[1], layers[1] + at);
+    if (layers[2]) LANES(add_field)(words, f[2], layers[2] + at);
 }
 
-ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3], float *const layers[3])
+LANES_INLINE void LANES(add_end)(const uint32_t *from, LANES_TYPE mask, const morph_field f[3], float *const layers[3],
+                                 size_t at)
 {
-    const size_t count = r->count, rows = r->rows, stride = r->stride, lead = r->lead % ROWS_LANES, end = lead + count;
-    const size_t whole = end - end % ROWS_LANES;
-    const ROWS_MASK head = ROWS(mask)(lead, end), tail = ROWS(mask)(0, end - whole);
+    const LANES_TYPE words = LANES(words)(from);
+    LANES(add_some)(words, mask, f[0], layers[0] + at);
+    LANES(add_some)(words, mask, f[1], layers[1] + at);
+    if (layers[2]) LANES(add_some)(words, mask, f[2], layers[2] + at);
+}
+
+LANES_INLINE void LANES(add_rows)(const noh_morph_rows *r, const morph_field f[3], float *const layers[3])
+{
+    const size_t count = r->count, rows = r->rows, stride = r->stride, lead = r->lead % LANES_COUNT, end = lead + count;
+    const size_t whole = end - end % LANES_COUNT;
+    const LANES_TYPE head = LANES(between)(lead, end), tail = LANES(between)(0, end - whole);
     const morph_field g[3] = { f[0], f[1], f[2] };
     const uint32_t *words = r->words - lead;
     float *to[3];
@@ -53,16 +60,14 @@ ROWS_INLINE void ROWS(add_rows)(const noh_morph_rows *r, const morph_field f[3],
     to[1] = layers[1] - lead;
     to[2] = layers[2] ? layers[2] - lead : NULL;
     for (size_t y = 0, at = 0; y < rows; y++, at += stride, words += count) {
-        size_t i = ROWS_LANES;
-        ROWS(add_end)(words, head, g, to, at);
-        for (; i < whole; i += ROWS_LANES) ROWS(add_step)(words + i, g, to, at + i);
-        if (i < end) ROWS(add_end)(words + i, tail, g, to, at + i);
+        size_t i = LANES_COUNT;
+        LANES(add_end)(words, head, g, to, at);
+        for (; i < whole; i += LANES_COUNT) LANES(add_step)(words + i, g, to, at + i);
+        if (i < end) LANES(add_end)(words + i, tail, g, to, at + i);
     }
 }
 
-#undef ROWS
-#undef ROWS_LANES
-#undef ROWS_TYPE
-#undef ROWS_WORDS
-#undef ROWS_MASK
-#undef ROWS_INLINE
+#undef LANES
+#undef LANES_TYPE
+#undef LANES_COUNT
+#undef LANES_INLINE

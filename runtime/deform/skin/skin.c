@@ -141,7 +141,7 @@ void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index,
 
 const char *noh_skin_simd(void)
 {
-    return NOH_LANES == 8 ? "avx2" : NOH_LANES == 1 ? "scalar" : noh_morph_simd();
+    return NOH_SIMD_NAME;
 }
 
 #endif

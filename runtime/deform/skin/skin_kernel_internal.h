@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#include "core/base/lanes_internal.h"
+#include "core/base/simd_internal.h"
 #include "deform/morph/morph.h"
 #include "deform/skin/skin.h"
 
@@ -28,46 +28,36 @@ typedef struct skin_job {
 
 /* ---- one matrix per vertex ---- */
 
-#if defined(NOH_AVX2)
+#if NOH_LANES == 8
 /* Two rows in one register, the third in half of one. */
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {
-    __m256 w = _mm256_set1_ps(weights[0]), ab = _mm256_mul_ps(w, _mm256_loadu_ps(from[0]));
-    __m128 c = _mm_mul_ps(_mm256_castps256_ps128(w), _mm_loadu_ps(from[0] + 8));
+    noh_v8 w = noh_v8_set(weights[0]), ab = noh_v8_mul(w, noh_v8_load(from[0]));
+    noh_v4 c = noh_v4_mul(noh_v8_low(w), noh_v4_load(from[0] + 8));
     NOH_UNROLL
     for (uint32_t i = 1; i < count; i++) {
-        w = _mm256_set1_ps(weights[i]);
-        ab = _mm256_add_ps(ab, _mm256_mul_ps(w, _mm256_loadu_ps(from[i])));
-        c = _mm_add_ps(c, _mm_mul_ps(_mm256_castps256_ps128(w), _mm_loadu_ps(from[i] + 8)));
+        w = noh_v8_set(weights[i]);
+        ab = noh_v8_add(ab, noh_v8_mul(w, noh_v8_load(from[i])));
+        c = noh_v4_add(c, noh_v4_mul(noh_v8_low(w), noh_v4_load(from[i] + 8)));
     }
-    _mm256_storeu_ps(m, ab);
-    _mm_storeu_ps(m + 8, c);
-}
-#elif NOH_LANES == 4
-static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
-{
-    lanes w = lanes_set(weights[0]), a = lanes_mul(w, lanes_load(from[0])), b = lanes_mul(w, lanes_load(from[0] + 4));
-    lanes c = lanes_mul(w, lanes_load(from[0] + 8));
-    NOH_UNROLL
-    for (uint32_t i = 1; i < count; i++) {
-        w = lanes_set(weights[i]);
-        a = lanes_add(a, lanes_mul(w, lanes_load(from[i])));
-        b = lanes_add(b, lanes_mul(w, lanes_load(from[i] + 4)));
-        c = lanes_add(c, lanes_mul(w, lanes_load(from[i] + 8)));
-    }
-    lanes_store(m, a);
-    lanes_store(m + 4, b);
-    lanes_store(m + 8, c);
+    noh_v8_store(m, ab);
+    noh_v4_store(m + 8, c);
 }
 #else
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {
-    for (int e = 0; e < 12; e++) {
-        m[e] = weights[0] * from[0][e];
-        for (uint32_t i = 1; i < count; i++) {
-            m[e] = m[e] + weights[i] * from[i][e];
-        }
+    noh_v4 w = noh_v4_set(weights[0]), a = noh_v4_mul(w, noh_v4_load(from[0]));
+    noh_v4 b = noh_v4_mul(w, noh_v4_load(from[0] + 4)), c = noh_v4_mul(w, noh_v4_load(from[0] + 8));
+    NOH_UNROLL
+    for (uint32_t i = 1; i < count; i++) {
+        w = noh_v4_set(weights[i]);
+        a = noh_v4_add(a, noh_v4_mul(w, noh_v4_load(from[i])));
+        b = noh_v4_add(b, noh_v4_mul(w, noh_v4_load(from[i] + 4)));
+        c = noh_v4_add(c, noh_v4_mul(w, noh_v4_load(from[i] + 8)));
     }
+    noh_v4_store(m, a);
+    noh_v4_store(m + 4, b);
+    noh_v4_store(m + 8, c);
 }
 #endif
 
@@ -179,6 +169,17 @@ static inline void unfold_lanes(lanes x, lanes y, lanes out[3])
     out[0] = lanes_add(x, lanes_choose(lanes_less(x, zero), fold, lanes_negate(fold)));
     out[1] = lanes_add(y, lanes_choose(lanes_less(y, zero), fold, lanes_negate(fold)));
     out[2] = z;
+}
+
+/* noh_normalize3, lane by lane */
+static inline void lanes_normalize3(lanes v[3], const lanes fallback[3])
+{
+    lanes square = lanes_dot3(v, v), long_enough = lanes_less(lanes_set(1e-30f), square);
+    lanes inverse = lanes_div(lanes_set(1.0f), lanes_sqrt(square));
+    NOH_UNROLL
+    for (int i = 0; i < 3; i++) {
+        v[i] = lanes_choose(long_enough, lanes_mul(v[i], inverse), fallback[i]);
+    }
 }
 
 static inline void make_unit(lanes v[3])

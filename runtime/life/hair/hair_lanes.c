@@ -5,11 +5,6 @@
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_HAIR_SCALAR) /* scalar: the reference for the SIMD paths */
-#undef NOH_AVX2
-#undef NOH_SSE2
-#undef NOH_NEON
-#endif
 #include "life/hair/hair_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/vector_internal.h"

@@ -4,7 +4,7 @@
 #define NOH_SIM_LANES3_INTERNAL_H
 
 #include "core/base/compiler.h"
-#include "core/base/lanes_internal.h"
+#include "core/base/simd_internal.h"
 
 typedef struct lane3 {
     lanes x, y, z;
@@ -13,28 +13,6 @@ typedef struct lane3 {
 typedef struct lane4 {
     lanes x, y, z, w;
 } lane4;
-
-/* ---- lanes ---- */
-
-NOH_ALWAYS_INLINE lanes lanes_and(lanes a, lanes b)
-{
-    return lanes_choose(a, b, lanes_set(0.0f));
-}
-
-NOH_ALWAYS_INLINE lanes lanes_or(lanes a, lanes b)
-{
-    return lanes_choose(a, a, b);
-}
-
-NOH_ALWAYS_INLINE lanes lanes_min(lanes a, lanes b)
-{
-    return lanes_choose(lanes_less(a, b), a, b);
-}
-
-NOH_ALWAYS_INLINE lanes lanes_max(lanes a, lanes b)
-{
-    return lanes_choose(lanes_less(a, b), b, a);
-}
 
 /* ---- vectors ---- */
 

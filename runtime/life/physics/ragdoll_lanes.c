@@ -10,11 +10,6 @@
  * v + (along - across) z (z . v). */
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_RAGDOLL_SCALAR) /* scalar: the reference for the SIMD paths */
-#undef NOH_AVX2
-#undef NOH_SSE2
-#undef NOH_NEON
-#endif
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"

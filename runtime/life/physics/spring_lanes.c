@@ -8,11 +8,6 @@
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
-#if defined(NOH_SPRING_SCALAR) /* scalar: the reference for the SIMD paths */
-#undef NOH_AVX2
-#undef NOH_SSE2
-#undef NOH_NEON
-#endif
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/spring_internal.h"
 #include "life/physics/vector_internal.h"

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "motion/clip/clip_vec_internal.h"
+#include "core/base/simd_internal.h"
 
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
 #define NOH_CLIP_INLINE NOH_ALWAYS_INLINE
@@ -21,43 +21,26 @@ static inline float *rotation_at(noh_transform *out, uint32_t offset)
     return (float *)(void *)((uint8_t *)out + offset);
 }
 
-#if defined(NOH_AVX2) && !defined(NOH_CLIP_SCALAR)
-#include <immintrin.h>
-
-/* Two joints per register, eight at a time; sums in the order of the scalar code. */
+#if NOH_LANES == 8
+/* Four joints, 0 2 in one register and 1 3 in the other; sums in the order of the scalar twin. */
 NOH_CLIP_INLINE void blend_four(const uint8_t *a, const uint8_t *b, uint32_t r, int wide, const weights *w,
-                                __m256 *first, __m256 *second)
+                                noh_v8 *first, noh_v8 *second)
 {
-    if (wide) { /* joints 0 1, then 2 3 */
+    if (wide) {
         const float *p = (const float *)(const void *)a + 4u * r, *q = (const float *)(const void *)b + 4u * r;
-        const __m256 to_a = _mm256_set1_ps(w->to_a), to_b = _mm256_set1_ps(w->to_b);
-        const __m256 x = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p), to_a),
-                                       _mm256_mul_ps(_mm256_loadu_ps(q), to_b));
-        const __m256 y = _mm256_add_ps(_mm256_mul_ps(_mm256_loadu_ps(p + 8), to_a),
-                                       _mm256_mul_ps(_mm256_loadu_ps(q + 8), to_b));
-        *first = _mm256_permute2f128_ps(x, y, 0x20);
-        *second = _mm256_permute2f128_ps(x, y, 0x31);
+        const noh_v8 to_a = noh_v8_set(w->to_a), to_b = noh_v8_set(w->to_b);
+        *first = noh_v8_add(noh_v8_mul(noh_v8_load_two(p, p + 8), to_a), noh_v8_mul(noh_v8_load_two(q, q + 8), to_b));
+        *second = noh_v8_add(noh_v8_mul(noh_v8_load_two(p + 4, p + 12), to_a),
+                             noh_v8_mul(noh_v8_load_two(q + 4, q + 12), to_b));
     } else {
-        const __m256i both = _mm256_set1_epi32((int32_t)((uint32_t)w->whole_b << 16 | (uint32_t)w->whole_a));
-        const __m256i p = _mm256_loadu_si256((const __m256i *)(const void *)(a + 8u * r));
-        const __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)(b + 8u * r));
-        *first = _mm256_cvtepi32_ps(_mm256_madd_epi16(_mm256_unpacklo_epi16(p, q), both));
-        *second = _mm256_cvtepi32_ps(_mm256_madd_epi16(_mm256_unpackhi_epi16(p, q), both));
+        noh_v8_blend_i16((const int16_t *)(const void *)(a + 8u * r), (const int16_t *)(const void *)(b + 8u * r),
+                         w->whole_a, w->whole_b, first, second);
     }
 }
 
-/* noh_v4_sums of both halves. */
-static inline __m256 sums8(__m256 a, __m256 b, __m256 c, __m256 d)
+static inline void store_two(noh_v8 q, noh_transform *out, uint32_t first, uint32_t second)
 {
-    const __m256 ab = _mm256_add_ps(_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
-    const __m256 cd = _mm256_add_ps(_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
-    return _mm256_add_ps(_mm256_shuffle_ps(ab, cd, 0x44), _mm256_shuffle_ps(ab, cd, 0xee));
-}
-
-static inline void store_two(__m256 q, noh_transform *out, uint32_t first, uint32_t second)
-{
-    _mm_storeu_ps(rotation_at(out, first), _mm256_castps256_ps128(q));
-    _mm_storeu_ps(rotation_at(out, second), _mm256_extractf128_ps(q, 1));
+    noh_v8_store_two(rotation_at(out, first), rotation_at(out, second), q);
 }
 
 /* Registers hold joints 0 2, 1 3, 4 6, 5 7. Returns the number of rotations done. */
@@ -66,16 +49,16 @@ NOH_CLIP_INLINE uint32_t blend_many(const uint32_t *offsets, const uint8_t *a, c
 {
     uint32_t r = 0;
     for (; r + 8u <= count; r += 8u) {
-        __m256 q[4], scale;
+        noh_v8 q[4], scale;
         blend_four(a, b, r, wide, w, &q[0], &q[1]);
         blend_four(a, b, r + 4u, wide, w, &q[2], &q[3]);
-        scale = sums8(_mm256_mul_ps(q[0], q[0]), _mm256_mul_ps(q[1], q[1]), _mm256_mul_ps(q[2], q[2]),
-                      _mm256_mul_ps(q[3], q[3]));
-        scale = _mm256_div_ps(_mm256_set1_ps(1.0f), _mm256_sqrt_ps(_mm256_max_ps(scale, _mm256_set1_ps(TINY))));
-        store_two(_mm256_mul_ps(q[0], _mm256_permute_ps(scale, 0x00)), out, offsets[r], offsets[r + 2u]);
-        store_two(_mm256_mul_ps(q[1], _mm256_permute_ps(scale, 0x55)), out, offsets[r + 1u], offsets[r + 3u]);
-        store_two(_mm256_mul_ps(q[2], _mm256_permute_ps(scale, 0xaa)), out, offsets[r + 4u], offsets[r + 6u]);
-        store_two(_mm256_mul_ps(q[3], _mm256_permute_ps(scale, 0xff)), out, offsets[r + 5u], offsets[r + 7u]);
+        scale = noh_v8_sums(noh_v8_mul(q[0], q[0]), noh_v8_mul(q[1], q[1]), noh_v8_mul(q[2], q[2]),
+                            noh_v8_mul(q[3], q[3]));
+        scale = noh_v8_div(noh_v8_set(1.0f), noh_v8_sqrt(noh_v8_max(noh_v8_set(TINY), scale)));
+        store_two(noh_v8_mul(q[0], noh_v8_lane(scale, 0)), out, offsets[r], offsets[r + 2u]);
+        store_two(noh_v8_mul(q[1], noh_v8_lane(scale, 1)), out, offsets[r + 1u], offsets[r + 3u]);
+        store_two(noh_v8_mul(q[2], noh_v8_lane(scale, 2)), out, offsets[r + 4u], offsets[r + 6u]);
+        store_two(noh_v8_mul(q[3], noh_v8_lane(scale, 3)), out, offsets[r + 5u], offsets[r + 7u]);
     }
     return r;
 }
@@ -100,7 +83,7 @@ NOH_CLIP_INLINE void normalise_group(noh_v4 q[NOH_CLIP_GROUP])
 {
     noh_v4 scale = noh_v4_sums(noh_v4_mul(q[0], q[0]), noh_v4_mul(q[1], q[1]), noh_v4_mul(q[2], q[2]),
                                noh_v4_mul(q[3], q[3]));
-    scale = noh_v4_max(scale, noh_v4_set(TINY));
+    scale = noh_v4_max(noh_v4_set(TINY), scale);
     scale = noh_v4_div(noh_v4_set(1.0f), noh_v4_sqrt(scale));
     q[0] = noh_v4_mul(q[0], noh_v4_lane(scale, 0));
     q[1] = noh_v4_mul(q[1], noh_v4_lane(scale, 1));
@@ -126,9 +109,8 @@ NOH_CLIP_INLINE void blend_group(const uint8_t *a, const uint8_t *b, uint32_t r,
         q[3] = lerp(p + 12, o + 12, to_a, to_b);
     } else {
         const int16_t *p = (const int16_t *)(const void *)a + 4u * r, *o = (const int16_t *)(const void *)b + 4u * r;
-        const noh_weights both = noh_weights_set(w->whole_a, w->whole_b);
-        noh_v4_blend_i16(p, o, both, &q[0], &q[1]);
-        noh_v4_blend_i16(p + 8, o + 8, both, &q[2], &q[3]);
+        noh_v4_blend_i16(p, o, w->whole_a, w->whole_b, &q[0], &q[1]);
+        noh_v4_blend_i16(p + 8, o + 8, w->whole_a, w->whole_b, &q[2], &q[3]);
     }
     normalise_group(q);
 }

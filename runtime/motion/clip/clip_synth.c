@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "motion/clip/clip_vec_internal.h"
+#include "core/base/simd_internal.h"
 
 #define QUAT_ONE 32767.0f
 #define HALF_ROOT 0.70710678f
@@ -313,7 +313,7 @@ static inline void rotate_quad(const noh_v4 u[3], const noh_v4 r[4], noh_v4 q[4]
 #undef SUM
     q[3] = noh_v4_sub(noh_v4_sub(noh_v4_mul(r[3], d), noh_v4_mul(r[0], a)),
                       noh_v4_add(noh_v4_mul(r[1], b), noh_v4_mul(r[2], c)));
-    noh_v4_transpose(q);
+    noh_v4_transpose(q, q);
 }
 
 static inline void store_quat(uint8_t *out, noh_v4 q, int wide)
@@ -337,13 +337,13 @@ static inline void synth_rotation(const noh_clip_basis *basis, const float (*coe
         r[i] = noh_v4_set(reference[i]);
     }
     for (uint32_t s = 0; s < fronts; s += 4u) {
-        const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
+        const uint32_t used = fronts - s < 4u ? fronts - s : 4u;
         const quad *u;
         if (basis->skip >> s / 4u & 1u) continue;
         u = next_quad(&q, basis, coefs, last, s, fronts);
         rotate_quad(u->front, r, front);
         rotate_quad(u->back, r, back);
-        for (uint32_t i = 0; i < lanes; i++) {
+        for (uint32_t i = 0; i < used; i++) {
             store_quat(out + (slots - 1u - s - i) * stride, back[i], wide);
             store_quat(out + (s + i) * stride, front[i], wide);
         }
@@ -368,7 +368,7 @@ void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4],
     quads q;
     q.ready = 0;
     for (uint32_t s = 0; s < fronts; s += 4u) {
-        const uint32_t lanes = fronts - s < 4u ? fronts - s : 4u;
+        const uint32_t used = fronts - s < 4u ? fronts - s : 4u;
         float front[4][4], back[4][4];
         noh_v4 v[4];
         const quad *u;
@@ -379,12 +379,12 @@ void noh_clip_synth_linear(const noh_clip_basis *basis, const float (*coefs)[4],
                 v[c] = noh_v4_add(noh_v4_set(reference[c]), side ? u->back[c] : u->front[c]);
             }
             v[3] = noh_v4_set(0.0f);
-            noh_v4_transpose(v);
+            noh_v4_transpose(v, v);
             for (int i = 0; i < 4; i++) {
                 noh_v4_store(side ? back[i] : front[i], v[i]);
             }
         }
-        for (uint32_t i = 0; i < lanes; i++) {
+        for (uint32_t i = 0; i < used; i++) {
             memcpy(out + (slots - 1u - s - i) * stride, back[i], 3u * sizeof(float));
             memcpy(out + (s + i) * stride, front[i], 3u * sizeof(float));
         }

@@ -2,13 +2,7 @@
 
 #include <string.h>
 
-#include "core/base/compiler.h"
-
-#if defined(NOH_SSE2)
-#include <emmintrin.h>
-#elif defined(NOH_NEON)
-#include <arm_neon.h>
-#endif
+#include "core/base/simd_internal.h"
 
 /* The rotation matrix of a unit quaternion, its columns scaled: scale acts first. */
 void noh_transform_matrix(const noh_transform *t, float matrix[12])
@@ -32,56 +26,22 @@ void noh_transform_matrix(const noh_transform *t, float matrix[12])
 }
 
 /* A row of the product is the sum of b's rows, each times one element of a's row, and the row's own translation comes
- * last. Four lanes make one row: each lane computes what the plain loop computes for its column, product by product and
- * sum by sum in the same order, so the bits are the same. Only the last lane has the translation; the others add -0,
- * which leaves every float unchanged, where +0 would turn -0 into +0. */
-#if defined(NOH_SSE2)
-
+ * last. Four lanes make one row: each lane does what the plain loop does for its column, product by product and sum by
+ * sum in the same order, so the bits are the same. The translation belongs to the last lane only; the others add -0,
+ * which leaves every float as it is, where +0 would turn -0 into +0. */
 void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
 {
-    const __m128 b0 = _mm_loadu_ps(b), b1 = _mm_loadu_ps(b + 4), b2 = _mm_loadu_ps(b + 8);
-    __m128 rows[3];
+    const noh_v4 b0 = noh_v4_load(b), b1 = noh_v4_load(b + 4), b2 = noh_v4_load(b + 8);
+    noh_v4 rows[3];
     for (int r = 0; r < 3; r++) {
         const float *row = a + 4 * r;
-        __m128 sum = _mm_mul_ps(_mm_set1_ps(row[0]), b0);
-        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(row[1]), b1));
-        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(row[2]), b2));
-        rows[r] = _mm_add_ps(sum, _mm_set_ps(row[3], -0.0f, -0.0f, -0.0f));
+        noh_v4 sum = noh_v4_mul(noh_v4_set(row[0]), b0);
+        sum = noh_v4_add(sum, noh_v4_mul(noh_v4_set(row[1]), b1));
+        sum = noh_v4_add(sum, noh_v4_mul(noh_v4_set(row[2]), b2));
+        rows[r] = noh_v4_add(sum, noh_v4_make(-0.0f, -0.0f, -0.0f, row[3]));
     }
-    for (int r = 0; r < 3; r++) _mm_storeu_ps(out + 4 * r, rows[r]);
+    for (int r = 0; r < 3; r++) noh_v4_store(out + 4 * r, rows[r]);
 }
-
-#elif defined(NOH_NEON)
-
-void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
-{
-    const float32x4_t b0 = vld1q_f32(b), b1 = vld1q_f32(b + 4), b2 = vld1q_f32(b + 8);
-    float32x4_t rows[3];
-    for (int r = 0; r < 3; r++) {
-        const float *row = a + 4 * r;
-        float32x4_t sum = vmulq_n_f32(b0, row[0]);
-        sum = vaddq_f32(sum, vmulq_n_f32(b1, row[1]));
-        sum = vaddq_f32(sum, vmulq_n_f32(b2, row[2]));
-        rows[r] = vaddq_f32(sum, vsetq_lane_f32(row[3], vdupq_n_f32(-0.0f), 3));
-    }
-    for (int r = 0; r < 3; r++) vst1q_f32(out + 4 * r, rows[r]);
-}
-
-#else
-
-void noh_matrix_multiply(const float a[12], const float b[12], float out[12])
-{
-    float m[12];
-    for (int r = 0; r < 12; r += 4) {
-        for (int c = 0; c < 3; c++) {
-            m[r + c] = a[r] * b[c] + a[r + 1] * b[4 + c] + a[r + 2] * b[8 + c];
-        }
-        m[r + 3] = a[r] * b[3] + a[r + 1] * b[7] + a[r + 2] * b[11] + a[r + 3];
-    }
-    memcpy(out, m, sizeof m);
-}
-
-#endif
 
 void noh_local_to_model(const noh_skeleton *skeleton, const noh_transform *pose, uint32_t joint_count, float *model)
 {

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#define NOH_CLIP_SCALAR 1
+#define NOH_SIMD_SCALAR 1
 #define noh_clip_blend_frames blend_scalar
 #define noh_clip_synth_rotation synth_rotation_scalar
 #define noh_clip_synth_linear synth_linear_scalar

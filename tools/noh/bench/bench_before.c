@@ -32,7 +32,8 @@ static __m128i load_tail(const void *from, size_t count)
 
 static void add_tail(const uint32_t *words, size_t count, morph_field f, float *layer)
 {
-    const __m128 sum = noh_sum4(load_tail(words, count), f, _mm_castsi128_ps(load_tail(layer, count)));
+    const __m128 sum = noh_v4_with_field(_mm_castsi128_ps(load_tail(words, count)), f,
+                                         _mm_castsi128_ps(load_tail(layer, count)));
     if (count == 1) {
         _mm_store_ss(layer, sum);
     } else {
@@ -48,9 +49,9 @@ NOH_NEVER_INLINE static void add_row(const uint32_t *words, size_t count, const 
     size_t i = 0;
 #if defined(NOH_SSE2) || defined(NOH_NEON)
     for (; i + 4u <= count; i += 4u) {
-        noh_add4(noh_words4(words + i), f[0], layers[0] + i);
-        noh_add4(noh_words4(words + i), f[1], layers[1] + i);
-        noh_add4(noh_words4(words + i), f[2], layers[2] + i);
+        noh_v4_add_field(noh_v4_words(words + i), f[0], layers[0] + i);
+        noh_v4_add_field(noh_v4_words(words + i), f[1], layers[1] + i);
+        noh_v4_add_field(noh_v4_words(words + i), f[2], layers[2] + i);
     }
 #endif
     for (int l = 0; l < 3 && i < count; l++) {
