@@ -2,6 +2,7 @@
 # check_gl_calls.sh: the GL functions that a port has to provide.
 #   - NOH_GL_REQUIRED (runtime/gl/device/gl_api.h) is what runtime/ calls: no more, no less
 #   - an optional function that runtime/ calls is compared with NULL somewhere
+#   - only code that creates programs calls GetUniformLocation: draws use the locations it found
 #   - the list in platform/README.md is that list, and the page has each of them (platform/web/package/gl.js)
 set -u
 . tests/cli/lib.sh
@@ -34,6 +35,19 @@ comm -12 "$work/called" "$work/optional" | while read -r name; do
     cat "$work/sources" | grep -qE "!(gl|api)->$name\>" || echo "$name"
 done >"$work/unasked"
 check 'optional functions are compared with NULL before they are called' sh -c '! grep . "$1"' - "$work/unasked"
+
+cat >"$work/finders" <<'END'
+runtime/gl/device/gl_caps.c
+runtime/gl/device/gl_program.c
+runtime/gl/draw/gl_variants.c
+runtime/gl/morph/gl_morph_blend.c
+runtime/gl/morph/gl_morph_shared.c
+runtime/gl/stage/drawable.c
+runtime/gl/stage/stage_hair.c
+runtime/gl/stage/stage_hairs.c
+END
+grep -rlE '>GetUniformLocation\(' --include='*.c' runtime | sort >"$work/finding"
+check 'uniforms are found where programs are created, never in a draw' cmp "$work/finders" "$work/finding"
 
 awk '/^<!-- required -->/ { on = 1; next } /^<!-- end -->/ { on = 0 } on' platform/README.md |
     grep -oE 'gl[A-Z][A-Za-z0-9_]*' | sed 's/^gl//' | sort -u >"$work/documented"

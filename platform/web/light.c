@@ -57,9 +57,9 @@ noh_result web_light_open(void)
 
 void web_light_close(void)
 {
-    if (web.light.backdrop.gl) noh_backdrop_delete(&web.light.backdrop);
-    if (web.light.blob.gl) noh_stage_blob_delete(&web.light.blob);
-    if (web.light.ground.gl) noh_stage_floor_delete(&web.light.ground);
+    noh_backdrop_delete(&web.light.backdrop);
+    noh_stage_blob_delete(&web.light.blob);
+    noh_stage_floor_delete(&web.light.ground);
     memset(&web.light.ground, 0, sizeof web.light.ground);
     memset(&web.light.backdrop, 0, sizeof web.light.backdrop);
     memset(&web.light.blob, 0, sizeof web.light.blob);
@@ -71,7 +71,8 @@ noh_result web_light_restore(void)
     if (!is_lit()) return result;
     result = noh_backdrop_restore(&web.light.backdrop, NULL, 0, &web.error);
     if (!result) result = noh_stage_blob_restore(&web.light.blob, NULL, 0, &web.error);
-    if (!result && web.light.ground.gl) result = noh_stage_floor_restore(&web.light.ground, NULL, 0, &web.error);
+    if (!result && web.light.ground.drawable.gl)
+        result = noh_stage_floor_restore(&web.light.ground, NULL, 0, &web.error);
     return result;
 }
 
@@ -114,7 +115,7 @@ void web_light_find_floor(void)
 void web_light_floor(void)
 {
     const float *s = web.light.sphere, disc[4] = { s[0], web.light.floor, s[2], FLOOR_REACHES * s[3] };
-    if (!is_lit() || web.light.shadow != WEB_SHADOW_MAP || !web.light.on_floor || !web.light.ground.gl) return;
+    if (!is_lit() || web.light.shadow != WEB_SHADOW_MAP || !web.light.on_floor || !web.light.ground.drawable.gl) return;
     noh_stage_floor_draw(&web.light.ground, noh_stage_light_of(web.stage), &web.light.told, &web.view, disc);
 }
 

@@ -334,9 +334,9 @@ static void scene_draw(scene *s, uint32_t *picture)
 static void scene_close(scene *s)
 {
     canvas_close(&s->to);
-    if (s->backdrop.gl) noh_backdrop_delete(&s->backdrop);
-    if (s->blob.gl) noh_stage_blob_delete(&s->blob);
-    if (s->level.gl) noh_stage_floor_delete(&s->level);
+    noh_backdrop_delete(&s->backdrop);
+    noh_stage_blob_delete(&s->blob);
+    noh_stage_floor_delete(&s->level);
     cast_close(&s->c);
     free(s->texels);
     fixture_expect_no_errors();
@@ -414,7 +414,7 @@ static void draw_all(scene *s, uint32_t i)
     }
 }
 
-/* Every draw puts back what it changes, whether a game has it on or off, and binds nothing. */
+/* Every draw puts back what it changes, whether a game has it on or off, binds nothing, and asks for no uniform. */
 static void draws_put_render_state_back(void **state)
 {
     static const char *const names[] = { "color", "opaque", "blended", "depth", "blob", "floor", "backdrop" };
@@ -431,7 +431,9 @@ static void draws_put_render_state_back(void **state)
         snapshot was;
         if (i & 1u) game_sets(&o);
         take(&s.g->gl, &was);
+        const unsigned lookups = fixture_uniform_lookups();
         draw_all(&s, i / 2u);
+        assert_int_equal(fixture_uniform_lookups(), lookups);
         expect_render(&s.g->gl, &was, names[i / 2u]);
         game_unsets(&o);
         expect_no_bindings(&s.g->gl, names[i / 2u]);

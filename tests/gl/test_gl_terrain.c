@@ -73,8 +73,10 @@ static void close_land(land *l)
 
 static void draw(land *l, uint8_t rgba[PIXELS][4])
 {
+    const unsigned lookups = fixture_uniform_lookups();
     canvas_begin(&l->to);
     noh_stage_terrain_draw(&l->terrain, NULL, &l->view);
+    assert_int_equal(fixture_uniform_lookups(), lookups);
     assert_int_equal(canvas_read(&l->to, rgba[0]), 0);
 }
 
@@ -174,15 +176,14 @@ static void it_comes_back_after_a_lost_context(void **state)
     noh_view_orbit(&l.view, target, 0.7f, 0.3f, 40.0f, WIDTH, HEIGHT);
     noh_stage_terrain_choose(&l.terrain, &l.view, 1.0f);
     draw(&l, l.seen[0]);
-    noh_gl_texture heights = l.terrain.heights; /* the context lives on here, so the old objects are deleted by hand */
-    GLuint color = l.terrain.color, depth = l.terrain.depth, array = l.terrain.vertex_array;
+    noh_gl_drawable old = l.terrain.drawable; /* this context is not lost, so they are deleted by hand */
     assert_int_equal(noh_stage_terrain_restore(&l.terrain, log, sizeof log, NULL), NOH_OK);
     draw(&l, l.seen[1]);
     assert_memory_equal(l.seen[0], l.seen[1], sizeof l.seen[0]);
-    l.g->gl.DeleteTextures(1, &heights.name);
-    l.g->gl.DeleteProgram(color);
-    l.g->gl.DeleteProgram(depth);
-    l.g->gl.DeleteVertexArrays(1, &array);
+    l.g->gl.DeleteTextures(1, &old.texture.name);
+    l.g->gl.DeleteProgram(old.programs[0]);
+    l.g->gl.DeleteProgram(old.programs[1]);
+    l.g->gl.DeleteVertexArrays(1, &old.vertex_array);
     close_land(&l);
 }
 

@@ -121,6 +121,7 @@ enum { WITHOUT, RESTING, GROWN };
 static inline uint8_t *picture(shot *s, int with_marks)
 {
     uint8_t *rgba = test_zeros(PIXELS * 4u);
+    const unsigned lookups = fixture_uniform_lookups();
     canvas_begin(&s->to);
     assert_int_equal(noh_stage_draw(s->c.stage, NOH_PASS_OPAQUE, 0, NULL, NULL), NOH_OK);
     if (with_marks == RESTING) {
@@ -129,6 +130,7 @@ static inline uint8_t *picture(shot *s, int with_marks)
         assert_int_equal(noh_stage_patches_draw(&s->patches, 0, s->actor, &s->ring, NULL), NOH_OK);
     }
     assert_int_equal(noh_stage_draw(s->c.stage, NOH_PASS_BLENDED, 0, NULL, NULL), NOH_OK);
+    assert_int_equal(fixture_uniform_lookups(), lookups);
     assert_int_equal(canvas_read(&s->to, rgba), 0);
     return rgba;
 }

@@ -26,6 +26,22 @@ static gpu shared;
 static enum { UNTRIED, WORKS, FAILED } shared_state;
 static unsigned debug_errors;
 
+/* ---- lookups of uniforms ---- */
+
+static GLint(GL_APIENTRY *find_uniform)(GLuint program, const GLchar *name);
+static unsigned uniform_lookups;
+
+static GLint GL_APIENTRY count_lookup(GLuint program, const GLchar *name)
+{
+    uniform_lookups++;
+    return find_uniform(program, name);
+}
+
+unsigned fixture_uniform_lookups(void)
+{
+    return uniform_lookups;
+}
+
 static void GL_APIENTRY count_debug(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                     const GLchar *message, const void *user)
 {
@@ -44,6 +60,10 @@ gpu *fixture_gpu(void)
     const char *driver = getenv("NOH_TEST_DRIVER");
     if (shared_state == UNTRIED) {
         shared_state = gpu_open(&shared, driver ? driver : "egl") == 0 ? WORKS : FAILED;
+        if (shared_state == WORKS) {
+            find_uniform = shared.gl.GetUniformLocation;
+            shared.gl.GetUniformLocation = count_lookup;
+        }
         if (shared_state == WORKS && shared.gl.DebugMessageCallback) {
             shared.gl.Enable(GL_DEBUG_OUTPUT);
             shared.gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

@@ -12,6 +12,9 @@ gpu *fixture_gpu(void);
 /* Close it at the end. Fits cmocka's group teardown. */
 int fixture_tear_down(void **state);
 
+/* Calls of glGetUniformLocation so far: a draw makes none. */
+unsigned fixture_uniform_lookups(void);
+
 /* Fails where glGetError or the debug callback has reported an error since fixture_gpu. */
 void fixture_expect_no_errors(void);
 

@@ -152,7 +152,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
     noh_gl_mesh_bind(r->gl, mesh, morph);
     if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);
-    if (morph) noh_gl_morph_bind_streams(r->gl, v->program, morph);
+    if (morph) noh_gl_morph_bind_streams(r->gl, v->u_streams, morph);
 }
 
 /* What the caller calls the front of a triangle, or, of a mirrored instance, the other side. */

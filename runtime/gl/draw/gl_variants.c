@@ -254,6 +254,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_normal", offsetof(noh_gl_variant, u_normal) },
                      { "noh_uv", offsetof(noh_gl_variant, u_uv) },
                      { "noh_morph", offsetof(noh_gl_variant, u_morph) },
+                     { "noh_streams", offsetof(noh_gl_variant, u_streams) },
                      { "noh_skin", offsetof(noh_gl_variant, u_skin) },
                      { "noh_camera", offsetof(noh_gl_variant, u_camera) },
                      { "noh_key", offsetof(noh_gl_variant, u_key) },

@@ -75,7 +75,7 @@ typedef struct noh_gl_variant {
     unsigned program;
     int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user;
+        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
 } noh_gl_variant;
 
 /* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */

@@ -289,10 +289,11 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
  * returns  the number of targets */
 uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
 
-/* Point the attributes from NOH_ATTRIBUTE_STREAMS on of the bound vertex array to an instance's streams, and set the
- * uniform noh_streams of `program`, which must be in use. Does nothing on other paths. The vertex array keeps a
- * reference to the buffer: delete the mesh with the accumulator. */
-void noh_gl_morph_bind_streams(const noh_gl_api *api, unsigned program, const noh_gl_morph_binding *binding);
+/* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the
+ * uniform noh_streams of the program in use. Does nothing on other paths. The vertex array keeps the buffer: delete the
+ * mesh when the accumulator is deleted.
+ * u_streams  the location of noh_streams in that program: find it once, when the program is linked */
+void noh_gl_morph_bind_streams(const noh_gl_api *api, int u_streams, const noh_gl_morph_binding *binding);
 
 #ifdef __cplusplus
 }

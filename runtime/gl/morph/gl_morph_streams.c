@@ -137,7 +137,7 @@ void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_m
     }
 }
 
-void noh_gl_morph_bind_streams(const noh_gl_api *gl, GLuint program, const noh_gl_morph_binding *binding)
+void noh_gl_morph_bind_streams(const noh_gl_api *gl, GLint u_streams, const noh_gl_morph_binding *binding)
 {
     NOH_ASSERT(gl && binding);
     if (!binding->stream_buffer) return;
@@ -148,7 +148,7 @@ void noh_gl_morph_bind_streams(const noh_gl_api *gl, GLuint program, const noh_g
                                  (const void *)(uintptr_t)binding->stream_offsets[i]);
     }
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    gl->Uniform4fv(gl->GetUniformLocation(program, "noh_streams"), NOH_MORPH_STREAMS_MAX, binding->streams[0]);
+    gl->Uniform4fv(u_streams, NOH_MORPH_STREAMS_MAX, binding->streams[0]);
 }
 
 void noh_gl_morph_update_streams(const noh_gl_morph *m, noh_gl_morph_stats *stats)

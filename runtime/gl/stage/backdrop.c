@@ -2,63 +2,47 @@
 
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
-#include "gl/device/gl_program.h"
+#include "gl/stage/drawable_internal.h"
 #include "shaders.gen.h"
-#include "gl/stage/lit_source_internal.h"
 
-static noh_result create_objects(noh_backdrop *b, char *log, size_t log_bytes, noh_error *error)
+enum { U_RAYS = NOH_DRAWABLE_OWN, U_ENDS, U_KIND };
+
+static noh_gl_drawable_desc desc_of(int encode_srgb)
 {
-    static const char *const samplers[] = { "noh_environment" };
-    noh_lit_source fragment;
-    noh_gl_program_desc desc;
-    noh_result result;
-    noh_lit_source_of(&noh_shader_backdrop_frag, &fragment);
-    memset(&desc, 0, sizeof desc);
-    desc.name = "backdrop";
-    desc.defines = b->encode_srgb ? "#define NOH_ENCODE_SRGB\n" : NULL;
-    desc.vertex = &noh_shader_backdrop_vert;
-    desc.fragment = &fragment.source;
-    desc.samplers = samplers;
-    desc.sampler_count = 1;
-    desc.ledger = b->ledger;
-    result = noh_gl_program_create(b->gl, &desc, &b->program, log, log_bytes, error);
-    if (result == NOH_OK) b->gl->GenVertexArrays(1, &b->vertex_array);
-    return result;
+    static const char *const uniforms[] = { "u_rays", "u_ends", "u_kind" };
+    return (noh_gl_drawable_desc){ .name = { "backdrop" },
+                                   .vertex = &noh_shader_backdrop_vert,
+                                   .fragment = &noh_shader_backdrop_frag,
+                                   .defines = noh_gl_encode_define(encode_srgb),
+                                   .lit = 1,
+                                   .uniforms = uniforms,
+                                   .uniform_count = 3 };
 }
 
 noh_result noh_backdrop_create(const noh_gl_device *device, int encode_srgb, noh_backdrop *out, noh_error *error)
 {
-    NOH_ASSERT(device && device->api && device->ledger && out);
-    memset(out, 0, sizeof *out);
-    out->gl = device->api;
-    out->ledger = device->ledger;
+    const noh_gl_drawable_desc desc = desc_of(encode_srgb);
+    NOH_ASSERT(out);
     out->encode_srgb = encode_srgb;
-    return create_objects(out, device->log, device->log_bytes, error);
+    return noh_gl_drawable_create(device, &desc, &out->drawable, error);
 }
 
 void noh_backdrop_delete(noh_backdrop *backdrop)
 {
-    NOH_ASSERT(backdrop && backdrop->gl);
-    if (backdrop->vertex_array) backdrop->gl->DeleteVertexArrays(1, &backdrop->vertex_array);
-    backdrop->vertex_array = 0;
-    noh_gl_program_delete(backdrop->gl, backdrop->ledger, &backdrop->program);
+    NOH_ASSERT(backdrop);
+    noh_gl_drawable_delete(&backdrop->drawable);
 }
 
 noh_result noh_backdrop_restore(noh_backdrop *backdrop, char *log, size_t log_bytes, noh_error *error)
 {
-    const noh_gl_api *gl;
-    NOH_ASSERT(backdrop && backdrop->gl);
-    gl = backdrop->gl;
-    backdrop->gl = noh_gl_lost_api();
-    noh_backdrop_delete(backdrop);
-    backdrop->gl = gl;
-    return create_objects(backdrop, log, log_bytes, error);
+    NOH_ASSERT(backdrop);
+    const noh_gl_drawable_desc desc = desc_of(backdrop->encode_srgb);
+    return noh_gl_drawable_restore(&backdrop->drawable, &desc, log, log_bytes, error);
 }
 
-/* Rays through the lower left corner, and what a width and a height add, of the length at which they reach one plane.
- */
+/* The ray through the lower left corner, and what the width and the height of the viewport add to it. Rays end on one
+ * plane. */
 static void corner_rays(const noh_stage_view *view, float rays[3][4])
 {
     static const float corners[3][2] = { { -0.5f, 0.5f }, { 0.5f, 0.5f }, { -0.5f, -0.5f } };
@@ -73,7 +57,7 @@ static void corner_rays(const noh_stage_view *view, float rays[3][4])
     }
 }
 
-/* The light from below and from above, of as many bands as shaders have. */
+/* Light from below and from above, from the bands that shaders use. */
 static void gradient_ends(const noh_lighting *lighting, float ends[2][4])
 {
     static const float normals[2][3] = { { 0.0f, -1.0f, 0.0f }, { 0.0f, 1.0f, 0.0f } };
@@ -89,28 +73,21 @@ static void gradient_ends(const noh_lighting *lighting, float ends[2][4])
 void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, const noh_gl_light *light,
                        const noh_lighting *lighting, const noh_stage_view *view)
 {
-    NOH_ASSERT(backdrop && light && lighting && view);
-    const noh_gl_api *gl = backdrop->gl;
-    const GLuint program = backdrop->program;
-    float rows[NOH_LIGHTING_ROWS][4], rays[3][4], ends[2][4];
+    static const float origin[3];
+    float rays[3][4], ends[2][4];
     noh_gl_raster raster;
-    noh_lighting_pack(lighting, 0, rows);
+    NOH_ASSERT(backdrop && backdrop->drawable.gl && light && lighting && view);
+    const noh_gl_drawable *d = &backdrop->drawable;
+    const noh_gl_api *gl = d->gl;
+    const int *uniforms = d->uniforms[NOH_DRAWABLE_COLOR];
     corner_rays(view, rays);
     gradient_ends(lighting, ends);
-    gl->UseProgram(program);
-    gl->Uniform4fv(gl->GetUniformLocation(program, "noh_lighting"), (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
-    gl->Uniform4fv(gl->GetUniformLocation(program, "u_rays"), 3, rays[0]);
-    gl->Uniform4fv(gl->GetUniformLocation(program, "u_ends"), 2, ends[0]);
-    gl->Uniform4f(gl->GetUniformLocation(program, "u_kind"), kind == NOH_BACKDROP_LIGHT ? 1.0f : 0.0f, 0.0f, 0.0f,
-                  0.0f);
-    gl->ActiveTexture(GL_TEXTURE0);
-    gl->BindTexture(GL_TEXTURE_CUBE_MAP, light->cube.name);
-    noh_gl_samplers_none(gl, 0, 1);
+    noh_gl_drawable_begin(d, NOH_DRAWABLE_COLOR);
+    noh_gl_drawable_light(d, light, lighting, origin);
+    gl->Uniform4fv(uniforms[U_RAYS], 3, rays[0]);
+    gl->Uniform4fv(uniforms[U_ENDS], 2, ends[0]);
+    gl->Uniform4f(uniforms[U_KIND], kind == NOH_BACKDROP_LIGHT ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f);
     noh_gl_behind_begin(gl, &raster);
-    gl->BindVertexArray(backdrop->vertex_array);
     gl->DrawArraysInstanced(GL_TRIANGLES, 0, 3, 1);
-    gl->BindVertexArray(0);
-    noh_gl_raster_put_back(gl, &raster);
-    gl->BindTexture(GL_TEXTURE_CUBE_MAP, 0);
-    gl->UseProgram(0);
+    noh_gl_drawable_end(d, &raster);
 }

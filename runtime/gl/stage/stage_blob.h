@@ -1,10 +1,10 @@
-/* stage_blob.h: the spots of blob.h drawn on the ground.
+/* stage_blob.h: blob shadows (blob.h) drawn on the ground.
  *
- *   noh_stage_blob_create   its program; noh_stage_blob_delete, noh_stage_blob_restore
- *   noh_stage_blob_draw     all spots of a view
+ *   noh_stage_blob_create   the GL objects; noh_stage_blob_delete, noh_stage_blob_restore
+ *   noh_stage_blob_draw     all blobs of a view
  *
- * Draw them behind the ground and before characters. What is there is multiplied by what a spot leaves, so it works on
- * any ground, and on a picture that has none. No memory on the GPU but a program's.
+ * Draw them after the ground and before characters. A blob multiplies the colours in the framebuffer, so it works on any
+ * ground, and on a background without one. It takes no GPU memory besides its program.
  *
  * Threads: the context's own thread. */
 #ifndef NOH_STAGE_GL_STAGE_BLOB_H
@@ -17,25 +17,22 @@
 extern "C" {
 #endif
 
-#define NOH_BLOBS_DRAWN 32 /* in one draw */
+#define NOH_BLOBS_DRAWN 32 /* blobs in one draw call */
 
 typedef struct noh_stage_blob {
-    const noh_gl_api *gl;
-    noh_gl_ledger *ledger;
-    unsigned program, vertex_array;
-    int camera, rows; /* uniforms */
-    uint32_t draws;   /* calls of all noh_stage_blob_draw so far */
+    noh_gl_drawable drawable;
+    uint32_t draws; /* draw calls so far */
 } noh_stage_blob;
 
-/* errors  DATA, GL, MEMORY as noh_gl_program_create: nothing is left behind */
+/* errors  DATA, GL, MEMORY as noh_gl_program_create. It then has no GL objects */
 noh_result noh_stage_blob_create(const noh_gl_device *device, noh_stage_blob *out, noh_error *error);
 void noh_stage_blob_delete(noh_stage_blob *blob);
 
-/* Make its GL objects again in a new context (gl_lost.h). `log` as in noh_gl_device.
- * errors  as noh_stage_blob_create: it then has no GL objects */
+/* Create the GL objects again in a new context (gl_lost.h). `log` as in noh_gl_device.
+ * errors  as noh_stage_blob_create */
 noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_bytes, noh_error *error);
 
-/* Into the framebuffer and viewport that are set; NOH_BLOBS_DRAWN to a draw.
+/* Draw into the current framebuffer and viewport, NOH_BLOBS_DRAWN blobs per draw call.
  * shapes  blobs[count]
  * state   gl_state.h */
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count);

@@ -2,96 +2,133 @@
 
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
+#include "core/base/arena.h"
 #include "gl/device/gl_state_internal.h"
-#include "shaders.gen.h"
+#include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_patch_internal.h"
+#include "shaders.gen.h"
 
 #define ROW_TEXELS 4u
-#define ROWS_SENT 16u /* at once: what fits on the stack */
+#define ROWS_SENT 16u /* rows uploaded at a time: they are on the stack */
 #define NUDGE 2e-5f   /* of depth, towards the eye */
 
-/* ---- what there is ---- */
+/* ---- programs ---- */
+
+static const char *const uniform_names[] = { "u_marks", "u_towards", "u_corner_row" };
+enum { U_MARKS, U_TOWARDS, U_CORNER_ROW, UNIFORMS };
+
+/* Locations in one program of the shader, which has a variant for each kind of mesh. */
+struct noh_decal_program {
+    unsigned program;
+    int uniforms[UNIFORMS];
+};
+
+static uint32_t variant_count(const noh_stage *stage)
+{
+    return (uint32_t)(((const noh_stage_gl *)stage->gpu)->variants_bytes / sizeof(noh_gl_variant));
+}
+
+static void made(void *user, const noh_gl_api *api, GLuint program, noh_gl_variant_key key)
+{
+    noh_stage_decals *d = user;
+    noh_decal_program *p = &d->programs[d->program_count++];
+    (void)key;
+    NOH_ASSERT(d->program_count <= variant_count(d->stage));
+    p->program = program;
+    noh_gl_find_uniforms(api, program, uniform_names, UNIFORMS, p->uniforms);
+}
 
 static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_material *material)
 {
     const noh_stage_decals *d = user;
+    const noh_decal_picture *picture = &d->picture;
+    const noh_decal_program *p = d->programs;
     (void)material;
-    api->Uniform3f(api->GetUniformLocation(program, "u_marks"), (float)d->count,
-                   d->picture.texture ? (float)d->picture.columns : 0.0f,
-                   d->picture.texture ? (float)d->picture.rows : 0.0f);
-    api->Uniform4f(api->GetUniformLocation(program, "u_towards"), d->reversed ? NUDGE : -NUDGE, 0.0f, 0.0f, 0.0f);
-    api->Uniform1i(api->GetUniformLocation(program, "u_corner_row"), d->corners ? (GLint)d->corner_row : -1);
+    while (p->program != program) p++;
+    api->Uniform3f(p->uniforms[U_MARKS], (float)d->count, picture->texture ? (float)picture->columns : 0.0f,
+                   picture->texture ? (float)picture->rows : 0.0f);
+    api->Uniform4f(p->uniforms[U_TOWARDS], d->reversed ? NUDGE : -NUDGE, 0.0f, 0.0f, 0.0f);
+    api->Uniform1i(p->uniforms[U_CORNER_ROW], d->corners ? (GLint)d->corner_row : -1);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 2u);
     api->BindTexture(GL_TEXTURE_2D, d->corners);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 1u);
-    api->BindTexture(GL_TEXTURE_2D, d->picture.texture ? d->picture.texture : d->shader->renderer.white.name);
+    api->BindTexture(GL_TEXTURE_2D, picture->texture ? picture->texture : d->shader->renderer.white.name);
     api->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
-    api->BindTexture(GL_TEXTURE_2D, d->rows.name);
+    api->BindTexture(GL_TEXTURE_2D, d->drawable.texture.name);
 }
 
-static noh_result create_rows(noh_stage_decals *d, noh_error *error)
+/* ---- life cycle ---- */
+
+/* A texture with a row of texels for each decal. */
+static const noh_gl_drawable_desc drawable_desc = {
+    .texture = { .format = GL_RGBA32F, .width = ROW_TEXELS, .height = NOH_DECALS_MAX }
+};
+
+/* With *decals NULL: the bytes of memory alone. */
+static size_t carve(const noh_stage *stage, noh_arena *arena, noh_stage_decals *d, void **shader)
 {
-    noh_gl_texture_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.format = GL_RGBA32F;
-    desc.width = ROW_TEXELS;
-    desc.height = NOH_DECALS_MAX;
-    return noh_gl_texture_create(d->gl, d->ledger, &desc, &d->rows, error);
+    noh_decal_program *programs = noh_arena_carve(arena, variant_count(stage) * sizeof *programs, 16);
+    *shader = noh_arena_carve(arena, noh_stage_shader_size(stage), 16);
+    if (d) d->programs = programs;
+    return arena->used;
 }
 
 size_t noh_stage_decals_size(const noh_stage *stage)
 {
-    return noh_stage_shader_size(stage);
+    noh_arena arena = noh_arena_measure();
+    void *shader;
+    NOH_ASSERT(stage && stage->gpu);
+    return carve(stage, &arena, NULL, &shader);
 }
 
 noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device, void *memory, size_t bytes,
                                    const noh_decal_picture *picture, noh_stage_decals *out, noh_error *error)
 {
     static const char *const samplers[] = { "u_decals", "u_picture", "u_corners" };
-    noh_gl_shader_desc desc;
-    noh_result result;
+    const noh_gl_shader_desc desc = { .name = "decals",
+                                      .vertex = noh_shader_decal_vertex_glsl,
+                                      .defines = "#define NOH_REST\n",
+                                      .fragment = noh_shader_decal_fragment_glsl,
+                                      .samplers = samplers,
+                                      .sampler_count = 3,
+                                      .bind = bind,
+                                      .made = made,
+                                      .user = out };
+    noh_arena arena;
+    void *shader;
     NOH_ASSERT(stage && device && out);
     memset(out, 0, sizeof *out);
-    memset(&desc, 0, sizeof desc);
-    out->gl = device->api;
-    out->ledger = device->ledger;
+    noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_decals_size(stage), error);
+    if (result) return result;
     out->stage = stage;
     if (picture) out->picture = *picture;
-    desc.name = "decals";
-    desc.vertex = noh_shader_decal_vertex_glsl;
-    desc.defines = "#define NOH_REST\n";
-    desc.fragment = noh_shader_decal_fragment_glsl;
-    desc.samplers = samplers;
-    desc.sampler_count = 3;
-    desc.bind = bind;
-    desc.user = out;
-    result = noh_stage_shader_create(stage, memory, bytes, &desc, device->log, device->log_bytes, &out->shader, error);
-    if (result) return result;
-    result = create_rows(out, error);
+    (void)carve(stage, &arena, out, &shader);
+    result = noh_gl_drawable_create(device, &drawable_desc, &out->drawable, error);
+    if (!result) {
+        result = noh_stage_shader_create(stage, shader, noh_stage_shader_size(stage), &desc, device->log,
+                                         device->log_bytes, &out->shader, error);
+    }
     if (result) noh_stage_decals_delete(out);
     return result;
 }
 
 void noh_stage_decals_delete(noh_stage_decals *decals)
 {
-    NOH_ASSERT(decals && decals->gl);
+    NOH_ASSERT(decals);
     if (decals->shader) noh_stage_shader_delete(decals->shader);
     decals->shader = NULL;
-    noh_gl_texture_delete(decals->gl, decals->ledger, &decals->rows);
+    noh_gl_drawable_delete(&decals->drawable);
 }
 
 noh_result noh_stage_decals_restore(noh_stage_decals *decals, const noh_decal_picture *picture, char *log,
                                     size_t log_bytes, noh_error *error)
 {
-    noh_result result;
     NOH_ASSERT(decals && decals->shader);
     memset(&decals->picture, 0, sizeof decals->picture);
     if (picture) decals->picture = *picture;
-    noh_gl_texture_delete(noh_gl_lost_api(), decals->ledger, &decals->rows);
-    result = noh_stage_shader_restore(decals->shader, log, log_bytes, error);
-    if (!result) result = create_rows(decals, error);
-    return result;
+    decals->program_count = 0;
+    const noh_result result = noh_gl_drawable_restore(&decals->drawable, &drawable_desc, log, log_bytes, error);
+    return result ? result : noh_stage_shader_restore(decals->shader, log, log_bytes, error);
 }
 
 /* ---- drawing ---- */
@@ -112,9 +149,10 @@ static void set_row(const noh_decals *ring, uint32_t index, float row[ROW_TEXELS
 static void send_rows(const noh_stage_decals *d, float rows[ROWS_SENT][ROW_TEXELS][4], uint32_t first, uint32_t count)
 {
     noh_gl_pixels kept;
-    noh_gl_unpack_begin(d->gl, &kept);
-    d->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)first, ROW_TEXELS, (GLsizei)count, GL_RGBA, GL_FLOAT, rows);
-    noh_gl_unpack_end(d->gl, &kept);
+    noh_gl_unpack_begin(d->drawable.gl, &kept);
+    d->drawable.gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)first, ROW_TEXELS, (GLsizei)count, GL_RGBA, GL_FLOAT,
+                                  rows);
+    noh_gl_unpack_end(d->drawable.gl, &kept);
 }
 
 uint32_t noh_gl_decals_of(const noh_decals *ring, uint32_t mesh, uint8_t marks[NOH_DECALS_MAX])
@@ -132,9 +170,9 @@ static void upload_rows(noh_stage_decals *d, const noh_decals *ring, uint32_t me
     float rows[ROWS_SENT][ROW_TEXELS][4];
     uint8_t marks[NOH_DECALS_MAX];
     d->count = noh_gl_decals_of(ring, mesh, marks);
-    noh_gl_samplers_none(d->gl, NOH_UNIT_USER, 3);
-    d->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
-    d->gl->BindTexture(GL_TEXTURE_2D, d->rows.name);
+    noh_gl_samplers_none(d->drawable.gl, NOH_UNIT_USER, 3);
+    d->drawable.gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER);
+    d->drawable.gl->BindTexture(GL_TEXTURE_2D, d->drawable.texture.name);
     for (uint32_t first = 0; first < d->count; first += ROWS_SENT) {
         const uint32_t now = d->count - first < ROWS_SENT ? d->count - first : ROWS_SENT;
         for (uint32_t i = 0; i < now; i++) set_row(ring, marks[first + i], rows[i]);
@@ -145,8 +183,8 @@ static void upload_rows(noh_stage_decals *d, const noh_decals *ring, uint32_t me
 static void unbind(const noh_stage_decals *d)
 {
     for (uint32_t i = 3; i-- > 0;) {
-        d->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + i);
-        d->gl->BindTexture(GL_TEXTURE_2D, 0);
+        d->drawable.gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + i);
+        d->drawable.gl->BindTexture(GL_TEXTURE_2D, 0);
     }
 }
 
@@ -158,7 +196,7 @@ static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, con
     decals->corners = 0;
     if (patches) {
         if (!noh_gl_patches_grow(patches, alone, mesh, share->level, ring, &triangles, &decals->corner_row)) return;
-        decals->corners = patches->corners.name;
+        decals->corners = patches->drawable.texture.name;
         noh_gl_draw_triangles(&decals->shader->renderer, &triangles);
     }
     noh_gl_draw_alone(alone, mesh, share);
@@ -192,7 +230,7 @@ noh_result noh_gl_decals_draw(noh_stage_decals *decals, noh_stage_patches *patch
     if (result) return result;
     raster = &decals->shader->renderer.raster;
     decals->reversed = noh_gl_is_reversed(raster);
-    noh_gl_blend_begin(decals->gl, raster);
+    noh_gl_blend_begin(decals->drawable.gl, raster);
     if (patches) noh_gl_patches_begin(patches, &alone);
     for (uint32_t m = 0; m < alone.mesh_count; m++) draw_mesh(decals, patches, &alone, m, ring);
     unbind(decals);

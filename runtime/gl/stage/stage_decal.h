@@ -29,18 +29,22 @@ typedef struct noh_decal_picture {
     uint32_t columns, rows; /* of tiles, 1..; texture 0: not used */
 } noh_decal_picture;
 
+typedef struct noh_decal_program noh_decal_program;
+
 typedef struct noh_stage_decals {
-    const noh_gl_api *gl;
-    noh_gl_ledger *ledger;
+    noh_gl_drawable drawable; /* a texture, GL_RGBA32F, 4 x NOH_DECALS_MAX */
     noh_stage *stage;
     noh_stage_shader *shader;
-    noh_gl_texture rows; /* GL_RGBA32F, 4 x NOH_DECALS_MAX */
+    noh_decal_program *programs; /* [program_count] of the shader */
+    uint32_t program_count;
     noh_decal_picture picture;
-    uint32_t count;   /* of the draw that is under way */
-    unsigned corners; /* of stage_patch.h, likewise; 0: marks are looked up alone */
+    /* of the current draw: */
+    uint32_t count;
+    unsigned corners; /* texture of stage_patch.h; 0: decals are projected */
     uint32_t corner_row;
-    int reversed;   /* likewise: depths fall with the distance */
-    uint32_t draws; /* of all meshes so far */
+    int reversed; /* depth falls with distance */
+
+    uint32_t draws; /* draw calls so far */
 } noh_stage_decals;
 
 /* The exact bytes of memory, of a stage with `gpu`. */

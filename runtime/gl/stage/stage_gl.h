@@ -36,6 +36,21 @@ typedef enum noh_pass {
 
 typedef struct noh_stage_shader noh_stage_shader;
 
+#define NOH_DRAWABLE_UNIFORMS 14u
+
+/* The GL objects of a backdrop, a floor, blobs, hair, decals, patches or a terrain: private to their functions. All
+ * zeros: not created, and deleting it does nothing. */
+typedef struct noh_gl_drawable {
+    const noh_gl_api *gl; /* NULL: not created */
+    noh_gl_ledger *ledger;
+    uint32_t units;       /* texture units that its programs read, from 0 on */
+    unsigned programs[2]; /* 0: colour, 1: depth alone */
+    unsigned vertex_array;
+    noh_gl_texture texture;
+    noh_gl_buffer buffer;
+    int uniforms[2][NOH_DRAWABLE_UNIFORMS]; /* locations in each program; -1: not used by it */
+} noh_gl_drawable;
+
 /* Draw what the view-th view of the last frame sees, into the framebuffer and viewport that are set. In a view without
  * height_px actors with no_shadow are left out.
  * shader  NULL: the library's

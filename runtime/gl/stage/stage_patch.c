@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/base/arena.h"
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
+#include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_patch_internal.h"
 
 #define TRIANGLES_SENT 64u /* at once: what fits on the stack */
@@ -56,25 +56,15 @@ static void forget(noh_stage_patch_level *level)
     level->mark_count = level->used = 0;
 }
 
-static noh_result create_objects(noh_stage_patches *p, noh_error *error)
+/* Nothing has grown yet. */
+static noh_gl_drawable_desc start(noh_stage_patches *p)
 {
-    const noh_gl_api *gl = p->decals->gl;
-    const uint64_t bytes = (uint64_t)p->triangle_room * 2u * 3u * sizeof(uint32_t);
-    noh_gl_texture_desc desc;
-    noh_result result;
-    memset(&desc, 0, sizeof desc);
-    desc.format = GL_R32UI;
-    desc.width = NOH_PATCH_WIDTH;
-    desc.height = 2u * NOH_PATCH_ROWS(p->capacity, p->triangle_room);
     p->kind = NOH_NONE;
     for (uint32_t i = 0; i < 2; i++) forget(&p->levels[i]);
-    result = noh_gl_texture_create(gl, p->decals->ledger, &desc, &p->corners, error);
-    if (result) return result;
-    gl->BindVertexArray(0);
-    result = noh_gl_buffer_create(gl, p->decals->ledger, GL_ELEMENT_ARRAY_BUFFER, bytes, NULL, GL_DYNAMIC_DRAW,
-                                  &p->indices, error);
-    if (result) noh_gl_texture_delete(gl, p->decals->ledger, &p->corners);
-    return result;
+    return (noh_gl_drawable_desc){ .texture = { .format = GL_R32UI,
+                                                .width = NOH_PATCH_WIDTH,
+                                                .height = 2u * NOH_PATCH_ROWS(p->capacity, p->triangle_room) },
+                                   .index_bytes = (uint64_t)p->triangle_room * 2u * 3u * sizeof(uint32_t) };
 }
 
 noh_result noh_stage_patches_create(noh_stage_decals *decals, uint32_t capacity, uint32_t triangles, void *memory,
@@ -82,7 +72,7 @@ noh_result noh_stage_patches_create(noh_stage_decals *decals, uint32_t capacity,
 {
     noh_arena arena;
     noh_result result;
-    NOH_ASSERT(decals && decals->gl && out && capacity <= NOH_DECALS_MAX && triangles <= TRIANGLES_MAX);
+    NOH_ASSERT(decals && decals->drawable.gl && out && capacity <= NOH_DECALS_MAX && triangles <= TRIANGLES_MAX);
     memset(out, 0, sizeof *out);
     result = noh_arena_open(&arena, memory, bytes, noh_stage_patches_size(capacity, triangles), error);
     if (result) return result;
@@ -90,22 +80,22 @@ noh_result noh_stage_patches_create(noh_stage_decals *decals, uint32_t capacity,
     out->capacity = capacity_of(capacity);
     out->triangle_room = triangles_of(capacity, triangles);
     carve(out, out->capacity, out->triangle_room, &arena);
-    return create_objects(out, error);
+    const noh_gl_device device = { decals->drawable.gl, NULL, decals->drawable.ledger, NULL, 0 };
+    const noh_gl_drawable_desc desc = start(out);
+    return noh_gl_drawable_create(&device, &desc, &out->drawable, error);
 }
 
 void noh_stage_patches_delete(noh_stage_patches *patches)
 {
-    NOH_ASSERT(patches && patches->decals);
-    noh_gl_buffer_delete(patches->decals->gl, patches->decals->ledger, &patches->indices);
-    noh_gl_texture_delete(patches->decals->gl, patches->decals->ledger, &patches->corners);
+    NOH_ASSERT(patches);
+    noh_gl_drawable_delete(&patches->drawable);
 }
 
 noh_result noh_stage_patches_restore(noh_stage_patches *patches, noh_error *error)
 {
     NOH_ASSERT(patches && patches->decals);
-    noh_gl_buffer_delete(noh_gl_lost_api(), patches->decals->ledger, &patches->indices);
-    noh_gl_texture_delete(noh_gl_lost_api(), patches->decals->ledger, &patches->corners);
-    return create_objects(patches, error);
+    const noh_gl_drawable_desc desc = start(patches);
+    return noh_gl_drawable_restore(&patches->drawable, &desc, NULL, 0, error);
 }
 
 /* ---- growing ---- */
@@ -238,10 +228,10 @@ static void send_row(const table *t)
     const uint32_t level = (uint32_t)(t->g->to - p->levels);
     const uint32_t y = level * NOH_PATCH_ROWS(p->capacity, p->triangle_room) + (t->at - 1u) / NOH_PATCH_WIDTH;
     noh_gl_pixels kept;
-    noh_gl_unpack_begin(p->decals->gl, &kept);
-    p->decals->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, NOH_PATCH_WIDTH, 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                                 t->row);
-    noh_gl_unpack_end(p->decals->gl, &kept);
+    noh_gl_unpack_begin(p->drawable.gl, &kept);
+    p->drawable.gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, NOH_PATCH_WIDTH, 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                  t->row);
+    noh_gl_unpack_end(p->drawable.gl, &kept);
 }
 
 static void put(table *t, uint32_t value)
@@ -273,8 +263,8 @@ static void send_corners(const growth *g)
     table t;
     t.g = g;
     t.at = 0;
-    g->p->decals->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 2u);
-    g->p->decals->gl->BindTexture(GL_TEXTURE_2D, g->p->corners.name);
+    g->p->drawable.gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_USER + 2u);
+    g->p->drawable.gl->BindTexture(GL_TEXTURE_2D, g->p->drawable.texture.name);
     begin += g->p->capacity + 1u;
     for (uint32_t i = 0; i <= g->p->capacity; i++) {
         put(&t, begin);
@@ -293,11 +283,11 @@ static void send_corners(const growth *g)
 /* Of the other arrays than a mesh's own: the buffer is bound to vertex array 0. */
 static void send_indices(const growth *g, const noh_mesh *mesh, uint32_t first, uint32_t count)
 {
-    const noh_gl_api *gl = g->p->decals->gl;
+    const noh_gl_api *gl = g->p->drawable.gl;
     const uint64_t begin = (uint64_t)(g->to - g->p->levels) * g->p->triangle_room + first;
     uint32_t indices[3u * TRIANGLES_SENT];
     gl->BindVertexArray(0);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->p->indices.name);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->p->drawable.buffer.name);
     for (uint32_t sent = 0; sent < count; sent += TRIANGLES_SENT) {
         const uint32_t now = count - sent < TRIANGLES_SENT ? count - sent : TRIANGLES_SENT;
         for (uint32_t i = 0; i < 3u * now; i++) {
@@ -403,7 +393,7 @@ int noh_gl_patches_grow(noh_stage_patches *patches, const noh_gl_alone *alone, u
     if (!is_current(&g)) make_current(&g);
     while (mark < to->mark_count && ring->decals[to->marks[mark]].mesh != number) first += to->counts[mark++];
     if (mark == to->mark_count || !to->counts[mark]) return 0;
-    out->buffer = patches->indices.name;
+    out->buffer = patches->drawable.buffer.name;
     out->first = at * patches->triangle_room + first;
     out->numbers = to->numbers + first;
     out->count = to->counts[mark];
@@ -414,6 +404,7 @@ int noh_gl_patches_grow(noh_stage_patches *patches, const noh_gl_alone *alone, u
 noh_result noh_stage_patches_draw(noh_stage_patches *patches, uint32_t view, noh_actor actor, const noh_decals *ring,
                                   noh_error *error)
 {
-    NOH_ASSERT(patches && patches->decals && patches->indices.name && ring && ring->capacity <= patches->capacity);
+    NOH_ASSERT(patches && patches->decals && patches->drawable.buffer.name && ring &&
+               ring->capacity <= patches->capacity);
     return noh_gl_decals_draw(patches->decals, patches, view, actor, ring, error);
 }

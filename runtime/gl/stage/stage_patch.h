@@ -47,16 +47,16 @@ typedef struct noh_stage_patch_level {
 } noh_stage_patch_level;
 
 typedef struct noh_stage_patches {
+    noh_gl_drawable drawable; /* indices [2][triangle_room][3], and a GL_R32UI texture: for each level where the corners
+                               * of each decal begin, then all corners, in rising order for each decal */
     noh_stage_decals *decals;
     uint32_t capacity, triangle_room;
     uint32_t kind; /* of the stage, that has grown; NOH_NONE: none */
     uint32_t last; /* of levels[], that was drawn last */
     noh_stage_patch_level levels[2];
-    uint32_t *sorted;       /* [triangle_room] while corners are sent */
-    noh_gl_buffer indices;  /* GL_ELEMENT_ARRAY_BUFFER, [2][triangle_room][3] */
-    noh_gl_texture corners; /* GL_R32UI, for each level where each mark's begin, then all, each mark's rising */
-    uint32_t grown;         /* marks that were grown so far */
-    uint32_t left_out;      /* triangles of them that had no room */
+    uint32_t *sorted;  /* [triangle_room] while corners are sent */
+    uint32_t grown;    /* decals grown so far */
+    uint32_t left_out; /* triangles of them that had no room */
 } noh_stage_patches;
 
 /* The exact bytes of memory, as noh_stage_patches_create has its numbers. */

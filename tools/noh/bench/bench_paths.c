@@ -11,8 +11,7 @@ typedef struct path_method {
     bench_stage *stage;
     gpu_morph morph;
     noh_gl_morph_binding binding;
-    GLint u_morph[BENCH_PASS_COUNT];
-    const GLuint *programs; /* [BENCH_PASS_COUNT] of the method */
+    GLint u_morph[BENCH_PASS_COUNT], u_streams[BENCH_PASS_COUNT];
 } path_method;
 
 static void prepare(void *self, const float *weights)
@@ -31,7 +30,7 @@ static void bind(void *self, bench_pass pass)
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
     gl->Uniform4i(p->u_morph[pass], b->tile_x, b->tile_y, b->width_log2, b->touched);
-    noh_gl_morph_bind_streams(gl, p->programs[pass], b);
+    noh_gl_morph_bind_streams(gl, p->u_streams[pass], b);
 }
 
 static void close_path(void *self)
@@ -78,7 +77,6 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
              noh_accumulate_name(accumulate));
     p->stage = s;
     m->self = p;
-    p->programs = m->programs;
     m->most_targets = path == NOH_MORPH_STREAMS ? NOH_MORPH_STREAMS_MAX : 0;
     m->mesh = &s->gl_mesh;
     m->prepare = prepare;
@@ -97,6 +95,7 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
     }
     for (int pass = 0; pass < BENCH_PASS_COUNT; pass++) {
         p->u_morph[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "noh_morph");
+        p->u_streams[pass] = s->g->gl.GetUniformLocation(m->programs[pass], "noh_streams");
     }
     return status;
 }

@@ -96,7 +96,7 @@ static void take_drawn(const place_scene *s, place_drawn *d)
     d->gpu_bytes = s->plan.gpu_bytes + on_gpu;
     d->walkers_bytes = s->walkers_bytes;
     d->crowd_bytes = place_life_bytes(s->life);
-    if (!s->terrain.gl) return;
+    if (!s->terrain.drawable.gl) return;
     d->terrain_bytes = noh_stage_terrain_size(s->place->ground);
     d->terrain_gpu_bytes = noh_stage_terrain_bytes(s->place->ground);
     d->terrain_blocks = s->terrain.draws;

@@ -194,8 +194,8 @@ int place_scene_open(place_scene *s, gpu *g, const pack_file *file, const place_
 void place_scene_close(place_scene *s)
 {
     crowd_hair_close(&s->hair);
-    if (s->backdrop.gl) noh_backdrop_delete(&s->backdrop);
-    if (s->terrain.gl) noh_stage_terrain_delete(&s->terrain);
+    noh_backdrop_delete(&s->backdrop);
+    noh_stage_terrain_delete(&s->terrain);
     free(s->terrain_memory);
     if (s->stage) noh_stage_delete(s->stage);
     if (s->life) place_life_close(s->life);
@@ -294,8 +294,9 @@ int place_scene_shadow(place_scene *s, const noh_stage_view *view)
     if (s->light.has_shadow && noh_stage_draw_shadow(s->stage, 1, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
-    if (s->terrain.gl) noh_stage_terrain_choose(&s->terrain, view, s->options->pixels);
-    if (s->terrain.gl && s->light.has_shadow) noh_stage_terrain_draw_shadow(&s->terrain, s->stage, &s->shadow_view);
+    if (s->terrain.drawable.gl) noh_stage_terrain_choose(&s->terrain, view, s->options->pixels);
+    if (s->terrain.drawable.gl && s->light.has_shadow)
+        noh_stage_terrain_draw_shadow(&s->terrain, s->stage, &s->shadow_view);
     crowd_hair_update(&s->hair);
     if (s->light.has_shadow) crowd_hair_draw_shadow(&s->hair, s->stage, 1);
     return 0;
@@ -308,7 +309,7 @@ int place_scene_draw(place_scene *s, const noh_stage_view *view)
     noh_backdrop_draw(&s->backdrop,
                       s->light.background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
                       noh_stage_light_of(s->stage), &s->light.told, view);
-    if (s->terrain.gl) noh_stage_terrain_draw(&s->terrain, s->stage, view);
+    if (s->terrain.drawable.gl) noh_stage_terrain_draw(&s->terrain, s->stage, view);
     if (noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, &error)) status = tool_fail_error(s->file->path, &error);
     crowd_hair_draw(&s->hair, s->stage, 0);
     return status;

@@ -315,9 +315,9 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
 void figure_close(figure *f)
 {
     if (f->shader) noh_stage_shader_delete(f->shader);
-    if (f->backdrop.gl) noh_backdrop_delete(&f->backdrop);
-    if (f->blob.gl) noh_stage_blob_delete(&f->blob);
-    if (f->level.gl) noh_stage_floor_delete(&f->level);
+    noh_backdrop_delete(&f->backdrop);
+    noh_stage_blob_delete(&f->blob);
+    noh_stage_floor_delete(&f->level);
     figure_close_decals(f);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
     if (f->hair.gl) noh_stage_hair_delete(&f->hair);
@@ -334,10 +334,10 @@ int figure_restore(figure *f)
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_result result = noh_stage_restore(f->stage, &error);
     if (!result && f->shader) result = noh_stage_shader_restore(f->shader, log, sizeof log, &error);
-    if (!result && f->backdrop.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
-    if (!result && f->blob.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
-    if (!result && f->level.gl) result = noh_stage_floor_restore(&f->level, log, sizeof log, &error);
-    if (!result && f->decals.gl) result = figure_restore_decals(f, log, sizeof log, &error);
+    if (!result && f->backdrop.drawable.gl) result = noh_backdrop_restore(&f->backdrop, log, sizeof log, &error);
+    if (!result && f->blob.drawable.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
+    if (!result && f->level.drawable.gl) result = noh_stage_floor_restore(&f->level, log, sizeof log, &error);
+    if (!result && f->decals.drawable.gl) result = figure_restore_decals(f, log, sizeof log, &error);
     if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
@@ -428,7 +428,7 @@ int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height)
 static void draw_backdrop(const figure *f)
 {
     const lighting *l = f->desc.light;
-    if (!f->backdrop.gl || l->background == BACKGROUND_PLAIN || f->desc.view != NOH_VIEW_LIT) {
+    if (!f->backdrop.drawable.gl || l->background == BACKGROUND_PLAIN || f->desc.view != NOH_VIEW_LIT) {
         return;
     }
     noh_backdrop_draw(&f->backdrop, l->background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
@@ -449,11 +449,11 @@ static noh_result draw_in_parts(figure *f, noh_error *error)
 int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    const int in_parts = !f->shader && (f->hair.gl || f->decals.gl);
+    const int in_parts = !f->shader && (f->hair.gl || f->decals.drawable.gl);
     noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
-    if (f->blob.gl) figure_draw_blobs(f);
+    if (f->blob.drawable.gl) figure_draw_blobs(f);
     if (f->shows_floor) figure_draw_floor(f);
     result = in_parts ? draw_in_parts(f, &error) : noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     return result ? tool_fail_error(f->desc.file->path, &error) : 0;

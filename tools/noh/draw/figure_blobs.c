@@ -70,7 +70,7 @@ int figure_open_floor(figure *f)
 
 void figure_set_floor(figure *f, int on, float height)
 {
-    f->shows_floor = on && f->level.gl && f->desc.view == NOH_VIEW_LIT;
+    f->shows_floor = on && f->level.drawable.gl && f->desc.view == NOH_VIEW_LIT;
     if (f->shows_floor) f->floor = height;
 }
 

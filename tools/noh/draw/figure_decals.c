@@ -74,7 +74,6 @@ int figure_open_decals(figure *f)
     if (!f->decal_memory) return tool_fail("--decal", "out of memory");
     if (noh_stage_decals_create(f->stage, &device, f->decal_memory, bytes, NULL, &f->decals, &error)) {
         fputs(log, stderr);
-        f->decals.gl = NULL;
         return tool_fail_error("--decal", &error);
     }
     return open_patches(f);
@@ -83,10 +82,10 @@ int figure_open_decals(figure *f)
 void figure_close_decals(figure *f)
 {
     for (uint32_t k = 0; k < NOH_STAGE_KINDS_MAX; k++) {
-        if (f->patches[k].decals) noh_stage_patches_delete(&f->patches[k]);
+        noh_stage_patches_delete(&f->patches[k]);
         free(f->patch_memory[k]);
     }
-    if (f->decals.gl) noh_stage_decals_delete(&f->decals);
+    noh_stage_decals_delete(&f->decals);
     free(f->decal_memory);
 }
 
@@ -134,7 +133,7 @@ int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32
 int figure_draw_decals(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    for (uint32_t k = 0; k < f->stage_desc.kind_count && f->decals.gl && !f->shader; k++) {
+    for (uint32_t k = 0; k < f->stage_desc.kind_count && f->decals.drawable.gl && !f->shader; k++) {
         const noh_result result = f->desc.grown
                                       ? noh_stage_patches_draw(&f->patches[k], 0, f->actors[k], &f->rings[k], &error)
                                       : noh_stage_decals_draw(&f->decals, 0, f->actors[k], &f->rings[k], &error);

@@ -44,7 +44,7 @@ static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, con
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     noh_gl_mesh_bind(gl, mesh, morph);
-    if (morph) noh_gl_morph_bind_streams(gl, v->program, morph);
+    if (morph) noh_gl_morph_bind_streams(gl, v->u_streams, morph);
 }
 
 static void tear_down(gpu *g)
