@@ -22,7 +22,7 @@ done
     --columns 8 --tile 200
 "$noh" sheet "$out/puppet_falls.noh" -o "$out/puppet_stumbles.png" --clip walk --push 20,0,60 --camera 50,12 --tiles 16 \
     --columns 8 --tile 200
-"$noh" drop "$out/puppet_falls.noh" -o "$out/puppet_drop.png"
+"$noh" lab drop "$out/puppet_falls.noh" -o "$out/puppet_drop.png"
 
 echo
 "$noh" build "$out/arm.glb" -o "$out/arm.noh" --dual-quaternion twisted_dual --two-stream stream_a=stream_b --quiet

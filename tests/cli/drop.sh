@@ -1,11 +1,11 @@
 #!/bin/sh
-# noh drop: what it prints, how well dolls fall, the files it writes, what it refuses.
+# noh lab drop: what it prints, how well dolls fall, the files it writes, what it refuses.
 . "$(dirname "$0")/lib.sh"
 
 noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --quiet
 expect 0 'build the puppet'
 
-noh drop "$work/puppet.noh" --dolls 16 --seconds 10 --json --dump "$work/fall.csv" -o "$work/fall.png"
+noh lab drop "$work/puppet.noh" --dolls 16 --seconds 10 --json --dump "$work/fall.csv" -o "$work/fall.png"
 expect 0 'drop it'
 check 'prints what it measures' sh -c 'for k in dolls bodies limit_max_deg penetration_max_mm separation_mean_mm settle_s asleep bytes_per_doll ns_per_body_step hash; do grep -q "\"$k\"" "$1" || exit 1; done' - "$work/out"
 cp "$work/out" "$work/json"
@@ -22,9 +22,9 @@ check 'the dump has a line for each frame, doll and body' test "$(wc -l <"$work/
 check 'and a heading' sh -c 'head -n 1 "$1" | grep -qx "frame,doll,body,x,y,z,qx,qy,qz,qw"' - "$work/fall.csv"
 check 'the strip is a picture' sh -c 'head -c 4 "$1" | grep -q PNG' - "$work/fall.png"
 
-noh drop "$work/puppet.noh" --json
+noh lab drop "$work/puppet.noh" --json
 check 'the same again' sh -c 'test "$(grep hash "$1")" = "$(grep hash "$2")"' - "$work/out" "$work/json"
-noh drop "$work/puppet.noh" --seconds 1 --seed 2
+noh lab drop "$work/puppet.noh" --seconds 1 --seed 2
 expect 0 'another seed'
 check 'falls otherwise' sh -c '! grep -q "$(sed -n "s/.*\"hash\": \"\(.*\)\".*/\1/p" "$2")" "$1"' - "$work/out" "$work/json"
 
@@ -38,7 +38,7 @@ spine bend -15 25 side 15 twist 15 friction 5
 END
 noh build "$build/demo/puppet.glb" -o "$work/own.noh" --quiet --ragdoll "$work/puppet.ragdoll"
 expect 0 'a ragdoll of its own'
-noh drop "$work/own.noh" --dolls 4 --seconds 1 --json
+noh lab drop "$work/own.noh" --dolls 4 --seconds 1 --json
 expect 0 'drop that'
 check 'it has those bodies' grep -q '"bodies": 4' "$work/out"
 bones=$build/demo/get_up.glb # its skeleton is the puppet's, and it is read in no time
@@ -67,18 +67,18 @@ noh build "$bones" -o "$work/bad.noh" --ragdoll "$work/bad.ragdoll"
 expect 1 'bodies that do not hang together'
 says 'not a descendant of the first'
 
-noh drop "$build/mask.noh"
+noh lab drop "$build/mask.noh"
 expect 1 'a mask has no skeleton'
 says 'nothing of it can fall'
-noh drop "$work/puppet.noh" --dolls 0
+noh lab drop "$work/puppet.noh" --dolls 0
 expect 2 'no dolls'
 says '--dolls wants a whole number from 1 to 1024'
-noh drop "$work/puppet.noh" --substeps 4
+noh lab drop "$work/puppet.noh" --substeps 4
 expect 2 'too few substeps'
 says '--substeps wants a whole number from 5 to 20'
-noh drop "$work/puppet.noh" --seconds 0
+noh lab drop "$work/puppet.noh" --seconds 0
 expect 2 'no time'
-noh drop "$work/puppet.noh" --seconds 1 --dump "$work/no/such/fall.csv"
+noh lab drop "$work/puppet.noh" --seconds 1 --dump "$work/no/such/fall.csv"
 expect 1 'a dump that cannot be written'
 says 'cannot write'
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh light and noh build --transfer: figures and their order, JSON, what is refused, strip and info.
+# noh lab light and noh build --transfer: figures and their order, JSON, what is refused, strip and info.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb
@@ -12,7 +12,7 @@ awk 'BEGIN {
 }' >"$sheet"
 noh build "$sheet" -o "$work/sheet.noh" --quiet
 expect 0 'build without a transfer'
-noh light "$work/sheet.noh"
+noh lab light "$work/sheet.noh"
 expect 1 'a pack without transfers is refused'
 says '--transfer 4 or 6'
 
@@ -33,7 +33,7 @@ noh info "$work/sheet.noh" --json
 check 'null where there is none' grep -q '"transfer": null' "$work/out"
 noh strip "$work/sheet4.noh" -o "$work/small.noh" --from-level 1 --quiet
 expect 0 'strip cuts it'
-noh light "$work/small.noh" --rays 256
+noh lab light "$work/small.noh" --rays 256
 expect 0 'the stripped pack still has it'
 noh render "$work/sheet4.noh" -o "$work/with.png" --size 100x100
 expect 0 'render'
@@ -49,7 +49,7 @@ says "--transfer wants on or off, not 'soft'"
 noh verify "$work/sheet4.noh"
 expect 0 'verify'
 
-noh light "$work/sheet4.noh" --rays 256
+noh lab light "$work/sheet4.noh" --rays 256
 expect 0 'a table'
 check 'of two poses' test "$(grep -c '^bind pose\|^posed' "$work/out")" = 2
 
@@ -57,7 +57,7 @@ noh build "$sheet" -o "$work/bounce.noh" --quiet --transfer 4 --bounce 0.5
 expect 0 'build with one reflection'
 noh info "$work/bounce.noh" --json
 check 'it is in the pack, in 255ths' grep -q '"bounce": 128' "$work/out"
-noh light "$work/bounce.noh" --rays 256
+noh lab light "$work/bounce.noh" --rays 256
 expect 0 'measure it'
 noh build "$sheet" -o "$work/x.noh" --bounce 0.5
 expect 2 'no reflection without a transfer'
@@ -66,13 +66,13 @@ noh build "$sheet" -o "$work/x.noh" --transfer 4 --bounce 1.5
 expect 2 'more light than there is'
 says '--bounce wants a number from 0 to 1'
 
-noh light "$work/sheet4.noh" --rays 10
+noh lab light "$work/sheet4.noh" --rays 10
 expect 2 'too few rays'
 says '--rays wants a whole number from 64 to 65536'
-noh light "$work/sheet4.noh" --rays 256 --weight no-such=1
+noh lab light "$work/sheet4.noh" --rays 256 --weight no-such=1
 expect 1 'a target that is not there'
 says 'no-such'
-noh light "$work/sheet4.noh" --rays 256 --weight nothing
+noh lab light "$work/sheet4.noh" --rays 256 --weight nothing
 expect 2 'no assignment'
 
 # The figures of a head, if it is there: those that the README of the library states.
@@ -85,7 +85,7 @@ else
     for order in 4 6; do
         noh build "$head" -o "$work/head.noh" --quiet --transfer $order
         expect 0 "build a head with order $order"
-        noh light "$work/head.noh" --json --rays 1024
+        noh lab light "$work/head.noh" --json --rays 1024
         expect 0 'measure it'
         check 'within what is asked for, and better than about the normal' awk -F '[:, ]+' '
             /rms|bytes_per/ { gsub("\"", "", $2); v[$2] = $3 }

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
-verbs='build strip pack info clip budget light render sheet zoom dump verify view crowd drop speak mask bake face replay bisect bench'
+verbs='build strip pack info clip budget render sheet dump verify view crowd speak mask bake face bench lab_zoom lab_drop lab_light lab_replay lab_bisect'
 
 silent() {
     check "$1" test ! -s "$work/err"
@@ -15,11 +15,12 @@ noh --version
 expect 0 '--version'
 check 'is that of version.h' sh -c 'grep -qx "noh $(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/core/base/version.h)" "$1"' - "$work/out"
 for verb in $verbs; do
+    verb=$(echo "$verb" | tr _ ' ')
     noh $verb --help
     expect 0 "$verb --help"
     cp "$work/out" "$work/help"
     silent 'on stdout alone'
-    check 'with usage and examples' sh -c 'grep -q "^usage: noh $2 " "$1" && grep -q "^  noh $2 " "$1"' - "$work/help" $verb
+    check 'with usage and examples' sh -c 'grep -q "^usage: noh $2 " "$1" && grep -q "^  noh $2 " "$1"' - "$work/help" "$verb"
     noh $verb -h
     expect 0 "$verb -h"
     check 'says the same' cmp "$work/out" "$work/help"
@@ -49,6 +50,7 @@ noh help --man
 expect 0 'help --man'
 cp "$work/out" "$work/noh.1"
 for verb in $verbs; do
+    verb=$(echo "$verb" | tr _ ' ')
     check "the man page has $verb" grep -q "^\.SS noh $verb " "$work/noh.1"
 done
 if command -v man >/dev/null 2>&1 && man -l "$work/noh.1" >"$work/page" 2>/dev/null; then
@@ -70,6 +72,11 @@ if command -v bash >/dev/null 2>&1; then
     check 'an option' test "$(complete render --acc)" = --accumulate
     check 'a word of an option' test "$(complete render --path per)" = per-layer
     check 'not those of another verb' test -z "$(complete info --acc)"
+    check 'a verb of the lab' test "$(complete lab zo)" = zoom
+    check 'and its options' test "$(complete lab zoom --jit)" = --jitter
+    check 'a word of one' test "$(complete lab zoom --driver os)" = osmesa
+    check 'and a file' test "$(complete lab drop "$work/noh.b")" = "$work/noh.bash"
+    check 'help completes the lab' test "$(complete help la)" = lab
     check 'a file' test "$(complete info "$work/noh.b")" = "$work/noh.bash"
 else
     skip 'completion' 'bash is not here'
@@ -99,7 +106,7 @@ ineffective --over sheet "$pack" -o "$work/x.png" --clip speak --over 1
 ineffective --target sheet "$pack" -o "$work/x.png" --clip speak --target smile
 ineffective --columns sheet "$pack" -o "$work/x.png" --lods --columns 3
 ineffective --clip sheet "$pack" -o "$work/x.png" --lods --clip speak
-ineffective --time zoom "$pack" --time 1
+ineffective --time lab zoom "$pack" --time 1
 ineffective --pixels crowd "$pack" -o "$work/x.png" --plain --pixels 2
 ineffective --rounds bench "$pack" --quick --rounds 3
 ineffective --lod-fast build "$build/mask.glb" -o "$work/x.noh" --lod-fast

@@ -3,6 +3,8 @@
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
+verbs='build strip pack info budget render sheet dump verify crowd speak mask bake face bench'
+lab='zoom drop light replay bisect'
 
 quiet_stdout() {
     check "and prints nothing else" test ! -s "$work/out"
@@ -12,13 +14,36 @@ noh
 expect 2 'no verb is a usage error'
 noh help
 expect 0 'help is not an error'
-check 'help names every verb' sh -c 'for v in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask bake face replay bisect bench; do grep -q "noh $v " "$1" || exit 1; done' - "$work/out"
+check 'help names every verb' sh -c 'for v in $2; do grep -q "noh $v " "$1" || exit 1; done' - "$work/out" "$verbs lab"
+noh lab
+expect 2 'no verb of the lab is a usage error'
+noh lab --help
+expect 0 'help of the lab is not an error'
+check 'it names every verb' sh -c 'for v in $2; do grep -q "noh lab $v " "$1" || exit 1; done' - "$work/out" "$lab"
+cp "$work/out" "$work/lab"
+noh help lab
+check 'help lab says the same' cmp "$work/out" "$work/lab"
 noh biuld "$pack"
 expect 2 'an unknown verb'
 says "there is no verb 'biuld'"
 quiet_stdout
+noh lab zom "$pack"
+expect 2 'an unknown verb of the lab'
+says "there is no verb 'lab zom' (did you mean 'lab zoom'?)"
+noh lab render "$pack"
+expect 2 'a verb outside the lab'
+for verb in $lab; do
+    noh $verb "$pack"
+    expect 2 "$verb without lab"
+    says "there is no verb '$verb': use noh lab $verb"
+    noh help $verb
+    expect 2 "help $verb without lab"
+    says "noh lab $verb"
+    quiet_stdout
+done
 
-for verb in build strip pack info budget light render sheet zoom dump verify crowd drop speak mask bake face replay bisect bench; do
+for verb in $verbs $(printf 'lab_%s ' $lab); do
+    verb=$(echo "$verb" | tr _ ' ')
     noh $verb
     expect 2 "$verb without a file"
     noh $verb "$pack" --no-such-option
@@ -27,7 +52,7 @@ for verb in build strip pack info budget light render sheet zoom dump verify cro
     quiet_stdout
 done
 
-for verb in strip pack info budget light verify; do
+for verb in strip pack info budget 'lab light' verify; do
     noh $verb "$pack" "$pack"
     expect 2 "$verb with one file too many"
     says 'one file too many'

@@ -23,7 +23,7 @@ tell() {
          "pops $(field pop), excess $(field excess) of 255; levels $(field levels_out) out, $(field levels_in) in"
 }
 
-noh zoom "$pack" --frames 4 --every 4 -o "$work/strip.png"
+noh lab zoom "$pack" --frames 4 --every 4 -o "$work/strip.png"
 if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
     skip 'zoom' 'no GL context here'
     finish
@@ -41,7 +41,7 @@ fi
 zooms() {
     name=$1 levels=$2
     shift 2
-    noh zoom "$@" --json
+    noh lab zoom "$@" --json
     tell "$name"
     expect 0 "$name"
     holds "$name: every level, out and in" "$(field levels_out) == $levels - 1 && $(field levels_in) == $levels - 1 && $(field most_entered) == 1"
@@ -85,25 +85,25 @@ done
 # ---- what is measured can fail ----
 
 last="--frames 100 --near 3 --far 6 --every 100" # where the mask's last level is chosen
-noh zoom "$pack" $last $mask --json
+noh lab zoom "$pack" $last $mask --json
 expect 0 'the last level, with fades'
-noh zoom "$pack" $last $mask --json --no-fades --jitter 0.25
+noh lab zoom "$pack" $last $mask --json --no-fades --jitter 0.25
 expect 1 'and without them'
 holds 'levels that change at once pop' "$(field pop) > 1 && $(field excess) > 1"
 holds 'and flicker where a camera shakes by more than the hysteresis' "$(field most_entered_shaken) > 1"
-noh zoom "$pack" --frames 8 --near 0.45 --far 0.6 --size 512x512 --pixels 12 --weight smile=1 --json
+noh lab zoom "$pack" --frames 8 --near 0.45 --far 0.6 --size 512x512 --pixels 12 --weight smile=1 --json
 holds 'a coarse level that is too near is off' "$(field silhouette_px) > 0.5 && $(field position_px) > 1.25"
 
 # ---- what is refused ----
 
-noh zoom "$build/mask.noh"
+noh lab zoom "$build/mask.noh"
 expect 1 'a pack without levels'
 says 'noh build --lod'
 for options in '--frames 3' '--frames 7.5' '--pixels 0' '--every 0' '--every 1.5' '--jitter 1' '--size 100x80' '--near 0.01'; do
-    noh zoom "$pack" $options
+    noh lab zoom "$pack" $options
     expect 2 "zoom $options"
 done
-noh zoom
+noh lab zoom
 expect 2 'zoom without a pack'
 
 finish

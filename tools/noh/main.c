@@ -7,7 +7,6 @@
 #include "help/help.h"
 #include "cli/json.h"
 #include "cli/message.h"
-#include "convert/base/nearest.h"
 #include "cli/verbs.h"
 
 /* The names of enum noh_result, without their prefix. */
@@ -75,25 +74,20 @@ static int run_verb(const verb *v, int argc, char **argv)
     return status;
 }
 
-static int unknown_verb(const char *name)
+static int asks_for_help(const char *text)
 {
-    const char *names[VERB_COUNT], *near;
-    for (int i = 0; i < VERB_COUNT; i++) {
-        names[i] = verb_at(i)->name;
-    }
-    near = nearest_name(name, names, VERB_COUNT);
-    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near)
-                : tool_usage("there is no verb '%s'", name);
+    return strcmp(text, "--help") == 0 || strcmp(text, "-h") == 0;
 }
 
 static int run(int argc, char **argv)
 {
     const verb *v;
+    int count;
     if (argc < 2) {
         help_print(stdout);
         return EXIT_USAGE;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+    if (asks_for_help(argv[1])) {
         help_print(stdout);
         return 0;
     }
@@ -104,8 +98,12 @@ static int run(int argc, char **argv)
     if (strcmp(argv[1], "help") == 0) {
         return help_run(argc - 2, argv + 2);
     }
-    v = verb_find(argv[1]);
-    return v ? run_verb(v, argc - 2, argv + 2) : unknown_verb(argv[1]);
+    if (strcmp(argv[1], "lab") == 0 && (argc == 2 || asks_for_help(argv[2]))) {
+        help_lab(stdout);
+        return argc == 2 ? EXIT_USAGE : 0;
+    }
+    v = verb_read(argc - 1, argv + 1, &count);
+    return v ? run_verb(v, argc - 1 - count, argv + 1 + count) : EXIT_USAGE;
 }
 
 int main(int argc, char **argv)

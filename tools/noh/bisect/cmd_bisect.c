@@ -101,7 +101,7 @@ static int read(const char *path, session *s)
     model_error error = { "", "" };
     if (session_read(s, path, &error)) return tool_fail(path, "%s (%s)", error.what, error.where);
     return s->hashes ? 0
-                     : tool_fail(path, "the session has no hashes: noh replay PACK --play %s -o OUT makes them", path);
+                     : tool_fail(path, "the session has no hashes: noh lab replay PACK --play %s -o OUT makes them", path);
 }
 
 static int run(void *args)
@@ -109,7 +109,7 @@ static int run(void *args)
     const bisect_args *a = args;
     session s[2] = { { 0 }, { 0 } };
     int status;
-    if (a->file_count != 2) return tool_usage("noh bisect wants two sessions");
+    if (a->file_count != 2) return tool_usage("noh lab bisect wants two sessions");
     status = read(a->files[0], &s[0]);
     if (!status) status = read(a->files[1], &s[1]);
     if (!status && (s[0].pack_crc != s[1].pack_crc || s[0].actor_count != s[1].actor_count)) {
@@ -126,11 +126,11 @@ static bisect_args arguments;
 static const option options[] = { OPTION_JSON(bisect_args, as_json) };
 
 const verb verb_bisect = {
-    .name = "bisect",
+    .name = "lab bisect",
     .files = "SESSION SESSION",
-    .what = "the first frame and the parts in which two sessions of noh replay differ",
+    .what = "the first frame and the parts in which two sessions of noh lab replay differ",
     .more =
-        "Of two machines, compilers or versions: `noh replay PACK -o a.session` on the one, `noh replay PACK --play a.session -o b.session` on the other. The exit code is 1 if anything differs.",
+        "Of two machines, compilers or versions: `noh lab replay PACK -o a.session` on the one, `noh lab replay PACK --play a.session -o b.session` on the other. The exit code is 1 if anything differs.",
     .example = "a.session b.session\na.session b.session --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

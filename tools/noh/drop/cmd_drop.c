@@ -193,7 +193,7 @@ static const option options[] = {
 };
 
 const verb verb_drop = {
-    .name = "drop",
+    .name = "lab drop",
     .files = "PACK",
     .what = "drop ragdolls of a character, and measure how they fall",
     .more =

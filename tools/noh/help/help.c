@@ -5,7 +5,6 @@
 
 #include "core/base/version.h"
 #include "cli/message.h"
-#include "convert/base/nearest.h"
 #include "cli/verbs.h"
 
 #define WIDTH 100 /* columns */
@@ -94,13 +93,27 @@ void help_verb(FILE *out, const verb *v)
     }
 }
 
+static void print_verbs(FILE *out, int lab)
+{
+    for (int i = 0; i < VERB_COUNT; i++) {
+        const verb *v = verb_at(i);
+        if (verb_is_lab(v) == lab) fprintf(out, "  noh %-*s %s\n", lab ? 11 : 7, v->name, v->what);
+    }
+}
+
+void help_lab(FILE *out)
+{
+    fputs("noh lab: measurements for the library's developers\n\n", out);
+    print_verbs(out, 1);
+    fputs("\nnoh lab VERB --help   a verb's options, with examples (also: noh help lab VERB)\n", out);
+}
+
 void help_print(FILE *out)
 {
     fputs("noh " NOH_VERSION ": characters in fixed memory\n\n", out);
-    for (int i = 0; i < VERB_COUNT; i++) {
-        fprintf(out, "  noh %-7s %s\n", verb_at(i)->name, verb_at(i)->what);
-    }
-    fputs("\nnoh VERB --help     a verb's options, with examples (also: noh help VERB)\n"
+    print_verbs(out, 0);
+    fputs("  noh lab     measurements for the library's developers (noh lab --help)\n"
+          "\nnoh VERB --help     a verb's options, with examples (also: noh help VERB)\n"
           "noh help FORMATS    the formats of files and options\n"
           "noh help --man      all of it as a man page; --bash: completion for bash\n"
           "noh --version\n\n"
@@ -123,30 +136,25 @@ void help_formats(FILE *out)
     }
 }
 
-static int unknown_topic(const char *name)
+static int help_of_verb(int argc, char **argv)
 {
-    const char *names[VERB_COUNT + 1] = { "FORMATS" }, *near;
-    for (int i = 0; i < VERB_COUNT; i++) {
-        names[i + 1] = verb_at(i)->name;
-    }
-    near = nearest_name(name, names, VERB_COUNT + 1);
-    return near ? tool_usage("there is no verb '%s' (did you mean '%s'?)", name, near)
-                : tool_usage("there is no verb '%s'", name);
+    int count;
+    const verb *v = verb_read(argc, argv, &count);
+    if (!v) return EXIT_USAGE;
+    if (argc > count) return tool_usage("noh help takes one verb or FORMATS: remove '%s'", argv[count]);
+    help_verb(stdout, v);
+    return 0;
 }
 
 int help_run(int argc, char **argv)
 {
-    const verb *v;
-    if (argc > 1) {
-        return tool_usage("help wants one verb, or FORMATS");
-    }
     if (argc == 0 || strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
         help_print(stdout);
         return 0;
     }
-    v = verb_find(argv[0]);
-    if (v) {
-        help_verb(stdout, v);
+    if (argc > 1) return help_of_verb(argc, argv);
+    if (strcmp(argv[0], "lab") == 0) {
+        help_lab(stdout);
     } else if (strcmp(argv[0], "FORMATS") == 0 || strcmp(argv[0], "formats") == 0) {
         help_formats(stdout);
     } else if (strcmp(argv[0], "--man") == 0) {
@@ -154,7 +162,7 @@ int help_run(int argc, char **argv)
     } else if (strcmp(argv[0], "--bash") == 0) {
         help_bash(stdout);
     } else {
-        return unknown_topic(argv[0]);
+        return help_of_verb(argc, argv);
     }
     return 0;
 }

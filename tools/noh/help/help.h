@@ -8,6 +8,8 @@
 
 /* All verbs, one line each. */
 void help_print(FILE *out);
+/* The verbs of `noh lab`, one line each. */
+void help_lab(FILE *out);
 /* `noh help VERB`, `noh VERB --help`. */
 void help_verb(FILE *out, const verb *v);
 /* `noh help FORMATS`: the formats of files and options. */

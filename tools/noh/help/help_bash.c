@@ -31,11 +31,19 @@ static void bash_option(FILE *out, const verb *v, const option *o)
 
 static void bash_verb(FILE *out, const verb *v)
 {
-    fprintf(out, "    %s) words='", v->name);
+    fprintf(out, "    '%s') words='", v->name);
     for (int i = 0; i < v->option_count; i++) {
         fprintf(out, "%s ", v->options[i].name);
     }
     fputs("--help' ;;\n", out);
+}
+
+static void put_verbs(FILE *out, int lab)
+{
+    for (int i = 0; i < VERB_COUNT; i++) {
+        const verb *v = verb_at(i);
+        if (verb_is_lab(v) == lab) fprintf(out, "%s ", v->name + (lab ? strlen(LAB_PREFIX) : 0));
+    }
 }
 
 void help_bash(FILE *out)
@@ -45,20 +53,22 @@ void help_bash(FILE *out)
           "    local verb=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
           "    local words= files=1 verbs='",
           out);
-    for (int i = 0; i < VERB_COUNT; i++) {
-        fprintf(out, "%s ", verb_at(i)->name);
-    }
+    put_verbs(out, 0);
+    fputs("lab' lab='", out);
+    put_verbs(out, 1);
     fputs("'\n    COMPREPLY=()\n"
           "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
           "        COMPREPLY=($(compgen -W \"$verbs help --version\" -- \"$word\"))\n"
           "        return\n    fi\n"
-          "    case $verb in\n    help) words=\"$verbs FORMATS\" files= ;;\n",
+          "    [ \"$verb\" != lab ] || [ \"$COMP_CWORD\" = 2 ] || verb=\"lab ${COMP_WORDS[2]}\"\n"
+          "    case $verb in\n    help) words=\"$verbs FORMATS\" files= ;;\n"
+          "    lab) words=\"$lab --help\" files= ;;\n",
           out);
     for (int i = 0; i < VERB_COUNT; i++) {
         bash_verb(out, verb_at(i));
     }
     fputs(
-        "    esac\n    [ \"$verb\" = help ] || case $word in -*) files= ;; *) words= ;; esac\n    case \"$verb $before\" in\n",
+        "    esac\n    [ -z \"$files\" ] || case $word in -*) files= ;; *) words= ;; esac\n    case \"$verb $before\" in\n",
         out);
     for (int i = 0; i < VERB_COUNT; i++) {
         const verb *v = verb_at(i);

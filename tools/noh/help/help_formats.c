@@ -126,7 +126,7 @@ const char *const help_formats_text[] = {
     "   side ANGLE                                  degrees to both sides, 0 to 180 (0)",
     "   twist ANGLE                                 degrees both ways, 0 to 180 (0)",
     "   friction NM                                 newton metres in a body of 70 kg, 0 to 10000 (0)",
-    "Without a file bodies and limits follow from the names of joints. noh drop PACK shows how it falls.",
+    "Without a file bodies and limits follow from the names of joints. noh lab drop PACK shows how it falls.",
     "   Hips",
     "   LeftUpLeg forward bend -20 95 side 40 twist 30 friction 5",
     "   LeftLeg hinge backward bend 0 140 friction 5",
@@ -243,7 +243,7 @@ const char *const help_formats_text[] = {
     "   need rest 0.02",
     "   object bench rest 0.1 40",
     "   slot 0 3 180 15 look_round",
-    "# sessions (noh replay, noh bisect)",
+    "# sessions (noh lab replay, noh lab bisect)",
     "What a game did to characters of one pack, a line for each input, in the order of frames; then, if it was played, the hashes of each "
     "frame. # begins a comment, names with blanks stand in double quotes:",
     "   noh-session 1, pack CRC, actors N, frames N  four lines, in this order; N actors at most, 1 to 64",

@@ -184,7 +184,7 @@ static const option options[] = {
 };
 
 const verb verb_light = {
-    .name = "light",
+    .name = "lab light",
     .files = "PACK",
     .what = "how near precomputed light (noh build --transfer) comes to brute force",
     .more =

@@ -230,11 +230,11 @@ static const option options[] = {
 };
 
 const verb verb_replay = {
-    .name = "replay",
+    .name = "lab replay",
     .files = "PACK",
     .what = "play inputs to a stage, hash every frame, and play them again to the same hashes",
     .more =
-        "Without --play the inputs are drawn by seed: characters come in, play clips and graphs, feel, look, are hit, fall and get up, as the pack allows; that is a test of a pack on a new processor or compiler, and of a new version of the library. Of each frame are hashed: the stage's state, callback keys, places, floats, joints, palettes, and the vertices of one actor every half second. noh bisect compares two files.",
+        "Without --play the inputs are drawn by seed: characters come in, play clips and graphs, feel, look, are hit, fall and get up, as the pack allows; that is a test of a pack on a new processor or compiler, and of a new version of the library. Of each frame are hashed: the stage's state, callback keys, places, floats, joints, palettes, and the vertices of one actor every half second. noh lab bisect compares two files.",
     .example = "body.noh -o run.session\nbody.noh --play run.session\nbody.noh --seed 7 --seconds 60 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -231,7 +231,7 @@ static const option options[] = {
 };
 
 const verb verb_zoom = {
-    .name = "zoom",
+    .name = "lab zoom",
     .files = "PACK",
     .what = "compare LOD levels with the full mesh in a slow zoom out and back: silhouettes, surfaces, pops, flicker",
     .more =
