@@ -30,8 +30,8 @@ static void open_timers(view_app *a)
 static void set_defaults(view_app *a, const view_model_desc *desc)
 {
     a->desc = *desc;
-    a->show_panels = a->show_layers = a->follow = a->cut = 1;
-    a->show_floor = desc->root_motion;
+    a->window.show_panels = a->window.show_layers = a->camera.follow = a->cut = 1;
+    a->ground.shown = desc->root_motion;
     a->speed = a->how.speed = a->how.weight = 1.0f;
     a->how.fade_s = 0.2f;
     a->how.loop = NOH_LOOP_REPEAT; /* who looks at a clip wants to look again */
@@ -39,9 +39,9 @@ static void set_defaults(view_app *a, const view_model_desc *desc)
     a->lod.pixels = 1.0f;
     a->over.joint = NOH_NONE;
     a->compare.gain = 8.0f;
-    a->export_hz = 30;
+    a->film.hz = 30;
     view_lights_open(&a->lights, desc->light);
-    if (!a->export_path[0]) snprintf(a->export_path, sizeof a->export_path, "noh.gif");
+    if (!a->film.path[0]) snprintf(a->film.path, sizeof a->film.path, "noh.gif");
 }
 
 static int open_screen(view_app *a)
@@ -55,15 +55,15 @@ static int open_screen(view_app *a)
 
 int view_app_begin(view_app *a)
 {
-    a->show_panels = 1;
+    a->window.show_panels = 1;
     return open_screen(a);
 }
 
 void view_app_blank(view_app *a, float scale)
 {
-    a->scale = scale;
-    a->window_width = (float)a->screen.width / scale;
-    a->window_height = (float)a->screen.height / scale;
+    a->window.scale = scale;
+    a->window.width = (float)a->screen.width / scale;
+    a->window.height = (float)a->screen.height / scale;
     view_screen_begin(&a->screen);
 }
 
@@ -73,9 +73,9 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     set_defaults(a, desc);
     a->screen.width = desc->width;
     a->screen.height = desc->height;
-    a->window_width = (float)desc->width;
-    a->window_height = (float)desc->height;
-    a->scale = 1.0f;
+    a->window.width = (float)desc->width;
+    a->window.height = (float)desc->height;
+    a->window.scale = 1.0f;
     view_figure_pixels(a, &x, &y, &a->desc.width, &a->desc.height);
     if (!status) status = view_model_open(&a->gpu, &a->desc, &a->model);
     if (status) {
@@ -83,7 +83,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
     }
     a->desc.converted = NULL;
     a->desc.path = a->model->path;
-    a->wish = a->desc;
+    a->request.desc = a->desc;
     a->times.accumulate = a->times.draw = a->times.accumulate_timer.available ? 0.0 : -1.0;
     view_begin_model(a);
     return 0;
@@ -91,8 +91,8 @@ int view_app_open(view_app *a, const view_model_desc *desc)
 
 void view_app_close(view_app *a)
 {
-    view_load_cancel(&a->load);
-    view_export_stop(&a->filming);
+    view_load_cancel(&a->files.load);
+    view_export_stop(&a->film.job);
     view_compare_close(&a->compare);
     noh_gl_timer_delete(&a->times.accumulate_timer, &a->gpu.gl);
     noh_gl_timer_delete(&a->times.draw_timer, &a->gpu.gl);
@@ -119,7 +119,7 @@ void view_app_lost(view_app *a)
     a->gpu.gl = *noh_gl_lost_api();
     view_compare_close(&a->compare); /* it is opened again by the next frame */
     a->gpu.gl = gl;
-    view_export_stop(&a->filming);
+    view_export_stop(&a->film.job);
     view_model_lost(a->model, &a->gpu);
 }
 
@@ -182,26 +182,26 @@ static void log_event(void *user, const view_passed *event)
 
 void view_walk(view_app *a, int root_motion)
 {
-    a->wish.root_motion = root_motion;
-    a->show_floor |= root_motion;
-    a->wants_reload = 1;
+    a->request.desc.root_motion = root_motion;
+    a->ground.shown |= root_motion;
+    a->request.reload = 1;
 }
 
 void view_walk_home(view_app *a)
 {
     view_model_send_home(a->model);
-    memset(&a->walked, 0, sizeof a->walked);
+    memset(&a->ground.walked, 0, sizeof a->ground.walked);
 }
 
 /* A point of the path for each hundredth of the figure's size. */
 static void note_place(view_app *a)
 {
     const noh_place place = view_model_place(a->model);
-    view_path *p = &a->walked;
+    view_path *p = &a->ground.walked;
     const float *last = p->points[(p->next + VIEW_PATH - 1u) % VIEW_PATH];
     const float x = place.position[0], z = place.position[2];
     if (a->model->root_motion &&
-        (!p->count || hypot((double)(x - last[0]), (double)(z - last[1])) > 0.01 * a->orbit.radius)) {
+        (!p->count || hypot((double)(x - last[0]), (double)(z - last[1])) > 0.01 * a->camera.orbit.radius)) {
         p->points[p->next][0] = x;
         p->points[p->next][1] = z;
         p->next = (p->next + 1u) % VIEW_PATH;
@@ -252,7 +252,7 @@ static int animate(view_app *a, double seconds)
     view_lod_begin(&a->lod, a->model);
     view_follow(a, seconds);
     note_place(a);
-    orbit_camera(&a->orbit, &camera);
+    orbit_camera(&a->camera.orbit, &camera);
     view_look_at_pointer(a, &camera);
     status = view_model_pose(a->model, &camera, a->cut || stands);
     a->cut = 0;
@@ -265,9 +265,9 @@ static int fit_canvas(view_app *a, int *x, int *y)
     uint32_t width, height;
     int status;
     view_figure_pixels(a, x, y, &width, &height);
-    a->orbit.aspect = (double)width / (double)height;
-    a->desc.width = a->wish.width = width;
-    a->desc.height = a->wish.height = height;
+    a->camera.orbit.aspect = (double)width / (double)height;
+    a->desc.width = a->request.desc.width = width;
+    a->desc.height = a->request.desc.height = height;
     status = view_model_fit(a->model, &a->gpu, width, height);
     if (!status && view_compare_fit(&a->compare, a->model, &a->gpu, &a->desc)) view_tell(a);
     return status;
@@ -285,11 +285,11 @@ int view_show_data(view_app *a, const char *name)
 {
     noh_mesh mesh;
     const int has_mesh = view_data_mesh(a->model, &mesh);
-    a->data = strcmp(name, "base") == 0 ? VIEW_DATA_BASE : VIEW_DATA_DELTA;
-    if (strcmp(name, "sums") == 0) a->data = VIEW_DATA_SUMS;
-    if (a->data != VIEW_DATA_DELTA) return 0;
-    a->data_target = has_mesh ? noh_mesh_find_target(&mesh, name) : NOH_NONE;
-    return a->data_target == NOH_NONE ? figure_check_target(&a->model->file, name) : 0;
+    a->textures.shown = strcmp(name, "base") == 0 ? VIEW_DATA_BASE : VIEW_DATA_DELTA;
+    if (strcmp(name, "sums") == 0) a->textures.shown = VIEW_DATA_SUMS;
+    if (a->textures.shown != VIEW_DATA_DELTA) return 0;
+    a->textures.target = has_mesh ? noh_mesh_find_target(&mesh, name) : NOH_NONE;
+    return a->textures.target == NOH_NONE ? figure_check_target(&a->model->file, name) : 0;
 }
 
 /* The mesh's own textures, or a target's, from the pack. */
@@ -298,11 +298,11 @@ static void draw_data(view_app *a)
     noh_mesh mesh;
     data_page page;
     if (!view_data_mesh(a->model, &mesh) || data_page_open(&page, &mesh)) return;
-    if (a->data == VIEW_DATA_BASE) {
+    if (a->textures.shown == VIEW_DATA_BASE) {
         data_page_base(&page, &mesh);
         view_screen_data(&a->screen, &page);
-    } else if (a->data_target < mesh.header->target_count) {
-        data_page_delta(&page, &mesh, a->data_target, a->layer_gain);
+    } else if (a->textures.target < mesh.header->target_count) {
+        data_page_delta(&page, &mesh, a->textures.target, a->layer_gain);
         view_screen_data(&a->screen, &page);
     }
     data_page_close(&page);
@@ -315,8 +315,8 @@ static void draw_layers(view_app *a)
     const float gain = a->layer_gain;
     const float gains[3] = { 0.5f * gain / m->delta_max, gain, gain };
     noh_stage_drawn drawn;
-    if (!m->is_morphed || !a->show_panels || !a->show_layers) return;
-    if (a->data != VIEW_DATA_SUMS) {
+    if (!m->is_morphed || !a->window.show_panels || !a->window.show_layers) return;
+    if (a->textures.shown != VIEW_DATA_SUMS) {
         draw_data(a);
         return;
     }
@@ -333,15 +333,16 @@ static void draw_marks(view_app *a)
 {
     const uint32_t height = a->model->canvas.height;
     float path[VIEW_PATH][2], point[3];
-    const view_path *p = &a->walked;
-    if (a->show_floor) view_marks_floor(&a->marks, &a->orbit, a->floor, height);
+    const view_path *p = &a->ground.walked;
+    if (a->ground.shown) view_marks_floor(&a->marks, &a->camera.orbit, a->ground.height, height);
     for (uint32_t i = 0; i < p->count; i++) {
         memcpy(path[i], p->points[(p->next + VIEW_PATH - p->count + i) % VIEW_PATH], sizeof path[i]);
     }
-    if (a->show_floor && p->count) view_marks_path(&a->marks, &a->orbit, a->floor, &path[0][0], p->count, height);
+    if (a->ground.shown && p->count)
+        view_marks_path(&a->marks, &a->camera.orbit, a->ground.height, &path[0][0], p->count, height);
     if (a->pick.is_on) {
         view_pick_point(&a->pick, a->model, point);
-        view_marks_point(&a->marks, &a->orbit, point, height);
+        view_marks_point(&a->marks, &a->camera.orbit, point, height);
     }
 }
 
@@ -369,8 +370,9 @@ int view_app_picture(view_app *a)
     int status;
     if (a->is_drawn) return 0;
     a->is_drawn = 1;
-    orbit_camera(&a->orbit, &camera);
-    figure_set_floor(a->model->figure, a->show_floor && a->compare.is.with == VIEW_COMPARE_OFF, (float)a->floor);
+    orbit_camera(&a->camera.orbit, &camera);
+    figure_set_floor(a->model->figure, a->ground.shown && a->compare.is.with == VIEW_COMPARE_OFF,
+                     (float)a->ground.height);
     noh_gl_timer_begin(&t->draw_timer, gl);
     status = view_model_draw(a->model, &a->model->canvas, &a->overlay, &a->over, &camera);
     noh_gl_timer_end(&t->draw_timer, gl);
@@ -412,47 +414,47 @@ int view_app_frame(view_app *a, float scale, double seconds)
 {
     double radians = 0.0;
     int x, y, status;
-    if (view_export_step(&a->filming, &seconds, &radians)) a->orbit.azimuth += radians;
-    a->scale = scale;
-    a->window_width = (float)a->screen.width / scale;
-    a->window_height = (float)a->screen.height / scale;
+    if (view_export_step(&a->film.job, &seconds, &radians)) a->camera.orbit.azimuth += radians;
+    a->window.scale = scale;
+    a->window.width = (float)a->screen.width / scale;
+    a->window.height = (float)a->screen.height / scale;
     time_frame(&a->times);
     status = fit_canvas(a, &x, &y);
     if (!status) status = animate(a, seconds);
     if (!status) status = accumulate(a);
-    if (!status && (!a->lazy || a->filming.is_on)) status = view_app_picture(a);
+    if (!status && (!a->lazy || a->film.job.is_on)) status = view_app_picture(a);
     if (status) {
         return status;
     }
-    if (view_export_frame(&a->filming, &a->model->canvas)) view_tell(a);
+    if (view_export_frame(&a->film.job, &a->model->canvas)) view_tell(a);
     if (!a->lazy) view_app_present(a);
-    if (!a->hand_busy) view_undo_note(a);
+    if (!a->window.hand_busy) view_undo_note(a);
     return 0;
 }
 
 int view_app_moves(const view_app *a)
 {
-    return a->lod.fading || a->filming.is_on || a->turntable || a->load.state == VIEW_LOAD_RUNS ||
+    return a->lod.fading || a->film.job.is_on || a->camera.turntable || a->files.load.state == VIEW_LOAD_RUNS ||
            a->model->figure->faces_found || (a->playing && view_plays(a->model)) || view_fall_lasts(&a->fall, a->model);
 }
 
 void view_app_after(view_app *a)
 {
     int status;
-    if (!a->wants_reload) {
+    if (!a->request.reload) {
         return;
     }
-    a->wants_reload = 0;
-    view_export_stop(&a->filming);
+    a->request.reload = 0;
+    view_export_stop(&a->film.job);
     view_compare_close(&a->compare);
-    a->wish.part = a->part;
-    status = view_model_reload(a->model, &a->gpu, &a->wish);
+    a->request.desc.part = a->part;
+    status = view_model_reload(a->model, &a->gpu, &a->request.desc);
     view_keep(a, status);
     if (status) {
-        a->wish = a->desc;
+        a->request.desc = a->desc;
         return;
     }
-    a->desc = a->wish;
+    a->desc = a->request.desc;
     a->cut = 1;
     memset(&a->fall, 0, sizeof a->fall);
     if (!a->desc.root_motion) view_walk_home(a);

@@ -80,68 +80,100 @@ extern "C" {
 
 typedef enum view_data { VIEW_DATA_SUMS, VIEW_DATA_BASE, VIEW_DATA_DELTA } view_data;
 
+/* The camera, and what it frames. */
+typedef struct view_eye {
+    orbit orbit;
+    double anchor[3];     /* where the figure stood in the last frame */
+    int follow;           /* the orbit's centre follows the figure */
+    int turntable;        /* the camera turns about the figure */
+    bounds framed_box;    /* what view_frame_all framed */
+    double framed_aspect; /* the picture's aspect ratio when it did */
+    int by_hand;          /* moved by hand: other clips are not framed */
+    framing *framing;     /* made for the model when first needed; NULL until then */
+    uint8_t *framed;      /* [clip_count] 1: in the picture; NULL likewise */
+    bounds *boxes;        /* [clip_count] of framing_clip */
+    uint8_t *boxed;       /* [clip_count] 1: boxes has it, 2: the clip has no box */
+} view_eye;
+
+typedef struct view_window_state {
+    float width, height; /* points */
+    float scale;         /* pixels in a point */
+    float pointer[2];    /* pixels of the canvas; faces look at it */
+    int has_pointer;
+    int show_panels, show_layers;
+    int show_help;  /* the list of keys */
+    int hand_busy;  /* a slider is held or a list is open: no undo step yet */
+    int quit_asked; /* Esc was pressed: the panels ask for confirmation */
+    int quits;
+} view_window_state;
+
+/* The floor, and root motion over it. */
+typedef struct view_ground {
+    int shown;
+    double height;
+    view_path walked;
+} view_ground;
+
+typedef struct view_film {
+    view_export job;
+    char path[256];
+    int hz, turns;
+} view_film;
+
+typedef struct view_files {
+    view_load load;
+    view_watch watch;
+    uint32_t reloads;         /* files read again after they changed on disk */
+    const char *presets_path; /* NULL: beside the model */
+} view_files;
+
+/* The data textures drawn below the gain. */
+typedef struct view_textures {
+    view_data shown;
+    uint32_t target; /* VIEW_DATA_DELTA: a target of view_data_mesh; past the last: none is shown */
+} view_textures;
+
+/* What the panels ask for; view_app_after does it. */
+typedef struct view_request {
+    view_model_desc desc;
+    int reload; /* open the figure again with this desc */
+} view_request;
+
 typedef struct view_app {
     gpu gpu;
     view_screen screen;
     view_model *model;    /* never NULL after view_app_open */
     view_model_desc desc; /* how it was opened; path and anim are the caller's */
-    orbit orbit;
-    double anchor[3];     /* where the figure stood in the last frame */
-    int follow;           /* the orbit's centre goes with it */
-    int turntable;        /* it turns about the figure */
-    bounds framed_box;    /* what view_frame_all framed */
-    double framed_aspect; /* of the picture in which everything was framed */
-    int by_hand;          /* it was moved: other clips are not framed */
-    framing *framing;     /* of the model; NULL: not needed yet */
-    uint8_t *framed;      /* [clip_count] 1: in the picture; NULL likewise */
-    bounds *boxes;        /* [clip_count] of framing_clip */
-    uint8_t *boxed;       /* [clip_count] 1: boxes has it, 2: it has none */
-    int cut;              /* the next frame shows something else: nothing fades */
+    view_eye camera;
+    int cut; /* the next frame shows something else: nothing fades */
     view_lod lod;
     view_how how; /* the next clip */
     view_pad pad;
     view_pick pick;
     view_fall fall;
-    float pointer[2]; /* pixels of the canvas that faces look at */
-    int has_pointer;
     view_marks marks;
     overlay overlay;
     view_over over;
     view_compare compare;
-    view_export filming;
-    char export_path[256];
-    int export_hz, export_turns;
+    view_film film;
     view_lights lights;
     view_undo_list undo;
     view_presets presets;
-    const char *presets_path; /* NULL: beside the model */
-    view_load load;
-    view_watch watch;
-    int lazy;         /* frames are drawn when their picture is asked for: a script looks at few */
-    int is_drawn;     /* the last frame */
-    int autoplay;     /* a model that is opened plays its first clip */
-    int show_help;    /* the list of keys */
-    int hand_busy;    /* a slider is held, or a list open: no step to go back to yet */
-    uint32_t reloads; /* of files that changed on disk */
-    int quit_asked;   /* Esc was pressed: the panels ask whether it was meant */
-    int quits;
-    int show_floor;
-    double floor; /* its height */
-    view_path walked;
-    int ramps;                         /* sliders of weights and speeds take how.fade_s to arrive */
-    char part[NOH_NAME_BYTES_MAX];     /* the joint that view_model_desc.part names; "": none */
-    float window_width, window_height; /* points */
-    float scale;                       /* pixels in a point */
-    int show_panels, show_layers, playing;
+    view_files files;
+    int lazy;     /* draw a frame only when a script asks for its picture */
+    int is_drawn; /* the last frame was drawn */
+    int autoplay; /* a model that is opened plays its first clip */
+    view_ground ground;
+    int ramps;                     /* sliders of weights and speeds take how.fade_s to arrive */
+    char part[NOH_NAME_BYTES_MAX]; /* the joint that view_model_desc.part names; "": none */
+    view_window_state window;
+    int playing;
     float speed, layer_gain;
-    view_data data;       /* what the textures below the gain show */
-    uint32_t data_target; /* of VIEW_DATA_DELTA, of view_data_mesh; past the last: none is shown */
+    view_textures textures;
     view_times times;
     view_log log;
     char message[512]; /* the last error */
-
-    view_model_desc wish; /* the panels ask for this one ... */
-    int wants_reload;     /* ... to draw what is shown */
+    view_request request;
 } view_app;
 
 /* The mesh whose data textures are shown: the first that targets move. Returns 0 where there is none. */

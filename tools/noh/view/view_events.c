@@ -92,10 +92,10 @@ static void escape(view_app *a)
     if (view_panels_has_list()) {
         return; /* it is closed */
     }
-    if (a->show_help) {
-        a->show_help = 0;
+    if (a->window.show_help) {
+        a->window.show_help = 0;
     } else {
-        a->quit_asked = !a->quit_asked;
+        a->window.quit_asked = !a->window.quit_asked;
     }
 }
 
@@ -107,7 +107,7 @@ static void on_control(view_window *w, int key, int shift)
     case GLFW_KEY_Y: (void)view_redo(a); break;
     case GLFW_KEY_C: copy_weights(w); break;
     case GLFW_KEY_V: paste_weights(w); break;
-    case GLFW_KEY_Q: a->quit_asked = 1; break;
+    case GLFW_KEY_Q: a->window.quit_asked = 1; break;
     default: break;
     }
 }
@@ -118,7 +118,7 @@ static void on_command(view_window *w, int key)
     switch (key) {
     case GLFW_KEY_SPACE: view_toggle_play(a); break;
     case GLFW_KEY_F: view_frame_all(a); break;
-    case GLFW_KEY_T: a->turntable = !a->turntable; break;
+    case GLFW_KEY_T: a->camera.turntable = !a->camera.turntable; break;
     case GLFW_KEY_B: a->over.bones = !a->over.bones; break;
     case GLFW_KEY_W: a->over.wireframe = !a->over.wireframe; break;
     case GLFW_KEY_N: a->over.normals = !a->over.normals; break;
@@ -127,14 +127,14 @@ static void on_command(view_window *w, int key)
     case GLFW_KEY_LEFT_BRACKET: view_turn_light(a, -LIGHT_STEP); break;
     case GLFW_KEY_RIGHT_BRACKET: view_turn_light(a, LIGHT_STEP); break;
     case GLFW_KEY_I: view_print(a, stdout); break;
-    case GLFW_KEY_TAB: a->show_panels = !a->show_panels; break;
-    case GLFW_KEY_F1: a->show_help = !a->show_help; break;
+    case GLFW_KEY_TAB: a->window.show_panels = !a->window.show_panels; break;
+    case GLFW_KEY_F1: a->window.show_help = !a->window.show_help; break;
     case GLFW_KEY_F10: w->lose = 1; break;
     case GLFW_KEY_F11: w->save_in[0] = SETTLE_FRAMES; break;
     case GLFW_KEY_F12: w->save_in[1] = SETTLE_FRAMES; break;
     case GLFW_KEY_ESCAPE: escape(a); break;
     case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER: a->quits |= a->quit_asked; break;
+    case GLFW_KEY_KP_ENTER: a->window.quits |= a->window.quit_asked; break;
     default: break;
     }
 }

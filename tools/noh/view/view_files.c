@@ -8,10 +8,10 @@
 /* What belongs to a model, once it is shown. */
 void view_begin_model(view_app *a)
 {
-    const int status = view_presets_read(&a->presets, a->model, a->presets_path);
+    const int status = view_presets_read(&a->presets, a->model, a->files.presets_path);
     if (status) view_keep(a, status);
     a->over.joint = overlay_main_joint(a->model->figure);
-    view_watch_begin(&a->watch, a->model->path);
+    view_watch_begin(&a->files.watch, a->model->path);
     view_forget_frames(a);
     view_undo_forget(&a->undo);
     view_frame_all(a);
@@ -57,17 +57,17 @@ static void forget_model(view_app *a)
     memset(&a->pad, 0, sizeof a->pad);
     memset(&a->pick, 0, sizeof a->pick);
     memset(&a->fall, 0, sizeof a->fall);
-    memset(&a->walked, 0, sizeof a->walked);
+    memset(&a->ground.walked, 0, sizeof a->ground.walked);
     a->part[0] = 0;
     a->lod.level = 0;
-    a->by_hand = 0;
+    a->camera.by_hand = 0;
 }
 
 int view_app_show(view_app *a, const char *path, byte_buffer *converted)
 {
     const int again = strcmp(path, a->model->path) == 0;
-    const orbit seen = a->orbit;
-    const int by_hand = a->by_hand, autoplay = a->autoplay;
+    const orbit seen = a->camera.orbit;
+    const int by_hand = a->camera.by_hand, autoplay = a->autoplay;
     view_model_desc desc = a->desc;
     view_model *shown;
     int status;
@@ -80,7 +80,7 @@ int view_app_show(view_app *a, const char *path, byte_buffer *converted)
     if (status) {
         return status;
     }
-    view_export_stop(&a->filming);
+    view_export_stop(&a->film.job);
     view_compare_close(&a->compare);
     view_forget_frames(a);
     forget_model(a);
@@ -91,16 +91,16 @@ int view_app_show(view_app *a, const char *path, byte_buffer *converted)
     }
     view_model_close(a->model);
     a->model = shown;
-    a->desc = a->wish = desc;
-    a->desc.converted = a->wish.converted = NULL;
-    a->desc.path = a->wish.path = shown->path;
+    a->desc = a->request.desc = desc;
+    a->desc.converted = a->request.desc.converted = NULL;
+    a->desc.path = a->request.desc.path = shown->path;
     a->cut = 1;
     view_begin_model(a);
     a->autoplay = autoplay;
     if (again) {
-        a->orbit = seen;
-        a->by_hand = by_hand;
-        a->reloads++;
+        a->camera.orbit = seen;
+        a->camera.by_hand = by_hand;
+        a->files.reloads++;
     }
     return 0;
 }
@@ -109,10 +109,10 @@ int view_app_load(view_app *a, const char *path)
 {
     int status;
     if (!view_is_model(path)) {
-        view_load_cancel(&a->load);
+        view_load_cancel(&a->files.load);
         return view_app_show(a, path, NULL);
     }
-    status = view_load_start(&a->load, path, &a->desc.lod);
+    status = view_load_start(&a->files.load, path, &a->desc.lod);
     view_keep(a, status);
     return status;
 }
@@ -121,18 +121,18 @@ void view_app_poll(view_app *a)
 {
     byte_buffer converted;
     char path[1024];
-    if (a->load.state == VIEW_LOAD_NONE && view_watch_changed(&a->watch, a->model->path)) {
+    if (a->files.load.state == VIEW_LOAD_NONE && view_watch_changed(&a->files.watch, a->model->path)) {
         snprintf(path, sizeof path, "%s", a->model->path);
         (void)view_app_load(a, path);
     }
-    switch (view_load_poll(&a->load)) {
+    switch (view_load_poll(&a->files.load)) {
     case VIEW_LOAD_FAILED:
         view_tell(a);
-        view_load_cancel(&a->load);
+        view_load_cancel(&a->files.load);
         break;
     case VIEW_LOAD_DONE:
-        snprintf(path, sizeof path, "%s", a->load.path);
-        if (view_load_take(&a->load, &converted))
+        snprintf(path, sizeof path, "%s", a->files.load.path);
+        if (view_load_take(&a->files.load, &converted))
             view_tell(a);
         else if (view_app_show(a, path, &converted))
             buffer_free(&converted);

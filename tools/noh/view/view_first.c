@@ -46,16 +46,16 @@ void view_export_begin(view_app *a)
     uint32_t kind = 0, track = 0;
     double seconds = VIEW_EXPORT_TURN_S;
     int status = 0;
-    if (!a->export_turns) {
+    if (!a->film.turns) {
         seconds = longest_track(a->model, &kind, &track);
         if (!(seconds > 0.0)) status = tool_fail("export", "no clip plays: play one, or export a turn");
     }
     if (!status) {
-        status = view_export_start(&a->filming, &a->model->canvas, a->export_path, (uint32_t)a->export_hz, seconds,
-                                   a->export_turns);
+        status = view_export_start(&a->film.job, &a->model->canvas, a->film.path, (uint32_t)a->film.hz, seconds,
+                                   a->film.turns);
     }
     view_keep(a, status);
-    if (status || a->export_turns) return;
+    if (status || a->film.turns) return;
     view_seek(a->model, kind, track, 0.0);
     a->playing = 1;
 }

@@ -65,8 +65,8 @@ void view_light_choose(view_app *a, const char *name)
         chosen = &lights->slots[slot];
     }
     snprintf(lights->name, sizeof lights->name, "%s", name);
-    a->wish.light = chosen;
-    a->wants_reload = 1;
+    a->request.desc.light = chosen;
+    a->request.reload = 1;
 }
 
 void view_lights_close(view_lights *l)

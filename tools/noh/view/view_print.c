@@ -92,14 +92,15 @@ static void print_set(FILE *out, const view_app *a)
 static void print_going_on(FILE *out, const view_app *a)
 {
     noh_gl_camera camera;
-    orbit_camera(&a->orbit, &camera);
+    orbit_camera(&a->camera.orbit, &camera);
     if (!a->model->show_bones) fprintf(out, "seen %.4f\n", orbit_sees(a->model->figure, &camera));
-    fprintf(out, "%s%s\n", a->playing ? "playing" : "paused", a->turntable ? ", turning" : "");
-    if (a->load.state == VIEW_LOAD_RUNS) fprintf(out, "converting %s: %s\n", a->load.path, a->load.does);
-    if (a->filming.is_on)
-        fprintf(out, "film %s: frame %u of %u\n", a->filming.film.path, a->filming.film.count, a->filming.frames);
-    if (a->reloads) fprintf(out, "reloads %u\n", a->reloads);
-    if (a->quit_asked) fprintf(out, "asks whether to quit\n");
+    fprintf(out, "%s%s\n", a->playing ? "playing" : "paused", a->camera.turntable ? ", turning" : "");
+    if (a->files.load.state == VIEW_LOAD_RUNS)
+        fprintf(out, "converting %s: %s\n", a->files.load.path, a->files.load.does);
+    if (a->film.job.is_on)
+        fprintf(out, "film %s: frame %u of %u\n", a->film.job.film.path, a->film.job.film.count, a->film.job.frames);
+    if (a->files.reloads) fprintf(out, "reloads %u\n", a->files.reloads);
+    if (a->window.quit_asked) fprintf(out, "asks whether to quit\n");
     if (a->message[0]) fprintf(out, "message %s\n", a->message);
 }
 
@@ -120,7 +121,8 @@ void view_print(const view_app *a, FILE *out)
     print_body(out, a);
     fprintf(out, "place %.4f %.4f %.4f\n", (double)place.position[0], (double)place.position[1],
             (double)place.position[2]);
-    fprintf(out, "center %.4f %.4f %.4f\n", a->orbit.center[0], a->orbit.center[1], a->orbit.center[2]);
+    fprintf(out, "center %.4f %.4f %.4f\n", a->camera.orbit.center[0], a->camera.orbit.center[1],
+            a->camera.orbit.center[2]);
     if (a->desc.light) fprintf(out, "light turned %.1f, %s\n", a->desc.light->degrees, view_lights_shown(&a->lights));
     view_lod_text(&a->lod, text, sizeof text);
     fprintf(out, "%s\n", text);

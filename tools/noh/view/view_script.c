@@ -336,7 +336,7 @@ static int stays_inside(const view_script *s, view_app *a)
     noh_gl_camera camera;
     silhouette seen;
     char text[64];
-    orbit_camera(&a->orbit, &camera);
+    orbit_camera(&a->camera.orbit, &camera);
     if (silhouette_measure(a->model->figure, &camera, NOH_LOD_LEVELS_MAX, &seen)) return -1;
     if (seen.inside >= s->inside) return 0;
     view_print(a, stdout);
@@ -355,7 +355,7 @@ static int waits(view_script *s, view_app *a)
         view_print(a, stdout);
         return fail(s, "in all these frames the state had no line with", s->until);
     }
-    if (s->loading && a->load.state == VIEW_LOAD_RUNS) {
+    if (s->loading && a->files.load.state == VIEW_LOAD_RUNS) {
         nanosleep(&moment, NULL);
         return 1;
     }

@@ -59,8 +59,8 @@ static step *capture(const view_app *a)
     s->set.lod_by_pixels = a->lod.by_pixels;
     s->set.wrinkles = a->lod.wrinkles;
     s->set.wrinkle_models = a->lod.wrinkle_models;
-    s->set.show_floor = a->show_floor;
-    s->set.follow = a->follow;
+    s->set.show_floor = a->ground.shown;
+    s->set.follow = a->camera.follow;
     s->count = m->target_count;
     for (uint32_t t = 0; t < m->target_count; t++) {
         s->targets[t].held = m->targets[t].held;
@@ -72,7 +72,7 @@ static step *capture(const view_app *a)
 void view_undo_note(view_app *a)
 {
     view_undo_list *u = &a->undo;
-    step *now = a->wants_reload ? NULL : capture(a);
+    step *now = a->request.reload ? NULL : capture(a);
     if (!now) return;
     if (u->count && memcmp(u->steps[u->at], now, bytes_of(now->count)) == 0) {
         free(now);
@@ -100,7 +100,7 @@ static void set_targets(view_model *m, const step *s)
 
 static void apply(view_app *a, const step *s)
 {
-    view_model_desc *wish = &a->wish;
+    view_model_desc *wish = &a->request.desc;
     lighting *light;
     set_targets(a->model, s);
     a->over = s->set.over;
@@ -110,17 +110,17 @@ static void apply(view_app *a, const step *s)
     a->lod.by_pixels = s->set.lod_by_pixels;
     a->lod.wrinkles = s->set.wrinkles;
     a->lod.wrinkle_models = s->set.wrinkle_models;
-    a->show_floor = s->set.show_floor;
-    a->follow = s->set.follow;
+    a->ground.shown = s->set.show_floor;
+    a->camera.follow = s->set.follow;
     if (strcmp(s->set.light, a->lights.name) != 0) view_light_choose(a, s->set.light);
-    light = a->wish.light;
+    light = a->request.desc.light;
     if (light) {
         lighting_turn(light, s->set.degrees);
         light->background = s->set.background;
         light->told.tonemap = s->set.tonemap;
     }
-    a->wants_reload |= wish->morph_path != s->set.path || wish->accumulate != s->set.accumulate ||
-                       wish->view != s->set.view || wish->show_bones != s->set.show_bones;
+    a->request.reload |= wish->morph_path != s->set.path || wish->accumulate != s->set.accumulate ||
+                         wish->view != s->set.view || wish->show_bones != s->set.show_bones;
     wish->morph_path = s->set.path;
     wish->accumulate = s->set.accumulate;
     wish->view = s->set.view;

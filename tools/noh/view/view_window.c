@@ -162,7 +162,7 @@ static int loop(view_window *w, const view_run *run)
         last = now;
         name_window(w, shown);
         status = one_frame(w, &fixed, run, frame, is_fixed ? 1.0 / 60.0 : seconds < 0.1 ? seconds : 0.1);
-        ends = glfwWindowShouldClose(w->context.window) || w->app.quits || (run->frames && frame + 1 >= run->frames);
+        ends = glfwWindowShouldClose(w->context.window) || w->app.window.quits || (run->frames && frame + 1 >= run->frames);
         if (!status && fixed.script) {
             const int step = view_script_step(fixed.script, w);
             status = step < 0 ? EXIT_FAILED : 0;
@@ -189,7 +189,7 @@ static int start_clip(view_app *a, const char *name)
  * and where the window was closed meanwhile. */
 static int convert(view_window *w, const view_run *run, byte_buffer *converted)
 {
-    view_load *load = &w->app.load;
+    view_load *load = &w->app.files.load;
     int status;
     memset(converted, 0, sizeof *converted);
     if (!view_is_model(run->desc.path)) return 0;
@@ -204,9 +204,9 @@ static int convert(view_window *w, const view_run *run, byte_buffer *converted)
             glfwSwapBuffers(w->context.window);
         }
         glfwWaitEventsTimeout(0.05);
-        if (glfwWindowShouldClose(w->context.window) || w->app.quits || load->state == VIEW_LOAD_NONE) {
+        if (glfwWindowShouldClose(w->context.window) || w->app.window.quits || load->state == VIEW_LOAD_NONE) {
             view_load_cancel(load);
-            w->app.quits = 1;
+            w->app.window.quits = 1;
             return 0;
         }
     }
@@ -222,18 +222,18 @@ static int show(view_window *w, const view_run *run)
     if (!status) status = view_panels_open(run->script != NULL);
     view_listen(w);
     if (!status) status = convert(w, run, &converted);
-    if (status || w->app.quits) {
+    if (status || w->app.window.quits) {
         view_panels_close();
         view_app_close(&w->app);
         return status;
     }
     desc.converted = converted.count ? &converted : NULL;
-    w->app.presets_path = run->presets;
+    w->app.files.presets_path = run->presets;
     w->app.lazy = run->script != NULL;
     w->app.autoplay = run->plays && !run->clip;
     status = view_app_open(&w->app, &desc);
     w->app.autoplay = run->plays;
-    w->app.follow = !run->fixed_camera;
+    w->app.camera.follow = !run->fixed_camera;
     if (!status && run->clip) status = start_clip(&w->app, run->clip);
     if (!status && run->data) status = view_show_data(&w->app, run->data);
     if (!status) status = loop(w, run);

@@ -42,20 +42,20 @@ void data_combo(view_app *a)
         return;
     }
     const auto name_of = [&mesh](uint32_t i) { return noh_pack_string(mesh.pack, mesh.targets[i].name); };
-    const bool has_target = a->data_target < mesh.header->target_count;
-    const char *shown = a->data == VIEW_DATA_SUMS   ? "sums"
-                        : a->data == VIEW_DATA_BASE ? "base"
-                        : has_target                ? name_of(a->data_target)
-                                                    : "";
+    const bool has_target = a->textures.target < mesh.header->target_count;
+    const char *shown = a->textures.shown == VIEW_DATA_SUMS   ? "sums"
+                        : a->textures.shown == VIEW_DATA_BASE ? "base"
+                        : has_target                          ? name_of(a->textures.target)
+                                                              : "";
     ImGui::SetNextItemWidth(-1.0f);
     if (ui::begin_combo("##data", shown)) {
-        if (ImGui::Selectable("sums", a->data == VIEW_DATA_SUMS)) a->data = VIEW_DATA_SUMS;
-        if (ImGui::Selectable("base", a->data == VIEW_DATA_BASE)) a->data = VIEW_DATA_BASE;
+        if (ImGui::Selectable("sums", a->textures.shown == VIEW_DATA_SUMS)) a->textures.shown = VIEW_DATA_SUMS;
+        if (ImGui::Selectable("base", a->textures.shown == VIEW_DATA_BASE)) a->textures.shown = VIEW_DATA_BASE;
         for (uint32_t i = 0; i < mesh.header->target_count; i++) {
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(name_of(i), a->data == VIEW_DATA_DELTA && i == a->data_target)) {
-                a->data = VIEW_DATA_DELTA;
-                a->data_target = i;
+            if (ImGui::Selectable(name_of(i), a->textures.shown == VIEW_DATA_DELTA && i == a->textures.target)) {
+                a->textures.shown = VIEW_DATA_DELTA;
+                a->textures.target = i;
             }
             ImGui::PopID();
         }
@@ -119,8 +119,8 @@ void memory_section(view_app *a)
 void layers_section(view_app *a)
 {
     static const char *const names[] = { "position", "normal", "tangent" };
-    a->show_layers = ui::section("Accumulators", a->data != VIEW_DATA_SUMS);
-    if (!a->show_layers) {
+    a->window.show_layers = ui::section("Accumulators", a->textures.shown != VIEW_DATA_SUMS);
+    if (!a->window.show_layers) {
         return;
     }
     if (!a->model->is_morphed || !a->screen.layers_width) {

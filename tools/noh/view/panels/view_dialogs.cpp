@@ -28,12 +28,12 @@ void begin_over(const view_app *a, const char *name, float width)
 
 void loading(view_app *a)
 {
-    const char *name = std::strrchr(a->load.path, '/');
+    const char *name = std::strrchr(a->files.load.path, '/');
     begin_over(a, "loading", 380.0f);
-    ImGui::TextColored(amber, "converting %s", name ? name + 1 : a->load.path);
-    ImGui::TextDisabled("%s", a->load.does);
+    ImGui::TextColored(amber, "converting %s", name ? name + 1 : a->files.load.path);
+    ImGui::TextDisabled("%s", a->files.load.does);
     // How long it takes is not known: something moves, and the seconds are told.
-    const float at = static_cast<float>(view_load_seconds(&a->load)),
+    const float at = static_cast<float>(view_load_seconds(&a->files.load)),
                 share = at - 2.0f * static_cast<float>(static_cast<int>(at * 0.5f));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x - 80.0f, height = ImGui::GetFrameHeight();
@@ -48,7 +48,7 @@ void loading(view_app *a)
     ImGui::Dummy(ImVec2(width, height));
     ImGui::SameLine();
     if (ui::button("cancel", -1.0f)) {
-        view_load_cancel(&a->load);
+        view_load_cancel(&a->files.load);
     }
     ImGui::End();
 }
@@ -59,11 +59,11 @@ void quit(view_app *a)
     ImGui::TextUnformatted("Quit?");
     ImGui::TextDisabled("Enter: yes, Esc: no");
     if (ui::button("quit", 110.0f)) {
-        a->quits = 1;
+        a->window.quits = 1;
     }
     ImGui::SameLine();
     if (ui::button("stay", 110.0f)) {
-        a->quit_asked = 0;
+        a->window.quit_asked = 0;
     }
     ImGui::End();
 }
@@ -100,7 +100,7 @@ void help(view_app *a)
     ImGui::TextDisabled("Files dropped on the window are shown; a file that");
     ImGui::TextDisabled("changes on disk is read again.");
     if (ui::button("close")) {
-        a->show_help = 0;
+        a->window.show_help = 0;
     }
     ImGui::End();
 }
@@ -143,13 +143,13 @@ void dialogs(view_app *a)
     if (a->model && a->compare.is.with != VIEW_COMPARE_OFF) {
         columns(a);
     }
-    if (a->load.state == VIEW_LOAD_RUNS) {
+    if (a->files.load.state == VIEW_LOAD_RUNS) {
         loading(a);
     }
-    if (a->show_help) {
+    if (a->window.show_help) {
         help(a);
     }
-    if (a->quit_asked) {
+    if (a->window.quit_asked) {
         quit(a);
     }
 }

@@ -21,9 +21,9 @@ void surface_combo(view_app *a)
         return;
     }
     a->over.skin = at == bones_at || at < joints_at ? VIEW_SKIN_OFF : static_cast<view_skin>(at - joints_at + 1);
-    a->wish.show_bones = at == bones_at;
-    a->wish.view = at < joints_at ? static_cast<noh_debug_view>(at) : NOH_VIEW_LIT;
-    a->wants_reload |= a->wish.show_bones != a->desc.show_bones || a->wish.view != a->desc.view;
+    a->request.desc.show_bones = at == bones_at;
+    a->request.desc.view = at < joints_at ? static_cast<noh_debug_view>(at) : NOH_VIEW_LIT;
+    a->request.reload |= a->request.desc.show_bones != a->desc.show_bones || a->request.desc.view != a->desc.view;
 }
 
 // Whose weights are shown.
@@ -73,8 +73,8 @@ void path_combo(view_app *a)
     }
     int at = static_cast<int>(a->desc.morph_path);
     if (ui::choose("path", &at, names, NOH_MORPH_PATH_COUNT)) {
-        a->wish.morph_path = static_cast<noh_morph_path>(at);
-        a->wants_reload = 1;
+        a->request.desc.morph_path = static_cast<noh_morph_path>(at);
+        a->request.reload = 1;
     }
 }
 
@@ -86,8 +86,8 @@ void accumulate_combo(view_app *a)
     }
     int at = static_cast<int>(a->desc.accumulate);
     if (ui::choose("accumulators", &at, names, 3)) {
-        a->wish.accumulate = static_cast<noh_accumulate>(at);
-        a->wants_reload = 1;
+        a->request.desc.accumulate = static_cast<noh_accumulate>(at);
+        a->request.reload = 1;
     }
 }
 

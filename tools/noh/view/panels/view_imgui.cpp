@@ -94,7 +94,7 @@ void take_buttons_and_keys(ImGuiIO &io, const view_input *input, bool control, b
 void take_input(const view_app *a, const view_input *input, double seconds)
 {
     ImGuiIO &io = ImGui::GetIO();
-    io.DisplaySize = ImVec2(a->window_width, a->window_height);
+    io.DisplaySize = ImVec2(a->window.width, a->window.height);
     io.DeltaTime = seconds > 0.0 ? static_cast<float>(seconds) : 1.0f / 60.0f;
     take_buttons_and_keys(io, input, input->keys[GLFW_KEY_LEFT_CONTROL] || input->keys[GLFW_KEY_RIGHT_CONTROL],
                           input->keys[GLFW_KEY_LEFT_SHIFT] || input->keys[GLFW_KEY_RIGHT_SHIFT]);
@@ -115,20 +115,20 @@ void load_font(view_app *a)
     int width = 0, height = 0;
     config.OversampleH = config.OversampleV = 1;
     config.PixelSnapH = true;
-    config.SizePixels = std::round(points * a->scale);
+    config.SizePixels = std::round(points * a->window.scale);
     io.Fonts->Clear();
     io.Fonts->AddFontDefault(&config);
     io.FontGlobalScale = points / config.SizePixels;
     io.Fonts->GetTexDataAsRGBA32(&rgba, &width, &height);
     view_screen_font(&a->screen, static_cast<uint32_t>(width), static_cast<uint32_t>(height), rgba);
     io.Fonts->SetTexID(imgui_texture(a->screen.font));
-    font_scale = a->scale;
+    font_scale = a->window.scale;
 }
 
 void draw(view_app *a)
 {
     const ImDrawData *data = ImGui::GetDrawData();
-    view_triangles_begin(&a->screen, a->window_width, a->window_height);
+    view_triangles_begin(&a->screen, a->window.width, a->window.height);
     for (int i = 0; i < data->CmdListsCount; i++) {
         const ImDrawList *list = data->CmdLists[i];
         view_triangles_list(&a->screen, reinterpret_cast<const view_vertex *>(list->VtxBuffer.Data),
@@ -204,7 +204,7 @@ void imgui_close()
 
 void imgui_begin(view_app *a, const view_input *input, double seconds)
 {
-    if (!a->screen.font || a->scale != font_scale) { // the first frame, a new context, another screen
+    if (!a->screen.font || a->window.scale != font_scale) { // the first frame, a new context, another screen
         load_font(a);
     }
     take_input(a, input, seconds);

@@ -30,16 +30,16 @@ void light_combo(view_app *a)
 void ending_buttons(view_app *a)
 {
     static const char *const endings[] = { ".gif", ".mp4", ".png" };
-    char *dot = std::strrchr(a->export_path, '.');
+    char *dot = std::strrchr(a->film.path, '.');
     for (const char *ending : endings) {
         const bool is = dot && std::strcmp(dot, ending) == 0;
         if (ending != endings[0]) {
             ImGui::SameLine();
         }
         if (ImGui::RadioButton(ending, is)) {
-            const size_t length = dot ? static_cast<size_t>(dot - a->export_path) : std::strlen(a->export_path);
-            if (length + 5 < sizeof a->export_path) {
-                std::strcpy(a->export_path + length, ending);
+            const size_t length = dot ? static_cast<size_t>(dot - a->film.path) : std::strlen(a->film.path);
+            if (length + 5 < sizeof a->film.path) {
+                std::strcpy(a->film.path + length, ending);
             }
         }
         ui::note(ending);
@@ -80,13 +80,13 @@ void camera_section(view_app *a)
     if (!ui::section("Camera and floor", true)) {
         return;
     }
-    ui::checkbox("follow", &a->follow);
+    ui::checkbox("follow", &a->camera.follow);
     ui::hint("the camera goes with a figure that walks");
     ImGui::SameLine();
-    ui::checkbox("turntable", &a->turntable);
+    ui::checkbox("turntable", &a->camera.turntable);
     ui::hint("T");
     ImGui::SameLine();
-    ui::checkbox("floor", &a->show_floor);
+    ui::checkbox("floor", &a->ground.shown);
     ImGui::SameLine();
     if (ui::button("fit", -1.0f)) {
         view_frame_all(a);
@@ -123,19 +123,19 @@ void film_section(view_app *a)
         return;
     }
     const ui::in within("film");
-    if (a->filming.is_on) {
-        const float done = static_cast<float>(a->filming.film.count) / static_cast<float>(a->filming.frames);
+    if (a->film.job.is_on) {
+        const float done = static_cast<float>(a->film.job.film.count) / static_cast<float>(a->film.job.frames);
         ImGui::ProgressBar(done, ImVec2(-70.0f, 0.0f));
         ImGui::SameLine();
         if (ui::button("stop", -1.0f)) {
-            view_export_stop(&a->filming);
+            view_export_stop(&a->film.job);
         }
         return;
     }
     const ui::labelled width;
-    ui::choose("of", &a->export_turns, whats, 2);
-    ui::slider("##rate", &a->export_hz, VIEW_EXPORT_HZ_LEAST, VIEW_EXPORT_HZ_MOST, "%d pictures a second");
-    ImGui::InputText("file", a->export_path, sizeof a->export_path);
+    ui::choose("of", &a->film.turns, whats, 2);
+    ui::slider("##rate", &a->film.hz, VIEW_EXPORT_HZ_LEAST, VIEW_EXPORT_HZ_MOST, "%d pictures a second");
+    ImGui::InputText("file", a->film.path, sizeof a->film.path);
     ui::note("file");
     ending_buttons(a);
     ImGui::SameLine();

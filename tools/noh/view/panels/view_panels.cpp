@@ -12,7 +12,7 @@ bool mouse_held, popup_open, scripted;
 
 void right_panel(view_app *a)
 {
-    begin_panel("figure", a->window_width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window_height);
+    begin_panel("figure", a->window.width - VIEW_RIGHT, 0.0f, VIEW_RIGHT, a->window.height);
     clips_section(a);
     how_section(a);
     pad_section(a);
@@ -64,7 +64,7 @@ void key_lines(const view_app *a)
 
 void events_panel(view_app *a)
 {
-    begin_panel("events", VIEW_LEFT, a->window_height - VIEW_BOTTOM, a->window_width - VIEW_LEFT - VIEW_RIGHT,
+    begin_panel("events", VIEW_LEFT, a->window.height - VIEW_BOTTOM, a->window.width - VIEW_LEFT - VIEW_RIGHT,
                 VIEW_BOTTOM);
     status_line(a);
     ImGui::Separator();
@@ -104,16 +104,17 @@ void view_panels_frame(view_app *a, const view_input *input, double seconds)
 {
     imgui_begin(a, input, seconds);
     ui::begin_frame(scripted, input->keys[GLFW_KEY_ESCAPE] != 0);
-    if (a->show_panels && a->model) {
+    if (a->window.show_panels && a->model) {
         targets_panel(a);
         right_panel(a);
         events_panel(a);
     }
     dialogs(a);
     popup_open = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
-    a->hand_busy = ImGui::IsAnyItemActive() || popup_open;
-    mouse_held = a->hand_busy || (ImGui::IsWindowHovered(ImGuiHoveredFlags_AnyWindow) &&
-                                  (a->quit_asked || a->show_help || a->load.state == VIEW_LOAD_RUNS));
+    a->window.hand_busy = ImGui::IsAnyItemActive() || popup_open;
+    mouse_held = a->window.hand_busy ||
+                 (ImGui::IsWindowHovered(ImGuiHoveredFlags_AnyWindow) &&
+                  (a->window.quit_asked || a->window.show_help || a->files.load.state == VIEW_LOAD_RUNS));
     imgui_end(a);
 }
 

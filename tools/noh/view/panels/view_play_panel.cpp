@@ -102,7 +102,7 @@ void layer_combo(view_app *a)
 void set_part(view_app *a, const char *joint)
 {
     snprintf(a->part, sizeof a->part, "%s", joint);
-    a->wants_reload = 1;
+    a->request.reload = 1;
 }
 
 // The mask of the layer "part".

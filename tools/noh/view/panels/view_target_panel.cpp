@@ -187,7 +187,7 @@ void sliders(view_app *a)
 
 void targets_panel(view_app *a)
 {
-    begin_panel("targets", 0.0f, 0.0f, VIEW_LEFT, a->window_height);
+    begin_panel("targets", 0.0f, 0.0f, VIEW_LEFT, a->window.height);
     head(a);
     edit_buttons(a);
     presets_section(a);
