@@ -63,12 +63,12 @@ static convert_options options_of(int more)
     o.clip.clip.error_cm = 0.01;
     o.clip.clip.shell_cm = 3.0;
     o.clip.clip.effort = 1;
-    o.skin.influences = 4;
-    o.skin.palette = more ? 8 : NOH_PALETTE_JOINTS_MAX;
+    o.source.skin.influences = 4;
+    o.source.skin.palette = more ? 8 : NOH_PALETTE_JOINTS_MAX;
     o.lod.mode = LOD_FAST;
     o.lod.level_count = more ? 2 : 0;
-    o.clean = more ? ~0u : 0u;
-    o.split_eyes = more;
+    o.source.clean = more ? ~0u : 0u;
+    o.source.split_eyes = more;
     o.etc2 = 1;
     o.texture_max = 256;
     return o;
@@ -91,7 +91,7 @@ static void convert(const char *path, const char *targets, int more)
     noh_error error;
     void *aligned;
     memset(&failure, 0, sizeof failure);
-    o.targets = targets;
+    o.source.targets = targets;
     if (convert_files(inputs, 1, &o, &out, &failure)) {
         must_say(&failure.error);
         return;

@@ -45,7 +45,7 @@ const noh_pack *fixture_skinned_pack(const char *asset, const skin_options *opti
     }
     assert_true(kept_count < KEPT_MAX);
     memset(&convert, 0, sizeof convert);
-    convert.skin = *options;
+    convert.source.skin = *options;
     convert.only = CONVERT_MESH;
     if (convert_files(&path, 1, &convert, &out, &failure)) {
         fail_msg("%s: %s (%s)", asset, failure.error.what, failure.error.where);

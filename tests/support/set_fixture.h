@@ -79,7 +79,7 @@ static inline set_fixture set_fixture_of_graphs(raw_set *raw, const graph_file *
     if (clips_encode(&raw, 1, &settings, &made, &error)) {
         fail_msg("%s", error.what);
     }
-    made.graphs = graphs;
+    made.extras.graphs = graphs;
     if (pack_write(empty, NULL, NULL, &made, &out, &error)) {
         fail_msg("%s", error.what);
     }

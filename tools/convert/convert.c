@@ -48,7 +48,7 @@ static int apply_events(const convert_options *options, source *s, model_error *
 {
     event_list *list = NULL;
     int failed;
-    if ((options->clean & CLEAN_KEYS) && !has_moves(s)) {
+    if ((options->source.clean & CLEAN_KEYS) && !has_moves(s)) {
         return model_fail(error, "", "--clean contact-keys needs a clip that moves joints, and there is none");
     }
     if (!options->events) {
@@ -508,10 +508,8 @@ static int trim_textures(model *m, const mesh_levels *levels, const convert_opti
     return 0;
 }
 
-static int convert_source(const source *s, const graph_file *graphs, const recipe_text *recipe,
-                          const ragdoll_text *ragdoll, const set_springs *springs, const hair_text *hair,
-                          const hair_grown *grown, const terrain *ground, const convert_options *options,
-                          byte_buffer *out, model_error *error)
+static int convert_source(const source *s, const pack_extras *extras, const convert_options *options, byte_buffer *out,
+                          model_error *error)
 {
     model empty;
     model *m = options->only == CONVERT_CLIPS ? memset(&empty, 0, sizeof empty) : s->m;
@@ -527,7 +525,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
-    failed = make_wrinkles(s, recipe, options, error);
+    failed = make_wrinkles(s, extras->recipe, options, error);
     set_textures(s, options);
     if (!failed && options->only != CONVERT_MESH && size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm)) {
         failed = out_of_memory(error);
@@ -539,13 +537,7 @@ static int convert_source(const source *s, const graph_file *graphs, const recip
              trim_textures(s->m, meshes.levels, options, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
-        made.graphs = graphs;
-        made.recipe = recipe;
-        made.ragdoll = ragdoll;
-        made.springs = springs;
-        made.hair = hair;
-        made.grown = grown;
-        made.ground = ground;
+        made.extras = *extras;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -569,21 +561,7 @@ static int base_of(const source *all, int count)
 static int read_all(const char *const *inputs, int count, const convert_options *options, source *all,
                     convert_failure *failure)
 {
-    source_options reading = { options->clip.sample_rate_hz,
-                               options->clip.unit_cm,
-                               options->skin,
-                               options->two_streams,
-                               options->two_stream_count,
-                               options->identity,
-                               options->split_eyes,
-                               options->lips,
-                               options->targets,
-                               options->attached,
-                               options->attached_count,
-                               options->attach_joint,
-                               options->seam,
-                               options->turn,
-                               options->clean };
+    source_options reading = options->source;
     reading.skin.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
@@ -662,8 +640,10 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
         failed = failed ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
         failed = failed || read_springs(options, &all[base], &springs, failure);
-        failed = failed || convert_source(&all[base], graphs, recipe, ragdoll, springs, hair, &grown, ground, options,
-                                          out, &failure->error);
+        if (!failed) {
+            const pack_extras extras = { graphs, recipe, ragdoll, springs, hair, &grown, ground };
+            failed = convert_source(&all[base], &extras, options, out, &failure->error);
+        }
     }
     springs_free(springs, all[base].set_count);
     for (int i = 0; i < input_count || !i; i++) {

@@ -4,15 +4,12 @@
 
 #include <stdio.h>
 
-#include "convert/clips/joint_match.h"
-#include "convert/clips/raw_turn.h"
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
 #include "core/pack/pack.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
-#include "convert/skin/seam.h"
-#include "convert/skin/skins.h"
+#include "convert/sources.h"
 #include "convert/wrinkle/wrinkle_make.h"
 
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
@@ -21,30 +18,19 @@ typedef struct convert_options {
     morph_options morph; /* rank, level_count and skip_radius are filled in by convert_files */
     lod_settings lod;
     clips_settings clip;
-    skin_options skin;
-    turn_options turn;              /* of .bvh and .rcl */
-    unsigned clean;                 /* bits of mocap/clean.h, of all clips */
-    wrinkle_settings wrinkles;      /* zeros: none; report is filled in by convert_files */
-    transfer_settings transfer;     /* order 0: none; progress is filled in by convert_files */
-    const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
-    uint32_t two_stream_count;
+    source_options source;       /* skin.report is filled in by convert_files */
+    wrinkle_settings wrinkles;   /* zeros: none; report is filled in by convert_files */
+    transfer_settings transfer;  /* order 0: none; progress is filled in by convert_files */
     const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
     uint32_t surface_count;
     const char *const *tints; /* [tint_count] "MATERIAL=on|off", see tint.h */
     uint32_t tint_count;
     const char *const *priorities; /* [priority_count] "MATERIAL=N", see priority.h */
     uint32_t priority_count;
-    const char *identity;        /* a model of the same vertices whose targets make people; NULL: none */
-    const char *targets;         /* a folder of .obj files: the targets of the first .obj model; NULL: none */
-    const char *const *attached; /* [attached_count] models whose meshes are added to the first's */
-    uint32_t attached_count;
-    const char *attach_joint;   /* that carries those without joints; NULL: the head */
-    seam_mode seam;             /* of skinned meshes that go on as each other */
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */
     uint32_t texture_max;       /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     int whole_textures;         /* 1: they keep what no triangle reads (texture/texture_trim.h) */
-    int split_eyes;             /* 1: eyeballs of the model get joints */
     convert_only only;
     const char *events;              /* a text file of callback keys; NULL: none */
     const char *graph;               /* a text file of animation graphs; NULL: none */
@@ -56,7 +42,6 @@ typedef struct convert_options {
     const char *hair;       /* a text file of a haircut; NULL: none */
     const char *terrain;    /* a picture or a model of the ground (terrain/terrain_read.h); NULL: none */
     terrain_options ground; /* of it */
-    int lips;               /* 1: a target that brings the lower lip to the teeth */
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */

@@ -18,12 +18,12 @@ static byte_buffer convert(const char *path, const char *targets)
     convert_options o = { 0 };
     convert_failure failure = { 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
-    o.targets = targets;
+    o.source.targets = targets;
     o.clip.clip.error_cm = 0.01;
     o.clip.clip.shell_cm = 3.0;
     o.clip.clip.effort = 1;
-    o.skin.influences = 4;
-    o.skin.palette = NOH_PALETTE_JOINTS_MAX;
+    o.source.skin.influences = 4;
+    o.source.skin.palette = NOH_PALETTE_JOINTS_MAX;
     o.etc2 = 1;
     if (convert_files(inputs, 1, &o, &out, &failure)) {
         fail_msg("%s: %s (%s)", failure.file, failure.error.what, failure.error.where);

@@ -201,11 +201,11 @@ static void warnings_go_to_the_report(void **state)
         memset(&options, 0, sizeof options);
         memset(&packs[quiet], 0, sizeof packs[quiet]);
         options.morph.error_um = 10.0f;
-        options.clip.unit_cm = 1.0;
+        options.source.unit_cm = 1.0;
         options.clip.clip.error_cm = 0.01;
         options.clip.clip.shell_cm = 3.0;
-        options.skin.influences = 8;
-        options.skin.palette = 256;
+        options.source.skin.influences = 8;
+        options.source.skin.palette = 256;
         options.report = quiet ? NULL : open_memstream(&said, &length);
         if (convert_files(&path, 1, &options, &packs[quiet], &failure)) {
             fail_msg("%s (%s)", failure.error.what, failure.error.where);

@@ -191,10 +191,10 @@ static void make_head(void)
     (void)snprintf(head, sizeof head, "%s", test_asset("hero/head.glb"));
     (void)snprintf(identity, sizeof identity, "%s", test_asset("hero/identity.glb"));
     memset(&o, 0, sizeof o);
-    o.identity = identity;
+    o.source.identity = identity;
     o.only = CONVERT_MESH;
-    o.skin.influences = 8;
-    o.skin.palette = 256;
+    o.source.skin.influences = 8;
+    o.source.skin.palette = 256;
     if (convert_files(inputs, 1, &o, &head_pack, &failure)) fail_msg("%s", failure.error.what);
 }
 
@@ -338,7 +338,7 @@ static void another_topology_fails_the_build(void **state)
     (void)snprintf(identity, sizeof identity, "%s", test_asset("hero/identity.glb"));
     (void)snprintf(mask, sizeof mask, "%s/mask.glb", build ? build : "build");
     memset(&o, 0, sizeof o);
-    o.identity = identity;
+    o.source.identity = identity;
     assert_int_not_equal(convert_files(inputs, 1, &o, &none, &failure), 0);
     assert_non_null(strstr(failure.error.what, "the same order of vertices"));
     buffer_free(&none);
@@ -467,11 +467,11 @@ static void blended_normals_are_made_unit(void **state)
  * range that the artist modelled, though people do. */
 static void weights_reach_both_their_ends(void **state)
 {
-    float source = 0.0f, most = 0.0f;
+    float listing = 0.0f, most = 0.0f;
     people p;
     (void)state;
-    for (int i = 0; i < 100000; i++) source = fmaxf(source, (float)(i % 1000) / 1000.0f);
-    assert_true(source < 1.0f);
+    for (int i = 0; i < 100000; i++) listing = fmaxf(source, (float)(i % 1000) / 1000.0f);
+    assert_true(listing < 1.0f);
     small_face(&p);
     for (uint32_t seed = 1; seed <= 3000; seed++) {
         float weights[NOH_TARGETS_MAX] = { 0.0f };

@@ -192,11 +192,11 @@ static void open_head(head *h, const char *asset, const char *identity, const ch
     memset(&options, 0, sizeof options);
     (void)snprintf(files[0], sizeof files[0], "%s", test_asset(asset));
     if (identity) (void)snprintf(files[1], sizeof files[1], "%s", test_asset(identity));
-    options.identity = identity ? files[1] : NULL;
-    options.lips = 1;
+    options.source.identity = identity ? files[1] : NULL;
+    options.source.lips = 1;
     options.only = CONVERT_MESH;
-    options.skin.influences = 8;
-    options.skin.palette = 256;
+    options.source.skin.influences = 8;
+    options.source.skin.palette = 256;
     if (convert_files(inputs, 1, &options, &pack, &failure)) fail_msg("%s", failure.error.what);
     h->bytes = test_aligned(pack.bytes, pack.count);
     h->pack = test_open(h->bytes, pack.count);

@@ -647,7 +647,7 @@ static void another_skeleton_or_unit_is_refused(void **state)
     desc.mesh = &mesh;
     expect_error(&desc, NOH_ERR_NOT_FOUND, "another skeleton");
     free(made);
-    options.clip.unit_cm = 2.54;
+    options.source.unit_cm = 2.54;
     made = clip_pack(&same, 1, &options, &count);
     mesh = test_open(made, count);
     expect_error(&desc, NOH_ERR_NOT_FOUND, "unit");

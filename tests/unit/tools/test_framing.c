@@ -23,7 +23,8 @@ static void open_scene(scene *s, const char *asset)
 {
     const char *inputs[1] = { test_asset(asset) };
     const convert_options options = { .morph = { .error_um = 100.0f },
-                                      .clip = { .clip = { .error_cm = 0.1, .shell_cm = 3.0 }, .unit_cm = 1.0 } };
+                                      .clip = { .clip = { .error_cm = 0.1, .shell_cm = 3.0 } },
+                                      .source = { .unit_cm = 1.0 } };
     figure_desc desc = { .file = &s->file, .clips = &s->file };
     convert_failure failure;
     memset(&s->bytes, 0, sizeof s->bytes);

@@ -206,11 +206,20 @@ int enc_choose_splits(encoder *e); /* of a clip of a high rate: once all segment
 int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst_part, double *max_error,
                 double *rms_error, uint32_t *joint, uint32_t *time_parts);
 
-/* Fit one track (clip_fit.c). `targets` [frames][3] components, relative to the reference. `check` judges the decoded
- * frames: for each its error over what is allowed. `around`: what a search goes by; NULL: targets are nudged. */
+/* Judges decoded frames: violations [frames] gets each frame's error over the allowed one; returns the largest. */
 typedef double (*enc_check)(encoder *e, void *user, const uint8_t *frames, double *violations);
-int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
-            double (*targets)[3], enc_check check, void *user, const enc_model *around);
+
+/* What a fitted track must meet. */
+typedef struct enc_goal {
+    const float *reference; /* [4] */
+    double (*targets)[3];   /* [frames] components, relative to the reference */
+    enc_check check;
+    void *user;             /* passed to check */
+    const enc_model *model; /* guides the search; NULL: targets are nudged */
+} enc_goal;
+
+/* Fit one track (clip_fit.c). */
+int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const enc_goal *goal);
 
 /* Change quantised coefficients so that all frames hold (clip_search.c). Returns whether the model says that they do.
  * `spectrum` [count][3]: what was quantised, with steps of `size`. */

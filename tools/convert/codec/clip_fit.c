@@ -237,8 +237,7 @@ static int search(attempt *a, double (*targets)[3], enc_check check, void *user,
     return 0;
 }
 
-int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const float reference[4],
-            double (*targets)[3], enc_check check, void *user, const enc_model *around)
+int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const enc_goal *goal)
 {
     double violations[ENC_FRAMES_MAX];
     attempt a;
@@ -247,10 +246,10 @@ int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, cons
     a.track = track;
     a.piece = piece;
     a.count = count;
-    a.reference = reference;
-    a.model = around;
-    forward(e, track, count, targets, a.whole);
-    if (!search(&a, targets, check, user, &best) && !try_spectrum(&a, a.whole, best)) return 1;
-    check(e, user, a.frames, violations);
+    a.reference = goal->reference;
+    a.model = goal->model;
+    forward(e, track, count, goal->targets, a.whole);
+    if (!search(&a, goal->targets, goal->check, goal->user, &best) && !try_spectrum(&a, a.whole, best)) return 1;
+    goal->check(e, goal->user, a.frames, violations);
     return 0;
 }

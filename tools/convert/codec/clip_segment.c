@@ -342,7 +342,7 @@ static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_tr
     double q[ENC_FRAMES_MAX][4], u[ENC_FRAMES_MAX][3], reference[4], inverse[4];
     float single[4];
     judged j;
-    int spins = 0;
+    int raw = is_raw(e, joint);
     j.segment = s;
     j.track = track;
     j.joint = joint;
@@ -355,15 +355,16 @@ static int fit_rotation(encoder *e, uint32_t joint, const enc_segment *s, enc_tr
         double r[4];
         rotation_target(e, joint, s->first + f, f, q[f]);
         space_mul(inverse, q[f], r);
-        if (r[3] < SPIN_W) spins = 1;
+        if (r[3] < SPIN_W) raw = 1;
         for (int i = 0; i < 3; i++) u[f][i] = 4.0 * r[i] / (1.0 + (r[3] > SPIN_W ? r[3] : SPIN_W));
     }
     rotation_limits(e, &j, q);
     piece->raw = 0;
-    if (spins || is_raw(e, joint) ||
-        enc_fit(e, track, piece, s->count, single, u, check_rotation, &j, model_of(e, &j, q, u)))
-        return raw_rotation(e, &j, piece, q);
-    return 0;
+    if (!raw) {
+        const enc_goal goal = { single, u, check_rotation, &j, model_of(e, &j, q, u) };
+        raw = enc_fit(e, track, piece, s->count, &goal);
+    }
+    return raw ? raw_rotation(e, &j, piece, q) : 0;
 }
 
 /* ---- translations, scales, floats ---- */
@@ -412,6 +413,7 @@ static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece,
     const uint32_t count = j->segment->count;
     const enc_check check = track->track.kind == NOH_CLIP_FLOATS ? check_floats : check_linear;
     double relative[ENC_FRAMES_MAX][3], violations[ENC_FRAMES_MAX];
+    const enc_goal goal = { track->track.reference, relative, check, j, NULL };
     j->targets = targets;
     j->track = track;
     piece->raw = 0;
@@ -419,7 +421,7 @@ static int fit_linear(encoder *e, judged *j, enc_track *track, enc_piece *piece,
         for (int c = 0; c < 3; c++) relative[f][c] = targets[f][c] - (double)track->track.reference[c];
     }
     if (!(track->track.kind == NOH_CLIP_FLOATS ? e->loop->all_raw : is_raw(e, j->joint)) &&
-        !enc_fit(e, track, piece, count, track->track.reference, relative, check, j, NULL)) {
+        !enc_fit(e, track, piece, count, &goal)) {
         const noh_clip_basis *basis = &e->bases[count];
         float components[ENC_FRAMES_MAX][4];
         uint8_t frames[ENC_FRAMES_MAX * 16u];

@@ -23,25 +23,28 @@ typedef struct encoded_clip {
     clip_errors errors;
 } encoded_clip;
 
+/* What texts and pictures beside the model give a pack; NULL: none. */
+typedef struct pack_extras {
+    const graph_file *graphs;
+    const recipe_text *recipe;
+    const ragdoll_text *ragdoll;
+    const set_springs *springs; /* [set_count] */
+    const hair_text *hair;
+    const hair_grown *grown; /* from `hair` */
+    const terrain *ground;
+} pack_extras;
+
 typedef struct encoded_clips {
     raw_set **sets; /* [set_count]; borrowed */
     uint32_t set_count;
     encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
-    const graph_file *graphs;  /* borrowed; NULL: none */
-    const recipe_text *recipe; /* likewise */
-    const ragdoll_text *ragdoll;
-    const set_springs *springs; /* [set_count] */
-    const hair_text *hair;
-    const hair_grown *grown; /* of `hair` */
-    const terrain *ground;   /* NULL: none */
+    pack_extras extras; /* borrowed */
 } encoded_clips;
 
 typedef struct clips_settings {
-    double sample_rate_hz; /* 0: as the source has it */
-    double unit_cm;        /* of .bvh and .obj; 0: 1 and 100 */
-    int check_loops;       /* mark every clip as a loop, and report the gap between its ends */
-    int skeletons_only;    /* no clips, for a pack of meshes */
+    int check_loops;    /* mark every clip as a loop, and report the gap between its ends */
+    int skeletons_only; /* no clips, for a pack of meshes */
     clip_options clip;
     named_errors clip_errors, joint_errors; /* they take precedence over those of `clip` */
     const model *m;          /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are

@@ -292,18 +292,19 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     return h;
 }
 
-int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
-              float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
-              mesh_extra *extra, model_error *error)
+int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, mesh_extra *extra, model_error *error)
 {
+    const model_mesh *m = from->mesh;
+    const mesh_levels *levels = from->levels;
+    const morph_encoding *e = from->encoding;
     size_t base = out->count;
     noh_mesh_header h;
     mesh_layout l;
-    int failed = mesh_layout_make(m, levels, e, submesh_blends, &l, error);
+    int failed = mesh_layout_make(m, levels, e, from->submesh_blends, &l, error);
     if (!failed) {
         set_counts(m, e, &l, &h);
-        set_skin(m, &l, skin, &h);
-        h.world_scale = world_scale;
+        set_skin(m, &l, from->skin, &h);
+        h.world_scale = from->world_scale;
         memcpy(h.influence_errors, levels->cap_error, sizeof h.influence_errors);
         buffer_append(out, NULL, sizeof h * l.level_count);
         append_vertices(m, e, &l, &h, base, out);
@@ -311,7 +312,7 @@ int pack_mesh(const model_mesh *m, const mesh_levels *levels, const morph_encodi
         append_targets(m, e, strings, &h, base, out);
         append_target_boxes(m, e, &h, base, out);
         pack_influences(m, &l, &h, base, out);
-        pack_joint_boxes(m, skin_joint_count, &h, base, out);
+        pack_joint_boxes(m, from->skin_joint_count, &h, base, out);
         pack_influence_list(m, &l, extra->index, &extra->influences);
     }
     for (uint32_t k = 0; k < l.level_count && !failed && !out->failed; k++) {

@@ -12,13 +12,18 @@ typedef struct mesh_extra {
     byte_buffer influences; /* the chunk of its influence list; empty: none. To be freed */
 } mesh_extra;
 
-/* Append a mesh chunk: the full mesh and its levels; e was made with the levels' ranks.
- * submesh_blends  [submesh_count] 1 if the material blends
- * world_scale     model_mesh_scale
- * skin            the n-th skin chunk, or NOH_NONE; skin_joint_count: its joints
- * Returns 0, or 1 and a filled error if the mesh cannot be split into palettes. */
-int pack_mesh(const model_mesh *mesh, const mesh_levels *levels, const morph_encoding *e, const uint8_t *submesh_blends,
-              float world_scale, uint32_t skin, uint32_t skin_joint_count, string_table *strings, byte_buffer *out,
-              mesh_extra *extra, model_error *error);
+typedef struct mesh_input {
+    const model_mesh *mesh;
+    const mesh_levels *levels;
+    const morph_encoding *encoding; /* made with the levels' ranks */
+    const uint8_t *submesh_blends;  /* [submesh_count] 1 if the material blends */
+    float world_scale;              /* model_mesh_scale */
+    uint32_t skin;                  /* the n-th skin chunk, or NOH_NONE */
+    uint32_t skin_joint_count;
+} mesh_input;
+
+/* Append a mesh chunk: the full mesh and its levels. Returns 0, or 1 and a filled error if the mesh cannot be split
+ * into palettes. */
+int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, mesh_extra *extra, model_error *error);
 
 #endif

@@ -134,17 +134,20 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
     static const mesh_levels alone = { .count = 1 };
     const model_mesh *mesh = &w->m->meshes[index];
     uint8_t blends[NOH_SUBMESHES_MAX];
+    const mesh_input from = { mesh,
+                              w->levels ? &w->levels[index] : &alone,
+                              e,
+                              blends,
+                              model_mesh_scale(w->m, index),
+                              mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
+                              mesh->bound ? w->m->skins[mesh->skin].joint_count : 0 };
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
         uint32_t material = mesh->submeshes[s].material;
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     w->extras[index].index = index;
     begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
-    w->refused = w->refused ||
-                 pack_mesh(mesh, w->levels ? &w->levels[index] : &alone, e, blends, model_mesh_scale(w->m, index),
-                           mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
-                           mesh->bound ? w->m->skins[mesh->skin].joint_count : 0, &w->strings, &w->out,
-                           &w->extras[index], w->error);
+    w->refused = w->refused || pack_mesh(&from, &w->strings, &w->out, &w->extras[index], w->error);
     end_chunk(w);
 }
 
@@ -301,16 +304,16 @@ static void write_clips(writer *w)
 
 static void write_graphs(writer *w)
 {
-    for (uint32_t i = 0; w->clips->graphs && i < w->clips->graphs->count; i++) {
-        begin_chunk(w, NOH_CHUNK_GRAPH, w->clips->graphs->graphs[i]->name);
-        pack_graph(w->clips->graphs->graphs[i], &w->strings, &w->out);
+    for (uint32_t i = 0; w->clips->extras.graphs && i < w->clips->extras.graphs->count; i++) {
+        begin_chunk(w, NOH_CHUNK_GRAPH, w->clips->extras.graphs->graphs[i]->name);
+        pack_graph(w->clips->extras.graphs->graphs[i], &w->strings, &w->out);
         end_chunk(w);
     }
 }
 
 static void write_recipe(writer *w)
 {
-    const recipe_text *recipe = w->clips->recipe;
+    const recipe_text *recipe = w->clips->extras.recipe;
     noh_recipe_header h;
     if (!recipe || !recipe->count) return;
     memset(&h, 0, sizeof h);
@@ -333,7 +336,7 @@ static void write_recipe(writer *w)
 
 static void write_ragdoll(writer *w)
 {
-    const ragdoll_text *ragdoll = w->clips->ragdoll;
+    const ragdoll_text *ragdoll = w->clips->extras.ragdoll;
     noh_pack_ragdoll_header h;
     if (!ragdoll) return;
     memset(&h, 0, sizeof h);
@@ -360,8 +363,8 @@ static void write_ragdoll(writer *w)
 
 static void write_springs(writer *w)
 {
-    for (uint32_t i = 0; w->clips->springs && i < w->clips->set_count; i++) {
-        const set_springs *s = &w->clips->springs[i];
+    for (uint32_t i = 0; w->clips->extras.springs && i < w->clips->set_count; i++) {
+        const set_springs *s = &w->clips->extras.springs[i];
         noh_springs_header h;
         if (!s->row_count) continue;
         memset(&h, 0, sizeof h);
@@ -420,8 +423,8 @@ static void hair_header(const hair_text *t, const hair_grown *g, noh_pack_hair_h
 
 static void write_hair(writer *w)
 {
-    const hair_text *t = w->clips->hair;
-    const hair_grown *g = w->clips->grown;
+    const hair_text *t = w->clips->extras.hair;
+    const hair_grown *g = w->clips->extras.grown;
     noh_pack_hair_header h;
     if (!t) return;
     hair_header(t, g, &h);
@@ -443,7 +446,7 @@ static void write_hair(writer *w)
 
 static void write_terrain(writer *w)
 {
-    const terrain *t = w->clips->ground;
+    const terrain *t = w->clips->extras.ground;
     noh_pack_terrain_header h;
     if (!t) return;
     memset(&h, 0, sizeof h);
@@ -499,7 +502,9 @@ static size_t chunk_capacity(const model *m, const encoded_clips *made)
     size_t lists = 0;
     for (uint32_t i = 0; i < m->mesh_count; i++) lists += m->meshes[i].influence_max > NOH_INFLUENCES_MAX;
     return lists + 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 7 +
-           (made ? 2 * (size_t)made->set_count + made->clip_count + (made->graphs ? made->graphs->count : 0) : 0);
+           (made ? 2 * (size_t)made->set_count + made->clip_count +
+                       (made->extras.graphs ? made->extras.graphs->count : 0)
+                 : 0);
 }
 
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,

@@ -18,15 +18,82 @@
 
 #define INPUTS_MAX 64
 
+typedef struct clip_args {
+    const char *events, *graph, *unit_cm, *rest, *facing, *bound, *rename, *clean;
+    int partial, loop, open_loop;
+    double rate, error_cm, shell_cm, split_hz, segment_frames, effort;
+    option_list clip_errors, joint_errors;
+} clip_args;
+
+typedef struct lod_args {
+    const char *levels;
+    option_list from;
+    int fast;
+    double color_edges, own_share;
+} lod_args;
+
+typedef struct skin_args {
+    double influences, palette;
+    int keep_parts;
+    const char *seam;
+    option_list dual_quaternion;
+} skin_args;
+
+typedef struct material_args {
+    option_list two_streams, surfaces, tints, priorities;
+} material_args;
+
+typedef struct texture_args {
+    const char *format;
+    double max;
+    int whole;
+} texture_args;
+
+typedef struct light_args {
+    const char *transfer;
+    double bounce;
+} light_args;
+
+typedef struct wrinkle_args {
+    const char *make, *map, *mask, *models, *lookup;
+    double size;
+} wrinkle_args;
+
+typedef struct face_args {
+    const char *recipe, *identity, *targets;
+    int eyes, lips, no_correctives;
+} face_args;
+
+typedef struct body_args {
+    const char *ragdoll, *springs, *hair;
+    option_list spring_lines;
+} body_args;
+
+typedef struct attach_args {
+    option_list files;
+    const char *joint;
+} attach_args;
+
+typedef struct terrain_args {
+    const char *file;
+    double size, height, points;
+} terrain_args;
+
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only, *events, *graph, *lod, *transfer, *identity, *recipe, *hair,
-        *ragdoll, *springs, *targets, *unit_cm, *rest, *facing, *wrinkles, *wrinkle_map, *region_mask, *wrinkle_models,
-        *wrinkle_lookup, *terrain, *textures, *bound, *rename, *seam, *clean, *attach_joint;
-    int input_count, partial, eyes, lips, no_correctives, quiet, loop, mask, keep_parts, lod_fast, whole_textures;
-    double error_um, rate, error_cm, shell_cm, split_hz, segment_frames, effort, influences, palette, bounce, lod_color,
-        lod_own, wrinkle_size, terrain_size, terrain_height, terrain_points, texture_max;
-    option_list dual_quaternion, two_streams, surfaces, tints, priorities, clip_errors, joint_errors, lod_from,
-        spring_lines, attached;
+    const char *inputs[INPUTS_MAX], *output, *rects, *only;
+    int input_count, quiet;
+    double error_um;
+    clip_args clips;
+    lod_args lod;
+    skin_args skin;
+    material_args materials;
+    texture_args textures;
+    light_args light;
+    wrinkle_args wrinkles;
+    face_args face;
+    body_args body;
+    attach_args attach;
+    terrain_args terrain;
 } build_args;
 
 /* NAME=CM. The converter checks that something has the name. */
@@ -44,85 +111,90 @@ static int check_errors(const char *name, const option_list *list)
 
 static int set_clip(const build_args *a, convert_options *o)
 {
-    if (a->rate < 0.0 || a->rate > 1000.0 || a->error_cm <= 0.0 || a->shell_cm <= 0.0) {
+    if (a->clips.rate < 0.0 || a->clips.rate > 1000.0 || a->clips.error_cm <= 0.0 || a->clips.shell_cm <= 0.0) {
         return tool_usage("--rate wants up to 1000 Hz; --error-cm and --shell-cm want numbers over 0");
     }
-    if (a->effort != 1.0 && a->effort != 2.0 && a->effort != 3.0) {
-        return tool_usage("--effort wants 1, 2 or 3, not %g", a->effort);
+    if (a->clips.effort != 1.0 && a->clips.effort != 2.0 && a->clips.effort != 3.0) {
+        return tool_usage("--effort wants 1, 2 or 3, not %g", a->clips.effort);
     }
-    if (strcmp(a->unit_cm, "auto") != 0 &&
-        (tool_number(a->unit_cm, &o->clip.unit_cm) || !(o->clip.unit_cm > 0.0) || o->clip.unit_cm > 1e9)) {
-        return tool_usage("--unit-cm wants auto or a number over 0, at most 1e9, not '%s'", a->unit_cm);
+    if (strcmp(a->clips.unit_cm, "auto") != 0 &&
+        (tool_number(a->clips.unit_cm, &o->source.unit_cm) || !(o->source.unit_cm > 0.0) || o->source.unit_cm > 1e9)) {
+        return tool_usage("--unit-cm wants auto or a number over 0, at most 1e9, not '%s'", a->clips.unit_cm);
     }
-    if (strcmp(a->rest, "bind") != 0 && strcmp(a->rest, "first-frame") != 0) {
-        return tool_usage("--rest wants bind or first-frame, not '%s'", a->rest);
+    if (strcmp(a->clips.rest, "bind") != 0 && strcmp(a->clips.rest, "first-frame") != 0) {
+        return tool_usage("--rest wants bind or first-frame, not '%s'", a->clips.rest);
     }
-    o->turn.rest_first_frame = a->rest[0] == 'f';
-    o->turn.faces_ahead = strcmp(a->facing, "auto") == 0;
-    if (!o->turn.faces_ahead && strcmp(a->facing, "keep") != 0 &&
-        (tool_number(a->facing, &o->turn.degrees) || !(fabs(o->turn.degrees) <= 360.0))) {
-        return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->facing);
+    o->source.turn.rest_first_frame = a->clips.rest[0] == 'f';
+    o->source.turn.faces_ahead = strcmp(a->clips.facing, "auto") == 0;
+    if (!o->source.turn.faces_ahead && strcmp(a->clips.facing, "keep") != 0 &&
+        (tool_number(a->clips.facing, &o->source.turn.degrees) || !(fabs(o->source.turn.degrees) <= 360.0))) {
+        return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->clips.facing);
     }
-    if (clean_parse(a->clean, &o->clean)) {
+    if (clean_parse(a->clips.clean, &o->source.clean)) {
         return tool_usage("--clean wants off, all or a list of gaps, jitter, root, contacts and contact-keys, not '%s'",
-                          a->clean);
+                          a->clips.clean);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
         return tool_usage("--only wants mesh or anim, not '%s'", a->only);
     }
-    if (strcmp(a->bound, "sphere") != 0 && strcmp(a->bound, "axes") != 0) {
-        return tool_usage("--bound wants sphere or axes, not '%s'", a->bound);
+    if (strcmp(a->clips.bound, "sphere") != 0 && strcmp(a->clips.bound, "axes") != 0) {
+        return tool_usage("--bound wants sphere or axes, not '%s'", a->clips.bound);
     }
-    if (a->segment_frames != 0.0 && (a->segment_frames < 8.0 || a->segment_frames > 40.0 ||
-                                     a->segment_frames != (double)(uint32_t)a->segment_frames)) {
-        return tool_usage("--segment-frames wants a whole number from 8 to 40, or 0, not %g", a->segment_frames);
+    if (a->clips.segment_frames != 0.0 && (a->clips.segment_frames < 8.0 || a->clips.segment_frames > 40.0 ||
+                                           a->clips.segment_frames != (double)(uint32_t)a->clips.segment_frames)) {
+        return tool_usage("--segment-frames wants a whole number from 8 to 40, or 0, not %g", a->clips.segment_frames);
     }
-    if (!(a->split_hz >= 0.0)) return tool_usage("--split-hz wants 0 or more frames a second, not %g", a->split_hz);
-    o->clip.sample_rate_hz = a->rate;
-    o->clip.check_loops = a->loop;
-    o->clip.clip.error_cm = a->error_cm;
-    o->clip.clip.shell_cm = a->shell_cm;
-    o->clip.clip.axes = a->bound[0] == 'a';
-    o->clip.clip.segment_frames = (uint32_t)a->segment_frames;
-    o->clip.clip.split_hz = a->split_hz == 0.0 ? INFINITY : a->split_hz;
-    o->clip.clip.effort = (uint32_t)a->effort;
-    o->clip.clip.open_loop = a->mask;
-    o->clip.clip_errors = (named_errors){ a->clip_errors.items, (uint32_t)a->clip_errors.count };
-    o->clip.joint_errors = (named_errors){ a->joint_errors.items, (uint32_t)a->joint_errors.count };
+    if (!(a->clips.split_hz >= 0.0))
+        return tool_usage("--split-hz wants 0 or more frames a second, not %g", a->clips.split_hz);
+    o->source.sample_rate_hz = a->clips.rate;
+    o->clip.check_loops = a->clips.loop;
+    o->clip.clip.error_cm = a->clips.error_cm;
+    o->clip.clip.shell_cm = a->clips.shell_cm;
+    o->clip.clip.axes = a->clips.bound[0] == 'a';
+    o->clip.clip.segment_frames = (uint32_t)a->clips.segment_frames;
+    o->clip.clip.split_hz = a->clips.split_hz == 0.0 ? INFINITY : a->clips.split_hz;
+    o->clip.clip.effort = (uint32_t)a->clips.effort;
+    o->clip.clip.open_loop = a->clips.open_loop;
+    o->clip.clip_errors = (named_errors){ a->clips.clip_errors.items, (uint32_t)a->clips.clip_errors.count };
+    o->clip.joint_errors = (named_errors){ a->clips.joint_errors.items, (uint32_t)a->clips.joint_errors.count };
     o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_CLIPS;
-    o->events = a->events;
-    o->graph = a->graph;
+    o->events = a->clips.events;
+    o->graph = a->clips.graph;
     return 0;
 }
 
 static int set_skin(const build_args *a, convert_options *o)
 {
-    if (a->influences < 1 || a->influences > MODEL_INFLUENCES_MAX || a->influences != (double)(uint32_t)a->influences) {
+    if (a->skin.influences < 1 || a->skin.influences > MODEL_INFLUENCES_MAX ||
+        a->skin.influences != (double)(uint32_t)a->skin.influences) {
         return tool_usage("--influences wants a whole number from 1 to %u", MODEL_INFLUENCES_MAX);
     }
-    if (a->palette < 4 || a->palette > NOH_PALETTE_JOINTS_MAX || a->palette != (double)(uint32_t)a->palette) {
+    if (a->skin.palette < 4 || a->skin.palette > NOH_PALETTE_JOINTS_MAX ||
+        a->skin.palette != (double)(uint32_t)a->skin.palette) {
         return tool_usage("--palette wants a whole number of joints from 4 to %u", NOH_PALETTE_JOINTS_MAX);
     }
-    o->skin.influences = (uint32_t)a->influences;
-    o->skin.palette = (uint32_t)a->palette;
-    o->skin.keep_parts = a->keep_parts;
-    o->seam = strcmp(a->seam, "mend") == 0 ? SEAM_MEND : strcmp(a->seam, "off") == 0 ? SEAM_OFF : SEAM_CHECK;
-    if (o->seam == SEAM_CHECK && strcmp(a->seam, "check") != 0) {
-        return tool_usage("--seam wants check, mend or off, not '%s'", a->seam);
+    o->source.skin.influences = (uint32_t)a->skin.influences;
+    o->source.skin.palette = (uint32_t)a->skin.palette;
+    o->source.skin.keep_parts = a->skin.keep_parts;
+    o->source.seam = strcmp(a->skin.seam, "mend") == 0  ? SEAM_MEND
+                     : strcmp(a->skin.seam, "off") == 0 ? SEAM_OFF
+                                                        : SEAM_CHECK;
+    if (o->source.seam == SEAM_CHECK && strcmp(a->skin.seam, "check") != 0) {
+        return tool_usage("--seam wants check, mend or off, not '%s'", a->skin.seam);
     }
-    o->attached = a->attached.items;
-    o->attached_count = (uint32_t)a->attached.count;
-    o->attach_joint = a->attach_joint;
-    o->two_streams = a->two_streams.items;
-    o->two_stream_count = (uint32_t)a->two_streams.count;
-    o->surfaces = a->surfaces.items;
-    o->surface_count = (uint32_t)a->surfaces.count;
-    o->tints = a->tints.items;
-    o->tint_count = (uint32_t)a->tints.count;
-    o->priorities = a->priorities.items;
-    o->priority_count = (uint32_t)a->priorities.count;
-    o->skin.dual_quaternion = a->dual_quaternion.items;
-    o->skin.dual_quaternion_count = (uint32_t)a->dual_quaternion.count;
+    o->source.attached = a->attach.files.items;
+    o->source.attached_count = (uint32_t)a->attach.files.count;
+    o->source.attach_joint = a->attach.joint;
+    o->source.two_streams = a->materials.two_streams.items;
+    o->source.two_stream_count = (uint32_t)a->materials.two_streams.count;
+    o->surfaces = a->materials.surfaces.items;
+    o->surface_count = (uint32_t)a->materials.surfaces.count;
+    o->tints = a->materials.tints.items;
+    o->tint_count = (uint32_t)a->materials.tints.count;
+    o->priorities = a->materials.priorities.items;
+    o->priority_count = (uint32_t)a->materials.priorities.count;
+    o->source.skin.dual_quaternion = a->skin.dual_quaternion.items;
+    o->source.skin.dual_quaternion_count = (uint32_t)a->skin.dual_quaternion.count;
     return 0;
 }
 
@@ -130,23 +202,23 @@ static int set_lod(const build_args *a, convert_options *o)
 {
     uint32_t level;
     size_t name_bytes;
-    for (int i = 0; i < a->lod_from.count; i++) {
-        if (strip_level_parse(a->lod_from.items[i], &name_bytes, &level)) {
+    for (int i = 0; i < a->lod.from.count; i++) {
+        if (strip_level_parse(a->lod.from.items[i], &name_bytes, &level)) {
             return tool_usage("--lod-from wants K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
-                              a->lod_from.items[i]);
+                              a->lod.from.items[i]);
         }
     }
-    o->lod_from = (strip_levels){ a->lod_from.items, (uint32_t)a->lod_from.count };
-    if (!(a->lod_color > 0.0 && a->lod_color <= 100.0)) {
+    o->lod_from = (strip_levels){ a->lod.from.items, (uint32_t)a->lod.from.count };
+    if (!(a->lod.color_edges > 0.0 && a->lod.color_edges <= 100.0)) {
         return tool_usage("--lod-color wants a number over 0, up to 100");
     }
-    o->lod.color_edges = (float)a->lod_color;
-    if (!(a->lod_own >= 0.0 && a->lod_own <= 1.0)) {
+    o->lod.color_edges = (float)a->lod.color_edges;
+    if (!(a->lod.own_share >= 0.0 && a->lod.own_share <= 1.0)) {
         return tool_usage("--lod-own wants a share from 0 to 1");
     }
-    o->lod.own_share = a->lod_own > 0.0 ? (float)a->lod_own : -1.0f;
-    o->lod.mode = a->lod_fast ? LOD_FAST : LOD_QUALITY;
-    return a->lod ? parse_levels(a->lod, &o->lod.level_count, &o->lod.by_error) : 0;
+    o->lod.own_share = a->lod.own_share > 0.0 ? (float)a->lod.own_share : -1.0f;
+    o->lod.mode = a->lod.fast ? LOD_FAST : LOD_QUALITY;
+    return a->lod.levels ? parse_levels(a->lod.levels, &o->lod.level_count, &o->lod.by_error) : 0;
 }
 
 static int set_rects(const build_args *a, convert_options *o)
@@ -171,18 +243,18 @@ static int set_transfer(const build_args *a, convert_options *o)
     } all[] = {
         { "4", 4, 0 }, { "6", 6, 0 }, { "seed-4", 4, NOH_TRANSFER_ON_NORMAL }, { "seed-6", 6, NOH_TRANSFER_ON_NORMAL }
     };
-    for (size_t i = 0; a->transfer && i < sizeof all / sizeof all[0]; i++) {
-        if (strcmp(a->transfer, all[i].name) == 0) {
+    for (size_t i = 0; a->light.transfer && i < sizeof all / sizeof all[0]; i++) {
+        if (strcmp(a->light.transfer, all[i].name) == 0) {
             o->transfer.order = all[i].order;
             o->transfer.flags = all[i].flags;
         }
     }
-    if (!(a->bounce >= 0.0 && a->bounce <= 1.0)) {
+    if (!(a->light.bounce >= 0.0 && a->light.bounce <= 1.0)) {
         return tool_usage("--bounce wants a number from 0 to 1");
     }
-    o->transfer.bounce = (uint32_t)(255.0 * a->bounce + 0.5);
-    return a->transfer && !o->transfer.order
-               ? tool_usage("--transfer wants 4, 6, seed-4 or seed-6, not '%s'", a->transfer)
+    o->transfer.bounce = (uint32_t)(255.0 * a->light.bounce + 0.5);
+    return a->light.transfer && !o->transfer.order
+               ? tool_usage("--transfer wants 4, 6, seed-4 or seed-6, not '%s'", a->light.transfer)
                : 0;
 }
 
@@ -195,38 +267,38 @@ static int set_wrinkles(const build_args *a, convert_options *o)
                    { "area", NOH_WRINKLE_BY_AREA },
                    { "region", NOH_WRINKLE_BY_REGION },
                    { "channel", NOH_WRINKLE_BY_CHANNEL } };
-    if (a->wrinkles && strcmp(a->wrinkles, "auto") != 0) {
-        return tool_usage("--wrinkles wants auto, not '%s'", a->wrinkles);
+    if (a->wrinkles.make && strcmp(a->wrinkles.make, "auto") != 0) {
+        return tool_usage("--wrinkles wants auto, not '%s'", a->wrinkles.make);
     }
     for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
-        if (strcmp(a->wrinkle_models, models[i].name) == 0) o->wrinkles.models = models[i].bits;
+        if (strcmp(a->wrinkles.models, models[i].name) == 0) o->wrinkles.models = models[i].bits;
     }
     if (!o->wrinkles.models) {
-        return tool_usage("--wrinkle-model wants auto, area, region or channel, not '%s'", a->wrinkle_models);
+        return tool_usage("--wrinkle-model wants auto, area, region or channel, not '%s'", a->wrinkles.models);
     }
-    o->wrinkles.size = a->wrinkle_size >= 64.0 && a->wrinkle_size <= 2048.0 ? (uint32_t)a->wrinkle_size : 0;
-    if (a->wrinkle_size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
+    o->wrinkles.size = a->wrinkles.size >= 64.0 && a->wrinkles.size <= 2048.0 ? (uint32_t)a->wrinkles.size : 0;
+    if (a->wrinkles.size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
         return tool_usage("--wrinkle-size wants a power of two from 64 to 2048, or 0 to choose it");
     }
-    o->wrinkles.by_pixel = strcmp(a->wrinkle_lookup, "pixel") == 0;
-    if (!o->wrinkles.by_pixel && strcmp(a->wrinkle_lookup, "vertex") != 0) {
-        return tool_usage("--wrinkle-lookup wants vertex or pixel, not '%s'", a->wrinkle_lookup);
+    o->wrinkles.by_pixel = strcmp(a->wrinkles.lookup, "pixel") == 0;
+    if (!o->wrinkles.by_pixel && strcmp(a->wrinkles.lookup, "vertex") != 0) {
+        return tool_usage("--wrinkle-lookup wants vertex or pixel, not '%s'", a->wrinkles.lookup);
     }
-    o->wrinkles.automatic = a->wrinkles != NULL;
-    o->wrinkles.map = a->wrinkle_map;
-    o->wrinkles.mask = a->region_mask;
+    o->wrinkles.automatic = a->wrinkles.make != NULL;
+    o->wrinkles.map = a->wrinkles.map;
+    o->wrinkles.mask = a->wrinkles.mask;
     return 0;
 }
 
 static int set_textures(const build_args *a, convert_options *o)
 {
-    o->whole_textures = a->whole_textures;
-    o->etc2 = strcmp(a->textures, "etc2") == 0;
-    if (!o->etc2 && strcmp(a->textures, "raw") != 0) {
-        return tool_usage("--textures wants etc2 or raw, not '%s'", a->textures);
+    o->whole_textures = a->textures.whole;
+    o->etc2 = strcmp(a->textures.format, "etc2") == 0;
+    if (!o->etc2 && strcmp(a->textures.format, "raw") != 0) {
+        return tool_usage("--textures wants etc2 or raw, not '%s'", a->textures.format);
     }
-    o->texture_max = a->texture_max >= 1.0 && a->texture_max <= NOH_TEXTURE_SIZE_MAX ? (uint32_t)a->texture_max : 0;
-    return a->texture_max != (double)o->texture_max
+    o->texture_max = a->textures.max >= 1.0 && a->textures.max <= NOH_TEXTURE_SIZE_MAX ? (uint32_t)a->textures.max : 0;
+    return a->textures.max != (double)o->texture_max
                ? tool_usage("--texture-max wants a whole number from 1 to %u", NOH_TEXTURE_SIZE_MAX)
                : 0;
 }
@@ -239,8 +311,8 @@ static int set_options(const build_args *a, convert_options *o)
     }
     o->morph.error_um = (float)a->error_um;
     status = set_clip(a, o);
-    if (!status) status = check_errors("--clip-error", &a->clip_errors);
-    if (!status) status = check_errors("--joint-error", &a->joint_errors);
+    if (!status) status = check_errors("--clip-error", &a->clips.clip_errors);
+    if (!status) status = check_errors("--joint-error", &a->clips.joint_errors);
     if (!status) status = set_skin(a, o);
     if (!status) status = set_lod(a, o);
     if (!status) status = set_rects(a, o);
@@ -263,18 +335,18 @@ static int fail_build(const convert_failure *f)
 
 static int set_terrain(const build_args *a, convert_options *o)
 {
-    const double points = a->terrain_points;
-    if (!(a->terrain_size >= 0.0 && a->terrain_size <= 1e5)) {
+    const double points = a->terrain.points;
+    if (!(a->terrain.size >= 0.0 && a->terrain.size <= 1e5)) {
         return tool_usage("--terrain-size wants metres, 0 to 100000");
     }
-    if (!(a->terrain_height >= 0.0 && a->terrain_height <= 1e5)) {
+    if (!(a->terrain.height >= 0.0 && a->terrain.height <= 1e5)) {
         return tool_usage("--terrain-height wants metres, 0 to 100000");
     }
     if (!(points >= 2.0 && points <= NOH_TERRAIN_SIZE_MAX && points == (double)(uint32_t)points)) {
         return tool_usage("--terrain-points wants a whole number from 2 to %u", NOH_TERRAIN_SIZE_MAX);
     }
-    o->ground.size_m = a->terrain_size;
-    o->ground.height_m = a->terrain_height;
+    o->ground.size_m = a->terrain.size;
+    o->ground.height_m = a->terrain.height;
     o->ground.points = (uint32_t)points;
     return 0;
 }
@@ -282,11 +354,11 @@ static int set_terrain(const build_args *a, convert_options *o)
 /* A folder of targets is an .obj model's. */
 static int check_targets(const build_args *a)
 {
-    for (int i = 0; a->targets && i < a->input_count; i++) {
+    for (int i = 0; a->face.targets && i < a->input_count; i++) {
         const char *dot = strrchr(a->inputs[i], '.');
         if (dot && (strcmp(dot, ".obj") == 0 || strcmp(dot, ".OBJ") == 0)) return 0;
     }
-    return a->targets ? tool_usage("--targets is for an .obj model; a glTF file has its own") : 0;
+    return a->face.targets ? tool_usage("--targets is for an .obj model; a glTF file has its own") : 0;
 }
 
 static int run(void *args)
@@ -305,20 +377,20 @@ static int run(void *args)
     if (status) {
         return status;
     }
-    o.identity = a->identity;
-    o.targets = a->targets;
-    o.joints.names = a->rename;
-    o.joints.partial = a->partial;
-    o.split_eyes = a->eyes;
-    o.recipe = a->recipe;
-    o.ragdoll = a->ragdoll;
-    o.springs = a->springs;
-    o.spring_lines = a->spring_lines.items;
-    o.spring_line_count = (uint32_t)a->spring_lines.count;
-    o.hair = a->hair;
-    o.terrain = a->terrain;
-    o.lips = a->lips;
-    o.no_correctives = a->no_correctives;
+    o.source.identity = a->face.identity;
+    o.source.targets = a->face.targets;
+    o.joints.names = a->clips.rename;
+    o.joints.partial = a->clips.partial;
+    o.source.split_eyes = a->face.eyes;
+    o.recipe = a->face.recipe;
+    o.ragdoll = a->body.ragdoll;
+    o.springs = a->body.springs;
+    o.spring_lines = a->body.spring_lines.items;
+    o.spring_line_count = (uint32_t)a->body.spring_lines.count;
+    o.hair = a->body.hair;
+    o.terrain = a->terrain.file;
+    o.source.lips = a->face.lips;
+    o.no_correctives = a->face.no_correctives;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
@@ -367,7 +439,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--lod",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, lod),
+      .at = offsetof(build_args, lod.levels),
       .value = "auto|N",
       .what =
           "number of LOD levels, with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
@@ -375,19 +447,19 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--lod-from",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, lod_from),
+      .at = offsetof(build_args, lod.from),
       .value = "K|MESH=K",
       .what = "leave out the levels before K, 0 to 7, of all meshes or of one, as noh strip does; may repeat",
       .example = "2",
       .needs = "--lod" },
     { .name = "--lod-fast",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, lod_fast),
+      .at = offsetof(build_args, lod.fast),
       .what = "simplify in seconds, with larger errors",
       .needs = "--lod" },
     { .name = "--lod-color",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, lod_color),
+      .at = offsetof(build_args, lod.color_edges),
       .value = "EDGES",
       .initial = "0.24",
       .what =
@@ -396,7 +468,7 @@ static const option options[] = {
       .needs = "--lod" },
     { .name = "--lod-own",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, lod_own),
+      .at = offsetof(build_args, lod.own_share),
       .value = "SHARE",
       .initial = "0.25",
       .what =
@@ -405,7 +477,7 @@ static const option options[] = {
       .needs = "--lod" },
     { .name = "--transfer",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, transfer),
+      .at = offsetof(build_args, light.transfer),
       .value = "4|6|seed-4|seed-6",
       .what =
           "precompute how each vertex answers to light from all around, with occlusion that follows the targets, by spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
@@ -413,7 +485,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--bounce",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, bounce),
+      .at = offsetof(build_args, light.bounce),
       .value = "ALBEDO",
       .initial = "0",
       .what =
@@ -422,7 +494,7 @@ static const option options[] = {
       .needs = "--transfer" },
     { .name = "--wrinkles",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, wrinkles),
+      .at = offsetof(build_args, wrinkles.make),
       .value = "auto",
       .what =
           "give each mesh wrinkles, out of what its targets compress: a normal map of creases, twelve regions, and how much each target wrinkles each of them",
@@ -430,21 +502,21 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--wrinkle-map",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, wrinkle_map),
+      .at = offsetof(build_args, wrinkles.map),
       .value = "FILE",
       .what = "a painted normal map of wrinkles, PNG or JPEG, in place of a generated one",
       .example = "wrinkles.png",
       .excludes = "--only=anim" },
     { .name = "--region-mask",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, region_mask),
+      .at = offsetof(build_args, wrinkles.mask),
       .value = "FILE",
       .what = "a painted mask of twelve wrinkle regions (noh mask looks it over), in place of generated regions",
       .example = "regions.png",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-model",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, wrinkle_models),
+      .at = offsetof(build_args, wrinkles.models),
       .value = "auto|area|region|channel",
       .initial = "auto",
       .what =
@@ -453,7 +525,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--wrinkle-lookup",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, wrinkle_lookup),
+      .at = offsetof(build_args, wrinkles.lookup),
       .value = "vertex|pixel",
       .initial = "vertex",
       .what =
@@ -462,7 +534,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--wrinkle-size",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, wrinkle_size),
+      .at = offsetof(build_args, wrinkles.size),
       .value = "N",
       .initial = "0",
       .what =
@@ -471,7 +543,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--textures",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, textures),
+      .at = offsetof(build_args, textures.format),
       .value = "etc2|raw",
       .initial = "etc2",
       .what =
@@ -480,7 +552,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--texture-max",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, texture_max),
+      .at = offsetof(build_args, textures.max),
       .value = "N",
       .initial = "2048",
       .what = "halve textures until no side is longer than this, texels, 1 to 2048",
@@ -488,13 +560,13 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--whole-textures",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, whole_textures),
+      .at = offsetof(build_args, textures.whole),
       .what =
           "keep columns and rows of textures that no triangle reads, and texture coordinates as the file has them: for textures that a game paints, or that actors wear from another pack",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, influences),
+      .at = offsetof(build_args, skin.influences),
       .value = "N",
       .initial = "8",
       .what =
@@ -503,7 +575,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--palette",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, palette),
+      .at = offsetof(build_args, skin.palette),
       .value = "N",
       .initial = "256",
       .what = "joints per draw at most, 4 to 256; a mesh with more is split",
@@ -511,19 +583,19 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--dual-quaternion",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, dual_quaternion),
+      .at = offsetof(build_args, skin.dual_quaternion),
       .value = "MESH|all",
       .what = "skin this mesh with dual quaternions; may repeat",
       .example = "arm",
       .excludes = "--only=anim" },
     { .name = "--keep-parts",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, keep_parts),
+      .at = offsetof(build_args, skin.keep_parts),
       .what = "keep rigid meshes below joints separate instead of joining them into one skinned mesh",
       .excludes = "--only=anim" },
     { .name = "--attach",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, attached),
+      .at = offsetof(build_args, attach.files),
       .value = "FILE",
       .what =
           "add the meshes of this model to the first one, a head to a body: joints of the same name become one; one without joints follows that of --attach-joint; may repeat",
@@ -531,7 +603,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--attach-joint",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, attach_joint),
+      .at = offsetof(build_args, attach.joint),
       .value = "NAME",
       .what =
           "the joint that carries what --attach adds and no joint of its own moves, from where it stands; default: the first with 'head' in its name",
@@ -539,7 +611,7 @@ static const option options[] = {
       .needs = "--attach" },
     { .name = "--seam",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, seam),
+      .at = offsetof(build_args, skin.seam),
       .value = "check|mend|off",
       .initial = "check",
       .what =
@@ -548,14 +620,14 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--two-stream",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, two_streams),
+      .at = offsetof(build_args, materials.two_streams),
       .value = "SOURCE=TARGET",
       .what = "make the second mesh a target of the first: same triangles, same vertices in the same order; may repeat",
       .example = "arm=arm_bent",
       .excludes = "--only=anim" },
     { .name = "--surface",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, surfaces),
+      .at = offsetof(build_args, materials.surfaces),
       .value = "MATERIAL=skin|eye|teeth|toon|plain",
       .what =
           "draw a material as skin, as an eye, as teeth, gums and tongue, in the two tones of a toon, or as none of them; may repeat; default: what its extras say (\"surface\") or VRM's MToon, else the words of its name",
@@ -563,7 +635,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--tint",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, tints),
+      .at = offsetof(build_args, materials.tints),
       .value = "MATERIAL=on|off",
       .what =
           "let a material take the tint of an instance, or not; may repeat; default: what its extras say (\"tint\"), else off for skin, eyes and teeth, by surface or name",
@@ -571,7 +643,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--priority",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, priorities),
+      .at = offsetof(build_args, materials.priorities),
       .value = "MATERIAL=N",
       .what =
           "where it blends, draw a material after those of the same figure that are lower, -128 to 127; within one priority the farther mesh comes first; may repeat; default: what its extras say (\"priority\") or VRM's MToon (renderQueueOffsetNumber), else 0",
@@ -579,7 +651,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--identity",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, identity),
+      .at = offsetof(build_args, face.identity),
       .value = "FILE",
       .what =
           "add the targets of this model, whose meshes have the same vertices in the same order, as targets that make people (noh sheet --faces)",
@@ -587,7 +659,7 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--rate",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, rate),
+      .at = offsetof(build_args, clips.rate),
       .value = "HZ",
       .initial = "0",
       .what = "sample rate of clips, Hz, at most 1000; 0: that of the file",
@@ -595,7 +667,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--error-cm",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, error_cm),
+      .at = offsetof(build_args, clips.error_cm),
       .value = "CM",
       .initial = "0.01",
       .what = "largest error of clips at the shell, centimetres, over 0",
@@ -603,7 +675,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--shell-cm",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, shell_cm),
+      .at = offsetof(build_args, clips.shell_cm),
       .value = "CM",
       .initial = "3",
       .what = "distance from a joint at which its error is measured, centimetres, over 0",
@@ -611,7 +683,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--bound",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, bound),
+      .at = offsetof(build_args, clips.bound),
       .value = "sphere|axes",
       .initial = "sphere",
       .what =
@@ -620,7 +692,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--segment-frames",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, segment_frames),
+      .at = offsetof(build_args, clips.segment_frames),
       .value = "N",
       .initial = "0",
       .what =
@@ -629,7 +701,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--split-hz",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, split_hz),
+      .at = offsetof(build_args, clips.split_hz),
       .value = "HZ",
       .initial = "100",
       .what =
@@ -638,7 +710,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--effort",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, effort),
+      .at = offsetof(build_args, clips.effort),
       .value = "1-3",
       .initial = "2",
       .what =
@@ -647,51 +719,51 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--clip-error",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, clip_errors),
+      .at = offsetof(build_args, clips.clip_errors),
       .value = "CLIP=CM",
       .what = "--error-cm of one clip; may repeat",
       .example = "walk=0.1",
       .excludes = "--only=mesh" },
     { .name = "--joint-error",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, joint_errors),
+      .at = offsetof(build_args, clips.joint_errors),
       .value = "JOINT=CM",
       .what = "--error-cm of one joint; may repeat",
       .example = "hand_l=0.005",
       .excludes = "--only=mesh" },
     { .name = "--loop",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, loop),
+      .at = offsetof(build_args, clips.loop),
       .what = "mark every clip as a loop, and report how far each is from closing",
       .excludes = "--only=mesh" },
     { .name = "--for-masks",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, mask),
+      .at = offsetof(build_args, clips.open_loop),
       .what = "let no joint compensate for the errors of its parents: for clips that are played through masks",
       .excludes = "--only=mesh" },
     { .name = "--events",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, events),
+      .at = offsetof(build_args, clips.events),
       .value = "FILE",
       .what = "callback keys and sync markers, a text file (noh help FORMATS)",
       .example = "keys.txt",
       .excludes = "--only=mesh" },
     { .name = "--graph",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, graph),
+      .at = offsetof(build_args, clips.graph),
       .value = "FILE",
       .what = "animation graphs that play the clips, a text file (noh help FORMATS)",
       .example = "hero.graph",
       .excludes = "--only=mesh" },
     { .name = "--eyes",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, eyes),
+      .at = offsetof(build_args, face.eyes),
       .what =
           "find the two eyeballs, islands of a mesh whose vertices lie on spheres, and give them the joints LeftEye and RightEye at their centres, so that a gaze turns them",
       .excludes = "--only=anim" },
     { .name = "--targets",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, targets),
+      .at = offsetof(build_args, face.targets),
       .value = "FOLDER",
       .what =
           "of an .obj model: each other .obj file in the folder, with the same positions in the same order, is a morph target of its name",
@@ -699,27 +771,27 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--lips",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, lips),
+      .at = offsetof(build_args, face.lips),
       .what =
           "find lips and upper teeth, make a target lipToTeeth that brings the lower lip to them, and use it for f and v",
       .excludes = "--only=anim" },
     { .name = "--recipe",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, recipe),
+      .at = offsetof(build_args, face.recipe),
       .value = "FILE",
       .what = "what the face's targets are for: blinks, looks, emotions, mouth shapes, a text file (noh help FORMATS)",
       .example = "hero.recipe",
       .excludes = "--only=anim" },
     { .name = "--ragdoll",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, ragdoll),
+      .at = offsetof(build_args, body.ragdoll),
       .value = "FILE",
       .what = "which joints begin a body of the ragdoll, and how far they turn, a text file (noh help FORMATS)",
       .example = "hero.ragdoll",
       .excludes = "--only=anim" },
     { .name = "--springs",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, springs),
+      .at = offsetof(build_args, body.springs),
       .value = "FILE",
       .what =
           "joints that swing: chains and colliders, a text file (noh help FORMATS), in place of those of the glTF file (VRMC_springBone, VRM, extras)",
@@ -727,14 +799,14 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--spring",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, spring_lines),
+      .at = offsetof(build_args, body.spring_lines),
       .value = "LINE",
       .what = "a line of such a file; may repeat",
       .example = "\"chain ponytail* stiffness 0.5\"",
       .excludes = "--only=anim" },
     { .name = "--hair",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, hair),
+      .at = offsetof(build_args, body.hair),
       .value = "FILE",
       .what =
           "a haircut: where hair grows on a skull, how it is combed and how it looks, a text file (noh help FORMATS)",
@@ -742,14 +814,14 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--terrain",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, terrain),
+      .at = offsetof(build_args, terrain.file),
       .value = "FILE",
       .what =
           "the ground: a .png whose brightness is height, a pixel a height, or a .glb or .gltf file whose highest surface it is. Without IN the pack is the ground alone",
       .example = "hill.png" },
     { .name = "--terrain-size",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, terrain_size),
+      .at = offsetof(build_args, terrain.size),
       .value = "M",
       .initial = "0",
       .what = "metres along X; 0: of a picture a metre between pixels, of a model as it is",
@@ -757,7 +829,7 @@ static const option options[] = {
       .needs = "--terrain" },
     { .name = "--terrain-height",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, terrain_height),
+      .at = offsetof(build_args, terrain.height),
       .value = "M",
       .initial = "0",
       .what = "metres from black to white; 0: a tenth of the size",
@@ -765,7 +837,7 @@ static const option options[] = {
       .needs = "--terrain" },
     { .name = "--terrain-points",
       .kind = OPTION_NUMBER,
-      .at = offsetof(build_args, terrain_points),
+      .at = offsetof(build_args, terrain.points),
       .value = "N",
       .initial = "257",
       .what = "heights along the longer side of a model, 2 to 4097; a picture has its own",
@@ -773,25 +845,25 @@ static const option options[] = {
       .needs = "--terrain" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, no_correctives),
+      .at = offsetof(build_args, face.no_correctives),
       .what =
           "targets whose names join those of others (jawOpen_smile), or add hundredths to one (jawOpen50), are targets like others, and not correctives that follow from them",
       .excludes = "--only=anim" },
     { .name = "--rename",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, rename),
+      .at = offsetof(build_args, clips.rename),
       .value = "FILE",
       .what =
           "joints of other names in files of clips: lines of THEIRS OURS; a namespace as in mixamorig7:Hips needs none",
       .example = "mixamo.txt" },
     { .name = "--partial",
       .kind = OPTION_FLAG,
-      .at = offsetof(build_args, partial),
+      .at = offsetof(build_args, clips.partial),
       .what =
           "take clips of skeletons that have at least half of their joints, or half of the pack's, in common with it; the rest keeps the bind pose, or is left out" },
     { .name = "--unit-cm",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, unit_cm),
+      .at = offsetof(build_args, clips.unit_cm),
       .value = "auto|CM",
       .initial = "auto",
       .what =
@@ -799,14 +871,14 @@ static const option options[] = {
       .example = "2.54" },
     { .name = "--rest",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, rest),
+      .at = offsetof(build_args, clips.rest),
       .value = "bind|first-frame",
       .initial = "bind",
       .what = "the rest pose of .bvh and .rcl files: the file's, or that of its first frame",
       .example = "first-frame" },
     { .name = "--facing",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, facing),
+      .at = offsetof(build_args, clips.facing),
       .value = "keep|auto|DEG",
       .initial = "keep",
       .what =
@@ -814,7 +886,7 @@ static const option options[] = {
       .example = "auto" },
     { .name = "--clean",
       .kind = OPTION_TEXT,
-      .at = offsetof(build_args, clean),
+      .at = offsetof(build_args, clips.clean),
       .value = "off|all|LIST",
       .initial = "off",
       .what =

@@ -329,7 +329,6 @@ static int encode(raw_set *set, const char *path, byte_buffer *out)
     memset(&empty, 0, sizeof empty);
     settings.clip.error_cm = 0.01;
     settings.clip.shell_cm = 3.0;
-    settings.unit_cm = 1.0;
     settings.m = &empty;
     failed = clips_encode(&set, 1, &settings, &made, &error) || pack_write(&empty, NULL, NULL, &made, out, &error);
     clips_free(&made);

@@ -33,7 +33,7 @@ static convert_options options_of(const lod_settings *levels, FILE *words)
     o.morph.error_um = 10.0f;
     o.clip.clip.error_cm = 0.01;
     o.clip.clip.shell_cm = 3.0;
-    o.clip.unit_cm = 1.0;
+    o.source.unit_cm = 1.0;
     o.lod = *levels;
     o.progress = words;
     return o;
