@@ -193,7 +193,7 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
     r->gl->BindTexture(GL_TEXTURE_2D, name);
 }
 
-/* Added to what kind of surface the shader is told of: base colours are over their alpha what is meant. */
+/* Added to the surface type in the uniform: base colours are premultiplied by alpha. */
 #define PREMULTIPLIED 0.25f
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)

@@ -1,8 +1,8 @@
 /* gl_mesh.c: a pack's meshes as GL objects.
  *
  * All LOD levels of a mesh share its buffers. The vertices of a coarser level are the first ones of the finer level,
- * and its indices lie behind those of the finer level. So a draw chooses a level by an offset into the index buffer,
- * and a vertex keeps its number, by which its accumulation texel is found, at every level. */
+ * and its indices follow the finer level's. A draw therefore chooses a level by an offset into the index buffer, and a
+ * vertex keeps its number, which selects its accumulation texel, at every level. */
 #include "gl/draw/gl_draw.h"
 
 #include "gl/device/gl_debug.h"
@@ -215,7 +215,7 @@ GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const noh_gl_mesh *m, const 
     return array;
 }
 
-/* room: of which sizes are taken; mesh: which is drawn; contents: `mesh`, or NULL for none. */
+/* room: determines the sizes; mesh: the mesh to draw; contents: `mesh`, or NULL for none. */
 static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room, const noh_mesh *mesh,
                        const noh_mesh *contents, noh_gl_mesh *out, noh_error *error)
 {

@@ -154,7 +154,7 @@ static void close_gaps(uint8_t *groups, uint32_t count)
     }
 }
 
-/* Mark the groups that targets move whose weights are not those of the slot. */
+/* Mark the groups moved by targets whose weights differ from the slot's. */
 static void find_changes(slot_job *j, int may_map)
 {
     const noh_gl_morph *m = j->m;

@@ -282,8 +282,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-/* What the vertex arrays have: what a game adds, and what those of meshes do (gl_draw.h). Returns how many. Attributes
- * that a mesh lacks are constants of the same kind. */
+/* List the attributes of vertex arrays: the game's own and those of meshes (gl_draw.h). Returns their number.
+ * Attributes that a mesh lacks are constants of the same kind. */
 #define INPUTS_MAX (15u + NOH_GL_OWN_INPUTS_MAX)
 static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,
                             noh_gl_input inputs[INPUTS_MAX])

@@ -12,10 +12,10 @@
  * (measured on 290 targets, 13,000 points: 1.6 times slower without). Only llvmpipe itself is: zink (Mesa 22.3.6) loses
  * sums over a flush.
  *
- * Why the bits are those of the CPU: blending happens in the order in which primitives are submitted (OpenGL ES 3.2,
- * 2.1), and they are submitted target by target in index order, as morph.h adds. Each sum therefore has the
- * same terms in the same order, and the same bits wherever the blender adds in float32; sums begin at +0, and adding a
- * zero of either sign changes none of them.
+ * Why the bits equal the CPU's: blending happens in the order in which primitives are submitted (OpenGL ES 3.2, 2.1),
+ * and they are submitted target by target in index order, as morph.h adds. Each sum therefore has the same terms in the
+ * same order, and the same bits wherever the blender adds in float32; sums begin at +0, and adding a zero of either
+ * sign changes none of them.
  *
  * Microsoft's SparseMorphTargets sample (DirectX SDK) draws targets additively, each cut to what it changes, through a
  * geometry shader that sends a triangle to three render targets. It blends by source alpha and starts from the base

@@ -29,7 +29,7 @@ noh_result noh_gl_morph_calibrate_size(const noh_gl_morph_desc *desc, const noh_
     return result;
 }
 
-/* Weights of a round, into the accumulator's own: every so many-th target, and in each round other ones. */
+/* Set the accumulator's weights for a round: targets at regular intervals are active, different ones in each round. */
 static void change_weights(noh_gl_morph *m, float share, uint32_t round)
 {
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {

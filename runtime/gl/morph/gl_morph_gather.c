@@ -2,13 +2,12 @@
  *
  * Each block of 4 x 4 accumulation texels has a list of the active targets that move any of them, in target order. One
  * fragment per vertex walks its block's list, adds delta * weight in registers, and writes the three layers once. The
- * additions are those of the CPU in the same order, so the bits are the same; of a target that does not move a vertex
- * the delta is 0, and adding a zero changes no sum that began at +0.
+ * CPU adds in the same order, so the bits are the same; a target that does not move a vertex has a delta of 0, and
+ * adding a zero changes no sum that began at +0.
  *
- * The lists are made anew for each update, by a counting sort of the blocks of the active targets, so that the cost
- * depends on what is active, and an entry brings its weights with it. They are what an update sends: 16 bytes for each
- * block of each active target and 4 for each block, at most NOH_BATCH_ENTRIES entries at once unless one instance has
- * more. */
+ * The lists are rebuilt for each update, by a counting sort of the blocks of the active targets, so the cost depends
+ * only on active targets, and each entry contains its weights. An update sends the lists: 16 bytes for each block of
+ * each active target and 4 for each block, at most NOH_BATCH_ENTRIES entries at once unless one instance has more. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"

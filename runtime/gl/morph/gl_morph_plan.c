@@ -272,7 +272,7 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
 
 /* The mesh of the desc whose tables a mesh uses: the finest LOD level of the same mesh, the first of equals. One table
  * serves all levels because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of
- * those of every finer level. */
+ * every finer level's. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
     uint32_t owner = index;
@@ -320,7 +320,7 @@ static uint32_t blocks_of(const noh_gl_morph_desc *desc, uint32_t mesh)
 }
 
 /* Where each mesh's part of the tables begins. `meshes` may be NULL. The tables of a level in a pack of its own come
- * last. They are not a part of those of a finer level: targets that the level leaves out have nothing in them. */
+ * last. They are not part of a finer level's tables, because targets dropped by the level have no entries. */
 static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
     table_sums sums = { 0, 0, 0, 0, 0 };

@@ -177,8 +177,8 @@ static void find_targets(const noh_mesh *mesh, uint32_t *first)
     }
 }
 
-/* A counting sort of the tiles by block. It is stable, so those of a block stay in the order of targets. ends: where
- * those of each block end, by position. */
+/* A counting sort of the tiles by block. It is stable, so the tiles of a block stay in the order of targets. ends:
+ * where the tiles of each block end, by position. */
 static void find_slots(const noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *ends)
 {
     const uint32_t across_log2 = mesh->header->morph_width_log2 - 2u, positions = noh_gl_morph_positions(mesh->header);

@@ -67,7 +67,7 @@ static float radius_around(const float *centre, ball b)
 
 #define KEPT 64u /* balls that the second pass need not make again */
 
-/* The box is that of all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
+/* The box contains all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
  * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
 void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
                       uint32_t joint_count, noh_bounds *bounds)
@@ -120,7 +120,7 @@ float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radiu
     return largest * ROUNDING;
 }
 
-/* What the targets add to a box: the sum of their boxes, each of which contains 0. A negative weight swaps low and
+/* The extension of a box by targets: the sum of their boxes, each of which contains 0. A negative weight swaps low and
  * high. */
 static void add_targets(const noh_mesh *mesh, const float *weights, float deltas[6])
 {

@@ -24,7 +24,7 @@ static const char *bad_time(const noh_time_lod *t)
     return t->to_pose > 1u || t->posed > 1u ? "character: a pose index is not 0 or 1" : NULL;
 }
 
-/* The head against that of a new character with the same controller. */
+/* Compare the head with the head of a new character with the same controller. */
 static const char *bad_head(const noh_character *ch, size_t bytes, const noh_clip_set *set)
 {
     uint64_t at;

@@ -218,8 +218,9 @@ static void choose_mesh(noh_lod *d, const errors *e, const noh_lod_settings *s, 
     }
 }
 
-/* The errors of the update rates, as those of levels. Measured ones may fall by chance from one rate to a lower one:
- * they are raised so that they never do. The clips' own error is present at every rate and counts in the same share. */
+/* The errors of the update rates, in the form of level errors. Measured errors may decrease by chance from one rate to
+ * a lower one; they are raised so that they never do. The clips' own error is present at every rate and counts in the
+ * same share. */
 static errors rate_errors(const noh_lod_table *t, const float *update_error_m)
 {
     errors e = { { 0.0f }, 1, 0 };
@@ -409,8 +410,8 @@ static cut cut_at(const float *weights, const float *radius_m, uint32_t count, f
  * greedy choice: the smallest costs first gives the most targets that fit. Sorting the costs would need memory; instead
  * this bisects over the limit. Floats that are not negative have the order of their bits, so at most 31 halvings
  * separate any two, and each pass finds the nearest costs on both sides, which lets the search step from cost to cost.
- * The next float above the result is then a cost of which not all fit: noh_lod_targets takes those by index. The search
- * starts between room / (count + 1), which always fits, and the room itself. *sum is that of what fits. */
+ * At the next float above the result not all equal costs fit: noh_lod_targets takes these by index. The search starts
+ * between room / (count + 1), which always fits, and the room itself. *sum: of the costs that fit. */
 static uint32_t largest_limit(const float *weights, const float *radius_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);

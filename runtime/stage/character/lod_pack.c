@@ -100,7 +100,7 @@ static float to_metres(const noh_pack *pack, const noh_clip_header *h, float rad
     return h->error_shell > 0.0f && radius > h->error_shell ? unit_m * (radius / h->error_shell) : unit_m;
 }
 
-/* The error of a clip with this many joints: that of the finest of its own levels that poses no more. -1: there is
+/* The error of a clip with this many joints: the error of its finest level with at most this many. -1: there is
  * none. */
 static float joint_error(const noh_pack *pack, const noh_pack_clip *clip, uint32_t joint_count)
 {
@@ -114,7 +114,7 @@ static float joint_error(const noh_pack *pack, const noh_pack_clip *clip, uint32
     return -1.0f;
 }
 
-/* Raise the errors of the levels to those of a clip; drop the levels that it has no error for. */
+/* Raise the errors of the levels to the clip's errors; drop levels that the clip has no error for. */
 static void add_joint_errors(const noh_pack *pack, const noh_pack_clip *clip, float metres, noh_lod_joints *levels,
                              uint32_t *level_count)
 {

@@ -217,9 +217,9 @@ static uint32_t bits_of(float value)
     return u.bits;
 }
 
-/* A request as one number that sorts: the 31 bits of the priority above; below the complement of the distance's highest
- * bits, then that of the instance, so that of equal priorities the nearer one comes first, and of equal distances the
- * lower instance. */
+/* A sort key of a request: the 31 bits of the priority, then the complement of the distance's highest bits, then the
+ * complement of the instance; with equal priorities the nearer one comes first, with equal distances the lower
+ * instance. */
 static uint64_t key_of(float priority, float distance, uint32_t instance)
 {
     const uint64_t near = (1u << DISTANCE_BITS) - 1u - (bits_of(distance) >> (31u - DISTANCE_BITS));
@@ -463,7 +463,7 @@ static place *last_due_in(const noh_lod_pools *p, uint32_t which)
     return NULL;
 }
 
-/* The coarsest pool with a free slot: there is one while someone who is due holds none. */
+/* The coarsest pool with a free slot; there is one while an instance that is due has no slot. */
 static uint32_t any_free(const noh_lod_pools *p)
 {
     uint32_t which = p->pool_count;
@@ -497,7 +497,7 @@ static uint32_t exchange(noh_lod_pools *p)
     return 2;
 }
 
-/* With one move left: a slot for who has none, be it another than the one that is due. */
+/* With one move left: give a slot to an instance without one, even if not the slot it is due. */
 static uint32_t take_any(noh_lod_pools *p)
 {
     place *at = first_due(p, 1);

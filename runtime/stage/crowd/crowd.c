@@ -9,7 +9,7 @@
 #define FIELD_VISITS 8192u
 #define SLOPE_MAX 1.0f
 #define FAR 1e6f        /* of places: squares and differences keep their digits */
-#define SPEED_MAX 15.0f /* in radii per second: a step is shorter than a radius, even of one who is pushed */
+#define SPEED_MAX 15.0f /* radii per second: a step is shorter than a radius, even for a pushed agent */
 
 /* ---- size and init ---- */
 

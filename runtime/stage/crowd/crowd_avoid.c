@@ -1,17 +1,17 @@
 /* crowd_avoid.c: planned velocities, corrected so that agents pass each other and do not overlap after the step. */
 #include "stage/crowd/crowd_internal.h"
 
-#define MARGIN 1.03f       /* of the radii: what is kept free between two */
+#define MARGIN 1.03f       /* of the radii: distance kept between two agents */
 #define OVER 1.5f          /* over-relaxation of contacts, whose corrections are averaged */
-#define HORIZON_S 4.0f     /* meetings that are further off than this are left alone */
-#define SIDEWAYS 2.0f      /* stiffness of passing someone who is about to be met */
-#define SIDE_ITERATIONS 1u /* that correct for meetings; all correct for contacts */
-#define NEAR 1.5f          /* of the radii: who is within this after the step, as planned, may be touched */
+#define HORIZON_S 4.0f     /* later meetings are ignored */
+#define SIDEWAYS 2.0f      /* stiffness of passing a neighbour before a meeting */
+#define SIDE_ITERATIONS 1u /* iterations that correct for meetings; all correct for contacts */
+#define NEAR 1.5f          /* of the radii: neighbours within this after the planned step may be touched */
 #define AWAITED 0.2f       /* of its speed: an agent below this waits */
-#define RECOVERY 4u        /* steps of waiting that a step of walking makes up for */
+#define RECOVERY 4u        /* steps of waiting cancelled by a step of walking */
 #define WAITED_MAX CROWD_WAITED
 
-/* What neighbours ask of an agent. */
+/* Corrections by the neighbours of an agent. */
 typedef struct asked {
     vec2 apart, aside;
     uint32_t contacts;

@@ -1,29 +1,30 @@
-/* crowd_plan.c: the velocity that an agent would like: towards its goal, past walls, no faster than those in front let
- * it, and aside where that gets it further.
+/* crowd_plan.c: the planned velocity of an agent: towards its goal, past walls, no faster than agents in front allow,
+ * and aside if it gets further there.
  *
  * source   Moussaid, Helbing, Theraulaz: How simple rules determine pedestrian behavior and crowd disasters, PNAS 2011
- *          (a direction by how far one gets in it; here a fan of five, and what those in front leave of the speed) */
+ *          (direction by reachable distance; here a fan of five directions, with the speed that agents in front
+ *          allow) */
 #include "stage/crowd/crowd_internal.h"
 
-#define ARRIVE 2.0f    /* per second and metre: the speed before a goal, which is braked for over half a second's way */
-#define BLEND 0.2f     /* of the way from the velocity to the wish that a step makes */
-#define HEADWAY_S 0.1f /* time in which a gap may be used up */
-#define IN_FRONT 0.7f  /* of the radii: who is further aside than this is not in front */
-#define ONCOMING 0.2f  /* of the speed: who comes nearer faster than this is not waited for, but passed */
-#define ASIDE 0.8f     /* of the speed: an agent that can have so much does not look for another way */
-#define LEFT 0.2f      /* what a way to the left counts beside one to the right: most meet by passing on one side */
-#define WAIT_STEPS 15.0f  /* at less than a fifth of its speed, after which it begins to push */
-#define PUSH_STEPS 60.0f  /* per which its push grows by its speed */
+#define ARRIVE 2.0f       /* per second and metre: speed before a goal; braking starts half a second away */
+#define BLEND 0.2f        /* share of the change from the velocity to the wish in one step */
+#define HEADWAY_S 0.1f    /* time in which a gap may close */
+#define IN_FRONT 0.7f     /* of the radii: agents further aside are not in front */
+#define ONCOMING 0.2f     /* of the speed: agents approaching faster are passed, not waited for */
+#define ASIDE 0.8f        /* of the speed: an agent that can walk this fast looks for no other direction */
+#define LEFT 0.2f         /* weight of a direction to the left, so that most agents pass on the same side */
+#define WAIT_STEPS 15.0f  /* steps below a fifth of its speed before an agent pushes */
+#define PUSH_STEPS 60.0f  /* steps in which the push grows by the agent's speed */
 #define PUSH_MAX 0.4f     /* of the speed */
-#define YIELD_WAIT 45u    /* steps that one waits before it makes way */
-#define YIELD_STEPS 75u   /* for which it does */
-#define YIELD_LEAST 30u   /* who has fewer left is not followed */
+#define YIELD_WAIT 45u    /* steps of waiting before an agent makes way */
+#define YIELD_STEPS 75u   /* steps for which it makes way */
+#define YIELD_LEAST 30u   /* agents with fewer steps left are not followed */
 #define YIELD_WITHIN 2.5f /* radii of both */
-#define AGAINST -0.3f     /* cosine of two ways against each other */
+#define AGAINST -0.3f     /* cosine of opposing directions */
 #define WAY_X 0.8290376f  /* unit */
 #define WAY_Z 0.5591929f
 
-/* Neighbours as one agent sees them. */
+/* The neighbours of an agent. */
 typedef struct view {
     vec2 to[CROWD_NEIGHBORS], velocity[CROWD_NEIGHBORS];
     float radii[CROWD_NEIGHBORS]; /* of both */
@@ -43,7 +44,7 @@ static void look(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, view
     }
 }
 
-/* How fast those in front let it go. */
+/* The speed that agents in front allow. */
 static float speed_along(const view *v, vec2 direction, float speed)
 {
     float most = speed;
@@ -139,9 +140,9 @@ static vec2 way_among(const noh_crowd *c, uint32_t rank, const crowd_runs *runs,
 
 /* ---- doors ----
  *
- * Where two crowds meet in a door that lets through one at a time, neither can go on: those behind push. Who has waited
- * so makes way, if those ahead come from where it goes and have waited, too, and the way is theirs; and so do those of
- * its own side behind it. */
+ * When two groups meet in a door that admits one agent at a time, neither can go on, because agents behind push. An
+ * agent that has waited makes way if the agents ahead come from its goal's side, have also waited, and have priority;
+ * agents of its own side behind it follow. */
 
 /* Where the goal of an agent lies, unit; 0 where it is there. */
 static vec2 goal_way(const noh_crowd *c, const crowd_body *b)
