@@ -95,7 +95,7 @@ static uint32_t take(uint32_t *bytes, uint32_t each, uint32_t count)
     return at;
 }
 
-/* The arrays of a desc that is good. */
+/* The arrays of a valid desc. */
 static void lay_out(noh_crowd *c, const noh_crowd_desc *desc)
 {
     const uint32_t n = desc->agent_max;
@@ -178,7 +178,7 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
 
 /* ---- agents ---- */
 
-/* As they are kept. */
+/* Flags as stored. */
 static uint32_t flags_of(uint32_t flags)
 {
     if (flags & NOH_CROWD_ORCA) return CROWD_ORCA;
@@ -191,7 +191,7 @@ static uint32_t given_flags(uint32_t state)
     return state & CROWD_FLOCK ? NOH_CROWD_FLOCK : state & CROWD_FORCES ? NOH_CROWD_FORCES : 0;
 }
 
-/* What it knows of walls on its way does not hold any more. */
+/* Forget what the agent knew about walls on its path. */
 static void begin_anew(noh_crowd *crowd, uint32_t index)
 {
     if (crowd->obstacle_count) memset(CROWD_ARRAY(crowd_round, crowd, round) + index, 0, sizeof(crowd_round));
@@ -353,7 +353,7 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd)
 
 /* ---- steps ---- */
 
-/* Phases. SORT is over before jobs begin. */
+/* Phases. SORT ends before jobs begin. */
 #define SORT 0u
 #define SEE 1u
 #define ITERATE 2u

@@ -75,7 +75,7 @@ static void find_blocked(const noh_crowd *c, crowd_flow *flow, float radius)
     }
 }
 
-/* Half a cell at least: no way from a cell's middle to the next leads through a wall. */
+/* At least half a cell, so that no path between centres of adjacent cells leads through a wall. */
 void noh_crowd_flow_init(noh_crowd *c, const noh_crowd_desc *desc)
 {
     crowd_flow *flow = CROWD_ARRAY(crowd_flow, c, flow);
@@ -98,9 +98,9 @@ void noh_crowd_flow_init(noh_crowd *c, const noh_crowd_desc *desc)
     find_blocked(c, flow, desc->field_radius > least ? desc->field_radius : least);
 }
 
-/* ---- phases: each looks at a cell at a time, and says when it is over ---- */
+/* ---- phases: each visits one cell at a time, and returns whether it is finished ---- */
 
-/* Nothing is known yet but where it is blocked, and which free cell is nearest to the goal. */
+/* Mark blocked cells and find the free cell nearest to the goal. */
 static void prepare(crowd_flow *flow, uint32_t end)
 {
     float *distance = CROWD_ARRAY(float, flow, distance);
@@ -117,7 +117,7 @@ static void prepare(crowd_flow *flow, uint32_t end)
     }
 }
 
-/* The four cells next to one; one outside of the grid is the cell itself. */
+/* The four adjacent cells; outside the grid, the cell itself. */
 static void around(const crowd_cells *cells, uint32_t column, uint32_t row, uint32_t next[4])
 {
     const uint32_t i = row * cells->width + column;
@@ -187,7 +187,7 @@ static uint8_t code_of(vec2 way)
     return (uint8_t)(1u + (uint32_t)(((uint64_t)turn * 255u + 0x80000000u) >> 32) % 255u);
 }
 
-/* Where the way becomes shorter, and how much: 0 where it does not on either side. */
+/* The direction in which the path becomes shorter, and by how much; 0 if it does not on either side. */
 static float falls(const float *distance, float here, uint32_t before, uint32_t after)
 {
     const float low = distance[before] < 0.0f ? UNKNOWN : distance[before];
@@ -213,9 +213,9 @@ static void point(crowd_flow *flow, uint32_t end)
     }
 }
 
-/* ---- one after the other ---- */
+/* ---- building fields one after another ---- */
 
-/* The next field that is asked for. returns 0 where there is none */
+/* The next requested field. returns 0 if there is none */
 static int begin_next(crowd_flow *flow)
 {
     crowd_field *fields = CROWD_ARRAY(crowd_field, flow, field);
@@ -243,7 +243,7 @@ static void begin_sweeps(crowd_flow *flow)
     wake_around(flow, next, here);
 }
 
-/* What was built takes the place of what was there, which is where the next is built. */
+/* Swap the new field with the old one, whose memory is used for building the next. */
 static void finish(crowd_flow *flow, crowd_field *field)
 {
     const uint32_t codes = field->codes;
@@ -254,7 +254,7 @@ static void finish(crowd_flow *flow, crowd_field *field)
     flow->building = NOH_NONE;
 }
 
-/* Go on to the next phase where this one is over. */
+/* Start the next phase if this one is finished. */
 static void move_on(crowd_flow *flow, crowd_field *field, uint32_t end)
 {
     const uint32_t count = count_of(&flow->cells);
@@ -271,7 +271,7 @@ static void move_on(crowd_flow *flow, crowd_field *field, uint32_t end)
     }
 }
 
-/* A field that is asked for again while it is built is built once more. */
+/* A field requested again during its build is built once more. */
 uint32_t noh_crowd_flow_build(noh_crowd *c, uint32_t visits)
 {
     crowd_flow *flow = CROWD_ARRAY(crowd_flow, c, flow);

@@ -1,4 +1,4 @@
-/* crowd_follow.c: where a flow field leads from a place: between the directions of the four cells around it. */
+/* crowd_follow.c: the direction of a flow field at a position, interpolated between the four cells around it. */
 #include "stage/crowd/crowd_internal.h"
 
 const crowd_field *noh_crowd_followed(const noh_crowd *c, uint32_t state)
@@ -19,7 +19,7 @@ static float part_of(float part)
     return part > 0.0f ? part < 1.0f ? part : 1.0f : 0.0f;
 }
 
-/* Directions that lead the other way round something are left out: they would cancel. */
+/* Directions that lead around the other side of an obstacle are ignored: they would cancel. */
 static vec2 between(const crowd_flow *flow, const uint8_t *codes, vec2 at, vec2 own)
 {
     const vec2 *directions = CROWD_CONST(vec2, flow, direction);

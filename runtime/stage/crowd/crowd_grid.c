@@ -1,4 +1,4 @@
-/* crowd_grid.c: agents in the order of their cells, and which obstacles are near a cell. */
+/* crowd_grid.c: agents sorted by cell, and the obstacles near each cell. */
 #include "stage/crowd/crowd_internal.h"
 
 crowd_cells noh_crowd_cells_of(const noh_crowd_desc *desc)
@@ -116,7 +116,7 @@ uint32_t noh_crowd_near(const crowd_cells *cells, const noh_crowd_desc *desc, ui
 
 /* ---- agents ---- */
 
-/* A counting sort. Ranks within a cell follow indices, on which nothing else depends. */
+/* A counting sort. Ranks within a cell follow indices; nothing else depends on indices. */
 void noh_crowd_sort(noh_crowd *c)
 {
     const crowd_wish *wishes = CROWD_CONST(crowd_wish, c, wish);

@@ -25,7 +25,7 @@ static int8_t grade_of(const noh_field *field, float low_x, float low_z, float h
     return steps >= 127.0f ? 127 : steps <= -127.0f ? -127 : (int8_t)(steps + (steps < 0.0f ? -0.5f : 0.5f));
 }
 
-/* From edge to edge of each cell: between, the ground may be rougher. */
+/* Slopes from edge to edge of each cell; the ground between may be rougher. */
 void noh_crowd_ground_init(noh_crowd *c, const noh_crowd_desc *desc)
 {
     crowd_ground *ground = CROWD_ARRAY(crowd_ground, c, ground);

@@ -1,11 +1,11 @@
-/* crowd_obstacle.c: ways past walls and posts, and out of them. */
+/* crowd_obstacle.c: directions past walls and posts, and out of them. */
 #include "stage/crowd/crowd_internal.h"
 
 #define WALLS 16u /* that a detour looks at: the first of a cell's */
 
 #define HAIR 0.96f /* of the radius: what is kept free where a wall is walked along */
 
-/* An obstacle as an agent's centre meets it. */
+/* An obstacle, widened for an agent's centre. */
 typedef struct wall {
     vec2 from, along; /* along: to the other end */
     float per_square; /* 1 over the square of its length; 0 for a post */
@@ -38,7 +38,7 @@ static int holds(const wall *w, vec2 at)
     return v2_dot(away, away) < w->radius * w->radius;
 }
 
-/* Whether an end of the wall is too near to the way. */
+/* Whether an end of the wall is too near to the path. */
 static int grazes(const wall *w, vec2 to_end, vec2 direction, float distance)
 {
     const float along = v2_dot(to_end, direction), stop = along < 0.0f ? 0.0f : along > distance ? distance : along;
@@ -54,7 +54,8 @@ static int crosses(const wall *w, vec2 at, vec2 direction, float distance)
     return (side < 0.0f) != (other < 0.0f) && (begin < 0.0f) != (stop < 0.0f);
 }
 
-/* Whether the way from `at` along a unit vector meets the wall. Who touches it may go along it, and away. */
+/* Whether the path from `at` along a unit vector meets the wall. An agent touching the wall may walk along it, or
+ * away. */
 static int blocks(const wall *w, vec2 at, vec2 direction, float distance)
 {
     const vec2 away = away_from(w, at);
@@ -86,7 +87,7 @@ static vec2 tangent(vec2 to_end, float radius, float side)
     return v2((to_end.x * cosine - to_end.z * sine) * per, (to_end.x * sine + to_end.z * cosine) * per);
 }
 
-/* Of the ways past ends of walls within reach that are free as far as that end, the one that turns least. */
+/* The direction with the smallest turn past an end of a wall within reach, free up to the end. */
 static vec2 way_past(const wall *walls, uint32_t count, vec2 at, vec2 direction, float distance, float reach)
 {
     vec2 way = direction;
@@ -182,7 +183,7 @@ int noh_crowd_is_free(const noh_crowd *c, vec2 at, float radius, vec2 direction,
     return 1;
 }
 
-/* Who was on one side of a wall stays there, however far it was pushed. */
+/* Keep an agent on its side of a wall, however far it was pushed. */
 vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius)
 {
     const noh_crowd_obstacle *obstacles = CROWD_CONST(noh_crowd_obstacle, c, obstacle);

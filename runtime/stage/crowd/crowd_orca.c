@@ -9,12 +9,12 @@
 #define HORIZON_S 4.0f
 #define PARALLEL 1e-5f
 
-/* Velocities that are allowed lie to the left of a line. */
+/* Allowed velocities lie to the left of a line. */
 typedef struct line {
     vec2 point, along; /* along: unit */
 } line;
 
-/* The half plane that one neighbour asks for. p: from here to it; v and other: velocities. */
+/* The half plane allowed by a neighbour. p: from here to it; v and other: velocities. */
 static line line_of(vec2 p, vec2 v, vec2 other, float radii)
 {
     const vec2 u = v2_sub(v, other);
@@ -69,7 +69,8 @@ static int on_line(const line *lines, uint32_t at, float fast, vec2 wish, int is
     return 1;
 }
 
-/* returns  count; below it: the line at which there was no solution. *result is then the best before it */
+/* returns count if there is a solution, otherwise the line where it failed; *result is then the best before this
+ * line */
 static uint32_t within_all(const line *lines, uint32_t count, float fast, vec2 wish, int is_direction, vec2 *result)
 {
     const float square = v2_dot(wish, wish);
@@ -87,7 +88,7 @@ static uint32_t within_all(const line *lines, uint32_t count, float fast, vec2 w
     return count;
 }
 
-/* The line on which a point is as far on the wrong side of both. returns 0 where none is needed */
+/* The line of points equally far on the wrong side of both. returns 0 if none is needed */
 static int between(const line *a, const line *b, line *out)
 {
     const float cross = v2_cross(a->along, b->along);
@@ -104,7 +105,7 @@ static int between(const line *a, const line *b, line *out)
     return 1;
 }
 
-/* Where no velocity satisfies all: the one that fails the worst of them least. */
+/* If no velocity satisfies all lines: the velocity with the smallest largest violation. */
 static void least_bad(const line *lines, uint32_t count, uint32_t from, float fast, vec2 *result)
 {
     float worst = 0.0f;

@@ -1,4 +1,4 @@
-/* crowd_round.c: the way round what stands between an agent and its goal, however long or bent that is.
+/* crowd_round.c: walking around obstacles of any shape between an agent and its goal.
  *
  * An agent goes straight where that is free, and past the end of a wall that it sees. Where neither gets it nearer, it
  * keeps a hand on what blocks it and walks along, until it is nearer to its goal than where it began, and the way there
@@ -32,7 +32,7 @@ static vec2 turned(vec2 v, float cosine, float sine)
     return v2(v.x * cosine - v.z * sine, v.x * sine + v.z * cosine);
 }
 
-/* A goal that an agent is too wide to stand on is the place beside it; of one within a wall, on the agent's side. */
+/* If an agent is too wide to stand on its goal: the place next to it; for a goal within a wall, on the agent's side. */
 static vec2 place_for(const noh_crowd *c, vec2 goal, float radius, vec2 to)
 {
     goal = v2_madd(goal, -1e-3f, to);
@@ -40,7 +40,7 @@ static vec2 place_for(const noh_crowd *c, vec2 goal, float radius, vec2 to)
     return goal;
 }
 
-/* On which side the wall is kept: past the nearer end; where both are about as near, as the agent walks already. */
+/* The side of the wall to walk on: past the nearer end; if both are about as near, the current direction. */
 static uint8_t hand_of(const noh_crowd_obstacle *o, vec2 at, vec2 now, vec2 inward, vec2 goal, float speed)
 {
     const float walks = v2_cross(inward, now);
@@ -54,7 +54,7 @@ static uint8_t hand_of(const noh_crowd_obstacle *o, vec2 at, vec2 now, vec2 inwa
     return turn > 0.0f ? HAND_RIGHT : HAND_LEFT;
 }
 
-/* Along the wall: the first free direction, from the hand outwards. returns 0 where none is */
+/* Along the wall: the first free direction, turning away from the wall. returns 0 if there is none */
 static int along_wall(const noh_crowd *c, const crowd_body *b, crowd_round *m, float speed, vec2 *direction)
 {
     const float side = m->mode == HAND_RIGHT ? -1.0f : 1.0f; /* towards the wall */
@@ -109,7 +109,7 @@ static int past_ends(const noh_crowd *c, const crowd_body *b, crowd_round *m, ve
     return !m->has_gone_round;
 }
 
-/* Nearer than where it began to walk along a wall, it lets go where it can go on. */
+/* Leave the wall where the way is free, once nearer to the goal than where following it began. */
 static int lets_go(const noh_crowd *c, const crowd_body *b, crowd_round *m, vec2 to, float distance, float speed,
                    int is_free, vec2 *direction)
 {

@@ -5,7 +5,7 @@
 #define BATCH 64u                   /* agents whose distances are looked at before any is compared */
 #define KEPT (CROWD_NEIGHBORS + 1u) /* one more tells whether the last is as far as another */
 
-/* A neighbour's key: the bits of its squared distance, which order as the distance does, then its name. */
+/* A neighbour's key: the bits of its squared distance, which sort like the distance, then its name. */
 #define NOBODY UINT64_MAX
 
 static inline uint32_t square_of(uint64_t key)
@@ -13,7 +13,8 @@ static inline uint32_t square_of(uint64_t key)
     return (uint32_t)(key >> 32);
 }
 
-/* Keys of those within the limit. returns how many. Without a branch on the distance, which nothing predicts. */
+/* Keys of neighbours within the limit; returns their number. No branch on the distance, which would be
+ * unpredictable. */
 static inline uint32_t gather(const crowd_body *bodies, uint32_t self, uint32_t begin, uint32_t end, uint32_t name,
                               float limit, uint64_t keys[BATCH])
 {
@@ -69,7 +70,7 @@ static void find_nearest(const noh_crowd *c, uint32_t rank, const crowd_runs *ru
 
 /* ---- equal distances ---- */
 
-/* Whether ids have to decide. */
+/* Whether ids must break ties. */
 static int is_tied(const uint64_t best[KEPT])
 {
     int tied = 0;
@@ -109,7 +110,7 @@ static void insert(const noh_crowd *c, seen *s, float square, uint32_t rank, uin
     s->name[at] = (uint16_t)name;
 }
 
-/* One by one, ids compared where that is needed. */
+/* Select one by one, comparing ids for equal distances. */
 static void find_by_id(const noh_crowd *c, uint32_t rank, const crowd_runs *runs, seen *s)
 {
     const crowd_body *bodies = CROWD_CONST(crowd_body, c, body);

@@ -1,4 +1,4 @@
-/* smart_object.c: slots, who holds them, and who waits. */
+/* smart_object.c: slots, their holders, and queues. */
 #include "stage/crowd/smart_object.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ typedef struct smart_slot {
     uint32_t holder; /* NOH_NONE: it is free */
 } smart_slot;
 
-/* Behind it lie objects, slots, agents and their needs. */
+/* Followed by objects, slots, agents and their needs. */
 struct noh_smart {
     uint32_t bytes, agent_max, need_count, object_count, slot_count;
     uint32_t slots, agents, needs;                                  /* byte offsets */
@@ -225,7 +225,7 @@ static float distance_to(const noh_smart_slot *slot, const float at[2])
     return noh_sqrt(x * x + z * z);
 }
 
-/* The best slot that is free; NOH_NONE: there is none. */
+/* The best free slot; NOH_NONE: there is none. */
 static uint32_t best_of(const noh_smart *s, uint32_t need, const float at[2], uint32_t *object)
 {
     uint32_t best = NOH_NONE;
@@ -256,7 +256,7 @@ static int reserve(noh_smart *s, uint32_t agent)
     return 1;
 }
 
-/* Slots that are free go to those who wait, the first first. */
+/* Assign free slots to waiting agents, first come, first served. */
 static void pass_on(noh_smart *s, uint32_t need)
 {
     while (s->first[need] != NOH_NONE) {
@@ -333,7 +333,7 @@ int noh_smart_release(noh_smart *smart, uint32_t agent)
 
 /* ---- time ---- */
 
-/* The end of a phase that has lasted long enough. returns 1 where the next one may have, too */
+/* End a phase that has lasted long enough. returns 1 if the next one may also have ended */
 static int end_phase(noh_smart *s, uint32_t agent)
 {
     smart_agent *a = &agents_of(s)[agent];
@@ -374,7 +374,7 @@ void noh_smart_step(noh_smart *smart, uint32_t ticks)
     for (uint32_t n = 0; n < smart->need_count; n++) pass_on(smart, n);
 }
 
-/* ---- what is ---- */
+/* ---- queries ---- */
 
 void noh_smart_use_of(const noh_smart *smart, uint32_t agent, noh_smart_use *use)
 {
