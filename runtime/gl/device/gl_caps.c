@@ -54,7 +54,7 @@ static void make_values(float values[FLOATS], uint32_t pass)
     }
 }
 
-/* What probe_floats.frag writes to a layer, i counting the channels of its texels. */
+/* The value that probe_floats.frag writes to a layer; i counts the channels of its texels. */
 static float value_at(const float values[FLOATS], uint32_t layer, uint32_t i)
 {
     return values[(i + layer * 4) % FLOATS];
@@ -140,7 +140,7 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
  * differ, ties included; the model that matches every bit is how this driver rounds. If none does, half-float results
  * are only known within a bound. */
 
-/* What lies in the target after some passes, by each model. */
+/* Expected contents of the target after some passes, by rounding model. */
 typedef struct models {
     float exact[LAYERS][FLOATS];   /* float32 sums */
     float rtz[LAYERS][FLOATS];     /* halves rounded toward zero */

@@ -2,7 +2,7 @@
 #include "gl/device/gl_debug.h"
 #include "gl/device/gl_names_internal.h"
 
-#define GROUP_ID 0x6e6f68u /* "noh": tells our groups from the application's */
+#define GROUP_ID 0x6e6f68u /* "noh": distinguishes the library's groups from the application's */
 
 static void join(char text[NOH_GL_LABEL_BYTES], const char *what, const char *of)
 {

@@ -129,7 +129,7 @@ static input_kind kind_of(GLenum type)
     return (input_kind){ 0, 0 };
 }
 
-/* What is wrong with an input; NULL: nothing. */
+/* The error of an input; NULL: none. */
 static const char *check_input(const noh_gl_program_desc *desc, GLuint location, GLenum type)
 {
     const input_kind wants = kind_of(type);

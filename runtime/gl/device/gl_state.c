@@ -239,7 +239,7 @@ static const uint16_t unpack_questions[6] = { GL_UNPACK_ALIGNMENT,   GL_UNPACK_R
 static const uint16_t pack_questions[4] = { GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
                                             GL_PACK_SKIP_PIXELS };
 
-/* Alignment 1, which comes first, and else 0. */
+/* Alignment 1, which comes first, and otherwise 0. */
 static void set_store(const noh_gl_api *gl, const uint16_t *questions, int *kept, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {

@@ -94,7 +94,7 @@ void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light,
     renderer->lighting = lighting;
 }
 
-/* The array has as many elements as the transfer's order asks for. */
+/* The size of the array depends on the transfer's order. */
 static void set_rest(const noh_gl_renderer *r, const noh_gl_variant *v)
 {
     const uint32_t order = v->key.transfer & ~NOH_TRANSFER_ON_NORMAL;
@@ -155,7 +155,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     if (morph) noh_gl_morph_bind_streams(r->gl, v->u_streams, morph);
 }
 
-/* What the caller calls the front of a triangle, or, of a mirrored instance, the other side. */
+/* The caller's front face, or the opposite one for a mirrored instance. */
 static void set_front(noh_gl_renderer *r, int mirrored)
 {
     const GLenum kept = r->raster.front_face;
@@ -166,7 +166,7 @@ static void set_front(noh_gl_renderer *r, int mirrored)
     r->gl->FrontFace(mirrored ? (GLenum)(GL_CW + GL_CCW) - r->raster.front_face : kept);
 }
 
-/* What is set for one instance. Those of a crowd have it in rows of their own instead. */
+/* Uniforms of one instance. Instances of a crowd have these values in rows instead. */
 static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
@@ -206,7 +206,7 @@ static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, co
     r->gl->Uniform4f(v->u_material, m->roughness, m->metallic, cutoff, premultiplied ? kind + PREMULTIPLIED : kind);
 }
 
-/* What the variant's features read. */
+/* Textures and uniforms of the variant's features. */
 static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
                          const noh_gl_texture *pictures)
 {
@@ -225,7 +225,7 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
 }
 
-/* What skin, eyes, teeth and toons are told. Skin of no unit is of metres. */
+/* Uniforms of skin, eye, teeth and toon materials. The unit of skin defaults to metres. */
 static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
 {
     const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;
@@ -273,7 +273,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
-/* What one call draws. */
+/* The arguments of one draw call. */
 typedef struct draw_job {
     noh_gl_renderer *r;
     const noh_gl_mesh *mesh;
@@ -392,7 +392,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
 
-/* noh_blends of the shader: what a tint changes. */
+/* The uniform noh_blends: how a tint applies. */
 #define TINT_ALPHA 1
 #define TINT_NO_COLOR 2
 

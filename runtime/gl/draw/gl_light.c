@@ -7,7 +7,7 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/light/sh_internal.h"
 
-/* ---- what shaders are told ---- */
+/* ---- uniforms ---- */
 
 void noh_lighting_make(const noh_light *light, const float rotation[9], int key, noh_lighting *out)
 {

@@ -129,7 +129,7 @@ static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
     noh_gl_label(gl, GL_VERTEX_ARRAY, m->vertex_array, "mesh", m->mesh.name);
 }
 
-/* What finished vertices take the place of. */
+/* Attributes that finished vertices replace. */
 static void point_to_bind_pose(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     const uint32_t stride = m->mesh.header->attribute_stride;

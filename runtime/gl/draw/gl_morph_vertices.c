@@ -24,7 +24,7 @@
 
 #define WAIT_NS 1000000000u /* for a frame of the GPU: a second is a lost context */
 
-/* What one slot is written with. */
+/* The data written to one slot. */
 typedef struct slot_job {
     noh_gl_morph *m;
     noh_mesh mesh; /* at the level that is accumulated */
@@ -128,7 +128,7 @@ static void write_slot(const slot_job *j)
     }
 }
 
-/* ---- what changed ---- */
+/* ---- changes ---- */
 
 static void mark_target(const noh_gl_morph *m, const noh_mesh *mesh, const noh_target *t)
 {
@@ -143,7 +143,7 @@ static void mark_target(const noh_gl_morph *m, const noh_mesh *mesh, const noh_t
     }
 }
 
-/* Where each run is a call of its own, groups between two that are written are written, too, if they are few. */
+/* Each run is one call, so a few unchanged groups between two written ones are written too. */
 static void close_gaps(uint8_t *groups, uint32_t count)
 {
     uint32_t last = UINT32_MAX;
@@ -175,7 +175,7 @@ static void find_changes(slot_job *j, int may_map)
     if (!may_map) close_gaps(m->groups, groups);
 }
 
-/* Sums of what is written, in the staging memory. */
+/* Sums of the written vertices, in the staging memory. */
 static void accumulate(slot_job *j)
 {
     const noh_gl_morph *m = j->m;
@@ -233,7 +233,7 @@ static map_result write_mapped(slot_job *j)
     return gl->UnmapBuffer(GL_ARRAY_BUFFER) == GL_TRUE ? HAS_MAPPED : HAS_LOST;
 }
 
-/* All of an instance's part of a buffer: what no target moves, too. */
+/* All of an instance's part of a buffer, including vertices that no target moves. */
 static void write_bind_pose(noh_gl_morph *m, uint32_t instance, uint32_t slot)
 {
     slot_job j = job_of(m, instance, slot);

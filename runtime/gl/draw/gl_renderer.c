@@ -29,9 +29,9 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
     return result; /* on error, create_objects deletes */
 }
 
-/* ---- which variants ---- */
+/* ---- choosing variants ---- */
 
-/* What the renderer decides, not a mesh: depth is the same whatever colours are. */
+/* Key fields set by the renderer, not by a mesh; depth does not depend on colours. */
 static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int lit, int without_tangents)
 {
     key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
@@ -212,7 +212,7 @@ static noh_result create_objects(noh_gl_renderer *r, char *log, size_t log_bytes
     return result;
 }
 
-/* The keys of all variants, put where the variants will lie: the list is off the stack before anything is compiled. */
+/* Write the keys of all variants to the memory of the variants, so the list is off the stack before compiling. */
 NOH_NEVER_INLINE static noh_result put_keys(const noh_gl_renderer_desc *desc, void *memory, size_t bytes,
                                             noh_gl_renderer *out, noh_error *error)
 {

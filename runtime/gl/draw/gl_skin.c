@@ -43,7 +43,7 @@ static void widen(span *s, uint32_t row, uint32_t count)
     s->end = row + count > s->end ? row + count : s->end;
 }
 
-/* Widen what the next update sends. */
+/* Widen the range of rows that the next update sends. */
 static void send(noh_gl_skin *skin, const span *changed)
 {
     span all = { skin->dirty_first, skin->dirty_end };
@@ -54,7 +54,7 @@ static void send(noh_gl_skin *skin, const span *changed)
     }
 }
 
-/* Write rows that differ from what is there. */
+/* Write rows that have changed. */
 static void put_rows(const noh_gl_skin *skin, uint32_t row, const float *values, uint32_t count, span *changed)
 {
     NOH_ASSERT((uint64_t)row + count <= skin->plan.texel_count);
@@ -171,7 +171,7 @@ static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], co
     send(skin, &changed);
 }
 
-/* What a row holds in the bits of a mask, or in the others. */
+/* The bits of a row within a mask, or the other bits (of_tint). */
 static uint32_t tile_bits(const float *row, int i, int of_tint)
 {
     const uint32_t mask = i < 2 ? NOH_TILE_XY_MASK : i == 2 ? NOH_TILE_LOG2_MASK : 0xffffffffu;
@@ -284,7 +284,7 @@ static noh_result create_texture(noh_gl_skin *skin, noh_error *error)
     return result;
 }
 
-/* Leaves no object behind on error. */
+/* Deletes its objects on error. */
 static noh_result create_object(noh_gl_skin *skin, noh_error *error)
 {
     noh_result result = NOH_OK;
@@ -409,7 +409,7 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
 
 /* ---- sending ---- */
 
-/* A buffer takes the span as it is. A texture takes the rows of texels that the span touches, as one rectangle. */
+/* A buffer is updated with the span itself, a texture with all texel rows that the span touches, as one rectangle. */
 void noh_gl_skin_update(noh_gl_skin *skin)
 {
     const noh_gl_api *gl = skin->gl;

@@ -101,7 +101,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
-/* How often a lit pixel reads the shadow map: 4 times, or what its other textures leave of 8 fetches. */
+/* Shadow map fetches of a lit pixel: 4, or fewer if its other textures leave less of 8 fetches. */
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
@@ -154,7 +154,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     }
 }
 
-/* The texts behind the defines: what is compiled and what noh_gl_shader_prefix hands out. */
+/* The texts after the defines, for compiling and for noh_gl_shader_prefix. */
 #define PREFIX_PIECES_MAX 14u
 static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX])
 {
@@ -216,7 +216,7 @@ size_t noh_gl_shader_prefix(noh_gl_variant_key key, GLenum stage, char *text, si
 
 /* ---- programs ---- */
 
-/* A stage's text: what goes behind the key's defines. */
+/* A stage's text after the key's defines. */
 #define SOURCE_PIECES_MAX 16u
 typedef struct whole_source {
     noh_gl_source source;

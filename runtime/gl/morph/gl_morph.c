@@ -1,4 +1,5 @@
-/* gl_morph.c: the accumulator's life, and what is common to all paths: weights, LOD levels, which instances changed.
+/* gl_morph.c: making and deleting accumulators, and the code common to all paths: weights, LOD levels, changed
+ * instances.
  *
  * Nothing is accumulated when weights are set. An instance is marked as changed, and noh_gl_morph_update accumulates
  * all such instances together, so that a crowd costs a few draws. An instance that did not change keeps the sums of its

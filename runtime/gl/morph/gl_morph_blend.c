@@ -1,4 +1,4 @@
-/* gl_morph_blend.c: the paths layered, mrt and per-layer, in which the GPU's blending adds.
+/* gl_morph_blend.c: the paths layered, mrt and per-layer, which add by GPU blending.
  *
  * Each rectangle of an active target is drawn over its place in the instance's tile, with blending ONE, ONE: in strips,
  * its part in one row of blocks of 4 x 4 texels, each a quad of one indexed draw. The fragment decodes the delta texel

@@ -1,4 +1,4 @@
-/* gl_morph_cost.c: which path `auto` takes, by a model of what each costs on a GPU.
+/* gl_morph_cost.c: a cost model of paths on a GPU, for `auto`.
  *
  * The unit is one texel blended into three layers of RGBA32F. All terms are of one update of one instance of each mesh,
  * with the expected share of its targets active.
@@ -32,7 +32,7 @@ static uint32_t tile_bytes(const char *renderer)
     return noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_16) ? 16 : 0;
 }
 
-/* What the path cpu uploads, bytes. */
+/* Bytes uploaded by the path cpu. */
 static float cpu_upload(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     const int finished = noh_gl_morph_finishes(desc, plan->accumulate);

@@ -55,7 +55,7 @@ noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes
 
 /* ---- updating ---- */
 
-/* What is sent at once, in the staging memory. */
+/* The data of one upload, in the staging memory. */
 typedef struct lists {
     uint32_t (*entries)[4], (*tiles)[4], *starts, *cursors;
     uint32_t entry_count, start_count, tile_count;
@@ -105,7 +105,7 @@ static void count_targets(const noh_mesh *mesh, const float *weights, uint32_t *
     }
 }
 
-/* One target's entries, each behind what its block has. */
+/* Append a target's entries to the lists of its blocks. */
 static void put_target(lists *l, const noh_mesh *mesh, const noh_target *target, const uint32_t record[4],
                        const uint32_t *slots)
 {

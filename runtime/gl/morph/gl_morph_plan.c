@@ -1,4 +1,4 @@
-/* gl_morph_plan.c: which path, where everything lies, and every byte of it, before anything is made.
+/* gl_morph_plan.c: choosing the path, the layout of the data and its exact bytes, before anything is made.
  *
  * The atlas is the texture array whose layers take the sums. Each mesh of the desc has a band of it, and each instance
  * a tile in its mesh's band. The tables hold what does not change, the delta texels and where they go, once per mesh
@@ -23,14 +23,14 @@ const char *noh_accumulate_name(noh_accumulate accumulate)
     return accumulate == NOH_ACCUMULATE_F32 ? "f32" : accumulate == NOH_ACCUMULATE_F16 ? "f16" : "auto";
 }
 
-/* ---- which path ---- */
+/* ---- choosing the path ---- */
 
 static int blends(noh_morph_path path)
 {
     return path == NOH_MORPH_LAYERED || path == NOH_MORPH_MRT || path == NOH_MORPH_PER_LAYER;
 }
 
-/* NULL if the path runs here, else what is missing. */
+/* NULL if the path runs on this GPU, otherwise the missing capability. */
 static const char *missing(noh_morph_path path, noh_accumulate accumulate, const noh_gl_caps *caps)
 {
     int half = accumulate == NOH_ACCUMULATE_F16;
@@ -286,7 +286,7 @@ static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
     return owner;
 }
 
-/* What the owners have in all. */
+/* Sums over the owners. */
 typedef struct table_sums {
     uint64_t rects, texels, pairs, tiles, targets;
 } table_sums;
@@ -298,7 +298,7 @@ static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
     return has;
 }
 
-/* An owner of tiles, behind those before it. `to` may be NULL. */
+/* Place an owner of tiles after the previous ones. `to` may be NULL. */
 static void add_owner(const noh_mesh *mesh, uint32_t tiles, noh_gl_morph_mesh *to, table_sums *sums)
 {
     if (to) {

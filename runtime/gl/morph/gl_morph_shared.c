@@ -1,5 +1,5 @@
-/* gl_morph_shared.c: what the paths share: tiles, records of weights, framebuffers, the vertex stream, and
- * the GL state around a draw. */
+/* gl_morph_shared.c: code shared by the paths: tiles, records of weights, framebuffers, the vertex stream, and the GL
+ * state around a draw. */
 #include <string.h>
 
 #include "gl/device/gl_debug.h"
@@ -37,7 +37,7 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
     return mesh->first_weight + (instance - mesh->first_instance) * mesh->mesh.header->target_count;
 }
 
-/* ---- what the shaders are given ---- */
+/* ---- shader inputs ---- */
 
 void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last)
 {
