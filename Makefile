@@ -76,7 +76,7 @@ TOOL_SHADERS := $(call sources,tools/noh,$(STAGES:%=*.%))
 # Under sanitizers, of what draws and of the program as a whole, only what is listed (NOH_LONG=1: all).
 SANITIZED  := $(if $(SAN),$(if $(NOH_LONG),,$(shell sed '/^\#/d' tests/sanitized.txt)))
 TEST_C     := $(filter $(if $(SANITIZED),tests/unit/% tests/memory/% $(SANITIZED:%=tests/%.c),%),$(call sources,tests,test_*.c))
-VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/core/base/version.h)
+VERSION    := $(shell sed -n 's/^\#define NOH_VERSION "\(.*\)"/\1/p' runtime/noh/base.h)
 
 # `noh view` needs a window and panels; without their libraries the verb says which are missing.
 VIEW_WITHOUT := $(strip $(if $(shell $(PKG) --exists glfw3 && echo y),,glfw3) $(if $(shell $(PKG) --exists imgui && echo y),,imgui))
@@ -98,7 +98,7 @@ $(DEMO_O): INCLUDES += -Itools/demo_assets
 comma      := ,
 EXAMPLES   := $(EXAMPLE_C:tools/examples/%.c=$(BUILD)/examples/%)
 TESTS      := $(TEST_C:tests/%.c=$(BUILD)/tests/%)
-# The library as three files, and the tests that are linked with it, too.
+# The library as one source file, and the tests that are linked with it, too.
 AMALGAM    := $(BUILD)/amalgam
 AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/test_morph_finish.c %/test_controller.c %/test_graph.c %/test_skin.c %/test_null.c,$(TEST_C)))
 
@@ -134,7 +134,7 @@ help:
 	@echo 'make look-compare  pictures beside three.js in the light of a room'
 	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
 	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
-	@echo 'make amalgam    the library as three files, $(BUILD)/amalgam/noh.c, noh.h and noh_gl.h'
+	@echo 'make amalgam    the library as one source file, $(BUILD)/amalgam/noh.c, and its public headers'
 	@echo 'make docs       the API reference out of the headers, $(BUILD)/docs/html/index.html'
 	@echo 'make install    PREFIX=/usr/local DESTDIR=: the tools, and the library for pkg-config and CMake; make uninstall'
 	@echo 'make install-lib  the library alone, without a C++ compiler (CC=, AR=: for another processor)'

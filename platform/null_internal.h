@@ -3,6 +3,7 @@
 #define NOH_PLATFORM_NULL_INTERNAL_H
 
 #include "null.h"
+#include "noh/gl_device.h"
 
 #define NULL_OBJECTS_MAX 4096 /* of one kind; names are never reused, so that a stale one is noticed */
 #define NULL_UNITS 32

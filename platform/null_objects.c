@@ -1,7 +1,7 @@
 /* null_objects.c: objects of the GL that does nothing: names, bindings, storage. */
 #include "null_internal.h"
 
-#include "gl/device/gl_memory.h"
+#include "noh/low_gl.h"
 
 #include <string.h>
 

@@ -17,8 +17,8 @@
 #include <GLES3/gl32.h>
 #include <GLES2/gl2ext.h>
 
-#include "core/base/result.h"
-#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
 
 typedef struct noh_platform_context noh_platform_context;
 

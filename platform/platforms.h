@@ -3,6 +3,7 @@
 #define NOH_PLATFORM_PLATFORMS_H
 
 #include "platform.h"
+#include "noh/gl_device.h"
 
 extern const noh_platform noh_platform_egl;
 extern const noh_platform noh_platform_angle;

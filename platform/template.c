@@ -69,7 +69,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return system_gl_lookup(name);
 }
 
-/* NOH_ERR_GL tells the application to make a new context and to restore (gl_lost.h). */
+/* NOH_ERR_GL tells the application to make a new context and to restore (gl_device.h). */
 static noh_result present(noh_platform_context *c)
 {
     return system_window_swap(system_context_window(c->context)) ? NOH_OK : NOH_ERR_GL;

@@ -1,5 +1,5 @@
 /* common_environment.glsl: light from all around, one key light and its shadow, a tone map: what noh_lighting of
- * gl_light.h says. It goes behind common_material.glsl: noh_gl_shader_prefix puts them together. Nothing of it is there
+ * noh_gl.h says. It goes behind common_material.glsl: noh_gl_shader_prefix puts them together. Nothing of it is there
  * with NOH_DEPTH_ONLY. Defines, which noh_gl_variant_defines writes:
  *
  *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)

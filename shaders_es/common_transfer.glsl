@@ -1,5 +1,5 @@
 /* common_transfer.glsl: light from all around by a vertex's precomputed transfer, in the arithmetic of
- * transfer.h. It goes behind common_layers.glsl and in front of common_vertex.glsl: noh_gl_shader_prefix puts them together. Defines,
+ * light.h. It goes behind common_layers.glsl and in front of common_vertex.glsl: noh_gl_shader_prefix puts them together. Defines,
  * which noh_gl_variant_defines writes:
  *
  *   NOH_TRANSFER             the order of the mesh's transfer, 4 or 6; 0: there is none, or the renderer is not lit

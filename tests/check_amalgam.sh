@@ -11,9 +11,9 @@ if [ -n "${NOH_SAN:-}" ]; then
     skip 'the amalgam' 'checked in the build without sanitizers'
     finish
 fi
-check 'it is made' test -s "$amalgam/noh.c" -a -s "$amalgam/noh.h" -a -s "$amalgam/noh_gl.h"
+check 'it is made' test -s "$amalgam/noh.c" -a -s "$amalgam/noh/noh.h"
 mkdir "$work/alone"
-cp "$amalgam"/noh.[ch] "$amalgam/noh_gl.h" "$work/alone"
+cp -r "$amalgam/noh.c" "$amalgam/noh" "$work/alone"
 cd "$work/alone" || exit 1
 # shellcheck disable=SC2086
 check 'it compiles alone with gcc' gcc $flags -O0 -c noh.c -o alone.o

@@ -1,13 +1,14 @@
 #!/bin/sh
-# check_headers.sh: what a program sees of the library. Public is what noh.h and noh_gl.h reach.
-#   - noh.h reaches nothing of gl/ but light, and includes no GL header; nothing private (*_internal.h) is reached
-#   - limits.h holds every limit
+# check_headers.sh: what a program sees of the library: the headers in runtime/noh.
+#   - they include each other and the compiler's own headers alone; without GL there are fewer
+#   - noh.h declares at most 120 functions with what it includes of its own room
+#   - base.h holds every limit
 #   - each public header compiles alone, without a warning: C99, C11 and C++17, gcc and clang, for 32 bits too (NOH_LONG:
 #     each compiler with each)
 #   - noh_gl.h stands before, behind and between the headers of GL and of its loaders, in C and C++; no macro and no type of
 #     GL's comes from it
 #   - all functions that they declare link, from C and from C++
-# NOH_HEADERS is where they lie: runtime, or PREFIX/include/noh of an installed library.
+# NOH_HEADERS is where the folder noh lies: runtime, or PREFIX/include of an installed library.
 . "$(dirname "$0")/cli/lib.sh"
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'headers' 'the build without sanitizers says it'
@@ -15,37 +16,55 @@ if [ -n "${NOH_SAN:-}" ]; then
 fi
 headers=${NOH_HEADERS:-runtime}
 
-# The headers that these reach by #include "...", one a line.
+# The headers that one reaches by #include "...", one a line.
 reached() {
-    printf '%s\n' "$@" >"$work/reached"
+    echo "$1" >"$work/reached"
     while :; do
         before=$(wc -l <"$work/reached")
         while read -r header; do
-            sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$headers/$header"
+            sed -n 's/^ *# *include *"\([^"]*\)".*/noh\/\1/p' "$headers/$header"
         done <"$work/reached" | cat "$work/reached" - | sort -u >"$work/more"
         mv "$work/more" "$work/reached"
         [ "$before" != "$(wc -l <"$work/reached")" ] || break
     done
     cat "$work/reached"
 }
+functions() { # HEADER: how many it declares itself
+    printf '#include "%s"\n' "$1" | gcc -std=c99 "-I$headers" -fsyntax-only -aux-info /dev/stdout -x c - 2>/dev/null |
+        grep -c "^/\* $headers/$1:[0-9]*:[A-Z]* \*/ .*[ *(]noh_[a-z0-9_]* ("
+}
 
-reached noh.h >"$work/plain"
-reached noh_gl.h >"$work/public"
-echo "# $(wc -l <"$work/plain") headers without GL, $(wc -l <"$work/public") in all"
-check 'the headers were read' test "$(wc -l <"$work/plain")" -gt 40
-check 'noh.h reaches nothing of gl/ but light' sh -c '! grep "^gl/\|^noh_gl" "$1" | grep -v "^gl/light/"' - "$work/plain"
+(cd "$headers" && find noh -name '*.h' | sort) >"$work/public"
+reached noh/noh.h >"$work/plain"
+echo "# $(wc -l <"$work/public") headers; noh.h reaches $(wc -l <"$work/plain")"
+check 'the headers were read' test "$(wc -l <"$work/public")" -gt 10
+check 'they are few' test "$(wc -l <"$work/public")" -le 24
 while read -r header; do
-    grep -Hn '^ *# *include *<\(GL\|EGL\)' "$headers/$header"
-done <"$work/plain" >"$work/with_gl"
-check 'noh.h includes no GL header' sh -c '! grep . "$1"' - "$work/with_gl"
-check 'nothing private is reached' sh -c '! grep "_internal\.h" "$1"' - "$work/public"
+    case $header in noh/noh_gl.h | noh/gl_device.h | noh/low_gl.h | noh/noh_low.h) continue ;; esac
+    reached "$header" | grep -E '^noh/(noh_gl|gl_device|low_gl)\.h$' | sed "s|^|$header reaches |"
+done <"$work/public" >"$work/reach_gl"
+check 'only headers of GL reach those of GL' sh -c '! grep . "$1"' - "$work/reach_gl"
+while read -r header; do
+    grep -Hn '^ *# *include *<' "$headers/$header" | grep -v '<std\(int\|def\)\.h>'
+    sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$headers/$header" | while read -r included; do
+        [ -f "$headers/noh/$included" ] || echo "$header: $included"
+    done
+done <"$work/public" >"$work/foreign"
+check 'they include each other, stddef.h and stdint.h' sh -c '! grep . "$1"' - "$work/foreign"
+if command -v gcc >/dev/null 2>&1; then
+    while read -r header; do
+        echo "$(functions "$header") $header"
+    done <"$work/public" >"$work/function_counts"
+    sed 's/^/# functions: /' "$work/function_counts"
+    check 'noh.h declares at most 120 functions' awk '$2 == "noh/noh.h" && $1 > 40 && $1 <= 120 { good = 1 } END { exit !good }' "$work/function_counts"
+fi
 
-# Each limit is defined once, in limits.h; clips and time describe theirs.
+# Each limit is defined once, in base.h; clips and time describe theirs.
 while read -r header; do
-    case $header in */limits.h | */clip_format.h | */time.h) continue ;; esac
+    case $header in noh/base.h | noh/clip.h | noh/low_motion.h) continue ;; esac
     grep -Hn '^ *# *define NOH_[A-Z0-9_]*_\(MAX\|MIN\)\>' "$headers/$header"
 done <"$work/public" >"$work/limits"
-check 'limits.h holds the limits' sh -c '! grep . "$1"' - "$work/limits"
+check 'base.h holds the limits' sh -c '! grep . "$1"' - "$work/limits"
 
 # COMPILER... : every public header alone.
 alone() {
@@ -83,9 +102,9 @@ fi
 with_header() {
     for order in before behind both; do
         {
-            [ $order = behind ] || echo '#include "noh_gl.h"'
+            [ $order = behind ] || echo '#include "noh/noh_gl.h"'
             printf '#include %s\n' "$4"
-            [ $order = before ] || echo '#include "noh_gl.h"'
+            [ $order = before ] || echo '#include "noh/noh_gl.h"'
             echo 'static noh_gl_api table;'
             echo 'int main(void)'
             echo '{'
@@ -127,24 +146,24 @@ in_orders GLEW '<GL/glew.h>' libglew-dev
 in_orders glad '<glad/gl.h>' python3-glad
 in_orders 'glad of OpenGL ES' '<glad/gles2.h>' python3-glad
 
-printf '#include "noh_gl.h"\n' | gcc "-I$headers" -dM -E -x c - | grep -E '^#define (_*gl[a-z0-9]*_h_|GL_|GLAPI|APIENTRY|KHRONOS|gl[A-Z])' >"$work/macros"
+printf '#include "noh/noh_gl.h"\n' | gcc "-I$headers" -dM -E -x c - | grep -E '^#define (_*gl[a-z0-9]*_h_|GL_|GLAPI|APIENTRY|KHRONOS|gl[A-Z])' >"$work/macros"
 check 'noh_gl.h defines no macro of GL'"'"'s' sh -c '! grep . "$1"' - "$work/macros"
-printf '#include "noh_gl.h"\ntypedef struct own { int own; } GLuint, GLenum, GLint, GLsizei, GLfloat, GLsync, GLboolean;\n' >"$work/own.c"
+printf '#include "noh/noh_gl.h"\ntypedef struct own { int own; } GLuint, GLenum, GLint, GLsizei, GLfloat, GLsync, GLboolean;\n' >"$work/own.c"
 check 'and declares no type of GL'"'"'s' gcc "-I$headers" -fsyntax-only "$work/own.c"
 
 # ---- functions ----
 
 # Every function that is declared, by gcc's own list, in one table.
-if ! printf '#include "noh_gl.h"\n' | gcc -std=c99 "-I$headers" -fsyntax-only -aux-info "$work/functions" -x c - 2>/dev/null; then
+sed 's/.*/#include "&"/' "$work/public" >"$work/all_headers.h"
+if ! gcc -std=c99 "-I$headers" -fsyntax-only -aux-info "$work/functions" -x c "$work/all_headers.h" 2>/dev/null; then
     skip 'functions link' 'gcc is not here'
     finish
 fi
 sed -n 's|^/\* \([^:]*\):[0-9]*:[A-Z]* \*/ extern .*[ *(]\(noh_[a-z0-9_]*\) (.*|\2|p' "$work/functions" | sort -u >"$work/names"
-sed -n 's|^/\* \([^:]*\):[0-9]*:[A-Z]* \*/ .*[ *(]noh_[a-z0-9_]* (.*|\1|p' "$work/functions" | grep -v '^/usr' | sort | uniq -c >"$work/counts"
-echo "# $(awk '{ n += $1 } END { print n }' "$work/counts") public functions, $(awk '!/\/gl\// { n += $1 } END { print n }' "$work/counts") of them without GL; $(wc -l <"$work/names") are linked"
+awk '$2 ~ /low_/ { low += $1; next } { stable += $1 } END { print "# public functions: " stable " stable, " low " of low_*.h" }' "$work/function_counts"
 check 'the functions were read' test "$(wc -l <"$work/names")" -gt 200
 {
-    echo '#include "noh_gl.h"'
+    cat "$work/all_headers.h"
     echo '#include <stdio.h>'
     echo 'typedef void (*function)(void);'
     echo 'static const function functions[] = {'

@@ -35,9 +35,10 @@ for file in bin/noh bin/noh-embed lib/libnoh.a lib/pkgconfig/noh.pc lib/cmake/no
 done
 [ ! -f "$build/noh.1" ] || check 'the man page' test -s "$prefix/share/man/man1/noh.1"
 [ ! -f tools/completion/noh.bash ] || check 'bash completion' test -s "$prefix/share/bash-completion/completions/noh"
-(cd "$prefix/include/noh" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
-check 'no private header' sh -c '! grep -E "_(internal|kernel)\.h$|(^|/)(check|lanes|skin_blend)\.h$" "$1"' - "$work/headers"
-version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/core/base/version.h)
+(cd "$prefix/include" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
+(cd runtime && find noh -name '*.h') | sort >"$work/public"
+check 'the public headers and no other' cmp "$work/public" "$work/headers"
+version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/noh/base.h)
 (cd "$prefix" && find . -type f | sort) >"$work/before"
 mv "$prefix" "$work/moved"
 cp -r "$work/moved" "$prefix"
@@ -67,7 +68,7 @@ alone() {
     shift
     while read -r header; do
         printf '#include "%s"\nint main(void) { return 0; }\n' "$header" >"$work/alone.c"
-        "$@" -Wall -Wextra -Wpedantic -Werror "-I$prefix/include/noh" -fsyntax-only "$work/alone.c" || return 1
+        "$@" -Wall -Wextra -Wpedantic -Werror "-I$prefix/include" -fsyntax-only "$work/alone.c" || return 1
     done <"$work/headers" >"$work/err" 2>&1
 }
 headers() {
@@ -189,7 +190,7 @@ check 'the installed library asks for memcmp, memcpy and memset only' grep -qx '
 
 # The library's code and constants in the README's program, which opens a pack and morphs: what the linker left.
 largest=34816
-gcc -std=gnu99 -O2 "$work/smile.c" "-I$prefix/include/noh" "-L$prefix/lib" -lnoh -Wl,--gc-sections -Wl,-Map="$work/map" -o "$work/smallest"
+gcc -std=gnu99 -O2 "$work/smile.c" "-I$prefix/include" "-L$prefix/lib" -lnoh -Wl,--gc-sections -Wl,-Map="$work/map" -o "$work/smallest"
 bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && $4 !~ /^_/ { sum += $2 } END { print sum + 0 }')
 whole=$(size "$build/libnoh.a" | awk 'NR > 1 { sum += $1 + $2 } END { print sum }')
 echo "# the smallest program that morphs takes $bytes bytes of the library's $whole"

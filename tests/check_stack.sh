@@ -5,7 +5,7 @@
 set -u
 build=${NOH_BUILD:-build}
 work=$build/stack
-limit=$(sed -n 's/#define NOH_STACK_BYTES \([0-9]*\)u/\1/p' runtime/core/base/limits.h)
+limit=$(sed -n 's/#define NOH_STACK_BYTES \([0-9]*\)u/\1/p' runtime/noh/base.h)
 
 if ! gcc --version 2>/dev/null | grep -q . || [ -n "${NOH_SAN:-}" ]; then
     echo 'SKIP: check_stack: needs gcc (its call graph), without sanitizers'

@@ -8,7 +8,7 @@ build=${NOH_BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 out=$build/web-check/package
 project=$build/web-check/project # three.js is not installed in it, but beside it
-tarball=$build/npm/noh-character-$(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/core/base/version.h).tgz
+tarball=$build/npm/noh-character-$(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/noh/base.h).tgz
 passed=0 failed=0
 
 leave_out() {

@@ -1,8 +1,9 @@
-/* bounds.h: where the figures are, for the page's camera. */
+/* deform.h: where the figures are, for the page's camera. */
 #ifndef NOH_PLATFORM_WEB_BOUNDS_H
 #define NOH_PLATFORM_WEB_BOUNDS_H
 
-#include "noh.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 /* The box in the world of the stage's first actors as they were posed in the last frame, without morphs: min, then max.
  * Of the coarsest LOD level, as the tool frames its pictures.

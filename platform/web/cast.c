@@ -1,6 +1,7 @@
 #include "cast.h"
 
 #include <string.h>
+#include "noh/low_life.h"
 
 static const noh_layer_desc layers[WEB_LAYERS] = {
     { .name = "body", .mode = NOH_LAYER_BASE },

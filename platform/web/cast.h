@@ -3,9 +3,14 @@
 #ifndef NOH_PLATFORM_WEB_CAST_H
 #define NOH_PLATFORM_WEB_CAST_H
 
-#include "noh_gl.h"
-#include "stage/cast/fall.h"
-#include "gl/stage/stage_hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 

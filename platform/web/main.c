@@ -6,6 +6,11 @@
 
 #include "bounds.h"
 #include "web.h"
+#include "deform/pick/bounds.h"
+#include "gl/device/gl_api.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
 
 #define SPEED_ONE 65536
 

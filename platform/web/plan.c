@@ -12,7 +12,11 @@
 
 #include "cast.h"
 #include "platform.h"
-#include "core/wire/wire.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 /* A device that does all that any path needs, and draws in software as that of the tests does: which one it will be is
  * found in the browser. */

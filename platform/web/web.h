@@ -4,10 +4,15 @@
 
 #include "cast.h"
 #include "context.h"
-#include "gl/stage/backdrop.h"
-#include "gl/stage/stage_blob.h"
-#include "gl/stage/stage_floor.h"
-#include "core/wire/wire.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/marks.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define WEB_PARTS_MAX 128u
 #define WEB_CHARACTERS_MAX 16u

@@ -13,7 +13,7 @@ silent() {
 
 noh --version
 expect 0 '--version'
-check 'is that of version.h' sh -c 'grep -qx "noh $(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/core/base/version.h)" "$1"' - "$work/out"
+check 'is that of version.h' sh -c 'grep -qx "noh $(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/noh/base.h)" "$1"' - "$work/out"
 for verb in $verbs; do
     verb=$(echo "$verb" | tr _ ' ')
     noh $verb --help

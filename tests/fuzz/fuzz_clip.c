@@ -11,7 +11,9 @@
 #include <string.h>
 
 #include "support/fuzz_replay.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 

@@ -18,7 +18,8 @@
 #include "convert/clips/events_read.h"
 #include "convert/convert.h"
 #include "convert/springs/springs_read.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/pack.h"
 #include "support/fuzz_replay.h"
 #include "support/pack_walk.h"
 

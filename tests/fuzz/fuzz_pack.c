@@ -14,7 +14,9 @@
 #include <string.h>
 
 #include "support/fuzz_replay.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 #include "support/pack_walk.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);

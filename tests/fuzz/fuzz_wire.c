@@ -9,8 +9,9 @@
 #include <string.h>
 
 #include "support/fuzz_replay.h"
-#include "core/base/hash.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 #include "support/pack_walk.h"
 #include "core/wire/wire_internal.h"
 

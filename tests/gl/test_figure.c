@@ -10,6 +10,7 @@
 #include "cli/message.h"
 #include "draw/figure.h"
 #include "gpu/canvas.h"
+#include "gl/device/gl_api.h"
 
 #define SIDE 160u
 

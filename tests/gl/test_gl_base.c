@@ -23,12 +23,11 @@
 
 #include "../../platform/platform.h"
 #include "gl/device/gl_api.h"
-#include "gl/device/gl_caps.h"
-#include "core/base/half.h"
-#include "gl/device/gl_memory.h"
-#include "gl/device/gl_program.h"
 #include "gl/device/gl_quirks.h"
-#include "gl/device/gl_timer.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
 #include "shaders.gen.h"
 
 #define SWEEP 10000000u

@@ -9,6 +9,11 @@
 
 #include "gpu/canvas.h"
 #include "gl/stage/stage_blob.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define SIDE 128u
 

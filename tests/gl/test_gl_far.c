@@ -9,11 +9,16 @@
 
 #include "file/pack_file.h"
 #include "gpu/canvas.h"
-#include "stage/cast/view.h"
-#include "gl/stage/stage_blob.h"
-#include "gl/stage/stage_floor.h"
-#include "gl/stage/stage_gl.h"
-#include "gl/stage/stage_hairs.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/low_gl.h"
+#include "noh/low_life.h"
+#include "noh/marks.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define SIDE 256u
 #define ACTORS 3u

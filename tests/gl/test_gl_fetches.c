@@ -10,6 +10,10 @@
 #include <GLES3/gl32.h>
 
 #include "gl/draw/gl_variants.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 /* ---- a preprocessor: conditions, and defines without arguments ---- */
 
@@ -283,7 +287,7 @@ static char *whole_text(noh_gl_variant_key key)
     return text;
 }
 
-/* transfer: as in the key; light is then that of gl_light.h */
+/* transfer: as in the key; light is then that of noh_gl.h */
 static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t transfer)
 {
     noh_gl_variant_key key = { 0 };

@@ -8,7 +8,11 @@
 #include <string.h>
 
 #include "gpu/canvas.h"
-#include "gl/stage/stage_floor.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define SIDE 64u
 #define SHADOW_PX 64u

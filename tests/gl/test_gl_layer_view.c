@@ -2,7 +2,12 @@
  * the delta that is accumulated there, in float layers and in integer ones. */
 #include "support/gl_fixture.h"
 
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "tool_shaders.gen.h"
 
 #include <math.h>

@@ -4,7 +4,11 @@
 #include "support/octahedra.h"
 
 #include "gpu/canvas.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define SIDE 128u
 

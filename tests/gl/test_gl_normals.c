@@ -4,7 +4,13 @@
 #include "support/gl_fixture.h"
 #include "support/renderer.h"
 
-#include "core/base/quat.h"
+#include "gl/draw/gl_skin.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdlib.h>

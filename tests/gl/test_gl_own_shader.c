@@ -3,7 +3,15 @@
  * and in a texture, with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 
-#include "core/base/quat.h"
+#include "gl/draw/gl_variants.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "support/skin_asset.h"
 
 #include <math.h>

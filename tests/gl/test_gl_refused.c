@@ -6,7 +6,12 @@
 #include "support/renderer.h"
 
 #include "gpu/gpu.h"
-#include "gl/device/gl_timer.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "null.h"
 
 #include <stdlib.h>

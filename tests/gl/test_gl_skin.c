@@ -2,10 +2,13 @@
  * the same picture of split meshes; what is sent, and what is refused. */
 #include "support/gl_skin_fixture.h"
 #include "support/renderer.h"
+#include "gl/draw/gl_draw.h"
+#include "gl/draw/gl_skin.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "noh/low_core.h"
 
 static const char *const assets[] = { "hero/body.glb",   "hero/body_8inf.glb",          "hero/body_quantized.glb",
                                       "khronos/Fox.glb", "khronos/RobotExpressive.glb", "khronos/SimpleSkin.gltf" };

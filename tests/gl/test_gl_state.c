@@ -1,4 +1,4 @@
-/* GL's state around noh's calls (gl_state.h): whatever a game has set does not matter where it must not, is used where
+/* GL's state around noh's calls (gl_device.h): whatever a game has set does not matter where it must not, is used where
  * it is the game's, and is there again afterwards. */
 #include "support/stage_fixture.h"
 #include "support/gl_fixture.h"

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "gpu/readback.h"
+#include "deform/morph/morph.h"
+#include "gl/morph/gl_morph.h"
 
 typedef struct scene {
     uint8_t *bytes;

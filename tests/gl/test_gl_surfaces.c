@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/pack/format.h"
+#include "noh/format.h"
+#include "noh/light.h"
+#include "noh/noh_gl.h"
 
 /* ---- scatter ---- */
 

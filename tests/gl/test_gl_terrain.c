@@ -6,10 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
+#include "life/physics/terrain_lod.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 #include "gpu/canvas.h"
-#include "stage/cast/view.h"
-#include "gl/stage/stage_terrain.h"
 
 #define WIDTH 320u
 #define HEIGHT 200u

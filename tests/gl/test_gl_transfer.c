@@ -7,9 +7,19 @@
 #include <string.h>
 
 #include "convert/light/pack_transfer.h"
-#include "deform/skin/skin.h"
-#include "gl/light/transfer.h"
-#include "gl/stage/stage_gl.h"
+#include "core/mesh/mesh.h"
+#include "deform/morph/morph.h"
+#include "gl/draw/gl_light.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "support/lod_fixture.h"
 #include "support/skin_asset.h"
 

@@ -8,7 +8,12 @@
 #include <string.h>
 
 #include "draw/figure.h"
-#include "gl/device/gl_program.h"
+#include "life/hair/haircut.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 #include "gpu/canvas.h"
 #include "shaders.gen.h"
 

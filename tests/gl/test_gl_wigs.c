@@ -9,9 +9,16 @@
 
 #include "file/pack_file.h"
 #include "gpu/canvas.h"
-#include "stage/cast/view.h"
-#include "gl/stage/stage_gl.h"
-#include "gl/stage/stage_hairs.h"
+#include "life/hair/haircut.h"
+#include "stage/actors/wigs.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define SIDE 192u
 #define ACTORS_MAX 12u

@@ -5,6 +5,14 @@
 #include "convert/model/model.h"
 #include "convert/wrinkle/region_mask.h"
 #include "core/mesh/wrinkles.h"
+#include "gl/draw/gl_variants.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "support/gl_fixture.h"
 
 #include <math.h>

@@ -3,7 +3,12 @@
 #include "support/gl_fixture.h"
 
 #include "core/base/math_internal.h"
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gpu/canvas.h"
 #include "support/lit_quad.h"
 #include "support/parts_fixture.h"

@@ -7,6 +7,10 @@
 #include <string.h>
 
 #include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 #include "platform.h"
 #include "replay/session.h"
 

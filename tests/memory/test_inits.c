@@ -5,11 +5,24 @@
 #include "support/gl_fixture.h"
 #include "support/graph_fixture.h"
 #include "support/lod_fixture.h"
+#include "life/physics/terrain_lod.h"
+#include "motion/anim/controller.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/graph/graph.h"
+#include "stage/cast/springs.h"
+#include "stage/character/joint_lod.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "stage/character/time_lod.h"
+#include "stage/character/time_lod_points.h"
 
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #define CANARY 64u
 #define FILL 0xa5

@@ -7,7 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/arena.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "support/clip_bank_fixture.h"
 
 #define CANARY 256u

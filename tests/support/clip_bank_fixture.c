@@ -7,6 +7,7 @@
 
 #include "convert/model/model_build.h"
 #include "support.h"
+#include "noh/low_motion.h"
 
 #define TWO_PI 6.283185307179586
 

@@ -6,7 +6,7 @@
 #define NOH_TESTS_SUPPORT_CLIP_BANK_FIXTURE_H
 
 #include "convert/convert.h"
-#include "noh.h"
+#include "noh/clip.h"
 
 #define CLIP_PASS_FRAMES 61u
 
@@ -33,7 +33,7 @@ typedef struct clip_player {
 void clip_player_open(clip_player *p, noh_clip_bank *set);
 void clip_player_close(clip_player *p);
 void clip_start(clip_player *p, uint32_t clip, noh_loop loop, int32_t speed, int64_t tick);
-/* One frame of a game: all calls that clip_bank.h names, in its order. */
+/* One frame of a game: all calls that clip.h names, in its order. */
 void clip_frame(clip_player *p, uint32_t ticks, uint32_t ahead_ticks, uint32_t budget);
 
 #endif

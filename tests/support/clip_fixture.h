@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/clip/clip_cache.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/clips/raw_set.h"
 

@@ -7,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/mask.h"
-#include "core/base/quat.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #define ALIGNED __attribute__((aligned(16)))
 #define JOINTS 24u

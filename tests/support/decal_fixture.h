@@ -5,9 +5,15 @@
 #include "gl_fixture.h"
 #include "stage_fixture.h"
 
-#include "deform/pick/pick.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gpu/canvas.h"
-#include "gl/stage/stage_patch.h"
 
 #define WIDTH 240u
 #define HEIGHT 240u

@@ -1,4 +1,6 @@
 #include "gl_fixture.h"
+#include "deform/morph/morph.h"
+#include "gl/device/gl_api.h"
 
 #include <math.h>
 #include <stdio.h>

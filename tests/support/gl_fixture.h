@@ -5,6 +5,10 @@
 #include "support.h"
 
 #include "gpu/readback.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* One context for the whole program, of EGL or of the driver that NOH_TEST_DRIVER names (tests/gl/matrix.sh); skips the
  * test where there is none. Starts with no GL errors counted. */

@@ -5,10 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/pose/local_to_model.h"
-#include "core/base/quat.h"
-#include "deform/skin/dual_quaternion.h"
-#include "deform/skin/skin.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 /* ---- packs ---- */
 

@@ -5,6 +5,10 @@
 #include "gl_fixture.h"
 
 #include "convert/convert.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* A pack of an asset without its clips, built once per asset and options and kept until the program ends. Skips the
  * test where the asset is not. */

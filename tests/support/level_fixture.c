@@ -6,6 +6,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "pack_walk.h"
+#include "noh/low_core.h"
 
 #define CELLS 1024 /* to each side */
 

@@ -4,6 +4,7 @@
 #define NOH_TESTS_SUPPORT_LEVEL_FIXTURE_H
 
 #include "support.h"
+#include "noh/pack.h"
 
 typedef struct fixture_levels {
     uint8_t *bytes;

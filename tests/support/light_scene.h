@@ -7,6 +7,11 @@
 #include "gpu/canvas.h"
 #include "support/gl_fixture.h"
 #include "support/srgb.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 #define SIDE 65u
 #define PI 3.14159265358979323846

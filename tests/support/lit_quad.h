@@ -8,7 +8,8 @@
 
 #include "gpu/gpu.h"
 #include "convert/model/model.h"
-#include "gl/draw/gl_variants.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 #include "support/srgb.h"
 
 #define LIT_QUAD_SIDE 33u  /* pixels of the picture's side */

@@ -10,6 +10,8 @@
 #include "convert/lod/lod_levels.h"
 #include "skin_asset.h"
 #include "support.h"
+#include "noh/pack.h"
+#include "noh/deform.h"
 
 #define LOD_FACE_TARGETS 12u
 #define LOD_FACE_PAIRS 5u

@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/pack.h"
 
 /* What the part remembers, and is told. */
 typedef struct look_state {

@@ -3,7 +3,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh_gl.h"
+#include "deform/morph/morph.h"
+#include "stage/cast/springs.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/graph.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define NAMES_LOOKED_UP 64u /* looking up names takes targets squared: enough to see every kind */
 

@@ -5,7 +5,7 @@
 #ifndef NOH_TESTS_SUPPORT_PACK_WALK_H
 #define NOH_TESTS_SUPPORT_PACK_WALK_H
 
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 /* Recompute the checksum of every chunk that lies inside the bytes, then that of the table.
  * Does nothing where the table itself does not lie inside. */

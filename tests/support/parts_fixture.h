@@ -12,6 +12,11 @@
 #include "draw/figure.h"
 #include "gpu/gpu.h"
 #include "renderer.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 #define PARTS_MAX 16u
 

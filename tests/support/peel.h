@@ -7,6 +7,10 @@
 #define NOH_TESTS_SUPPORT_PEEL_H
 
 #include "support/gl_fixture.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 
 #define PEEL_LAYERS_MAX 250u
 

@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/pose/blend.h"
-#include "motion/anim/clip_set.h"
-#include "motion/pose/skeleton.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 

@@ -4,7 +4,7 @@
 #ifndef NOH_TESTS_SUPPORT_REFUSING_GL_H
 #define NOH_TESTS_SUPPORT_REFUSING_GL_H
 
-#include "gl/device/gl_api.h"
+#include "noh/gl_device.h"
 
 /* Every function that can be refused. Vertex arrays are bound whatever comes: what is drawn without one is read from
  * the address 0, by some drivers. */

@@ -2,7 +2,9 @@
 #ifndef NOH_TEST_RENDERER_H
 #define NOH_TEST_RENDERER_H
 
-#include "gl/draw/gl_draw.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 
 #define RENDERERS_MAX 8u
 

@@ -13,6 +13,7 @@
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "convert/pack/pack_clips.h"
+#include "noh/pack.h"
 
 typedef struct set_fixture {
     uint8_t *bytes;

@@ -8,6 +8,7 @@
 #include "convert/convert.h"
 #include "convert/clips/model_clips.h"
 #include "convert/model/model_build.h"
+#include "noh/low_core.h"
 
 /* A mesh of the model before it is bound: which of the file's it is. */
 typedef struct part {

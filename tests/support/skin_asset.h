@@ -5,6 +5,7 @@
 #include "gltf_oracle.h"
 #include "support.h"
 #include "convert/skin/skins.h"
+#include "noh/pack.h"
 
 /* The vertex of the file that a vertex of the pack was made from. */
 typedef struct skin_source {

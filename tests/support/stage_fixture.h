@@ -4,7 +4,11 @@
 #define NOH_TESTS_SUPPORT_STAGE_FIXTURE_H
 
 #include "lod_fixture.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "platform.h"
 
 #include <stdio.h>

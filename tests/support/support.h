@@ -19,7 +19,9 @@
 #include <stdlib.h>
 
 #include "convert/pack/pack_write.h"
-#include "noh.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/pack.h"
 
 #define TEST_MAIN(tests, set_up, tear_down)                            \
     int main(int argument_count, char **arguments)                     \

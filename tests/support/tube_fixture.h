@@ -3,6 +3,10 @@
 #define NOH_TESTS_SUPPORT_TUBE_FIXTURE_H
 
 #include "gl_fixture.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 #define COPIES 2u
 

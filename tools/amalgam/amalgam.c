@@ -1,10 +1,10 @@
-/* amalgam: the library as three files, noh.h, noh_gl.h and noh.c.
+/* amalgam: the library as one source file, noh.c. It is compiled with the public headers in a folder noh/ beside it.
  *
- *   amalgam -o FOLDER -I FOLDER... FILE.c...      files are named from an -I folder, e.g. morph.c
+ *   amalgam -o FOLDER -I FOLDER... FILE...      files are named from an -I folder, e.g. deform/morph/morph.c
  *
- * noh.h and noh_gl.h are those headers with all that they include from the library, each once. noh.c holds the rest:
- * first what needs no GL, then, inside #ifndef NOH_WITHOUT_GL, what does; private headers stand where they are first
- * included. In one translation unit the names that files keep to themselves would clash, so a file-scope name of a .c
+ * A FILE that ends in .h is a public header: noh.c includes it. The .c files follow: first those that need no GL, then,
+ * inside #ifndef NOH_WITHOUT_GL, those that do; a private header stands where it is first included. In one translation
+ * unit the names that files keep to themselves would clash, so a file-scope name of a .c
  * file that occurs anywhere else gets its file's name in front (run in morph.c: deform_morph_run), and the
  * macros that a .c file defines are undefined at its end. Names that begin with noh_ or NOH_ are kept.
  *
@@ -26,7 +26,6 @@ typedef struct {
     char *text;
     int is_source;
     int is_written;
-    int needs_gl;
 } input;
 
 static input inputs[FILES_MAX];
@@ -385,19 +384,10 @@ static void write_file(FILE *out, int index, int depth)
     fputc('\n', out);
 }
 
-/* Whether a file or a header that it includes asks for GL's headers, or stands in noh_gl.h. */
-static int needs_gl(int index, int depth)
+/* Whether a source draws: of gl/ all but light, and the embedded shaders. */
+static int needs_gl(const char *name)
 {
-    const char *line = inputs[index].text;
-    if (inputs[index].needs_gl || strstr(line, "<GLES")) return 1;
-    while (depth < 64 && *line) {
-        char name[256];
-        int header = included_name(line, name, sizeof name) ? find_input(name) : -1;
-        if (header >= 0 && header != index && needs_gl(header, depth + 1)) return 1;
-        line += strcspn(line, "\n");
-        if (*line) line++;
-    }
-    return 0;
+    return (!strncmp(name, "gl/", 3) && strncmp(name, "gl/light/", 9)) || strchr(name, '/') == NULL;
 }
 
 static FILE *open_output(const char *folder, const char *name)
@@ -415,27 +405,28 @@ static void close_output(FILE *out, const char *name)
     if (ferror(out) || fclose(out)) fail("%s: cannot be written", name);
 }
 
-static void write_headers(const char *folder)
+static int is_header(const char *name)
 {
-    FILE *out = open_output(folder, "noh.h");
-    int first = find_input("noh.h"), second = find_input("noh_gl.h");
-    if (first < 0) fail("no noh.h in the -I folders");
-    write_file(out, first, 0);
-    close_output(out, "noh.h");
+    size_t chars = strlen(name);
+    return chars > 2 && !strcmp(name + chars - 2, ".h");
+}
 
-    for (int i = 0; i < input_count; i++) inputs[i].needs_gl = !inputs[i].is_written;
-    out = open_output(folder, "noh_gl.h");
-    fputs("#include \"noh.h\"\n\n", out);
-    if (second >= 0) write_file(out, second, 0);
-    close_output(out, "noh_gl.h");
-    for (int i = 0; i < input_count; i++) inputs[i].needs_gl = inputs[i].needs_gl && inputs[i].is_written;
+/* Reads the headers that a file includes. */
+static void read_included(int index)
+{
+    for (const char *line = inputs[index].text; *line;) {
+        char name[256];
+        if (included_name(line, name, sizeof name)) (void)find_input(name);
+        line += strcspn(line, "\n");
+        if (*line) line++;
+    }
 }
 
 static void write_sources(FILE *out, int with_gl, const int *sources, int count)
 {
     for (int i = 0; i < count; i++) {
         input *in = &inputs[sources[i]];
-        if (in->needs_gl != with_gl) continue;
+        if (is_header(in->name) || needs_gl(in->name) != with_gl) continue;
         collect_names(in->text);
         keep_shared_names(sources[i]);
         in->is_source = 1;
@@ -459,20 +450,22 @@ int main(int argc, char **argv)
         else
             fail("%s: not a file of the -I folders", argv[i]);
     }
-    if (!folder || !count) fail("usage: amalgam -o FOLDER -I FOLDER... FILE.c...");
+    if (!folder || !count) fail("usage: amalgam -o FOLDER -I FOLDER... FILE...");
     /* This reads every header before the first name is looked up. */
-    find_input("noh.h");
-    for (int i = 0; i < count; i++) (void)needs_gl(sources[i], 0);
+    for (int i = 0; i < input_count; i++) read_included(i);
 
-    write_headers(folder);
-    for (int i = 0; i < count; i++) inputs[sources[i]].needs_gl = needs_gl(sources[i], 0);
     out = open_output(folder, "noh.c");
     fputs(
         "/* noh.c: the library in one file. Compile it with -ffp-contract=off -fno-math-errno, so that results have the same bits\n"
         " * everywhere, and with -ffunction-sections -fdata-sections, so that the linker's --gc-sections drops what a program\n"
-        " * does not call. NOH_WITHOUT_GL leaves out what needs GL ES headers. */\n"
-        "#ifdef NOH_WITHOUT_GL\n#include \"noh.h\"\n#else\n#include \"noh_gl.h\"\n#endif\n\n",
+        " * does not call. NOH_WITHOUT_GL leaves out what draws. */\n",
         out);
+    for (int i = 0; i < count; i++) {
+        if (!is_header(inputs[sources[i]].name)) continue;
+        fprintf(out, "#include \"%s\"\n", inputs[sources[i]].name);
+        inputs[sources[i]].is_written = 1;
+    }
+    fputc('\n', out);
     write_sources(out, 0, sources, count);
     fputs("#ifndef NOH_WITHOUT_GL\n\n", out);
     write_sources(out, 1, sources, count);

@@ -16,15 +16,18 @@
 #include "convert/model/tint.h"
 #include "convert/pack/pack_graph.h"
 #include "convert/pack/size_warn.h"
-#include "motion/clip/pack_clip.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 #include "convert/springs/springs_bind.h"
 #include "convert/texture/texture_trim.h"
-#include "core/pack/pack.h"
-#include "life/physics/ragdoll_rig.h"
 #include "sources.h"
 
 /* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
- * largest error in pixels (lod.h). */
+ * largest error in pixels (low_stage.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
 
 static int out_of_memory(model_error *error)

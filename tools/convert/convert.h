@@ -6,7 +6,7 @@
 
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
 #include "convert/sources.h"

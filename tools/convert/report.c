@@ -2,7 +2,10 @@
  * from their bytes per vertex and target, or per pair. */
 #include "convert.h"
 #include "convert/texture/texture_blocks.h"
-#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 static double ratio(double a, double b)
 {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# docs.sh: the API reference, out of the public headers (those that noh.h and noh_gl.h reach), into $NOH_BUILD/docs/html.
+# docs.sh: the API reference, out of the public headers, into $NOH_BUILD/docs/html.
 # A warning of Doxygen's is a failure. `make docs` calls it.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -8,7 +8,7 @@ out=$build/docs
 command -v doxygen >/dev/null 2>&1 || { echo 'docs skipped: no doxygen here'; echo '0 passed, 0 failed, 1 skipped'; exit 0; }
 rm -rf "$out"
 mkdir -p "$out"
-headers=$(sh tools/headers.sh noh.h noh_gl.h | sed 's|^|runtime/|' | tr '\n' ' ')
+headers=$(sh tools/headers.sh | sed 's|^|runtime/|' | tr '\n' ' ')
 cat >"$out/Doxyfile" <<END
 PROJECT_NAME           = noh
 PROJECT_NUMBER         = ${VERSION:-}

@@ -34,6 +34,16 @@ function comment(text,   word) {
     print " * " escape(text)
 }
 BEGIN { first = 1 }
+# A heading of the header, with or without a text of its own, which belongs to the file.
+!inside && /^\/\* =+ .* =+ \*\/$/ { next }
+!inside && /^\/\* =+ .* =+$/ {
+    gsub(/^\/\* =+ | =+$/, "")
+    print "/** @file"
+    print " * @par " $0
+    first = under_title = in_block = 0
+    inside = 1
+    next
+}
 !inside && /^\/\*/ {
     print first ? "/** @file" : "/**"
     first = under_title = in_block = 0

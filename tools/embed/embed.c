@@ -2,7 +2,7 @@
  *
  *   embed -o OUT.c [-d DEPS.d] [-D NAME=VALUE]... FILE...
  *
- * Each FILE becomes a `noh_gl_source` (see gl_program.h) named after
+ * Each FILE becomes a `noh_gl_source` (see low_gl.h) named after
  * it: probe_store.frag gives noh_shader_probe_store_frag. Its #version line is kept apart, so that a program can put
  * its own lines right after it or ask for another version. #include "x" is replaced by that file, found beside the
  * including one, once per FILE, whatever #if stands around it; the #line numbers
@@ -33,7 +33,7 @@
 #define INCLUDES_MAX 64 /* files in one flattened source */
 #define DEPTH_MAX 16    /* #include nesting */
 #define DEFINES_MAX 256
-#define PIECES_MAX 56    /* keep in step with NOH_GL_PIECES_MAX in gl_program.h */
+#define PIECES_MAX 56    /* keep in step with NOH_GL_PIECES_MAX in low_gl.h */
 #define PIECE_CHARS 4000 /* C99 promises string literals of 4095 characters */
 
 typedef struct text {
@@ -593,7 +593,7 @@ static void write_preamble(job *work)
     if (length < 0 || (size_t)length >= sizeof guard) fail(out_h, 0, "the file's name is too long");
     for (char *p = guard; *p; p++) *p = isalnum((unsigned char)*p) ? (char)toupper((unsigned char)*p) : '_';
     appendf(&work->h, "/* Made by tools/embed. Do not edit. */\n#ifndef %s\n#define %s\n\n", guard, guard);
-    appendf(&work->h, "#include \"gl/device/gl_program.h\"\n\n");
+    appendf(&work->h, "#include \"noh/low_gl.h\"\n\n");
     appendf(&work->c, "/* Made by tools/embed. Do not edit. */\n#include \"%s\"\n", base);
     free(out_h);
 }

@@ -7,7 +7,7 @@
 #include <EGL/eglext.h>
 #include <GLES3/gl32.h>
 
-#include "noh_gl.h"
+#include "noh/gl_device.h"
 
 /* A noh_gl_get_proc. */
 static noh_gl_proc egl_context_get(void *user, const char *name)

@@ -9,7 +9,11 @@
 #include <EGL/egl.h>
 
 #include "egl_context.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define SIZE 512
 #define ALIGNED_16 __attribute__((aligned(16))) /* as every block for noh has to be */

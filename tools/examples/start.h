@@ -6,6 +6,9 @@
 #include <stdlib.h>
 
 #include "egl_context.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
 
 static int start_fail(const noh_gl *gl, const char *what, const noh_error *e)
 {

@@ -8,7 +8,7 @@
 
 #include <GLES3/gl32.h>
 
-#include "noh_gl.h"
+#include "noh/gl_device.h"
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION

@@ -2,7 +2,7 @@
 # install.sh lib|all|remove: what `make install-lib`, `make install` and `make uninstall` call, with BUILD, VERSION, CC,
 # PREFIX, BINDIR, LIBDIR, INCLUDEDIR, DATADIR and DESTDIR set.
 #
-#   lib     libnoh.a, the headers that noh.h and noh_gl.h reach, the GLSL for a game's own shaders, noh.pc, the CMake package
+#   lib     libnoh.a, the public headers, the GLSL for a game's own shaders, noh.pc, the CMake package
 #   all     that, and the programs noh and noh-embed (tools/embed), the man page and bash completion
 #   remove  what DATADIR/noh/installed.txt lists, and the folders that were made for it, where they are empty
 #
@@ -96,8 +96,8 @@ of_prefix() {
 }
 
 put 644 "$BUILD/libnoh.a" "$LIBDIR/libnoh.a"
-for header in $(sh tools/headers.sh noh.h noh_gl.h); do
-    put 644 "runtime/$header" "$INCLUDEDIR/noh/$header"
+for header in runtime/noh/*.h; do
+    put 644 "$header" "$INCLUDEDIR/noh/${header##*/}"
 done
 for shader in shaders_es/*.glsl; do
     put 644 "$shader" "$DATADIR/noh/shaders/${shader##*/}"

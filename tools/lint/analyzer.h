@@ -3,7 +3,7 @@
 #ifndef NOH_LINT_ANALYZER_H
 #define NOH_LINT_ANALYZER_H
 
-#include "core/base/result.h"
+#include "noh/base.h"
 
 #define noh_fail(error, result, what, where, need) ((void)(error), (void)(where), (void)(need), (result))
 

@@ -23,14 +23,15 @@ amalgam: $(AMALGAM)/noh.c
 $(AMALGAM)/noh.c: $(BUILD)/amalgamate $(RUNTIME_C) $(call sources,runtime,*.h) $(BUILD)/gen/shaders.gen.c
 	@mkdir -p $(@D)
 	$(call say,AMALG,$@)
-	$(Q)$(BUILD)/amalgamate -o $(@D) -I runtime -I $(BUILD)/gen $(RUNTIME_C:runtime/%=%) shaders.gen.c
+	@rm -rf $(@D)/noh && mkdir -p $(@D)/noh && cp runtime/noh/*.h $(@D)/noh
+	$(Q)$(BUILD)/amalgamate -o $(@D) -I runtime -I $(BUILD)/gen $(patsubst runtime/%,%,$(wildcard runtime/noh/*.h) $(RUNTIME_C)) shaders.gen.c
 $(BUILD)/amalgamate: tools/amalgam/amalgam.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
 	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
 $(AMALGAM)/noh.o: $(AMALGAM)/noh.c
 	$(call say,CC,$@)
-	$(Q)$(CC) $(ALL_CFLAGS) -c $< -o $@
+	$(Q)$(CC) $(ALL_CFLAGS) -I$(AMALGAM) -c $< -o $@
 $(AMALGAM)/%: $(BUILD)/tests/%.o $(filter-out %/libnoh.a,$(TEST_LIBS)) $(AMALGAM)/noh.o
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)

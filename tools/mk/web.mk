@@ -187,6 +187,6 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/core/base/version.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/noh/base.h \
     tools/web_convert/worker.js $(wildcard $(WEB_CONVERT)/convert.wasm)
 	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE tools/web_convert/worker.js $(WEB_CONVERT)

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/base/version.h"
+#include "noh/base.h"
 #include "help/help.h"
 #include "cli/json.h"
 #include "cli/message.h"

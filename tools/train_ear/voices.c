@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "life/face/recipe.h"
-#include "life/face/speech.h"
+#include "noh/face.h"
 
 enum { LINES_MAX = 512, LINE_BYTES = 1024, SHAPES_MAX = 512, ESPEAK_RATE = 22050 };
 

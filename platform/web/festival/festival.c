@@ -7,7 +7,13 @@
 #include "cli/message.h"
 #include "context.h"
 #include "crowd/place_scene.h"
-#include "stage/cast/view.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 static struct {
     gpu g;

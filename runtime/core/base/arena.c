@@ -3,6 +3,9 @@
  * the layout that it is the size of cannot disagree. A sum that would overflow stays at SIZE_MAX, which no block has.
  */
 #include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 
 static uintptr_t misalignment(const void *memory)
 {

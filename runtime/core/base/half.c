@@ -1,4 +1,5 @@
-#include "core/base/half.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/hash.h"
+#include "noh/low_core.h"
 
 #include "core/base/assert.h"
 

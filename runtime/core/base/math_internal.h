@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "core/base/compiler.h"
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 /* 16: gcc's word for half floats that are kept as they are, and floats, too. */
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 && !defined(NOH_ALLOW_X87)

@@ -1,10 +1,9 @@
-#include "core/base/quat.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
 
 /* Sums only, with the signs of b applied beforehand: where the processor has fused multiply-adds, gcc 12 makes them out
  * of alternating sums and differences of products, whatever -ffp-contract says. */

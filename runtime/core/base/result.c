@@ -1,4 +1,4 @@
-#include "core/base/result.h"
+#include "noh/base.h"
 
 const char *noh_result_text(noh_result result)
 {

@@ -45,6 +45,7 @@
 
 #include "core/base/math_internal.h"
 #include "core/base/processor_internal.h"
+#include "core/base/compiler.h"
 
 #if defined(NOH_SIMD_SCALAR)
 #elif defined(NOH_SSE2)

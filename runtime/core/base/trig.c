@@ -1,4 +1,5 @@
 #include "core/base/trig.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/version.h"
+#include "noh/base.h"
 
 #include "core/base/assert.h"
 

@@ -1,9 +1,13 @@
+#include "core/base/assert.h"
 #include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
 #include "core/base/name_internal.h"
-#include "core/base/hash.h"
 #include "core/base/math_internal.h"
 #include "core/base/octahedral_internal.h"
 

@@ -1,4 +1,7 @@
 #include "core/mesh/wrinkles.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 
 NOH_NEVER_INLINE noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset)
 {

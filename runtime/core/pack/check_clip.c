@@ -1,6 +1,9 @@
 /* check_clip.c: the checkers of skeletons and clips. The compressed clip inside a clip chunk is checked by
  * noh_clip_init when it is opened: its bytes alone say whether they are right. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 

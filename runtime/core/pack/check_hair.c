@@ -1,7 +1,8 @@
 /* check_hair.c: the checker of a haircut. */
 #include <stddef.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 

@@ -3,7 +3,9 @@
 
 #include <stddef.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* A chunk before this one. */
 static const void *chunk_at(const noh_pack *pack, uint32_t index)

@@ -6,7 +6,9 @@
 #ifndef NOH_PACK_CHECK_INTERNAL_H
 #define NOH_PACK_CHECK_INTERNAL_H
 
-#include "core/pack/pack.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 typedef struct noh_check {
     const noh_pack *pack; /* what the chunks before this one hold */

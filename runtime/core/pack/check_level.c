@@ -1,5 +1,7 @@
 /* check_level.c: the checker of a mesh's LOD levels, and of its texel references. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <stddef.h>
 #include <string.h>

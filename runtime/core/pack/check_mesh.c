@@ -1,5 +1,7 @@
 /* check_mesh.c: everything that later code trusts about a mesh chunk. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <stddef.h>
 

@@ -2,6 +2,8 @@
  * submeshes, rectangles and texel references. check_mesh.c, check_level.c and check_skin.c call these functions, never
  * the other way round. `h` is always the header of the level that is checked. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <stddef.h>
 

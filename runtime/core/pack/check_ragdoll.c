@@ -1,7 +1,8 @@
 /* check_ragdoll.c: the checker of a ragdoll's table. */
 #include <stddef.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "core/pack/check_internal.h"
 
 #define HALF_TURN 3.1415927f

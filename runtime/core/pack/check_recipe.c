@@ -1,7 +1,8 @@
 /* check_recipe.c: the checker of a face's recipe. */
 #include <stddef.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "core/pack/check_internal.h"
 
 static noh_result check_row(const noh_check *check, const noh_recipe_row *row, uint64_t at)

@@ -1,5 +1,8 @@
 /* check_scene.c: the checkers of textures, materials and nodes. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 

@@ -1,5 +1,8 @@
 /* check_skin.c: the checkers of skins, and of what a skinned mesh says of its vertices. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 

@@ -2,6 +2,9 @@
 #include <stddef.h>
 
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* What the rows of a chunk are checked against. */
 typedef struct springs_check {

@@ -2,6 +2,8 @@
 #include <stddef.h>
 
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #define FAR 1e6f
 

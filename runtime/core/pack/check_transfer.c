@@ -1,5 +1,8 @@
 /* check_transfer.c: the checker of transfers. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 

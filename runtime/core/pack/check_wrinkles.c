@@ -1,5 +1,8 @@
 /* check_wrinkles.c: the checker of what wrinkles regions. */
 #include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 

@@ -1,10 +1,11 @@
 /* etc2.c: decoding ETC2 and EAC. A block is read as two words, the most significant byte first; texel x, y of it has
  * the number 4 x + y. */
-#include "core/pack/etc2.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/half.h"
 
 /* The words of a block of colours. */
 typedef struct words {

@@ -1,10 +1,12 @@
-#include "core/pack/pack.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 #include <string.h>
 
-#include "core/base/arena.h"
-#include "core/base/hash.h"
 #include "core/pack/check_internal.h"
 
 /* Chunks come in this order, so that no chunk refers to a later one. */

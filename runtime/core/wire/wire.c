@@ -1,10 +1,12 @@
 /* wire.c: takes a file in pieces, collects it by blocks, and hands them to the filters once their checksum is right. */
-#include "core/wire/wire.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
-#include "core/base/hash.h"
 #include "core/wire/wire_internal.h"
 
 typedef enum wire_phase { WIRE_HEAD, WIRE_BLOCK, WIRE_PAYLOAD, WIRE_WHOLE, WIRE_FAILED } wire_phase;

@@ -8,8 +8,10 @@
 
 #include <string.h>
 
-#include "core/pack/etc2.h"
-#include "core/pack/pack.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #define ITEM_BLOCKS 16u
 

@@ -4,6 +4,7 @@
 #define NOH_WIRE_BLOCKS_INTERNAL_H
 
 #include "core/wire/wire_internal.h"
+#include "noh/base.h"
 
 /* ---- models, by number of contexts ---- */
 

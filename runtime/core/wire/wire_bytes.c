@@ -1,5 +1,6 @@
 /* wire_bytes.c: bytes as they come, and textures. */
 #include "core/wire/wire_internal.h"
+#include "noh/base.h"
 
 #include <string.h>
 

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #define KINDS 3u /* positions, normals, tangents */
 #define CODED 1u /* of a slot above its number: so much of it is there */

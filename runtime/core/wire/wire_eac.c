@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-#include "core/pack/etc2.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 /* Steps in rising order, as their selectors are. */
 static const uint8_t rising[8] = { 3, 2, 1, 0, 4, 5, 6, 7 };

@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-#include "core/pack/etc2.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 /* How a unit is told. Of modes with holes one texel or more may be transparent. */
 enum {

@@ -1,5 +1,7 @@
 /* wire_filter.c: what filters have in common: the mesh that they are about, and which of them runs. */
 #include "core/wire/wire_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <string.h>
 

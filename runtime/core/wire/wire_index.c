@@ -6,6 +6,8 @@
  * source  Gumhold, Strasser: Real time compression of triangle mesh connectivity, 1998; Touma, Gotsman: Triangle mesh
  *         compression, 1998 */
 #include "core/wire/wire_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <string.h>
 

@@ -8,7 +8,8 @@
 #ifndef NOH_WIRE_INTERNAL_H
 #define NOH_WIRE_INTERNAL_H
 
-#include "core/pack/format.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,6 +3,8 @@
  * A joint is told as one of those of the vertices near by; its weight is predicted from the weights that it has there.
  */
 #include "core/wire/wire_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 #include <string.h>
 

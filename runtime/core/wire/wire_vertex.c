@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 /* ---- positions ---- */
 

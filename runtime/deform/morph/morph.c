@@ -1,6 +1,13 @@
 /* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Every product and every sum is made in
  * the order of the shaders, so equal inputs give equal bits. */
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
 #include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -4,7 +4,12 @@
 #ifndef NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 #define NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
 #include "deform/morph/morph.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 #include "deform/morph/morph_kernel_internal.h"
 
 static inline morph_field noh_make_field(unsigned before, unsigned bits, float weight)

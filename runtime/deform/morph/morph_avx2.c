@@ -1,6 +1,8 @@
 /* morph_avx2.c: noh_morph_accumulate with AVX2, for compilers that can target single functions. noh_morph_kernel_find
  * queries the processor before it is called. */
 #include "deform/morph/morph_accumulate_internal.h"
+#include "noh/pack.h"
+#include "noh/deform.h"
 
 #ifdef NOH_AVX2_AT_RUN_TIME
 

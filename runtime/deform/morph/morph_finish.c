@@ -8,6 +8,11 @@
 #include <string.h>
 
 #include "core/base/octahedral_internal.h"
+#include "core/base/assert.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/low_core.h"
+#include "noh/deform.h"
 
 uint32_t noh_morph_finished_stride(const noh_mesh *mesh)
 {

@@ -4,7 +4,8 @@
 
 #include "core/base/simd_internal.h"
 #include "core/base/processor_internal.h"
-#include "deform/morph/morph_finish.h"
+#include "noh/deform.h"
+#include "noh/pack.h"
 
 /* Added to a number below 2^22 it leaves the nearest integer, of two the even one, in the lowest bits. */
 #define NOH_ROUNDER 12582912.0f

@@ -7,6 +7,13 @@
 #include <string.h>
 
 #include "deform/morph/morph_finish_internal.h"
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/low_core.h"
+#include "noh/deform.h"
 
 #ifndef LANES
 #define LANES(name) lanes_##name

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
+#include "core/base/compiler.h"
 
 /* Where a field lies in a word, and the weight of one unit of it. The left shift drops the bits above the field, the
  * arithmetic right shift those below it, and extends the sign. */

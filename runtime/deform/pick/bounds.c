@@ -1,4 +1,8 @@
+#include "core/base/assert.h"
 #include "deform/pick/bounds.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

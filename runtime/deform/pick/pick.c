@@ -1,12 +1,16 @@
-#include "deform/pick/pick.h"
+#include "core/base/assert.h"
+#include "deform/morph/morph.h"
+#include "deform/pick/bounds.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/math_internal.h"
-#include "deform/pick/bounds.h"
 #include "deform/pick/pick_internal.h"
-#include "deform/skin/skin.h"
 #include "deform/skin/skin_blend_internal.h"
 
 #define EDGE 1e-6f /* tolerance beyond a triangle's edge, so that rays do not slip between two */

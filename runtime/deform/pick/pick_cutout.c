@@ -1,7 +1,10 @@
 /* pick_cutout.c: visibility of a surface by its alpha, from the pack's own texels. */
 #include "deform/pick/pick_internal.h"
 
-#include "core/pack/etc2.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #define CLEAR (0.5f / 255.0f) /* a lower alpha is written as 0 */
 #define FAR_AWAY 1e6f         /* larger texture coordinates have no useful fraction */

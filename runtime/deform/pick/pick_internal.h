@@ -2,7 +2,8 @@
 #ifndef NOH_DEFORM_PICK_INTERNAL_H
 #define NOH_DEFORM_PICK_INTERNAL_H
 
-#include "core/mesh/mesh.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* Whether a point of a triangle is visible, by the rule of mesh.frag at the texture's first mip level.
  * vertices    its corners

@@ -1,9 +1,12 @@
-#include "deform/skin/dual_quaternion.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
 #include "deform/skin/skin_blend_internal.h"
 
 /* Axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the number of correct digits. */

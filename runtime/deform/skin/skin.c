@@ -1,8 +1,16 @@
+#include "core/base/assert.h"
+#include "core/mesh/mesh.h"
+#include "deform/morph/morph.h"
 #include "deform/skin/skin.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "motion/pose/local_to_model.h"
 #include "core/base/math_internal.h"
 #include "deform/skin/skin_blend_internal.h"
 #include "deform/skin/skin_kernel_internal.h"

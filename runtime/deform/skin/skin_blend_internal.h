@@ -2,7 +2,8 @@
 #ifndef NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 #define NOH_DEFORM_SKIN_BLEND_INTERNAL_H
 
-#include "deform/skin/dual_quaternion.h"
+#include "noh/deform.h"
+#include "noh/pack.h"
 
 /* c[3][3] rows: the cofactors of a matrix of 3 rows of 4, which turn normals as the matrix turns points, times its
  * determinant. Returns the determinant's sign: a mirror's cofactors point inward. */

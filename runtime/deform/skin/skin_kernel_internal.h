@@ -11,8 +11,11 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
-#include "deform/morph/morph.h"
-#include "deform/skin/skin.h"
+#include "core/base/compiler.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* The arguments of a call. `joints`, filled for meshes of one palette, gives the matrix of a place in it directly. */
 typedef struct skin_job {

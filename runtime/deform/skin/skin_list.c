@@ -1,4 +1,7 @@
-#include "deform/skin/skin_list.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -4,7 +4,10 @@
  * missing. Those beyond ES 3.0 depend on the context: eglGetProcAddress and its like return a pointer for a name that
  * the context does not support, so the version and the extension strings decide, and they also decide the suffix under
  * which a function is found. The table is built apart and copied once nothing can fail any more. */
+#include "core/base/assert.h"
 #include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"
 
 #include <string.h>

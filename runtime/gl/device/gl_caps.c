@@ -3,14 +3,16 @@
  * Each ability is tried in the way that the library uses it: known floats are drawn into the three layers of an array
  * texture and read back. A driver may claim a format and then clamp, round or drop what is written to it; only the
  * values tell. Layers get different values, so that one that was mixed up or left out shows. */
-#include "gl/device/gl_caps.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
 
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
 #include "gl/device/gl_state_internal.h"
-#include "gl/device/gl_program.h"
-#include "gl/device/gl_quirks.h"
 #include "shaders.gen.h"
 
 #define TEXELS 16

@@ -1,5 +1,8 @@
 /* gl_debug.c: labels and groups of KHR_debug. */
-#include "gl/device/gl_debug.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 #include "gl/device/gl_names_internal.h"
 
 #define GROUP_ID 0x6e6f68u /* "noh": distinguishes the library's groups from the application's */

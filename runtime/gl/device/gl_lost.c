@@ -1,5 +1,5 @@
 /* gl_lost.c: a table for objects whose context is gone. Their names mean nothing any more, or name other objects. */
-#include "gl/device/gl_lost.h"
+#include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"
 
 static void GL_APIENTRY ignore_names(GLsizei count, const GLuint *names)

@@ -3,7 +3,12 @@
  * A texture counts its texels in every mip level, each level half as wide and high as the one before, rounded down but
  * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel; where it is compressed, blocks in
  * place of texels. A renderbuffer counts its samples. */
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
 #include "gl/device/gl_memory.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 #include "gl/device/gl_names_internal.h"
 
 #define SIDE_MAX 65536u

@@ -1,4 +1,5 @@
-#include "gl/device/gl_open.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
 
 #include <string.h>
 

@@ -1,8 +1,11 @@
 /* gl_program.c: compiling and linking. Pending GL errors are cleared first and taken last, so that a call that the
  * driver refused is never taken for a program that works. */
-#include "gl/device/gl_program.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 
-#include "gl/device/gl_debug.h"
 #include "gl/device/gl_names_internal.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* gl_shader_text.c: GLSL files by name. tools/embed made the strings. */
-#include "gl/device/gl_shader_text.h"
+#include "noh/gl_device.h"
 
 #include <stddef.h>
 

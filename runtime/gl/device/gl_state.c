@@ -1,7 +1,9 @@
 /* gl_state.c: the GL state that noh changes, kept and put back.
  *
  * Draws keep the parts that they change, when they first change them: an opaque pass asks GL five questions. */
-#include "gl/device/gl_state.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "noh/gl_device.h"
 
 #include <string.h>
 

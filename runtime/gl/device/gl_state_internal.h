@@ -1,9 +1,10 @@
-/* gl_state_internal.h (private): how the library keeps the state of gl_state.h. */
+/* gl_state_internal.h (private): how the library keeps the state of gl_device.h. */
 #ifndef NOH_GL_GL_STATE_INTERNAL_H
 #define NOH_GL_GL_STATE_INTERNAL_H
 
 #include "gl/device/gl_names_internal.h"
-#include "gl/device/gl_state.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
 
 enum {
     NOH_KEEP_TESTS = 1,      /* depth test, culling, primitive restart; the depth function */
@@ -20,7 +21,7 @@ void noh_gl_raster_keep(const noh_gl_api *gl, noh_gl_raster *raster, uint32_t pa
 /* Set what is kept. */
 void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *raster);
 
-/* Test depth by the caller's function, or what that stands for (gl_state.h). Keeps NOH_KEEP_TESTS alone. */
+/* Test depth by the caller's function, or what that stands for (gl_device.h). Keeps NOH_KEEP_TESTS alone. */
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *raster);
 /* 1: the caller's depths fall with the distance. */
 int noh_gl_is_reversed(const noh_gl_raster *raster);

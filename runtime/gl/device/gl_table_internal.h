@@ -7,7 +7,8 @@
 #ifndef NOH_GL_GL_TABLE_INTERNAL_H
 #define NOH_GL_GL_TABLE_INTERNAL_H
 
-#include "gl/device/gl_memory.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"
 
 #define NOH_GL_TABLE_TEXELS_MAX (1u << 22)

@@ -1,7 +1,10 @@
 /* gl_timer.c: a ring of queries. `oldest` is the next to be read, the `flying` queries from there on are in flight, and
  * the one behind them is the next to begin. A clock that became disjoint makes all of them worthless. */
 #include "gl/device/gl_names_internal.h"
-#include "gl/device/gl_timer.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
 
 #include <string.h>
 

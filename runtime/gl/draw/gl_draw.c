@@ -6,11 +6,20 @@
  * Triangles are not sorted: their places are on the GPU alone. Where the texture of what blends is as good as opaque,
  * as along strands of hair, its core is drawn with the opaque surfaces and hides what is behind it, so only the fringe
  * around it, thin and mostly of one colour, is blended in stored order. */
+#include "core/base/assert.h"
 #include "gl/draw/gl_draw.h"
+#include "gl/draw/gl_light.h"
+#include "gl/draw/gl_skin.h"
+#include "gl/draw/gl_variants.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
 #include "gl/draw/gl_material_internal.h"
 #include "gl/device/gl_names_internal.h"
 #include "gl/draw/gl_skin_internal.h"

@@ -1,9 +1,15 @@
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
 #include "gl/draw/gl_light.h"
+#include "gl/light/reflection.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/light/sh_internal.h"
 

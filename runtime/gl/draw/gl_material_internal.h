@@ -2,7 +2,9 @@
 #ifndef NOH_GL_GL_MATERIAL_INTERNAL_H
 #define NOH_GL_GL_MATERIAL_INTERNAL_H
 
-#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* glTF's default material for a submesh without one. */
 const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh);

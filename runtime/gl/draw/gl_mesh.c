@@ -3,10 +3,17 @@
  * All LOD levels of a mesh share its buffers. The vertices of a coarser level are the first ones of the finer level,
  * and its indices follow the finer level's. A draw therefore chooses a level by an offset into the index buffer, and a
  * vertex keeps its number, which selects its accumulation texel, at every level. */
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
 #include "gl/draw/gl_draw.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
-#include "gl/device/gl_debug.h"
-#include "gl/device/gl_lost.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 

@@ -1,5 +1,5 @@
 /* gl_morph_vertices.c: the path cpu with finished vertices: what changed of an instance is accumulated, finished
- * (morph_finish.h) and written into vertex buffers that a mesh's vertex array points to in place of its own.
+ * (deform.h) and written into vertex buffers that a mesh's vertex array points to in place of its own.
  *
  * There is a ring of two or three buffers, each with a slot for every instance, so that the GPU may still draw from one
  * slot while the next is written. Each slot remembers the weights that it was written by: groups of texels that no
@@ -11,8 +11,17 @@
  * glBufferSubData takes its place, which the driver orders after the draws. */
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
-#include "gl/draw/gl_draw.h"
+#include "core/base/assert.h"
+#include "deform/morph/morph.h"
+#include "gl/device/gl_api.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 

@@ -2,10 +2,15 @@
  *
  * Blocks of ETC2 and EAC go to the GPU as they lie in the pack. A context that cannot read them is given texels, which
  * noh_gl_api.decode makes a strip of blocks at a time, in memory on the stack. */
-#include "gl/draw/gl_draw.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 
-#include "gl/device/gl_debug.h"
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
 
 #define STRIP_BLOCKS 16u

@@ -2,10 +2,18 @@
  * restore compiles the same list again. */
 #include <string.h>
 
-#include "core/base/arena.h"
-#include "gl/device/gl_debug.h"
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
+#include "gl/device/gl_api.h"
 #include "gl/draw/gl_draw.h"
-#include "gl/device/gl_lost.h"
+#include "gl/draw/gl_variants.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/draw/gl_material_internal.h"
 #include "gl/device/gl_names_internal.h"
 #include "gl/draw/gl_renderer_internal.h"

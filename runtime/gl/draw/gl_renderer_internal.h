@@ -3,7 +3,10 @@
 #ifndef NOH_GL_GL_RENDERER_INTERNAL_H
 #define NOH_GL_GL_RENDERER_INTERNAL_H
 
-#include "gl/draw/gl_draw.h"
+#include "noh/base.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 typedef struct noh_gl_variant_list {
     noh_gl_variant_key keys[NOH_GL_VARIANTS_MAX];

@@ -3,13 +3,20 @@
  * All palettes of all instances lie in one array of rows, in the layout of the GL object. Setting matrices writes to
  * this array, compares first, and widens one span of rows that differ from what was sent. An update sends the span in
  * one call: a few rows in between that did not change are cheaper to send than more calls. */
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
 #include "gl/draw/gl_skin.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "deform/skin/dual_quaternion.h"
-#include "gl/device/gl_debug.h"
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 

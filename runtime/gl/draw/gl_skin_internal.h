@@ -2,8 +2,11 @@
 #ifndef NOH_GL_GL_SKIN_INTERNAL_H
 #define NOH_GL_GL_SKIN_INTERNAL_H
 
-#include "core/base/arena.h"
-#include "gl/draw/gl_skin.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define NOH_CROWD_ROWS 4u            /* in front of an instance's palettes in a texture: see crowd_row */
 #define NOH_CROWD_REGIONS 4u         /* one more, of a mesh with wrinkle regions */

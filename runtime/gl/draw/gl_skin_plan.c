@@ -7,7 +7,15 @@
 #include <string.h>
 
 #include "gl/draw/gl_skin_internal.h"
-#include "core/mesh/wrinkles.h"
+#include "core/base/assert.h"
+#include "gl/draw/gl_skin.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 NOH_STATIC_ASSERT(NOH_PALETTE_JOINTS_MAX == 256u, palette_block_of_common_skin);
 

@@ -1,12 +1,20 @@
 /* gl_variants.c: from a mesh and its bindings to a key, from a key to its defines, from the defines to a program. */
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "gl/draw/gl_skin.h"
 #include "gl/draw/gl_variants.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 #include <string.h>
 
-#include "gl/draw/gl_draw.h"
 #include "gl/device/gl_names_internal.h"
-#include "gl/device/gl_program.h"
 #include "shaders.gen.h"
 
 /* The largest of 1, 2, 4, 8 that is at most `limit` and at most `stored`; limit 0: all that are stored. */
@@ -282,7 +290,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-/* List the attributes of vertex arrays: the game's own and those of meshes (gl_draw.h). Returns their number.
+/* List the attributes of vertex arrays: the game's own and those of meshes (low_gl.h). Returns their number.
  * Attributes that a mesh lacks are constants of the same kind. */
 #define INPUTS_MAX (15u + NOH_GL_OWN_INPUTS_MAX)
 static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,

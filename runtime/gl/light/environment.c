@@ -1,9 +1,10 @@
-#include "gl/light/environment.h"
+#include "noh/base.h"
+#include "noh/light.h"
+#include "noh/low_gl.h"
 
 #include <string.h>
 
 #include "core/base/assert.h"
-#include "core/base/limits.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 

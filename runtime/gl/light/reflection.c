@@ -1,8 +1,10 @@
 #include "gl/light/reflection.h"
+#include "noh/base.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
 

@@ -1,4 +1,5 @@
-#include "gl/light/sh.h"
+#include "noh/base.h"
+#include "noh/low_gl.h"
 
 #include <string.h>
 

@@ -2,7 +2,6 @@
 #ifndef NOH_LIGHT_SH_INTERNAL_H
 #define NOH_LIGHT_SH_INTERNAL_H
 
-#include "gl/light/sh.h"
 
 /* sqrt((2 l + 1) / (4 pi) (l - m)! / (l + m)!), times sqrt(2) for m > 0.
  * ranges  m at most l, l below NOH_SH_ORDER_MAX */

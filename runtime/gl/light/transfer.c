@@ -1,4 +1,10 @@
-#include "gl/light/transfer.h"
+#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -5,7 +5,8 @@
 #ifndef NOH_LIGHT_TRANSFER_INTERNAL_H
 #define NOH_LIGHT_TRANSFER_INTERNAL_H
 
-#include "core/mesh/mesh.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* A target's scale of occlusion over that of its positions; 0 for targets that move nothing, or next to nothing. */
 static inline float noh_transfer_ratio(const noh_mesh *mesh, uint32_t target)

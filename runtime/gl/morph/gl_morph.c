@@ -4,15 +4,22 @@
  * Nothing is accumulated when weights are set. An instance is marked as changed, and noh_gl_morph_update accumulates
  * all such instances together, so that a crowd costs a few draws. An instance that did not change keeps the sums of its
  * tile. */
+#include "core/base/assert.h"
+#include "deform/morph/morph.h"
+#include "gl/device/gl_api.h"
 #include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
-#include "gl/device/gl_lost.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
-#include "gl/device/gl_program.h"
 
 /* ---- making ---- */
 

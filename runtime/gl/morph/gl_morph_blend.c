@@ -13,7 +13,7 @@
  * sums over a flush.
  *
  * Why the bits equal the CPU's: blending happens in the order in which primitives are submitted (OpenGL ES 3.2, 2.1),
- * and they are submitted target by target in index order, as morph.h adds. Each sum therefore has the same terms in the
+ * and they are submitted target by target in index order, as deform.h adds. Each sum therefore has the same terms in the
  * same order, and the same bits wherever the blender adds in float32; sums begin at +0, and adding a zero of either
  * sign changes none of them.
  *
@@ -22,10 +22,15 @@
  * mesh. Here only deltas are summed, so a half-float accumulator never rounds the base. */
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
-#include "gl/device/gl_program.h"
 #include "shaders.gen.h"
 
 /* ---- making ---- */

@@ -3,6 +3,12 @@
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 static const noh_morph_path tried[] = { NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_CPU };
 #define TRIED (sizeof tried / sizeof tried[0])

@@ -12,7 +12,12 @@
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
-#include "gl/device/gl_quirks.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 #define QUAD_TEXELS 4.0f     /* a quad's vertices and setup */
 #define GATHER_SOFTWARE 0.9f /* of a texel that gather reads and adds, */

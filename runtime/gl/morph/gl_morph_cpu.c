@@ -1,10 +1,19 @@
-/* gl_morph_cpu.c: the path cpu. morph.h accumulates each changed instance, and the sums are uploaded to its
+/* gl_morph_cpu.c: the path cpu. deform.h accumulates each changed instance, and the sums are uploaded to its
  * tile. The texture is only fetched from, never rendered to, so three components are enough without occlusion. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
-#include "gl/light/transfer.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 /* Floats to halves in place. Half i ends at byte 2 i + 2, before float i + 1 begins, so no unread float is overwritten.
  */

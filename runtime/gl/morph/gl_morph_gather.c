@@ -12,7 +12,11 @@
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 #include "shaders.gen.h"
 
 #define LAST 0x80000000u /* in an entry's fourth word: the list ends here */

@@ -2,9 +2,14 @@
 #ifndef NOH_GL_GL_MORPH_INTERNAL_H
 #define NOH_GL_GL_MORPH_INTERNAL_H
 
-#include "core/base/arena.h"
-#include "deform/morph/morph_finish.h"
-#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_table_internal.h"
 

@@ -8,7 +8,17 @@
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
-#include "gl/device/gl_quirks.h"
+#include "core/base/assert.h"
+#include "deform/morph/morph.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",   "per-layer",
                                                               "gather", "cpu",     "blend", "streams" };

@@ -2,7 +2,12 @@
  * state around a draw. */
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
+#include "gl/device/gl_api.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 

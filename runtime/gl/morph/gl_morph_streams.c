@@ -6,7 +6,15 @@
  * Direct3D, 2009, chapter 8, binds four targets as whole meshes, with texture coordinates that nothing reads. */
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
+#include "core/base/assert.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 

@@ -14,6 +14,15 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/light/transfer_internal.h"
+#include "core/base/assert.h"
+#include "gl/device/gl_api.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* ---- counting ---- */
 

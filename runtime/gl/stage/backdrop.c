@@ -1,4 +1,9 @@
-#include "gl/stage/backdrop.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/light.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #include <string.h>
 

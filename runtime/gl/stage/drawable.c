@@ -3,8 +3,12 @@
 
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
-#include "gl/device/gl_shader_text.h"
+#include "core/base/assert.h"
+#include "gl/draw/gl_light.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 

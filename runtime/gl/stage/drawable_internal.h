@@ -3,8 +3,10 @@
 #ifndef NOH_STAGE_GL_DRAWABLE_INTERNAL_H
 #define NOH_STAGE_GL_DRAWABLE_INTERNAL_H
 
-#include "gl/device/gl_program.h"
-#include "gl/stage/stage_gl.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 enum { NOH_DRAWABLE_COLOR, NOH_DRAWABLE_DEPTH }; /* noh_gl_drawable.programs */
 

@@ -1,4 +1,10 @@
+#include "core/base/assert.h"
 #include "gl/stage/stage_blob.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #include <string.h>
 

@@ -1,4 +1,8 @@
-#include "gl/stage/stage_floor.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"

@@ -1,11 +1,20 @@
 /* stage_gl.c: a stage's objects on the GPU: measured, made, deleted, made again. */
 #include <string.h>
 
-#include "stage/character/skin_palette.h"
-#include "gl/device/gl_lost.h"
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
+#include "gl/draw/gl_skin.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/draw/gl_renderer_internal.h"
-#include "core/mesh/wrinkles.h"
-#include "motion/pose/local_to_model.h"
 #include "gl/stage/stage_gl_internal.h"
 
 /* ---- what it takes ---- */

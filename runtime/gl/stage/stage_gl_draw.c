@@ -2,8 +2,17 @@
 #include <string.h>
 
 #include "stage/character/character_internal.h"
-#include "core/mesh/wrinkles.h"
-#include "motion/pose/local_to_model.h"
+#include "core/base/assert.h"
+#include "gl/draw/gl_draw.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
 
 typedef noh_gl_drawing drawing;

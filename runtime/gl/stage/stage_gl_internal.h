@@ -3,7 +3,13 @@
 #define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 
 #include "stage/cast/stage_internal.h"
-#include "gl/stage/stage_gl.h"
+#include "gl/draw/gl_skin.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define NOH_MODEL_POOLS_MAX 16u /* tiles of one mesh come in at most so many sizes */
 

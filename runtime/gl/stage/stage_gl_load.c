@@ -5,7 +5,14 @@
  * has tables of its own, and the accumulators change over to the fine ones once these are whole. */
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
+#include "gl/draw/gl_draw.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
 
 /* ---- room ---- */

@@ -1,6 +1,11 @@
 /* stage_gl_pictures.c: the textures of all kinds and of their texture sets. One of a pack is on the GPU once: the first
  * set that has it owns it, the others hold a copy of its name. */
 #include "gl/stage/stage_gl_internal.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/noh.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 
 /* A texture of a kind's mesh pack, in one of the kind's sets. */
 typedef struct site {

@@ -2,6 +2,14 @@
 #include <string.h>
 
 #include "gl/stage/stage_gl_internal.h"
+#include "core/base/assert.h"
+#include "gl/morph/gl_morph.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* ---- sites ---- */
 

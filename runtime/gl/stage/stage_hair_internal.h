@@ -3,7 +3,11 @@
 #define NOH_STAGE_GL_STAGE_HAIR_INTERNAL_H
 
 #include "gl/device/gl_names_internal.h"
-#include "gl/stage/stage_hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define NOH_HAIR_BODY_TEXELS 5u /* of a crowd: 3 rows of 4 from head space, first hair, fade, strips */
 

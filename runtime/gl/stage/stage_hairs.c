@@ -1,11 +1,16 @@
 /* stage_hairs.c: hair of a crowd drawn. */
-#include "gl/stage/stage_hairs.h"
+#include "core/base/assert.h"
+#include "life/hair/haircut.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
-#include "gl/draw/gl_light.h"
-#include "gl/device/gl_lost.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "gl/stage/stage_hair_internal.h"

@@ -1,8 +1,17 @@
+#include "core/base/assert.h"
 #include "gl/stage/stage_patch.h"
+#include "stage/actors/decal_grow.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_patch_internal.h"

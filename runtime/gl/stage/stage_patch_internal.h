@@ -4,7 +4,11 @@
 #define NOH_STAGE_GL_STAGE_PATCH_INTERNAL_H
 
 #include "gl/stage/stage_gl_internal.h"
-#include "gl/stage/stage_patch.h"
+#include "noh/base.h"
+#include "noh/low_gl.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 /* The marks of one mesh of the pack that show, the oldest first: marks[returned], places in the ring. */
 uint32_t noh_gl_decals_of(const noh_decals *ring, uint32_t mesh, uint8_t marks[NOH_DECALS_MAX]);

@@ -1,8 +1,14 @@
-#include "gl/stage/stage_terrain.h"
+#include "core/base/assert.h"
+#include "life/physics/terrain_lod.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #include <string.h>
 
-#include "gl/device/gl_debug.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_gl_internal.h"

@@ -1,6 +1,8 @@
 /* corrective.c: turns rows of a pack's recipe whose channel is '+' and a driver's name into terms and weights. The
  * row's weight is the peak; rows of one corrective are consecutive. */
-#include "life/face/corrective.h"
+#include "noh/base.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include "core/base/assert.h"
 #include "core/base/name_internal.h"

@@ -1,9 +1,9 @@
-#include "life/face/ear.h"
+#include "noh/base.h"
+#include "noh/face.h"
 
 #include <string.h>
 
 #include "core/base/assert.h"
-#include "core/base/result.h"
 #include "life/face/ear_internal.h"
 
 enum {

@@ -2,7 +2,7 @@
 #ifndef NOH_FACE_EAR_INTERNAL_H
 #define NOH_FACE_EAR_INTERNAL_H
 
-#include "life/face/ear.h"
+#include "noh/face.h"
 
 enum {
     EAR_RATE = 16000,

@@ -1,5 +1,6 @@
 /* ear_net.c: a network with one hidden layer, in integers, and its inputs. */
 #include "life/face/ear_internal.h"
+#include "noh/face.h"
 
 enum { ONE = 32768, OCTAVE = 256, LEVEL_MOST = 12 * OCTAVE };
 

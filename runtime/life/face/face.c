@@ -3,7 +3,10 @@
  * A step goes from one event to the next: a blink, a breath, the end of a latency or a saccade, a glance, a
  * microsaccade, the end of an emotion's hold. Between two events all motion is a function of the clock. So a face does
  * not depend on how time is split into steps. */
+#include "core/base/assert.h"
 #include "life/face/face.h"
+#include "noh/base.h"
+#include "noh/face.h"
 
 #include <string.h>
 

@@ -5,6 +5,8 @@
  * with another cause, a large eye movement or the end of a phrase, replaces the next spontaneous one, and the following
  * one stays due when it would have been: so the rate does not change. */
 #include "core/base/trig.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
 #include "life/face/face_internal.h"
 
 #define SIGMA 0.7f             /* standard deviation of the logarithm of intervals */

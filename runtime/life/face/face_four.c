@@ -9,9 +9,10 @@
 #include <string.h>
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
+#include "life/face/face.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
 #include "life/face/face_internal.h"
-#include "life/face/recipe.h"
 
 #define LID_TICKS 9000u   /* 0.15 s / 0.8 */
 #define FADE_TICKS 48000u /* 1 s */

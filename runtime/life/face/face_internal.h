@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-#include "life/face/face.h"
+#include "noh/face.h"
 
 #ifdef __cplusplus
 extern "C" {

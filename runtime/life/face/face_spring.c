@@ -4,6 +4,7 @@
  * the fastest way to a goal from rest without overshoot. As a function of the time since its start it can be evaluated
  * at any tick, however time is split into steps. */
 #include "core/base/trig.h"
+#include "noh/face.h"
 #include "life/face/face_internal.h"
 
 #define SETTLED 90.0f /* omega t beyond which noh_exp2 gives 0: the value is then exactly the goal */

@@ -1,5 +1,10 @@
 /* identity.c: groups and bounds identity targets, and draws people from them. */
 #include "life/face/identity.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

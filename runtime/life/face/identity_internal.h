@@ -6,8 +6,9 @@
 #ifndef NOH_FACE_IDENTITY_INTERNAL_H
 #define NOH_FACE_IDENTITY_INTERNAL_H
 
-#include "deform/morph/morph.h"
-#include "life/face/identity.h"
+#include "noh/deform.h"
+#include "noh/face.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {

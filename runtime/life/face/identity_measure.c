@@ -4,6 +4,13 @@
 
 #include "core/base/math_internal.h"
 #include "life/face/identity_internal.h"
+#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+#include "noh/low_core.h"
+#include "noh/deform.h"
+#include "noh/face.h"
 
 static uint32_t texel_count(const noh_identity_scratch *s)
 {

@@ -4,7 +4,7 @@
  * one or several characters: stress, length and other marks are skipped, an affricate is one shape, and a diphthong has
  * the shapes of its first and last vowel. */
 #include "core/base/assert.h"
-#include "life/face/speech.h"
+#include "noh/face.h"
 
 typedef struct entry {
     const char *phone;

@@ -1,5 +1,9 @@
 /* recipe.c: channels, and the targets that they move. */
 #include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

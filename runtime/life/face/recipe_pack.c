@@ -3,7 +3,10 @@
 
 #include "core/base/assert.h"
 #include "core/base/name_internal.h"
-#include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 static const char *const names[NOH_CHANNEL_COUNT] = {
     "blink-left",

@@ -3,7 +3,7 @@
  * Emotions are combinations of facial action units as in Ekman and Friesen's EMFACS: joy 6 and 12, sadness 1, 4 and 15,
  * surprise 1, 2, 5 and 26, fear 1, 2, 4, 5, 7, 20 and 26, anger 4, 5, 7 and 23, disgust 9, 15 and 16, contempt 12 and
  * 14 on one side. Mouth shapes are determined by jaw, rounding and whether the lips meet. */
-#include "life/face/recipe.h"
+#include "noh/face.h"
 
 /* Target names of ARKit's blend shapes. */
 static const noh_face_row arkit[] = {

@@ -1,7 +1,10 @@
 /* weight_rule.c: turns rows of a pack's recipe that limit targets into rules, and applies them. The channel of such a
  * row is `range-min` or `range-max`; '-' and the name of the opposite; or '=' and the name of its group's first
  * target. */
-#include "life/face/weight_rule.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include "core/base/assert.h"
 #include "core/base/name_internal.h"

@@ -1,9 +1,11 @@
-/* hair_internal.h (private to hair/): the layout of hair, and its step. Threads: as hair.h. */
+/* hair_internal.h (private to hair/): the layout of hair, and its step. Threads: as low_life.h. */
 #ifndef NOH_SIM_HAIR_INTERNAL_H
 #define NOH_SIM_HAIR_INTERNAL_H
 
 #include "core/base/assert.h"
-#include "life/hair/hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #define NOH_HAIR_STEP_SECONDS ((float)NOH_HAIR_STEP_TICKS / 48000.0f)
 

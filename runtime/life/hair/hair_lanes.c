@@ -1,7 +1,9 @@
 /* hair_lanes.c: a step of control hairs that follow their roots, and the result between two steps, for as many hairs as
  * there are lanes. Along a hair each point depends on the previous one; hairs are independent of each other. A lane
  * without work keeps its bits, so the width does not matter. */
-#include "life/hair/hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"

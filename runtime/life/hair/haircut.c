@@ -1,7 +1,12 @@
 #include "life/hair/haircut.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
 #include "life/physics/vector_internal.h"
 
 #define PIXELS_FULL 500.0f

@@ -8,6 +8,9 @@
 
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "noh/low_core.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #define SAME 1e-3f /* metres: edges within this of the farthest one along an axis also touch */
 

@@ -2,7 +2,7 @@
 #ifndef NOH_SIM_CONTACT_INTERNAL_H
 #define NOH_SIM_CONTACT_INTERNAL_H
 
-#include "life/physics/world.h"
+#include "noh/body.h"
 
 #define NOH_CONTACTS_MAX 24u /* per body and substep; the deepest are kept */
 

@@ -1,5 +1,6 @@
 /* motion.c: integrators and a distance constraint. */
-#include "life/physics/motion.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #include "core/base/assert.h"
 #include "life/physics/vector_internal.h"

@@ -1,10 +1,11 @@
 /* ragdoll_internal.h (private to physics/): the layout of a set of ragdolls, and the step of a group of lanes. Threads:
- * as ragdoll.h. */
+ * as low_life.h. */
 #ifndef NOH_SIM_RAGDOLL_INTERNAL_H
 #define NOH_SIM_RAGDOLL_INTERNAL_H
 
-#include "life/physics/motion.h"
-#include "life/physics/ragdoll.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #define NOH_RAGDOLL_LANES_MAX 8u
 #define NOH_RAGDOLL_LANE_FLOATS 52u                       /* per body in the shared memory, for each lane */

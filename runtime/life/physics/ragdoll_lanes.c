@@ -14,6 +14,11 @@
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "life/physics/motion.h"
+#include "life/physics/ragdoll.h"
+#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
 
 #define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin beyond their limits return */
 #define AT_ONCE 1e3f

@@ -1,8 +1,13 @@
 /* ragdoll_names.c: bodies of a ragdoll from the pack's table, or from the names of joints. */
 #include "core/base/name_internal.h"
 #include "core/base/trig.h"
-#include "motion/clip/pack_clip.h"
 #include "life/physics/ragdoll_rig.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 /* A hip is a thigh, and a shoulder an upper arm, if no joint below it is. */
 typedef enum part {

@@ -1,10 +1,14 @@
 /* ragdoll_pose.c: converts between poses of a skeleton and bodies of a ragdoll. */
 #include "life/physics/ragdoll_pose.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
 #include "life/physics/vector_internal.h"
 
 /* ---- joints ---- */

@@ -1,8 +1,16 @@
 /* ragdoll_rig.c: makes capsules, masses and joints of a ragdoll from a skeleton and its skin. */
+#include "core/base/trig.h"
+#include "life/physics/ragdoll.h"
 #include "life/physics/ragdoll_rig.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
 #include "life/physics/vector_internal.h"
 
 #define BINS 64u

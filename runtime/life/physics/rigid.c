@@ -1,8 +1,13 @@
 /* rigid.c: a free rigid body: exact flight, rotation by splitting, contacts by impulses. */
+#include "life/physics/motion.h"
 #include "life/physics/rigid.h"
+#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
 #include "life/physics/contact_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"

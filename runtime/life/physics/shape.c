@@ -1,5 +1,7 @@
 /* shape.c: boxes by separating axes, rays by slabs and quadratics. */
-#include "life/physics/shape.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include "life/physics/vector_internal.h"
 

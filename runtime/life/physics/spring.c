@@ -1,7 +1,9 @@
 /* spring.c: chains at rest, checks of chains from outside, and the ends of joints. spring_lanes.c moves them. */
 #include "life/physics/spring.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
 #include "life/physics/spring_internal.h"
 #include "life/physics/vector_internal.h"

@@ -1,9 +1,10 @@
-/* spring_internal.h (private to physics/): the layout of a spring, and its step. Threads: as spring.h. */
+/* spring_internal.h (private to physics/): the layout of a spring, and its step. Threads: as low_life.h. */
 #ifndef NOH_SIM_SPRING_INTERNAL_H
 #define NOH_SIM_SPRING_INTERNAL_H
 
 #include "core/base/assert.h"
-#include "life/physics/spring.h"
+#include "noh/base.h"
+#include "noh/low_life.h"
 
 /* The end of a joint. Positions are relative to the first joint in the last step, so that a character far from the
  * origin loses no digits. */

@@ -4,7 +4,9 @@
  * A finished lane keeps its bits, so chains of different lengths, times and colliders are stepped together in any
  * combination. Colliders that no joint of a group can reach are skipped: a joint's end is no farther from the chain's
  * start than the total length of the bones up to it. */
-#include "life/physics/spring.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include "core/base/assert.h"
 #include "core/base/compiler.h"

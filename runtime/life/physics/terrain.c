@@ -1,5 +1,8 @@
 /* terrain.c: a pack's terrain as a height field. */
-#include "life/physics/terrain.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -1,9 +1,11 @@
 /* terrain_lod.c: levels of a height field's blocks. */
 #include "life/physics/terrain_lod.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
 

@@ -1,21 +1,11 @@
-/* terrain_lod.h: a height field in square blocks, each drawn at the coarsest level that its screen error allows.
- *
- *   noh_terrain_lod_size, noh_terrain_lod_init   compute the error of each level of each block
- *   noh_terrain_lod_choose                       choose a level for each block, by its error in pixels
- *   noh_terrain_lod_block                        how to draw a block
- *
- * A block has NOH_TERRAIN_BLOCK cells per side; level k uses every 2^k-th height. Along an edge to a coarser block the
- * finer one uses only the coarser one's heights, so that there is no crack between any two levels. Cells are split from
- * the corner of the next row to the corner of the next column.
- * source   de Boer: Fast Terrain Rendering Using Geometrical MipMapping, 2000 (levels by the error of blocks)
- * Threads: pure functions of their arguments; a block of memory belongs to one thread at a time. */
+/* body.h: what the library keeps to itself of runtime/noh/body.h. */
 #ifndef NOH_SIM_TERRAIN_LOD_H
 #define NOH_SIM_TERRAIN_LOD_H
 
 #include <stddef.h>
 
-#include "core/base/result.h"
-#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,15 +13,6 @@ extern "C" {
 
 #define NOH_TERRAIN_BLOCK 32u
 #define NOH_TERRAIN_LEVELS 6u /* the last has one cell per block */
-
-typedef struct noh_terrain_lod {
-    noh_field field;       /* a view: heights are used in place */
-    uint32_t width, depth; /* blocks along x and z; the last ones may extend beyond the field */
-    float *errors;         /* [width * depth][NOH_TERRAIN_LEVELS] largest height error, in the field's unit */
-    uint16_t *bounds;      /* [width * depth][2] lowest and highest */
-    uint8_t *levels;       /* [width * depth] chosen levels */
-    uint8_t *seen;         /* [width * depth] 0: not visible */
-} noh_terrain_lod;
 
 /* Exact size in bytes: 30 per block, the first three arrays rounded up to 16. */
 size_t noh_terrain_lod_size(const noh_field *field);

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
+#include "core/base/compiler.h"
+#include "noh/low_core.h"
 
 static inline void noh_sub3(const float a[3], const float b[3], float out[3])
 {

@@ -1,5 +1,7 @@
 /* world.c: checks of a world, and its height field. */
-#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #include "core/base/assert.h"
 #include "life/physics/vector_internal.h"

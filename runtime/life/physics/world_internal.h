@@ -1,9 +1,9 @@
 /* world_internal.h (private to physics/): a world relative to a nearby origin, where floats have more digits. Threads:
- * as world.h. */
+ * as body.h. */
 #ifndef NOH_SIM_WORLD_INTERNAL_H
 #define NOH_SIM_WORLD_INTERNAL_H
 
-#include "life/physics/world.h"
+#include "noh/body.h"
 
 /* Get the distance of a plane from an origin, along its normal. */
 float noh_plane_distance(const noh_plane *plane, const float origin[3]);

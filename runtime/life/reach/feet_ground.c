@@ -1,6 +1,8 @@
 /* feet_ground.c: finds the ground straight below a point. */
 #include "core/base/assert.h"
-#include "life/reach/feet.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 #include "life/physics/vector_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };

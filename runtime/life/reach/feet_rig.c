@@ -1,6 +1,12 @@
 /* feet_rig.c: legs by joint names, soles by the skin of feet. */
 #include "core/base/assert.h"
-#include "life/reach/feet.h"
+#include "life/physics/ragdoll_rig.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 #include "life/reach/rig_internal.h"
 #include "life/physics/vector_internal.h"
 

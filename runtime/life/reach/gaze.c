@@ -1,10 +1,17 @@
 /* gaze.c: turns the head, with spine and neck, and eyes ahead of them. */
+#include "core/base/trig.h"
+#include "life/physics/ragdoll_rig.h"
 #include "life/reach/gaze.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include "core/base/assert.h"
 #include "core/base/name_internal.h"
-#include "core/base/trig.h"
-#include "motion/clip/pack_clip.h"
 #include "life/reach/rig_internal.h"
 
 #define EYES_ANGLE_MAX (35.0f * NOH_PI / 180.0f)

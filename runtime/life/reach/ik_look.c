@@ -1,7 +1,8 @@
 /* ik_look.c: a direction that turns towards a target within a cone. */
 #include "core/base/assert.h"
 #include "core/base/trig.h"
-#include "life/reach/ik.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
 #include "life/physics/vector_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };

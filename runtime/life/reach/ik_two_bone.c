@@ -1,7 +1,8 @@
 /* ik_two_bone.c: finds the position of the middle joint, then the rotations that bring it there. */
 #include "core/base/assert.h"
 #include "core/base/trig.h"
-#include "life/reach/ik.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
 #include "life/physics/vector_internal.h"
 
 /* Limbs shorter than this are points: nothing turns. */

@@ -1,9 +1,15 @@
 /* reach.c: arms by joint names, and their bends. */
+#include "core/base/trig.h"
+#include "life/physics/ragdoll_rig.h"
 #include "life/reach/reach.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
 
 #include "core/base/assert.h"
-#include "core/base/trig.h"
-#include "life/reach/ik.h"
 #include "life/reach/rig_internal.h"
 
 #define REACH_SECONDS 0.35f

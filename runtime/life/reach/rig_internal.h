@@ -3,7 +3,12 @@
 #ifndef NOH_SIM_RIG_INTERNAL_H
 #define NOH_SIM_RIG_INTERNAL_H
 
+#include "core/base/compiler.h"
 #include "life/physics/ragdoll_rig.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 #include "life/physics/vector_internal.h"
 
 NOH_UNUSED static inline int noh_rig_is_below(const noh_skeleton *k, uint32_t joint, uint32_t above)

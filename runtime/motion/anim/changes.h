@@ -1,47 +1,15 @@
-/* changes.h: immediate or scheduled changes of speed, weight, position, mode and priority blend.
- *
- * A controller holds a fixed table of 32-byte records. Times are exact ticks: the effect of a change at a tick does not
- * depend on how time is split into steps.
- *   WEIGHT, PRIORITY   follow the curve at every tick
- *   SPEED              follows the curve in NOH_CHANGE_SLICES equal slices of constant speed, each at its middle
- *                      value, so the distance travelled matches the curve
- *   POSITION           moves along the curve in the same slices and arrives exactly; this counts as play and fires
- *                      callback keys. With duration 0 it jumps and fires none
- *   MODE               switches at the start tick; its duration must be 0
- *
- * Threads: a table belongs to the thread of its controller. */
+/* clip.h: what the library keeps to itself of runtime/noh/clip.h. */
 #ifndef NOH_ANIM_CHANGES_H
 #define NOH_ANIM_CHANGES_H
 
-#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 #define NOH_CHANGE_SLICES 64
-
-typedef enum noh_change_kind {
-    NOH_CHANGE_SPEED = 0,
-    NOH_CHANGE_WEIGHT,
-    NOH_CHANGE_POSITION,
-    NOH_CHANGE_MODE,
-    NOH_CHANGE_PRIORITY
-} noh_change_kind;
-
-typedef enum noh_curve { NOH_CURVE_LINEAR = 0, NOH_CURVE_SMOOTHSTEP } noh_curve;
-
-typedef struct noh_change_desc {
-    noh_change_kind kind;
-    uint32_t track;          /* unused by PRIORITY */
-    uint32_t delay_ticks;    /* from now; default 0 */
-    uint32_t duration_ticks; /* default 0: immediate */
-    noh_curve curve;         /* default linear */
-    int32_t speed;           /* SPEED: final speed, 1/65,536; |speed| <= NOH_SPEED_MAX */
-    float weight;            /* WEIGHT: final weight, 0..NOH_WEIGHT_MAX; PRIORITY: 0..1 */
-    int64_t position_ticks;  /* POSITION: final position, unwrapped; |position| <= 2^44 */
-    noh_track_mode mode;     /* MODE */
-} noh_change_desc;
 
 typedef struct noh_change {
     int64_t start;    /* tick of the controller's clock */

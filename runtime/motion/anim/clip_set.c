@@ -1,4 +1,6 @@
 #include "motion/anim/clip_set_internal.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 
 const char *noh_clip_set_excess(const noh_clip_set *set)
 {

@@ -3,7 +3,7 @@
 #ifndef NOH_ANIM_CLIP_SET_INTERNAL_H
 #define NOH_ANIM_CLIP_SET_INTERNAL_H
 
-#include "motion/anim/clip_set.h"
+#include "noh/clip.h"
 
 /* Get a message if joints or floats exceed a limit, else NULL: products of either with a struct's size then fit in 32
  * bits. */

@@ -2,14 +2,22 @@
  *
  * A controller is one block: header, tracks, table of changes, then the inertial offsets if there is room for them.
  * Arrays are found by offset and clips by index in the set, so the block has no pointers and can be copied. */
+#include "core/base/assert.h"
+#include "motion/anim/changes.h"
 #include "motion/anim/controller.h"
+#include "motion/anim/events.h"
+#include "motion/anim/time.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
 #include "motion/pose/inertial_internal.h"
 #include "motion/anim/sync_internal.h"
-#include "core/base/arena.h"
 
 /* Whether a controller was made for a set like this one; for asserts. */
 #define IS_SET_OF(c, set) ((set) && (set)->clip_count == (c)->clip_count && (set)->joint_count == (c)->joint_count)

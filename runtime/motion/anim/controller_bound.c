@@ -1,8 +1,12 @@
-/* An upper bound on the events of a step: controller.h, noh_controller_events_max.
+/* An upper bound on the events of a step: clip.h, noh_controller_events_max.
  *
  * Per track: the farthest it can travel, and the number of stretches of one direction, since each change of direction
  * can pass the keys around it again. noh_events_max turns both into a number of keys. */
-#include "motion/anim/controller.h"
+#include "core/base/assert.h"
+#include "motion/anim/changes.h"
+#include "motion/anim/events.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 #include "motion/anim/sync_internal.h"
 
 /* Limits of a track's motion in a step. */

@@ -1,8 +1,13 @@
-/* Checking a controller's block: controller.h, noh_controller_check. */
+/* Checking a controller's block: clip.h, noh_controller_check. */
 #include <string.h>
 
-#include "motion/anim/controller.h"
 #include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "motion/anim/changes.h"
+#include "motion/anim/controller.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 /* Bounds that every step keeps. Positions beyond NOH_POSITION_MAX are rebased; the present speed of a synchronised
  * track is the mean speed of its group, in intervals per tick (at most 256), times its own interval (at most 2^28

@@ -4,15 +4,21 @@
  * high group's result covers the low one; additive tracks are added in index order; the remaining offset of an inertial
  * transition is added last, since it is the difference between two such results. A single track with full weight skips
  * the blend, which would not change it. */
+#include "core/base/assert.h"
+#include "motion/anim/controller.h"
 #include "motion/anim/controller_pose.h"
+#include "motion/anim/root_motion.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/anim/clip_set_internal.h"
 #include "motion/anim/clock_internal.h"
 #include "motion/pose/inertial_internal.h"
-#include "motion/anim/mask.h"
-#include "core/base/arena.h"
 
 /* ---- scratch ---- */
 

@@ -1,6 +1,9 @@
-#include "motion/anim/event_queue.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
-#include "core/base/arena.h"
 
 #define CAPACITY_MAX (1u << 24)
 

@@ -1,4 +1,8 @@
+#include "core/base/assert.h"
 #include "motion/anim/events.h"
+#include "motion/anim/time.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 
 /* The whole ticks of a passage, both ends included. Occurrences lie on whole ticks, so this is enough; the open end is
  * resolved here, once. */

@@ -19,7 +19,7 @@
 #ifndef NOH_ANIM_EVENTS_H
 #define NOH_ANIM_EVENTS_H
 
-#include "motion/anim/clip_set.h"
+#include "noh/clip.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,4 +1,6 @@
-#include "motion/anim/mask.h"
+#include "core/base/assert.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 

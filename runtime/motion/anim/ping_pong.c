@@ -1,4 +1,4 @@
-#include "motion/anim/ping_pong.h"
+#include "noh/clip.h"
 
 float noh_ramp(int64_t ticks, int64_t duration)
 {

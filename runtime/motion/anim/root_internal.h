@@ -2,7 +2,7 @@
 #ifndef NOH_ANIM_ROOT_INTERNAL_H
 #define NOH_ANIM_ROOT_INTERNAL_H
 
-#include "motion/anim/root_motion.h"
+#include "noh/clip.h"
 
 /* Move a place by a displacement in its own space, in double precision: floats lose a step of 2 cm at 10^6 units, and
  * the turns of a day add up to a tenth of a degree. rotation: x, y, z, w, unit within a float's rounding on input,

@@ -1,10 +1,15 @@
+#include "core/base/assert.h"
+#include "core/base/trig.h"
 #include "motion/anim/root_motion.h"
+#include "motion/anim/time.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/anim/root_internal.h"
-#include "core/base/quat.h"
-#include "core/base/trig.h"
 
 /* The axes across the up axis, in the order that makes turns counter-clockwise. */
 static void ground_axes(uint32_t up, uint32_t *a, uint32_t *b)
@@ -286,7 +291,7 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
     if (passes == 0) {
         return noh_root_compose(up, &back, &b);
     }
-    /* inverse(E(a)) E(0) L^n inverse(E(0)) E(b): the formula of root_motion.h, with E(end) = E(0) L */
+    /* inverse(E(a)) E(0) L^n inverse(E(0)) E(b): the formula of low_motion.h, with E(end) = E(0) L */
     step = noh_root_power(up, &track->loop, passes);
     start_back = noh_root_inverse(up, &track->start);
     back = noh_root_compose(up, &back, &track->start);

@@ -1,4 +1,10 @@
 #include "motion/anim/sync_internal.h"
+#include "core/base/assert.h"
+#include "motion/anim/time.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 /* ---- phases ---- */
 

@@ -9,11 +9,11 @@
  * speeds are constant, so events stay exact and independent of the step size; if a marker is passed in between, a
  * follower is off by less than those 10 milliseconds.
  *
- * Threads: as tracks.h. */
+ * Threads: as low_motion.h. */
 #ifndef NOH_ANIM_SYNC_INTERNAL_H
 #define NOH_ANIM_SYNC_INTERNAL_H
 
-#include "motion/anim/tracks.h"
+#include "noh/clip.h"
 
 #define NOH_SYNC_TICKS 480 /* 10 ms */
 

@@ -1,4 +1,6 @@
 #include "motion/anim/time.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define POSITION_TICKS_MAX (INT64_MAX / 65536)
 #define SMALL ((int64_t)1 << 30)

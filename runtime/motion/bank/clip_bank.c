@@ -1,12 +1,19 @@
+#include "core/base/assert.h"
+#include "motion/anim/root_motion.h"
 #include "motion/bank/clip_bank.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
 #include "motion/bank/clip_bank_bind_internal.h"
 #include "motion/bank/clip_bank_internal.h"
-#include "core/base/arena.h"
-#include "core/base/hash.h"
-#include "core/mesh/mesh.h"
 
 typedef struct noh_bank_clip bank_clip;
 

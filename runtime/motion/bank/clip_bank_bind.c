@@ -2,7 +2,11 @@
 
 #include <string.h>
 
-#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_error *error)
 {

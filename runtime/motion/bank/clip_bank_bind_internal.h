@@ -3,7 +3,11 @@
 #ifndef NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_BIND_INTERNAL_H
 
-#include "motion/bank/clip_bank.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 #include "motion/clip/clip_internal.h"
 
 typedef struct noh_bank_binding {

@@ -2,7 +2,7 @@
 #ifndef NOH_BANK_CLIP_BANK_INTERNAL_H
 #define NOH_BANK_CLIP_BANK_INTERNAL_H
 
-#include "motion/bank/clip_bank.h"
+#include "noh/clip.h"
 
 /* A run of a clip's floats, and its place among the bank's. */
 typedef struct noh_bank_floats {

@@ -5,7 +5,12 @@
  * run of frames, and all segments with those frames are requested. Three pieces are enough: the rest of this leg and
  * one whole leg cover the whole clip, and anything later needs no other segment. */
 #include "motion/clip/clip_internal.h"
-#include "motion/bank/clip_bank.h"
+#include "core/base/assert.h"
+#include "motion/anim/time.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define LEGS_MAX 3
 

@@ -2,7 +2,11 @@
 #include <string.h>
 
 #include "motion/bank/clip_bank_internal.h"
-#include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 /* Complete a sample: a clip without joints gives the bind pose, floats that it does not move get their defaults, and
  * the others are copied to their places in the bank. */

@@ -80,7 +80,7 @@ static inline uint32_t noh_bits_get(noh_bits *b, uint32_t width)
     return noh_bits_take(b, width);
 }
 
-/* Read a varint (clip_format.h). */
+/* Read a varint (low_motion.h). */
 static inline uint32_t noh_bits_varint(noh_bits *b)
 {
     uint32_t v = 0;

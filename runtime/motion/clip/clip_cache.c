@@ -1,9 +1,14 @@
+#include "core/base/assert.h"
 #include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/clip/clip_cache_internal.h"
-#include "core/base/arena.h"
 
 typedef noh_cached_segment cached;
 

@@ -2,7 +2,9 @@
 #ifndef NOH_CLIP_CLIP_CACHE_INTERNAL_H
 #define NOH_CLIP_CLIP_CACHE_INTERNAL_H
 
-#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 #include "motion/clip/clip_decode_internal.h"
 #include "motion/clip/clip_sample_internal.h"
 

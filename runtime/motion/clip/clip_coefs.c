@@ -1,4 +1,6 @@
 #include "motion/clip/clip_coefs_internal.h"
+#include "core/base/compiler.h"
+#include "noh/low_motion.h"
 
 /* Most coefficients of a track are 0, 1 or -1, and the larger ones are at low frequencies; the neighbours just above in
  * frequency predict the magnitude well. So the three components of one frequency are one symbol, from a table selected

@@ -3,7 +3,7 @@
  * Frequencies run from high to low. A triple (the same frequency of three components) is one symbol, made of its
  * components' quotients, 0..3 each, from the table of context
  *   bit c: e_c >= NOH_CLIP_BUSY, e_c = sum of component c's last three magnitudes;
- * the first triple has its own table. Exception: a low part (clip_format.h) with all its frequencies most likely
+ * the first triple has its own table. Exception: a low part (low_motion.h) with all its frequencies most likely
  * continues above, so its first triple is coded as if it followed a triple with NOH_CLIP_LOW_NEIGHBOUR in each
  * component. After the symbol, in the order of the components: for each quotient of 3 an Exp-Golomb number, which is
  * added to it; s_c low bits of each magnitude, s_c = bit length of e_c / 2; and a sign for each magnitude that is not
@@ -13,7 +13,7 @@
 #define NOH_CLIP_CLIP_COEFS_INTERNAL_H
 
 #include "motion/clip/clip_bits_internal.h"
-#include "motion/clip/clip_format.h"
+#include "noh/low_motion.h"
 #include "core/base/compiler.h"
 
 #define NOH_CLIP_BUSY 2u         /* where noh_clip_shift is not 0 */

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "motion/clip/clip_coefs_internal.h"
+#include "core/base/assert.h"
+#include "noh/low_motion.h"
 
 #define ROTATION_NARROW 8u
 #define ROTATION_WIDE 16u

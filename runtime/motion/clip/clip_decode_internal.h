@@ -7,6 +7,7 @@
 
 #include "motion/clip/clip_internal.h"
 #include "motion/clip/clip_synth_internal.h"
+#include "noh/low_motion.h"
 
 #define NOH_CLIP_CLASSES 2u /* linear tracks and rotations have separate contexts */
 

@@ -3,7 +3,8 @@
 #define NOH_CLIP_CLIP_INTERNAL_H
 
 #include "motion/clip/clip_bits_internal.h"
-#include "motion/clip/clip_codec.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 typedef enum noh_clip_kind { NOH_CLIP_FLOATS, NOH_CLIP_TRANSLATION, NOH_CLIP_SCALE, NOH_CLIP_ROTATION } noh_clip_kind;
 

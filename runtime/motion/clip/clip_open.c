@@ -6,7 +6,12 @@
  * of segments need no check, because any bits decode to some frames, in bounds (clip_decode_internal.h). */
 #include <string.h>
 
-#include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "motion/clip/clip_internal.h"
 #include "motion/clip/clip_synth_internal.h"
 

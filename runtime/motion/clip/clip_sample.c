@@ -3,6 +3,10 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
+#include "core/base/assert.h"
+#include "core/base/compiler.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 /* Kernels in which a flag is a constant, or whose vectors must stay in registers. */
 #define NOH_CLIP_INLINE NOH_ALWAYS_INLINE

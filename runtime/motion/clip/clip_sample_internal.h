@@ -3,6 +3,8 @@
 #define NOH_CLIP_CLIP_SAMPLE_INTERNAL_H
 
 #include "motion/clip/clip_internal.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 /* Blend frames a and b of the cache, which may be the same one.
  * shapes  out[joints], floats[float_count of the clip] (NULL: not wanted)

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
+#include "core/base/compiler.h"
+#include "noh/low_motion.h"
 
 #define QUAT_ONE 32767.0f
 #define HALF_ROOT 0.70710678f

@@ -14,7 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "motion/clip/clip_format.h"
 
 /* The orthonormal transform of one length, first halves of its rows: row k is even about the middle for even k, odd for
  * odd k. */
@@ -82,7 +81,7 @@ void noh_clip_basis_build(uint32_t frames, uint32_t parabola, float *rows);
 /* 2^(NOH_CLIP_STEP_TOP - id / 4); id below NOH_CLIP_STEP_IDS. */
 float noh_clip_step(uint32_t id);
 
-/* Expand codes[3] of `width` bits (clip_format.h) and the index of the omitted component to a unit quaternion. */
+/* Expand codes[3] of `width` bits (low_motion.h) and the index of the omitted component to a unit quaternion. */
 void noh_clip_quat_expand(const uint32_t codes[3], uint32_t left_out, uint32_t width, float q[4]);
 
 /* Normalise q; length 0 gives the identity. */

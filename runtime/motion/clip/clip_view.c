@@ -1,9 +1,14 @@
+#include "core/base/assert.h"
+#include "motion/clip/clip_cache.h"
 #include "motion/clip/clip_view.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/clip/clip_cache_internal.h"
-#include "core/base/arena.h"
 
 /* A segment of the view's own. It is kept from sample to sample, so a clip that plays without being requested is
  * decoded once per segment, not once per sample. */

@@ -1,4 +1,9 @@
-#include "motion/clip/pack_clip.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

@@ -1,4 +1,7 @@
-#include "motion/graph/blend_space.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 

@@ -1,11 +1,18 @@
 /* graph.c: the state of a graph: a controller with one track per clip, parameters, and the state of each machine. The
  * graph itself is constant and shared. A state holds no pointers, so it can be copied. */
+#include "core/base/assert.h"
+#include "motion/anim/controller.h"
+#include "motion/anim/tracks.h"
 #include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
 #include "motion/graph/graph_state_internal.h"
-#include "core/base/arena.h"
 
 /* ---- memory ---- */
 

@@ -1,34 +1,11 @@
-/* graph.h: an animation graph in a fixed array.
- *
- * Nodes are stored in post-order: each node directly follows the subtrees of its children; the last node produces the
- * pose. Evaluation runs in stored order, without recursion, with noh_graph_buffers pose buffers. Nodes of weight 0 are
- * not sampled.
- *
- *   CLIP      a clip: one track of the internal controller, which keeps time, events and sync groups
- *   BLEND     a * (1 - t) + b * t
- *   ADD       a + t * (b as a difference): b's clips are differences already (NOH_CLIP_ADDITIVE), or are taken against
- *             the bind pose, or against the first frame of a clip
- *   MASK      b over a where the mask allows, by t
- *   SPACE_1D, SPACE_2D   see blend_space.h
- *   MACHINE   one of the children at a time; transitions cross-fade, or switch immediately and let the difference decay
- *             (inertial_internal.h)
- *   SELECT    the child whose number a parameter holds; a change cross-fades, or switches by inertia
- *   ONE_SHOT  b plays once over a, where the mask allows, each time a parameter triggers it
- * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to
- * the other children of a node.
- *
- * An instance is one block without pointers: clone it with one memcpy. Weights and transitions are decided at the start
- * of a step; the controller runs the rest of the step, including events (controller.h).
- *
- * source  animation trees: Granberg 2009, chapter 16
- *
- * Threads: an instance and a scratch belong to one thread at a time; graph and set are read-only and shared. */
+/* low_motion.h: what the library keeps to itself of runtime/noh/low_motion.h. */
 #ifndef NOH_GRAPH_GRAPH_H
 #define NOH_GRAPH_GRAPH_H
 
-#include "motion/graph/blend_space.h"
-#include "motion/anim/controller_pose.h"
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -48,47 +25,6 @@ typedef enum noh_node_kind {
     NOH_NODE_ONE_SHOT
 } noh_node_kind;
 
-typedef struct noh_graph_node {
-    uint16_t kind;
-    uint16_t first_child, child_count; /* in the graph's children */
-    uint16_t param;   /* t, x, SELECT's number or ONE_SHOT's trigger; t and x may be NOH_GRAPH_NONE: `value` */
-    uint16_t param_y; /* SPACE_2D */
-    /* SPACE_1D: its thresholds, one per child; SPACE_2D: its space; MACHINE: its transitions; ADD: item_count 1: the
-     * clip of the set whose first frame is the reference, 0: the bind pose is the reference */
-    uint16_t first_item, item_count;
-    uint16_t mask; /* MASK, ONE_SHOT: 1 + index in the set's masks; ONE_SHOT also 0: everywhere */
-    /* CLIP: its number among the clips; MACHINE, SELECT, ONE_SHOT: its number among nodes of these kinds, in stored
-     * order */
-    uint16_t index;
-    uint8_t curve;           /* SELECT, ONE_SHOT: noh_curve of the fades */
-    uint8_t flags;           /* SELECT: NOH_TRANSITION_* */
-    float value;             /* constant t or x; ONE_SHOT: triggered by a parameter above this */
-    uint32_t fade_ticks;     /* SELECT: duration of a change; ONE_SHOT: of the fade-in. 0: immediate, never inertial */
-    uint32_t fade_out_ticks; /* ONE_SHOT */
-} noh_graph_node;
-
-typedef enum noh_condition {
-    NOH_WHEN_ABOVE = 0, /* param > threshold */
-    NOH_WHEN_BELOW,     /* param < threshold */
-    NOH_WHEN_TRIGGERED, /* param > threshold; taking the transition sets the parameter to 0 */
-    NOH_WHEN_ENDING     /* the state's first clip plays ONCE and ends within the transition's duration, or has ended */
-} noh_condition;
-
-#define NOH_TRANSITION_INERTIAL 1u /* switch immediately; the difference decays over the duration */
-#define NOH_TRANSITION_KEEP 2u     /* the state's clips continue where they stopped, instead of from the beginning */
-
-/* A transition of a MACHINE. They are tested in stored order, and the first whose condition holds is taken; none is
- * taken during a cross-fade. */
-typedef struct noh_graph_transition {
-    uint16_t from, to;  /* children of the machine; from NOH_GRAPH_NONE: any child but `to` */
-    uint16_t condition; /* noh_condition */
-    uint16_t param;     /* not used by ENDING */
-    float threshold;
-    uint32_t duration_ticks; /* 0: immediate, never inertial */
-    uint16_t curve;          /* noh_curve, of a cross-fade */
-    uint16_t flags;          /* NOH_TRANSITION_* */
-} noh_graph_transition;
-
 /* SELECT reads its parameter at the start of a step, rounded and clamped to 0..child_count - 1; when the node is
  * entered, without a fade. A change back to the child that it fades from reverses the fade; a change to a third child
  * waits for the end of the fade. A child starts from its beginning unless NOH_TRANSITION_KEEP is set.
@@ -100,20 +36,6 @@ typedef struct noh_graph_transition {
 
 NOH_STATIC_ASSERT(sizeof(noh_graph_node) == 32, graph_node_bytes);
 
-/* Shared by all instances; borrowed and constant. */
-typedef struct noh_graph {
-    uint32_t node_count, child_count, clip_count;
-    uint32_t machine_count; /* number of MACHINE, SELECT and ONE_SHOT nodes, each with a noh_machine */
-    uint32_t transition_count, threshold_count, space_count, param_count;
-    const noh_graph_node *nodes; /* [node_count] */
-    const uint16_t *children;    /* [child_count] indices of nodes */
-    const noh_track_desc *clips; /* [clip_count]; clip, position, speed, loop, sync group and PAUSED are used */
-    const noh_graph_transition *transitions; /* [transition_count] */
-    const float *thresholds;                 /* [threshold_count] */
-    const noh_blend_space_2d *spaces;        /* [space_count] */
-    const float *param_defaults;             /* [param_count]; NULL: all 0 */
-} noh_graph;
-
 /* The state of a MACHINE, SELECT or ONE_SHOT. */
 typedef struct noh_machine {
     uint16_t current, previous; /* previous: NOH_GRAPH_NONE when no transition runs */
@@ -123,58 +45,12 @@ typedef struct noh_machine {
     uint8_t reserved[2];
 } noh_machine;
 
-/* The head of an instance's block. */
-typedef struct noh_graph_state {
-    uint32_t bytes;
-    uint32_t node_count, param_count, machine_count; /* of its graph */
-    uint32_t params_offset, machines_offset, controller_offset;
-    uint32_t inertia_ticks; /* duration of the inertial transition that begins with the next pose; 0: none */
-} noh_graph_state;
-
-/* Check a graph once, before making instances.
- * errors  ARG a count or pointer, or a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX; DATA a node (where: its index); LIMIT
- *         more pose buffers than NOH_GRAPH_BUFFERS_MAX */
-noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error);
-
-/* Get the number of pose buffers that evaluating a checked graph needs. */
-uint32_t noh_graph_buffers(const noh_graph *graph);
-
 /* ---- instances ---- */
-
-/* Size and make an instance, aligned to NOH_MEMORY_ALIGN, with all clips at their starts and all machines in their
- * first states. The size is 0 for a graph that noh_graph_check rejects.
- * errors  as noh_graph_check; ARG memory NULL or misaligned, or the desc of a clip; MEMORY need: the bytes */
-size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set);
-noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
-                                noh_graph_state **state, noh_error *error);
-
-/* Get the internal controller, with one track per clip node. */
-noh_controller *noh_graph_controller(noh_graph_state *state);
-
-/* Set or get a parameter.
- * errors  ARG param, or a value that is not finite */
-noh_result noh_graph_set_param(noh_graph_state *state, uint32_t param, float value);
-float noh_graph_param(const noh_graph_state *state, uint32_t param);
-
-/* Get the state that a machine is in or fades to: for a MACHINE or SELECT the number of the child, for a ONE_SHOT 1
- * while it plays, until it fades out. `machine` is the node's `index`. */
-uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine);
-
-/* Take transitions, compute weights, advance time. The callback may set parameters; changes that it makes to the
- * internal tracks last until the next step.
- * returns  the number of events delivered */
-uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
-                        noh_event_fn fn, void *user);
 
 /* First half of a step, for callers that also play other controllers and want all keys in time order: take transitions
  * and compute the weights for the next `ticks`. Then call noh_controller_step on the internal controller for these
  * ticks in total, in as many pieces as you like. */
 void noh_graph_decide(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks);
-
-/* Take the root displacement since the last call, with the weights of joint 0: blends by their weights, MASK and
- * ONE_SHOT by their mask at joint 0. The additive input of ADD and clips that animate no joints do not count. Zero
- * without set->roots. All roots of a set must have the same up axis. */
-noh_root_pose noh_graph_root_motion(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set);
 
 /* Check a block from outside, such as a saved game, before any other call. A block that passes cannot make a call
  * overrun its memory, overflow or hang.
@@ -184,26 +60,6 @@ noh_result noh_graph_state_check(const void *memory, size_t bytes, const noh_gra
                                  noh_error *error);
 
 /* ---- poses ---- */
-
-/* Working memory for posing. It holds no state, so instances of a graph that are posed one after another share it. */
-typedef struct noh_graph_scratch {
-    noh_pose_scratch pose;
-    noh_transform *poses[NOH_GRAPH_BUFFERS_MAX];
-    float *float_poses[NOH_GRAPH_BUFFERS_MAX];
-} noh_graph_scratch;
-
-/* Size and make a scratch for a checked graph, aligned to NOH_MEMORY_ALIGN. The size is 0 for a set over NOH_JOINTS_MAX
- * or NOH_FLOATS_MAX.
- * errors  ARG the set is over a limit, or memory NULL or misaligned; MEMORY need: the bytes */
-size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
-noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
-                                  noh_graph_scratch *scratch, noh_error *error);
-
-/* Compute the present pose. This begins the inertial transitions of the last step; a step that is not posed before the
- * next one switches without inertia.
- * shapes  pose[joint_count], floats[float_count] of the set */
-void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
-                    noh_transform *pose, float *floats);
 
 /* Compute the pose `ago` ticks before now, assuming the present weights and speeds. Does not begin inertial
  * transitions: call noh_graph_pose first for that. */

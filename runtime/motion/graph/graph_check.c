@@ -3,7 +3,13 @@
 
 #include "core/base/math_internal.h"
 #include "motion/anim/clip_set_internal.h"
+#include "core/base/assert.h"
+#include "motion/anim/tracks.h"
 #include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 #include "motion/graph/graph_weights_internal.h"
 
 static int is_coordinate(float x)

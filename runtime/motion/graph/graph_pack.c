@@ -1,12 +1,20 @@
+#include "core/base/assert.h"
+#include "core/pack/pack.h"
+#include "motion/anim/tracks.h"
+#include "motion/graph/graph.h"
 #include "motion/graph/graph_pack.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include <stddef.h>
 #include <string.h>
 
 #include "motion/anim/clip_set_internal.h"
-#include "motion/anim/mask.h"
-#include "core/base/arena.h"
-#include "core/base/hash.h"
 #include "motion/graph/graph_weights_internal.h"
 
 /* The pack format uses the graph's numbers. */

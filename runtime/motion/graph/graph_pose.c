@@ -1,11 +1,17 @@
-/* The pose of a graph: graph.h, noh_graph_scratch_* and noh_graph_pose. */
+/* The pose of a graph: low_motion.h, noh_graph_scratch_* and noh_graph_pose. */
 #include <string.h>
 
+#include "core/base/assert.h"
+#include "motion/anim/controller_pose.h"
+#include "motion/anim/root_motion.h"
 #include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "motion/graph/graph_weights_internal.h"
 #include "motion/anim/clip_set_internal.h"
-#include "motion/anim/mask.h"
-#include "core/base/arena.h"
 
 #define NO_BUFFER 255u
 #define LACKS (NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)

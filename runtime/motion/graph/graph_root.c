@@ -1,7 +1,13 @@
 /* graph_root.c: the root displacement of a graph. */
 #include "motion/graph/graph_weights_internal.h"
 
-#include "motion/anim/mask.h"
+#include "core/base/assert.h"
+#include "motion/anim/root_motion.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 /* Find the nodes with a clip in the pose that animates joints. */
 static void find_movers(const noh_graph_view *v, const noh_clip_set *set, const noh_controller *c, const float *weights,

@@ -2,6 +2,12 @@
 #include "motion/graph/graph_state_internal.h"
 
 #include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "motion/anim/controller.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
 #include "core/base/math_internal.h"
 
 static const char *bad_head(const noh_graph_state *s, const noh_graph_state *made, size_t bytes)

@@ -3,6 +3,10 @@
 #define NOH_GRAPH_GRAPH_STATE_INTERNAL_H
 
 #include "motion/graph/graph_weights_internal.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
 
 float *noh_graph_state_params(noh_graph_state *state);
 noh_machine *noh_graph_state_machines(noh_graph_state *state);

@@ -1,5 +1,11 @@
 /* graph_step.c: changes over time: the states of machines, selects and one-shots, their fades, and the step. */
 #include "motion/graph/graph_state_internal.h"
+#include "core/base/assert.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 /* ---- state machines ---- */
 

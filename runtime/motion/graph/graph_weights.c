@@ -1,4 +1,10 @@
 #include "motion/graph/graph_weights_internal.h"
+#include "motion/anim/changes.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 

@@ -3,6 +3,8 @@
 #define NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
 
 #include "motion/graph/graph.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
 
 typedef struct noh_graph_view {
     const noh_graph *graph;

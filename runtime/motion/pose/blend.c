@@ -1,8 +1,10 @@
-#include "motion/pose/blend.h"
+#include "core/base/assert.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 
-#include "core/base/quat.h"
 
 static float masked(const uint8_t *mask, uint32_t i, float weight)
 {

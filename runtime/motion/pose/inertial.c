@@ -1,7 +1,9 @@
 #include "motion/pose/inertial_internal.h"
 
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
+#include "core/base/assert.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
 
 /* The quintic x(t) with x(0) = x0, x'(0) = v0, x''(0) = a0 and x = x' = x'' = 0 at t1. The initial acceleration a0
  * makes the jerk vanish at t1, clamped to 0 or more so that the offset does not first accelerate outwards. If v0 is so

@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-#include "motion/pose/pose.h"
+#include "noh/clip.h"
 #include "core/base/assert.h"
 
 /* The offsets of one joint at the switch: 48 bytes. Speeds are along the vectors, per second, never positive. */

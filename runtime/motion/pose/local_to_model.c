@@ -1,4 +1,6 @@
-#include "motion/pose/local_to_model.h"
+#include "core/base/assert.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #include <string.h>
 

@@ -1,6 +1,8 @@
-#include "motion/pose/skeleton.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
-#include "core/base/quat.h"
 
 static int finite_all(const float *values, uint32_t count)
 {

@@ -1,9 +1,16 @@
-#include "stage/actors/blob.h"
+#include "core/base/assert.h"
+#include "deform/pick/bounds.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "deform/pick/bounds.h"
 #include "stage/cast/stage_internal.h"
 
 #define SHARE 0.67f        /* of the light that a disc takes away */

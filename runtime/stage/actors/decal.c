@@ -1,9 +1,14 @@
+#include "core/base/assert.h"
 #include "stage/actors/decal.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
 #include "stage/cast/stage_internal.h"
 
 #define MERGE 0.25f /* of a size: a mark so close to another takes its place */

@@ -1,4 +1,8 @@
+#include "core/base/assert.h"
 #include "stage/actors/decal_grow.h"
+#include "noh/base.h"
+#include "noh/marks.h"
+#include "noh/pack.h"
 
 #include <string.h>
 

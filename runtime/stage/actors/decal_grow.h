@@ -4,9 +4,9 @@
  *   noh_decal_again  which triangle it grows from at another level
  *   noh_decal_uv     where in its square a place of the bind pose lies
  *
- * stage_decal.h looks marks up by each pixel: whatever lies within a mark's sphere at rest and faces as it
+ * noh_gl.h looks marks up by each pixel: whatever lies within a mark's sphere at rest and faces as it
  * does has it, also a fold that only touches there. A patch has what hangs together with the triangle that was hit
- * alone; stage_patch.h draws it. A corner is a vertex of the mesh itself, so that joints and targets carry it
+ * alone; noh_gl.h draws it. A corner is a vertex of the mesh itself, so that joints and targets carry it
  * with no copy, and coordinates follow from where the vertex rests. Triangles are whole ones: what lies outside of 0..1
  * is to be discarded. A patch holds for one level: grow it again when the level changes, from the triangle of
  * noh_decal_again, or from NOH_NONE.
@@ -18,8 +18,8 @@
 #ifndef NOH_ACTORS_DECAL_GROW_H
 #define NOH_ACTORS_DECAL_GROW_H
 
-#include "core/mesh/mesh.h"
-#include "stage/actors/decal.h"
+#include "noh/marks.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,11 +1,19 @@
 /* walkers.c: what walkers know of their clips, and who walks. */
-#include "stage/actors/walkers.h"
+#include "core/base/assert.h"
+#include "motion/anim/root_motion.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
-#include "motion/anim/controller_pose.h"
 #include "motion/anim/sync_internal.h"
-#include "core/base/hash.h"
 #include "core/base/math_internal.h"
 #include "stage/actors/walkers_internal.h"
 

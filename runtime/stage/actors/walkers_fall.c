@@ -2,8 +2,13 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
-#include "stage/cast/fall.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
 #define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the clip that it got up by */

@@ -1,7 +1,16 @@
 /* walkers_feet.c: feet on the ground for those who are near. */
 #include <string.h>
 
-#include "core/base/quat.h"
+#include "core/base/assert.h"
+#include "life/reach/feet.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */

@@ -3,6 +3,8 @@
  * begins with a step and ends with one: the walk at the moment at which a leg swings past the other one, blended with
  * standing, is a foot that is lifted on the spot. */
 #include "stage/actors/walkers_internal.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
 
 #define SLOWEST 0.25f    /* of the walk's speed: who goes slower makes a step now and then */
 #define BLEND_PER_S 4.0f /* how fast the walk comes and goes of one whose steps are not known */

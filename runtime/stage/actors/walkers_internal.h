@@ -1,11 +1,14 @@
-/* walkers_internal.h: the walkers' block. Threads: as walkers.h. */
+/* walkers_internal.h: the walkers' block. Threads: as crowd.h. */
 #ifndef NOH_ACTORS_WALKERS_INTERNAL_H
 #define NOH_ACTORS_WALKERS_INTERNAL_H
 
 #include "stage/crowd/crowd_internal.h"
-#include "stage/cast/fall.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/actors/walkers.h"
 
 enum { WALKER_WALK, WALKER_IDLE, WALKER_RUN, WALKER_CLIPS };
 #define WALKER_SWAY 32u /* equal parts of a pass */

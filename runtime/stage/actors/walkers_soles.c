@@ -1,8 +1,13 @@
 /* walkers_soles.c: where the soles of a walker's clips are, and the foot that it stands on. */
 #include <string.h>
 
-#include "motion/anim/controller_pose.h"
-#include "motion/pose/local_to_model.h"
+#include "motion/anim/root_motion.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
 #define LOWER 0.0004f   /* of a leg: lower by so much, and it stands on the other foot */

@@ -3,8 +3,17 @@
 
 #include "motion/anim/root_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
+#include "core/base/assert.h"
 #include "core/base/trig.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
 #define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */

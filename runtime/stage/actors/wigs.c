@@ -1,11 +1,18 @@
 /* wigs.c: whose hair of a kind moves. */
+#include "life/hair/haircut.h"
 #include "stage/actors/wigs.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
-#include "deform/skin/dual_quaternion.h"
 #include "life/hair/hair_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"

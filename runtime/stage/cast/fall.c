@@ -1,5 +1,8 @@
 /* fall.c: pushes, and when and how who lies gets up. */
-#include "stage/cast/fall.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include <string.h>
 

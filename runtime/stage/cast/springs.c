@@ -2,13 +2,20 @@
  *
  * They swing in the world, in the model's units and from the model's scale: what a place says is divided by its scale,
  * so an actor of twice the size swings as the small one does, twice as far. */
+#include "life/physics/spring.h"
 #include "stage/cast/springs.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/modules.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
-#include "motion/clip/pack_clip.h"
 #include "life/physics/spring_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"

@@ -2,6 +2,13 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
+#include "core/base/assert.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
 
 /* ---- actors, none of which is there ---- */
 

@@ -3,8 +3,14 @@
 
 #include "motion/anim/root_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
-#include "motion/pose/local_to_model.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "life/physics/ragdoll_internal.h"
 #include "stage/cast/stage_internal.h"
 

@@ -3,8 +3,13 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "stage/character/skin_palette.h"
-#include "motion/pose/local_to_model.h"
+#include "core/base/assert.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
 /* A joint in model space, as shown. */

@@ -7,11 +7,15 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "stage/character/bounds.h"
-#include "stage/character/character_internal.h"
-#include "stage/character/skin_palette.h"
 #include "deform/pick/bounds.h"
-#include "motion/pose/local_to_model.h"
+#include "motion/anim/root_motion.h"
+#include "stage/character/bounds.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "stage/character/character_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #define ROUNDING 1.000004f /* more than the sums and roots below can lose */

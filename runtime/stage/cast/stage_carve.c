@@ -1,7 +1,18 @@
 /* stage_carve.c: how a stage lies in its block. The code that lays it out also measures it. */
 #include <string.h>
 
-#include "deform/pick/pick.h"
+#include "core/base/compiler.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- what a kind needs ---- */

@@ -3,6 +3,13 @@
 
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "motion/anim/controller.h"
+#include "stage/character/lod.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
+#include "noh/modules.h"
 
 const noh_layer_desc noh_stage_default_layers[3] = {
     { "body", NOH_LAYER_BASE, NULL, NULL, 0 },

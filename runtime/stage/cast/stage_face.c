@@ -3,13 +3,17 @@
  * The space of a neck has its origin in the joint that turns the head and the axes of the model at rest, and goes along
  * with what clips do to that joint. What the face turns is added to that: part of it in the neck, so that it bends, and
  * the rest in the head, whose eyes are then aimed from where the neck has taken them. */
-#include "stage/cast/stage_face.h"
+#include "life/face/face.h"
+#include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
-#include "core/base/trig.h"
 #include "stage/cast/stage_internal.h"
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */

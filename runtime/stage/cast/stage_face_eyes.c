@@ -4,9 +4,16 @@
 
 #include "core/base/math_internal.h"
 #include "deform/morph/morph_kernel_internal.h"
-#include "deform/skin/skin.h"
-#include "motion/pose/local_to_model.h"
-#include "stage/cast/stage_face.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 #define BEHIND_LIDS 0.19f /* of the distance of the eyes: their centres lie behind the lids, and behind their fronts */

@@ -1,10 +1,18 @@
 /* stage_face_open.c: the joints and targets of a kind's faces, and the calls that tell a face what to do. */
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "core/base/assert.h"
+#include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
-#include "core/base/quat.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- joints ---- */

@@ -1,5 +1,9 @@
 /* stage_feet.c: feet on the ground as a part of a kind. */
-#include "stage/cast/stage_feet.h"
+#include "life/reach/feet.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
 
 #include <string.h>
 

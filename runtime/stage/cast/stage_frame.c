@@ -2,6 +2,9 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/noh.h"
 
 static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
 {

@@ -1,10 +1,16 @@
 /* stage_gaze.c: gazes and hands as parts of a kind. */
-#include "stage/cast/stage_gaze.h"
+#include "life/reach/gaze.h"
+#include "life/reach/reach.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
 
 #include <string.h>
 
 #include "core/base/assert.h"
-#include "core/base/quat.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 

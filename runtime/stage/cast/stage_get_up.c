@@ -6,13 +6,19 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "motion/anim/controller_pose.h"
+#include "life/physics/ragdoll_pose.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "core/base/assert.h"
-#include "core/base/quat.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/cast/stage_ragdoll.h"
 
 #define BLEND_TICKS 19200u
 #define SPEED_SECONDS 0.005f /* speeds are differences over so long */

@@ -1,7 +1,15 @@
 /* stage_graph.c: the graphs of a kind: which, how many bytes, made, and their names. */
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "core/base/assert.h"
+#include "motion/graph/graph_pack.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_internal.h"
 

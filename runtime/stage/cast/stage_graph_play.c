@@ -1,7 +1,16 @@
 /* stage_graph_play.c: the graph of an actor: what plays, its pose beside those of clips, its parameters and states. */
 #include <string.h>
 
-#include "core/base/arena.h"
+#include "motion/graph/graph.h"
+#include "stage/character/character.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- what plays ---- */

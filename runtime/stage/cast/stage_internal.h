@@ -32,23 +32,21 @@
 #ifndef NOH_STAGE_STAGE_INTERNAL_H
 #define NOH_STAGE_STAGE_INTERNAL_H
 
-#include "motion/bank/clip_bank.h"
-#include "core/base/arena.h"
-#include "stage/character/character.h"
-#include "stage/character/lod_pack.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
-#include "life/face/corrective.h"
-#include "life/face/weight_rule.h"
-#include "motion/graph/graph_pack.h"
-#include "core/mesh/mesh.h"
-#include "stage/cast/part.h"
-#include "life/physics/ragdoll_pose.h"
-#include "life/physics/ragdoll_rig.h"
-#include "stage/cast/springs.h"
 #include "stage/cast/stage_face.h"
 #include "stage/cast/stage_ragdoll.h"
-#include "stage/cast/stage.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -675,7 +673,7 @@ const char *noh_stage_check_face(const noh_stage_face *face);
 void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
 /* What parts are given, between the halves of an update of a character for a tick of the stage's clock; then the kind's
  * own parts, and the springs of its pack. */
-/* Points of the world that parts of stage_gaze.h have been told. */
+/* Points of the world that parts of modules.h have been told. */
 void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3]);
 void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3]);
 struct noh_kind_feet;

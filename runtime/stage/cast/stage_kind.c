@@ -3,6 +3,13 @@
 
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "motion/bank/clip_bank.h"
+#include "stage/character/lod_pack.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
+#include "noh/low_stage.h"
 
 /* ---- clips ---- */
 

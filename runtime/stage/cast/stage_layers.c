@@ -1,9 +1,11 @@
 /* stage_layers.c: layers out of a desc, and their masks out of names. */
 #include <string.h>
 
-#include "motion/anim/mask.h"
-#include "core/base/hash.h"
-#include "motion/clip/pack_clip.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 typedef noh_stage_word word;

@@ -4,12 +4,17 @@
  * bends. Drawing all of them at the same level number spends triangles where they show least. So the errors of all
  * levels of all meshes are sorted, and for each of them every mesh takes its coarsest level that is off by no more. */
 #include "stage/cast/stage_internal.h"
+#include "stage/character/lod_pack.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/noh.h"
+#include "noh/low_stage.h"
 
 #define ERRORS_MAX (NOH_STAGE_MESHES_MAX * NOH_LOD_LEVELS_MAX)
 #define SPREAD_M 100.0f /* actors are thought to be spread evenly within this distance */
 #define RESERVE 1.3f    /* for actors that crowd together */
 #define FINEST_MIN 16u  /* slots of the finest level, where a kind has so many actors: a small cast stands together */
-#define MESH_SHARE 0.3f /* of the error, as lod.h has it by default */
+#define MESH_SHARE 0.3f /* of the error, as low_stage.h has it by default */
 
 float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level)
 {

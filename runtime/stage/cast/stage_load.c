@@ -5,7 +5,12 @@
  * pack is brought later must have the same levels. */
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- packs ---- */

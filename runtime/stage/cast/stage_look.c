@@ -4,7 +4,13 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "motion/pose/local_to_model.h"
+#include "stage/cast/part.h"
+#include "stage/character/character.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
 #define ROUNDING 1.000002f

@@ -1,8 +1,12 @@
 /* stage_names.c: clips, layers, floats and joints of a kind, by name. */
 
-#include "core/base/hash.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "core/base/name_internal.h"
-#include "motion/clip/pack_clip.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- a name by its index ---- */

@@ -1,11 +1,17 @@
 /* stage_part.c: parts: functions that change a pose before it is shown. */
+#include "core/base/assert.h"
 #include "stage/cast/part.h"
+#include "stage/cast/springs.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
 #include "core/base/math_internal.h"
-#include "motion/pose/local_to_model.h"
 #include "stage/cast/stage_internal.h"
 
 static size_t aligned(size_t bytes)

@@ -1,5 +1,12 @@
 /* stage_person.c: an actor as a person: held floats, and lids that shut. */
 #include "stage/cast/stage_internal.h"
+#include "core/base/assert.h"
+#include "life/face/identity.h"
+#include "noh/base.h"
+#include "noh/pack.h"
+#include "noh/face.h"
+#include "noh/noh.h"
+#include "noh/modules.h"
 
 /* The float of a target of the identity's mesh. */
 static uint32_t float_of(const noh_stage *s, noh_actor actor, const noh_mesh *mesh, uint32_t target)

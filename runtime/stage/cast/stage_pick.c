@@ -2,9 +2,13 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "stage/character/skin_palette.h"
-#include "deform/pick/pick.h"
-#include "motion/pose/local_to_model.h"
+#include "core/base/assert.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 typedef struct ray {

@@ -2,7 +2,15 @@
  * the others of the layer fade out. */
 #include <string.h>
 
+#include "core/base/assert.h"
+#include "motion/anim/changes.h"
 #include "motion/anim/controller_pose.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 #include "core/base/math_internal.h"
 #include "motion/pose/inertial_internal.h"
 #include "stage/cast/stage_internal.h"

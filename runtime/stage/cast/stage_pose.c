@@ -4,6 +4,14 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
+#include "motion/clip/clip_view.h"
+#include "stage/character/character.h"
+#include "stage/character/lod.h"
+#include "noh/clip.h"
+#include "noh/low_life.h"
+#include "noh/noh.h"
+#include "noh/modules.h"
+#include "noh/low_stage.h"
 
 /* The set of a kind, sampled by a job's own view; through `sampler` where some clips stand for graphs. */
 static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind, noh_stage_sampler *sampler)
@@ -102,7 +110,7 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
 /* ---- the order of a frame ----
  *
  * Before these, for all actors: noh_stage_step (time, callback keys, root motion, ragdolls' bodies), the game's places
- * (crowd/, walkers.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
+ * (crowd/, crowd.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
  * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
 
 /* The pose: joints and the floats that go with them. */

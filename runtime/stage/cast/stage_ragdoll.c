@@ -1,5 +1,13 @@
 /* stage_ragdoll.c: actors that fall. */
-#include "stage/cast/stage_ragdoll.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
@@ -8,7 +16,6 @@
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
-#include "stage/cast/fall.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- made ---- */

@@ -3,6 +3,16 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
+#include "motion/clip/clip_cache.h"
+#include "stage/character/character.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/noh.h"
+#include "noh/low_stage.h"
 
 #define AHEAD_TICKS 12000u      /* looked ahead for clips: a quarter of a second */
 #define AHEAD_TRACK_FRAMES 512u /* decoded in a frame for what is not needed yet */

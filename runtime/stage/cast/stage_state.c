@@ -4,6 +4,12 @@
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "core/base/assert.h"
+#include "stage/character/character.h"
+#include "stage/character/lod_pools.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
 
 const void *noh_stage_state(const noh_stage *stage, size_t *bytes)
 {

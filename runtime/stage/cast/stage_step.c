@@ -1,9 +1,17 @@
 /* stage_step.c: time moves on for all actors: clocks, fades, callback keys, root motion. */
 #include <string.h>
 
+#include "core/base/assert.h"
 #include "motion/anim/controller_pose.h"
+#include "motion/anim/tracks.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "motion/anim/root_internal.h"
-#include "motion/clip/pack_clip.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- callback keys ---- */

@@ -2,6 +2,7 @@
  * faces, parts or the game say it. Rules go first, since correctives follow from weights that are shown. A corrective
  * that is held keeps what it is held at. */
 #include "stage/cast/stage_internal.h"
+#include "noh/low_life.h"
 
 void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max)
 {

@@ -1,9 +1,10 @@
-#include "stage/cast/view.h"
+#include "core/base/assert.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
 #include "stage/cast/stage_internal.h"
 
 #define HALF_VIEW_RAD 0.349066f

@@ -1,4 +1,8 @@
+#include "core/base/assert.h"
 #include "stage/character/bounds.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #include "core/base/math_internal.h"
 

@@ -1,4 +1,4 @@
-/* bounds.h: bounds of a character from its joints, for culling and for the distance used by LOD. When morph weights are
+/* deform.h: bounds of a character from its joints, for culling and for the distance used by LOD. When morph weights are
  * known (stage_bounds.c), the radii are for weight 0 and targets add their boxes.
  *
  *   noh_joint_bounds          a box and a sphere around a posed skeleton
@@ -14,8 +14,8 @@
 #ifndef NOH_CHARACTER_BOUNDS_H
 #define NOH_CHARACTER_BOUNDS_H
 
-#include "motion/pose/skeleton.h"
-#include "core/mesh/mesh.h"
+#include "noh/clip.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {

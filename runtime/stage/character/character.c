@@ -3,13 +3,21 @@
  * A character that is far away is not posed in every frame. It is posed ahead of time, at the tick of its next update,
  * and until then what shows is a mix of that pose and the one before: linear in the matrices, and far cheaper than a
  * pose. The two palettes, weights and spheres take turns at being the pose that is left and the one that is reached. */
+#include "core/base/assert.h"
+#include "motion/anim/controller.h"
+#include "stage/character/bounds.h"
 #include "stage/character/character.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "motion/pose/local_to_model.h"
-#include "core/base/arena.h"
 #include "stage/character/character_internal.h"
 
 /* ---- memory ---- */

@@ -1,7 +1,12 @@
 /* character_check.c: whether a block of bytes is a character. */
-#include "stage/character/character.h"
-
 #include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "motion/anim/controller.h"
+#include "stage/character/character.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_stage.h"
+
 
 static const char *bad_lod(const noh_lod *d, const noh_lod_table *table)
 {

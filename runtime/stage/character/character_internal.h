@@ -2,7 +2,7 @@
 #ifndef NOH_CHARACTER_CHARACTER_INTERNAL_H
 #define NOH_CHARACTER_CHARACTER_INTERNAL_H
 
-#include "stage/character/character.h"
+#include "noh/low_stage.h"
 
 /* The palette of pose 0 or 1: [joint_count][12]. */
 const float *noh_character_pose_palette(const noh_character *ch, uint32_t pose);

@@ -1,10 +1,14 @@
+#include "core/base/assert.h"
 #include "stage/character/joint_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
 
 #include <string.h>
 
-#include "motion/pose/local_to_model.h"
 #include "motion/anim/clip_set_internal.h"
-#include "core/base/arena.h"
 #include "stage/character/measure_internal.h"
 
 #define STEP_TICKS 400u /* frames at sample rates of 24, 30, 60 and 120 Hz lie on these */

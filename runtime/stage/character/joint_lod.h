@@ -4,11 +4,12 @@
  * The converter measures every clip and stores the errors (noh_pack_clip.joint_errors). Measure at load time for a
  * skeleton made by hand, or for a clip on a mesh that was not in its build.
  *
- * Threads: as time_lod.h. */
+ * Threads: as low_stage.h. */
 #ifndef NOH_CHARACTER_JOINT_LOD_H
 #define NOH_CHARACTER_JOINT_LOD_H
 
-#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/low_stage.h"
 
 #ifdef __cplusplus
 extern "C" {

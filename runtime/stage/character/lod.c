@@ -1,8 +1,12 @@
+#include "core/base/assert.h"
 #include "stage/character/lod.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 
 #include "motion/anim/clock_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
 
 #define NEAREST_M 1e-3f
 

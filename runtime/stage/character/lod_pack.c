@@ -1,7 +1,15 @@
-#include "stage/character/lod_pack.h"
-
-#include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "motion/clip/clip_cache.h"
 #include "stage/character/bounds.h"
+#include "stage/character/lod_pack.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/pack.h"
+
 
 NOH_STATIC_ASSERT(NOH_CLIP_UPDATE_RATES == NOH_UPDATE_RATE_COUNT, clip_rates);
 

@@ -1,8 +1,10 @@
+#include "core/base/assert.h"
 #include "stage/character/lod_pools.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 
 #define NOT_ASKED 0xffu /* in place.next: it did not ask, */
 #define LEFT_OUT 0xfeu  /* is past shown_max, */

@@ -27,9 +27,7 @@
 #ifndef NOH_CHARACTER_LOD_POOLS_H
 #define NOH_CHARACTER_LOD_POOLS_H
 
-#include "core/base/limits.h"
-#include "core/base/result.h"
-#include "stage/character/lod.h"
+#include "noh/base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,7 +1,10 @@
 /* What the measurements of LOD errors share: measure_internal.h. */
-#include "motion/pose/local_to_model.h"
-#include "motion/anim/clip_set_internal.h"
 #include "motion/anim/root_motion.h"
+#include "motion/anim/time.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "motion/anim/clip_set_internal.h"
 #include "core/base/math_internal.h"
 #include "stage/character/measure_internal.h"
 

@@ -2,9 +2,9 @@
 #ifndef NOH_CHARACTER_MEASURE_INTERNAL_H
 #define NOH_CHARACTER_MEASURE_INTERNAL_H
 
-#include "motion/pose/pose.h"
-#include "core/base/arena.h"
-#include "stage/character/time_lod.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
 
 /* What is wrong with a probe or a clip; NULL: nothing. joint_radius_m is not looked at. */
 const char *noh_probe_fault(const noh_time_probe *probe, uint32_t clip);
@@ -42,7 +42,7 @@ void noh_rate_carve(noh_arena *arena, const noh_clip_set *set, noh_rate_work *wo
 /* The error of the probe's floats in a mix: the sum of their worst displacements. */
 float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work, float part);
 
-/* error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks that time_lod.h names. */
+/* error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks that low_stage.h names. */
 void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work,
                       float *error_m);
 

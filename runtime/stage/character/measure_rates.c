@@ -1,5 +1,8 @@
 /* The loop over update periods and ticks within them, for any error: measure_internal.h. */
-#include "core/base/arena.h"
+#include "stage/character/time_lod.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
 #include "stage/character/measure_internal.h"
 
 /* Frames at sample rates of 24, 30, 60 and 120 Hz lie on these ticks, and with them the corners of what is interpolated

@@ -1,8 +1,10 @@
+#include "core/base/assert.h"
 #include "stage/character/scheduler.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 
 /* ---- memory ---- */
 

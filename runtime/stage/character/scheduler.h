@@ -22,8 +22,7 @@
 #ifndef NOH_CHARACTER_SCHEDULER_H
 #define NOH_CHARACTER_SCHEDULER_H
 
-#include "core/base/limits.h"
-#include "core/base/result.h"
+#include "noh/base.h"
 
 #ifdef __cplusplus
 extern "C" {

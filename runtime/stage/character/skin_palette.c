@@ -1,10 +1,15 @@
+#include "core/base/assert.h"
 #include "stage/character/skin_palette.h"
+#include "stage/character/time_lod.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/pack.h"
 
 #include <string.h>
 
-#include "motion/pose/local_to_model.h"
 #include "stage/character/character_internal.h"
-#include "deform/skin/skin.h"
 
 void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh_transform *pose, float *model,
                    float *matrices)

@@ -1,4 +1,8 @@
+#include "core/base/assert.h"
+#include "motion/anim/tracks.h"
 #include "stage/character/time_lod.h"
+#include "noh/clip.h"
+#include "noh/low_stage.h"
 
 #include <string.h>
 

@@ -1,53 +1,16 @@
-/* time_lod.h: pose instances less often than every frame.
- *
- * An instance has two poses, source and target, and shows a blend of them. These are not the last two poses: blending
- * those would lag (125 ms at 8 Hz: feet slide and steps are heard before they are seen), and extrapolating has up to 8
- * times the error of interpolation and jumps at every update. Instead, a copy of the controller is played ahead without
- * firing callbacks. An update at tick t poses the instance as of its next update, and until then the frame blends from
- * the true pose at t to the true pose there: no lag, no jumps, and an error that grows with the square of the update
- * period, measured for each clip by noh_time_lod_measure. A change made in between shows from the next update on, or
- * from the next frame after noh_time_lod_wake, and never as a jump.
- *
- * Poses are blended as matrices in object space, so every skinned vertex moves in a straight line from one true
- * position to the next. Blending local transforms would follow arcs, but needs new matrices every frame, which costs
- * more than sampling.
- *
- * Frames may lag behind the clock (behind_ticks): a game that steps at a fixed rate and draws at another shows frames
- * between its last two steps. An update then poses the instance as of the last step, or later, and frames blend from
- * the previous pose to it: an instance at the full rate is posed once per step and blended every frame.
- *
- * Callback keys are not affected: controllers are stepped every frame, visible or not.
- *
- * Updates are staggered: instance n is updated at the fraction n * golden ratio (modulo 1) of the period, which spreads
- * any range of consecutive numbers evenly (H. Weyl, "Ueber die Gleichverteilung von Zahlen mod. Eins", 1916).
- *
- * Threads: a noh_time_lod belongs to one thread at a time; measuring may run on any thread that may sample the set. */
+/* low_stage.h: what the library keeps to itself of runtime/noh/low_stage.h. */
 #ifndef NOH_CHARACTER_TIME_LOD_H
 #define NOH_CHARACTER_TIME_LOD_H
 
-#include "motion/anim/controller.h"
-#include "motion/pose/skeleton.h"
-#include "stage/character/lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_stage.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 #define NOH_TIME_LOD_UNSEEN_TICKS 6000u /* after longer out of view an instance is posed before it is shown */
-
-/* State, without pointers. All clocks are the game's, in ticks. */
-typedef struct noh_time_lod {
-    int64_t from_clock, to_clock; /* the blend runs from source to target between these; equal: only the target */
-    int64_t due_clock;            /* when the next update is due */
-    int64_t clock;                /* of the last frame shown: the game's minus behind_ticks */
-    uint32_t frame_ticks;         /* from the frame before it to the last one */
-    uint32_t instance;
-    uint8_t chosen_rate;   /* noh_update_rate of the last frame, for the next update */
-    uint8_t shown_rate;    /* noh_update_rate of the current blend */
-    uint8_t to_pose;       /* which pose is the target, 0 or 1; the other is the source */
-    uint8_t posed;         /* 0: no valid pose yet */
-    uint32_t behind_ticks; /* lag of frames behind the game's clock; set it before a frame. At most the last step */
-} noh_time_lod;
 
 NOH_STATIC_ASSERT(sizeof(noh_time_lod) == 48, time_lod);
 
@@ -60,12 +23,6 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance);
  * is posed exactly, or with behind_ticks every step.
  * units   clock: the game's */
 void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate);
-
-typedef enum noh_due {
-    NOH_DUE_NOT = 0, /* the blend is still valid */
-    NOH_DUE,         /* an update is due; until then the target pose is held */
-    NOH_DUE_AT_ONCE  /* no valid pose: never posed, or out of view for NOH_TIME_LOD_UNSEEN_TICKS */
-} noh_due;
 
 noh_due noh_time_lod_due(const noh_time_lod *t);
 
@@ -91,19 +48,6 @@ float noh_time_lod_fraction(const noh_time_lod *t);
 void noh_time_lod_wake(noh_time_lod *t);
 
 /* ---- errors ---- */
-
-/* The set, skeleton and radii to measure clips with. All borrowed. */
-typedef struct noh_time_probe {
-    const noh_clip_set *set;
-    const noh_skeleton *skeleton; /* of the set */
-    /* [joint_count] the joint radii (bounds.h); below 0: the joint moves no vertex */
-    const float *joint_radius_m;
-    const float *float_radius_m; /* [float_count] largest movement of a vertex by each float at weight 1; NULL: floats
-                                  * are ignored */
-    /* 1: each repetition of a clip continues from the end of joint 0's translation, as with root motion, for a set that
-     * will extract it later; 0: joint 0 jumps back */
-    int travels;
-} noh_time_probe;
 
 /* Bytes of working memory for measuring; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_time_lod_measure_size(const noh_time_probe *probe);

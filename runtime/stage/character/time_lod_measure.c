@@ -1,6 +1,10 @@
-/* The error of interpolation between updates: time_lod.h, noh_time_lod_measure. */
+/* The error of interpolation between updates: low_stage.h, noh_time_lod_measure. */
 #include "motion/anim/clip_set_internal.h"
-#include "core/base/arena.h"
+#include "core/base/assert.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
 #include "stage/character/measure_internal.h"
 
 size_t noh_time_lod_measure_size(const noh_time_probe *probe)

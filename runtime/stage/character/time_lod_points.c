@@ -1,7 +1,11 @@
+#include "core/base/assert.h"
 #include "stage/character/time_lod_points.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
 
 #include "motion/anim/clip_set_internal.h"
-#include "core/base/arena.h"
 #include "core/base/math_internal.h"
 #include "stage/character/measure_internal.h"
 

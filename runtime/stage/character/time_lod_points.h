@@ -1,29 +1,13 @@
-/* time_lod_points.h: the error of lower update rates, measured on points of a mesh.
- *
- * noh_time_lod_measure bounds the error of every point within a joint's radius: safe, but on a body three to seven
- * times the error of its vertices. noh_time_lod_points_measure measures chosen vertices exactly, and no others.
- *
- * Threads: as time_lod.h. */
+/* low_stage.h: what the library keeps to itself of runtime/noh/low_stage.h. */
 #ifndef NOH_CHARACTER_TIME_LOD_POINTS_H
 #define NOH_CHARACTER_TIME_LOD_POINTS_H
 
-#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/low_stage.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* One joint's influence on a point. */
-typedef struct noh_time_hold {
-    uint32_t joint;
-    float weight;   /* 0: unused */
-    float place[3]; /* position in the joint's space: inverse bind matrix times vertex */
-} noh_time_hold;
-
-typedef struct noh_time_lod_points {
-    const noh_time_hold *holds; /* [point_count][holds_per_point]; the weights of a point sum to 1 */
-    uint32_t point_count, holds_per_point;
-} noh_time_lod_points;
 
 /* Bytes of working memory for measuring; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_time_lod_points_size(const noh_time_probe *probe);

@@ -1,8 +1,13 @@
 /* crowd.c: a crowd's block, its agents, and the phases of its steps. */
 #include "stage/crowd/crowd_internal.h"
 
-#include "core/base/arena.h"
-#include "core/base/hash.h"
+#include "core/base/assert.h"
+#include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #define REACH 3.0f /* by default */
 #define FIELD_CELL 0.5f

@@ -1,5 +1,7 @@
 /* crowd_avoid.c: planned velocities, corrected so that agents pass each other and do not overlap after the step. */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
 
 #define MARGIN 1.03f       /* of the radii: distance kept between two agents */
 #define OVER 1.5f          /* over-relaxation of contacts, whose corrections are averaged */

@@ -1,7 +1,8 @@
-/* crowd_flock.c: agents of a crowd by the rules of flock.h. */
+/* crowd_flock.c: agents of a crowd by the rules of low_stage.h. */
 #include "stage/crowd/crowd_internal.h"
 
-#include "stage/crowd/flock.h"
+#include "noh/crowd.h"
+#include "noh/low_stage.h"
 
 #define ACCELERATION 3.0f /* times the speed, per second */
 

@@ -7,6 +7,9 @@
  * source   Zhao: A fast sweeping method for Eikonal equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi:
  *          Some improvements for the fast sweeping method, SIAM Journal on Scientific Computing 2010 */
 #include "core/base/trig.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
 #include "stage/crowd/crowd_internal.h"
 
 #define BLOCKED -1.0f

@@ -1,5 +1,6 @@
 /* crowd_follow.c: the direction of a flow field at a position, interpolated between the four cells around it. */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 const crowd_field *noh_crowd_followed(const noh_crowd *c, uint32_t state)
 {

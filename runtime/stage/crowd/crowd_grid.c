@@ -1,5 +1,6 @@
 /* crowd_grid.c: agents sorted by cell, and the obstacles near each cell. */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 crowd_cells noh_crowd_cells_of(const noh_crowd_desc *desc)
 {

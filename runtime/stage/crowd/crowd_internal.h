@@ -4,8 +4,9 @@
 
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
-#include "stage/crowd/crowd.h"
-#include "life/physics/motion.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
 
 #define CROWD_STEP_S (1.0f / 30.0f)
 #define CROWD_STEPS_PER_S 30.0f

@@ -1,5 +1,6 @@
 /* crowd_obstacle.c: directions past walls and posts, and out of them. */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 #define WALLS 16u /* that a detour looks at: the first of a cell's */
 

@@ -5,6 +5,7 @@
  *          Computational Geometry, 2008, section 4.4 (linear programs of low dimension, one half plane after the other)
  */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 #define HORIZON_S 4.0f
 #define PARALLEL 1e-5f

@@ -5,6 +5,7 @@
  *          (direction by reachable distance; here a fan of five directions, with the speed that agents in front
  *          allow) */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 #define ARRIVE 2.0f       /* per second and metre: speed before a goal; braking starts half a second away */
 #define BLEND 0.2f        /* share of the change from the velocity to the wish in one step */

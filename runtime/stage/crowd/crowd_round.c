@@ -7,6 +7,7 @@
  * source   Lumelsky, Stepanov: Path-planning strategies for a point mobile automaton moving amidst unknown obstacles of
  *          arbitrary shape, Algorithmica 1987 */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 #define IDLE_STEPS 60u /* without coming nearer, though ends of walls are seen */
 #define LEAST 0.2f     /* of its speed: what counts as coming nearer */

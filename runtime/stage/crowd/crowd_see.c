@@ -1,6 +1,7 @@
 /* crowd_see.c: the nearest neighbours of each agent: by distance, and by id where distances are equal, so that the list
  * does not depend on the order of agents. */
 #include "stage/crowd/crowd_internal.h"
+#include "noh/crowd.h"
 
 #define BATCH 64u                   /* agents whose distances are looked at before any is compared */
 #define KEPT (CROWD_NEIGHBORS + 1u) /* one more tells whether the last is as far as another */

@@ -1,7 +1,9 @@
 /* flock.c: rules of a flock. */
+#include "core/base/assert.h"
 #include "stage/crowd/flock.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
 
-#include "core/base/trig.h"
 #include "stage/crowd/crowd_internal.h"
 
 static float length_of(const float v[2])

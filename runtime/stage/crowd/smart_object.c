@@ -1,9 +1,10 @@
 /* smart_object.c: slots, their holders, and queues. */
-#include "stage/crowd/smart_object.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/arena.h"
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
 

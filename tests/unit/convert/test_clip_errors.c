@@ -13,6 +13,10 @@
 #include "convert/skin/joint_radius.h"
 #include "convert/skin/skins.h"
 #include "support/clip_bank_fixture.h"
+#include "stage/character/joint_lod.h"
+#include "stage/character/time_lod.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 /* ---- a pack and its set ---- */
 

@@ -9,6 +9,7 @@
 #include "convert/convert.h"
 #include "convert/model/model_build.h"
 #include "support/support.h"
+#include "noh/face.h"
 
 #define DEGREES (180.0 / 3.14159265358979)
 #define RINGS 9u

@@ -12,6 +12,7 @@
 
 #include "convert/clips/model_clips.h"
 #include "support/gltf_oracle.h"
+#include "motion/bank/clip_bank.h"
 
 #define TIMES 24
 

@@ -19,7 +19,7 @@
 
 #include "convert/model/model.h"
 #include "support/support.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 enum { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
 

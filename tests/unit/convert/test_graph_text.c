@@ -2,7 +2,9 @@
 #include "support/graph_fixture.h"
 
 #include "dump/dump_graph.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/graph.h"
+#include "noh/pack.h"
 
 /* The message and line of a text that is refused; binding it to clips "walk", "run", "wave" and joints "root", "head".
  */

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "convert/obj/obj_read.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 static void save(const char *name, const char *text)
 {

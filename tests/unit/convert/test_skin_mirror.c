@@ -39,7 +39,7 @@ static void skin_matrix(const model *m, const float *bind, uint32_t node, double
     affine_multiply(m->nodes[node].world, b, out);
 }
 
-/* As skin.h says: the bitangent's direction after skinning. */
+/* As deform.h says: the bitangent's direction after skinning. */
 static void skinned_bitangent(const double m[16], const float *normal, const float *tangent, double out[3])
 {
     const double side = affine_determinant(m) < 0.0 ? -1.0 : 1.0;

@@ -7,7 +7,14 @@
 #include <string.h>
 
 #include "convert/pack/pack_strip.h"
-#include "noh.h"
+#include "stage/character/lod.h"
+#include "stage/character/lod_pack.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "support/level_fixture.h"
 #include "support/pack_walk.h"
 

@@ -9,7 +9,7 @@
 
 #include "convert/model/model_build.h"
 #include "convert/model/surface_shape.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 #include "support/support.h"
 
 static void names_tell_surfaces(void **state)

@@ -11,7 +11,9 @@
 #include "convert/pack/texture_levels.h"
 #include "convert/texture/etc2_block.h"
 #include "convert/texture/texture_blocks.h"
-#include "core/pack/etc2.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 static test_random numbers;
 static const uint8_t *const alone[2] = { NULL, NULL };

@@ -10,6 +10,8 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
 #include "support/pack_walk.h"
+#include "deform/morph/morph.h"
+#include "noh/low_core.h"
 
 #define TARGETS 4u
 #define SLIDE 0u /* moves positions and texture coordinates */

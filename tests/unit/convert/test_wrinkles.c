@@ -13,7 +13,7 @@
 #include "convert/wrinkle/wrinkle_make.h"
 #include "convert/wrinkle/wrinkle_regions.h"
 #include "file/png_file.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 #define PI 3.14159265358979323846
 

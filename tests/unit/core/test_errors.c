@@ -5,10 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/graph/blend_space.h"
-#include "motion/anim/changes.h"
-#include "motion/clip/clip_cache.h"
-#include "stage/character/lod_pack.h"
+#include "stage/character/joint_lod.h"
+#include "stage/character/lod.h"
+#include "stage/character/lod_pools.h"
+#include "stage/character/scheduler.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 /* What the calls work on: zeroed descs, a few bytes of memory, and a pack of one mesh. */
 typedef struct subject {

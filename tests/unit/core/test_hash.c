@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "noh/low_core.h"
 
 static void crc32c_of_the_check_string(void **state)
 {

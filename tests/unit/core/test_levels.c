@@ -6,7 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "deform/skin/skin.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/pack.h"
 
 #define LEVELS 4u
 

@@ -1,4 +1,4 @@
-/* test_limits.c: every desc at the limits of limits.h is measured, and one past them, or at the end of 32 bits, is
+/* test_limits.c: every desc at the limits of base.h is measured, and one past them, or at the end of 32 bits, is
  * refused with a reason: no size wraps to a small one. */
 #include "support/support.h"
 
@@ -6,20 +6,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/event_queue.h"
-#include "motion/bank/clip_bank.h"
-#include "stage/character/character.h"
+#include "motion/anim/changes.h"
+#include "motion/anim/controller.h"
+#include "motion/clip/clip_cache.h"
+#include "motion/graph/graph.h"
 #include "stage/character/joint_lod.h"
 #include "stage/character/lod_pools.h"
 #include "stage/character/scheduler.h"
+#include "stage/character/time_lod.h"
 #include "stage/character/time_lod_points.h"
-#include "motion/clip/clip_cache.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/graph.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "convert/clips/raw_set.h"
 #include "convert/model/model_build.h"
 #include "convert/pack/pack_clips.h"
-#include "gl/morph/gl_morph.h"
-#include "gl/draw/gl_skin.h"
-#include "motion/graph/graph.h"
 
 static union {
     uint8_t bytes[64];

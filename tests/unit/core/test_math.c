@@ -6,7 +6,7 @@
 
 #include "core/base/compiler.h"
 #include "core/base/math_internal.h"
-#include "core/base/quat.h"
+#include "noh/low_core.h"
 
 static float from_bits(uint32_t bits)
 {

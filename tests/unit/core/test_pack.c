@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "support/pack_walk.h"
+#include "noh/low_core.h"
 
 /* ---- a small pack of every kind of chunk ---- */
 

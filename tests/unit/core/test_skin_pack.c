@@ -7,6 +7,7 @@
 
 #include "convert/model/model_build.h"
 #include "support/pack_walk.h"
+#include "noh/low_core.h"
 
 static const skin_cylinder small = { 4, 7, 6, 4, 1, 1, 2.0f, 0.5f };
 

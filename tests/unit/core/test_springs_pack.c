@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "support/pack_walk.h"
+#include "noh/modules.h"
 
 static uint8_t *good;
 static size_t good_count;

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/base/quat.h"
 #include "core/base/trig.h"
+#include "noh/low_core.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,7 +10,10 @@
 #include "convert/pack/pack_round.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 #include "support/pack_walk.h"
 #include "core/wire/wire_internal.h"
 

@@ -6,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 #include "convert/pack/pack_wire.h"
-#include "noh.h"
 #include "support/pack_walk.h"
 #include "core/wire/wire_internal.h"
 

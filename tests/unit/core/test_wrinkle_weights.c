@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "core/mesh/wrinkles.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 static void regions_come_from_expressions(void **state)
 {

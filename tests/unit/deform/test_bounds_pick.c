@@ -1,10 +1,13 @@
 /* Boxes of deformed meshes contain every vertex, and rays hit what a search through all triangles hits: real assets
  * over all their clips with random weights, and rigid meshes. */
 #include "support/skin_asset.h"
+#include "deform/morph/morph.h"
+#include "deform/pick/bounds.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "noh/low_core.h"
 
 #define TIMES 4
 

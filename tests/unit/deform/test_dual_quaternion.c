@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "deform/skin/dual_quaternion.h"
+#include "noh/deform.h"
+#include "noh/low_core.h"
 
 /* The matrix of a split transform: rows of 3 x 4. */
 static void matrix_of(const float q[4], const float scale[3], const float t[3], float m[12])

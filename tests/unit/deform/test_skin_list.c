@@ -1,6 +1,9 @@
 /* Tests of skin_list.c: vertices that more joints move than the GPU has room for, out of packs that are
  * whole, split into palettes, stripped of levels, and damaged. */
-#include "deform/skin/skin_list.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +11,6 @@
 
 #include "convert/pack/pack_order.h"
 #include "convert/pack/pack_strip.h"
-#include "deform/skin/skin.h"
 #include "support/lod_fixture.h"
 #include "support/pack_walk.h"
 #include "support/skin_asset.h"

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "noh/low_core.h"
 
 #define TIMES 20
 

@@ -12,6 +12,8 @@
 #include "convert/model/model_build.h"
 #include "convert/model/two_stream.h"
 #include "support/pack_walk.h"
+#include "deform/morph/morph.h"
+#include "noh/low_core.h"
 
 /* A tube with its pack, posed by bending each joint about z. */
 typedef struct tube {

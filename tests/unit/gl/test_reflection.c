@@ -5,8 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/hash.h"
 #include "gl/light/reflection.h"
+#include "noh/base.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
 
 #define PI 3.14159265358979323846
 #define SIDE_MAX 128u

@@ -1,5 +1,7 @@
 /* Tests of amplitude.c against the formulas of its source, whose errors are shown. */
 #include "life/face/amplitude.h"
+#include "noh/base.h"
+#include "noh/face.h"
 
 #include <limits.h>
 #include <math.h>

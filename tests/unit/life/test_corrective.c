@@ -1,10 +1,13 @@
 /* Tests of corrective.c: weights that are exact where the shapes were modelled, and never jump. */
-#include "life/face/corrective.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/hash.h"
 #include "support/support.h"
 
 #define TARGETS 12u

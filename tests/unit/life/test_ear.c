@@ -1,6 +1,7 @@
 /* Tests of ear.c: what it makes of noise, silence and broken sound; of chunks, rates and clones; and how
  * well it reads the lips of people whom it was not taught on. */
-#include "life/face/ear.h"
+#include "noh/base.h"
+#include "noh/face.h"
 #include "life/face/ear_internal.h"
 
 #include <math.h>
@@ -8,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "life/face/speech.h"
 #include "support/support.h"
 
 #define V NOH_VISEME_COUNT

@@ -1,12 +1,13 @@
 /* Tests of runtime/face/face*.c: rates, distributions and aims of a simulated hour against those of the literature. */
 #include "life/face/face.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "core/base/trig.h"
 #include "support/support.h"
 
 #define SECOND 48000u

@@ -2,8 +2,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "life/physics/ragdoll_rig.h"
 #include "life/reach/gaze.h"
 #include "life/reach/reach.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 #include "support/skin_asset.h"
 #include "support/support.h"
 

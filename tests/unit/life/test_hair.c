@@ -1,13 +1,15 @@
 /* Tests of hair.c: a wig of forty hairs on a head of four spheres. Errata tests have the source's formulas
  * beside ours. */
 #include "life/hair/hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "core/base/quat.h"
 #include "support/support.h"
 
 #define HAIRS 40u

@@ -7,10 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "life/hair/hair.h"
+#include "life/hair/haircut.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 #include "convert/model/hair_grow.h"
 #include "core/pack/check_internal.h"
-#include "life/hair/haircut.h"
 
 #define POINT_MAX (NOH_HAIRS_MAX * NOH_HAIR_POINTS_MAX)
 

@@ -1,12 +1,17 @@
 /* Tests of runtime/face/identity*.c: what belongs together is found, people are whole, and their lids shut. */
+#include "deform/morph/morph.h"
 #include "life/face/identity.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/face.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
 #include "convert/convert.h"
 #include "support/support.h"
 

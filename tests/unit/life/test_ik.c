@@ -1,12 +1,11 @@
 /* Tests of runtime/sim/ik*.c in closed form: ends on their targets, poles, limits, and a million cases at random. */
-#include "life/reach/ik.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "core/base/trig.h"
 #include "support/support.h"
 
 #define LIMB_M 0.58 /* an upper arm of 300 mm, a forearm of 280 mm */

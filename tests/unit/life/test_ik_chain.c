@@ -1,10 +1,12 @@
 /* Tests of ik_chain.c: each solver on the same thousand targets, limits, lines, and what is refused. */
 #include "life/reach/ik_chain.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/quat.h"
 #include "support/support.h"
 
 #define JOINTS 6u

@@ -1,9 +1,11 @@
 /* Lips of real heads, measured on vertices as the library deforms them: they meet for every p, b and m, and the lower
  * one is at the upper teeth for f and v, for long enough that every phase of 30 Hz shows it, between any two sounds,
  * whatever the face feels and whoever it is. */
-#include "life/face/identity.h"
-#include "life/face/recipe.h"
-#include "life/face/speech.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/face.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +13,6 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "noh.h"
 #include "support/support.h"
 
 #define MS 48u

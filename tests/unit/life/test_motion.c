@@ -1,12 +1,13 @@
 /* Tests of motion.c and shape.c: closed forms, oracles in double, and the errors of the source's chapter.
  */
 #include "life/physics/motion.h"
-#include "life/physics/shape.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/quat.h"
 #include "support/support.h"
 
 static uint32_t seed = 1;

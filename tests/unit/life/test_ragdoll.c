@@ -1,12 +1,17 @@
 /* Tests of ragdoll.c and ragdoll_lanes.c: closed forms, energy, torture, and the same bits at every width.
  */
+#include "life/physics/motion.h"
 #include "life/physics/ragdoll.h"
+#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
 #include "life/physics/ragdoll_internal.h"
 #include "support/support.h"
 

@@ -1,13 +1,16 @@
 /* Tests of ragdoll_pose.c: a real character's poses as bodies and back. */
 #include "life/physics/ragdoll_pose.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "motion/clip/pack_clip.h"
-#include "life/physics/ragdoll_rig.h"
 #include "support/support.h"
 #include "support/skin_asset.h"
 

@@ -1,13 +1,18 @@
 /* Tests of ragdoll_rig.c and ragdoll_names.c: real characters, and skeletons that are none. */
 #include "life/physics/ragdoll_rig.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "motion/clip/pack_clip.h"
 #include "support/support.h"
 #include "support/skin_asset.h"
 

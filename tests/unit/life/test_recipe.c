@@ -1,5 +1,7 @@
 /* Tests of recipe.c: channels find their targets by name, and speech owns the mouth. */
 #include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/face.h"
 
 #include <math.h>
 #include <stddef.h>

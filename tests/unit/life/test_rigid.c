@@ -1,12 +1,15 @@
 /* Tests of rigid.c and contact.c: closed forms of flight, spin, impulses, bounces and friction; rest on
  * every kind of obstacle; overlaps; the same far away and in any pieces of time; point masses. */
 #include "life/physics/rigid.h"
+#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/quat.h"
-#include "life/physics/motion.h"
 #include "support/support.h"
 
 #define FRAME 800u
@@ -283,7 +286,7 @@ static void anything_comes_to_rest(void **state)
     assert_true(asleep >= 31); /* a plate that begins across a corner may stay wedged there */
 }
 
-/* Begun inside, it comes out at the speed that world.h states, and not faster. */
+/* Begun inside, it comes out at the speed that body.h states, and not faster. */
 static void it_leaves_what_it_begins_in(void **state)
 {
     const noh_obb box = { { 0.0f, 0.0f, 0.0f }, { 0.5f, 0.5f, 0.5f }, { 0.0f, 0.0f, 0.0f, 1.0f } };

@@ -1,6 +1,7 @@
 /* Tests of speech.c and phones.c: lips meet, rounding comes early, nothing jitters; on made-up speech and
  * on real speech with its phones. */
-#include "life/face/speech.h"
+#include "noh/base.h"
+#include "noh/face.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,12 +1,13 @@
 /* Tests of spring.c against the reference of VRMC_springBone, written here in double as its text has it. */
 #include "life/physics/spring.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "core/base/quat.h"
 #include "support/support.h"
 
 #define JOINTS 5u

@@ -1,6 +1,9 @@
 /* Tests of terrain: a picture and a model as a height field (tools/convert/terrain/), in a pack and out of it
- * (terrain.h), and what the pack's reader refuses. */
-#include "life/physics/terrain.h"
+ * (body.h), and what the pack's reader refuses. */
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdlib.h>

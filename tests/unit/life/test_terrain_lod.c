@@ -1,12 +1,14 @@
 /* Tests of terrain_lod.c: how far levels are off, that no crack is between two of them, and which a picture
  * gets. */
 #include "life/physics/terrain_lod.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/noh.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/cast/view.h"
 #include "support/support.h"
 
 typedef struct hill {

@@ -1,11 +1,13 @@
 /* Tests of weight_rule.c: weights stay within what the pack allows, nothing jumps, and who breaks no rule
  * keeps his bits. */
-#include "life/face/weight_rule.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/base/hash.h"
 #include "support/support.h"
 
 #define TARGETS 6u

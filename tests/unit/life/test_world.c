@@ -1,5 +1,6 @@
 /* Tests of world.c: a height field against double, rays against fine steps. */
-#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
 
 #include <math.h>
 

@@ -6,8 +6,11 @@
 #include <cmocka.h>
 
 #include "support/clip_set_fixture.h"
-#include "motion/graph/blend_space.h"
-#include "motion/pose/local_to_model.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 typedef struct sums {
     noh_blend blend;

@@ -7,6 +7,9 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/anim/changes.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 
 #define ENTRIES 4u
 

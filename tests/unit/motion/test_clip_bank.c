@@ -9,6 +9,9 @@
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "support/clip_bank_fixture.h"
+#include "motion/bank/clip_bank.h"
+#include "motion/clip/clip_cache.h"
+#include "noh/low_core.h"
 
 #define NAMES "abcdefghij"
 #define JOINTS 10u

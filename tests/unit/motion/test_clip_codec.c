@@ -9,7 +9,11 @@
 
 #include <stdio.h>
 
-#include "core/base/arena.h"
+#include "motion/clip/clip_codec.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "support/clip_fixture.h"
 #include "support/support.h"
 #include "convert/clips/rcl.h"

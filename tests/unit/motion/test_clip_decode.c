@@ -1,4 +1,4 @@
-/* Tests of the clip decoder on clips that are written here bit by bit, as clip_format.h has them. The encoder does
+/* Tests of the clip decoder on clips that are written here bit by bit, as low_motion.h has them. The encoder does
  * without what the decoder misreads: it measures the decoded clip and stores raw what is out of bounds. So only clips
  * that it has not made show that the decoder reads the format. */
 #include "support/support.h"
@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/clip/clip_cache.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 #include "motion/clip/clip_coefs_internal.h"
 #include "motion/clip/clip_synth_internal.h"
 

@@ -4,10 +4,12 @@
 
 #include <math.h>
 
-#include "core/base/arena.h"
+#include "motion/clip/clip_cache.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 #include "motion/clip/clip_cache_internal.h"
 #include "motion/clip/clip_decode_internal.h"
-#include "motion/clip/clip_view.h"
 #include "convert/codec/clip_space.h"
 #include "support/clip_fixture.h"
 

@@ -2,7 +2,12 @@
  * replaces, leaves alone or breaks. */
 #include "support/set_fixture.h"
 
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
+#include "noh/pack.h"
 
 #define JOINTS 6u
 #define FRAMES 90u /* four segments */

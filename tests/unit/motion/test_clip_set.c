@@ -6,7 +6,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "motion/anim/controller_pose.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 
 static void rest(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
                  uint32_t float_count, float *floats)

@@ -5,10 +5,17 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "core/base/arena.h"
+#include "motion/anim/changes.h"
+#include "motion/anim/controller.h"
+#include "motion/anim/controller_pose.h"
+#include "motion/anim/time.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "support/clip_set_fixture.h"
 #include "support/support.h"
-#include "motion/anim/event_queue.h"
 #include "motion/pose/inertial_internal.h"
 #include "motion/anim/sync_internal.h"
 

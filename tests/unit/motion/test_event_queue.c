@@ -7,7 +7,9 @@
 
 #include <string.h>
 
-#include "motion/anim/event_queue.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define CAPACITY 3u
 

@@ -10,7 +10,10 @@
 #include <string.h>
 
 #include "motion/anim/controller.h"
-#include "motion/anim/event_queue.h"
+#include "motion/anim/events.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define ALIGNED __attribute__((aligned(16)))
 #define SEED 20240611u

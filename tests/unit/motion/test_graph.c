@@ -7,6 +7,10 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 /* machine( blend1d(walk, run), jump, mask(add(walk, lean), wave), blend2d of four ) */
 enum { CLIP_NODES = 11, NODES = 17, PARAMS = 6 };

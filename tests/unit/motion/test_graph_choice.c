@@ -7,6 +7,10 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 /* one_shot( select(walk, run, wave), jump ) */
 enum { N_WALK, N_RUN, N_WAVE, N_SELECT, N_JUMP, N_SHOT, NODES };

@@ -3,7 +3,15 @@
 #include "support/graph_fixture.h"
 
 #include "support/pack_walk.h"
-#include "noh.h"
+#include "motion/anim/tracks.h"
+#include "motion/graph/graph.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 static set_fixture fixture;
 static noh_clip_bank *bank;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "motion/pose/local_to_model.h"
+#include "noh/low_motion.h"
 #include "support/support.h"
 
 /* Lane by lane the product of the plain loop, to the bit: zeros of both signs, denormals, infinities and NaNs included;

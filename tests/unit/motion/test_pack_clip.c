@@ -9,6 +9,8 @@
 #include "convert/model/model_build.h"
 #include "support/clip_bank_fixture.h"
 #include "support/pack_walk.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 static const char bvh[] =
     "HIERARCHY\nROOT hips\n{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"

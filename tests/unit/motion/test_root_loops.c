@@ -2,7 +2,10 @@
  * close do not drift, others move by the source's displacement, and no position is off by more than the bound. */
 #include "support/set_fixture.h"
 
-#include "noh.h"
+#include "motion/anim/root_motion.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 #define TWO_PI 6.283185307179586
 #define FRAMES 37u

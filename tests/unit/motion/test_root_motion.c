@@ -9,6 +9,12 @@
 
 #include "support/clip_set_fixture.h"
 #include "core/base/trig.h"
+#include "motion/anim/root_motion.h"
+#include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 /* A walk of one clip whose root goes along a curve: `turn` per pass, `step` forward. */
 typedef struct walk {

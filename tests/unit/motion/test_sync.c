@@ -7,6 +7,7 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/anim/sync_internal.h"
+#include "motion/anim/time.h"
 
 #define GROUP 3u
 

@@ -2,6 +2,10 @@
  * as one thread, and (tests/tsan.sh) no race. */
 #define _POSIX_C_SOURCE 200112L
 #include "support/set_fixture.h"
+#include "motion/anim/controller.h"
+#include "motion/anim/controller_pose.h"
+#include "motion/anim/tracks.h"
+#include "motion/clip/clip_view.h"
 
 #include <pthread.h>
 

@@ -7,6 +7,8 @@
 #include <cmocka.h>
 
 #include "motion/anim/time.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define SLACK 16384.0L /* long double may have 53 bits */

@@ -6,8 +6,11 @@
 #include <cmocka.h>
 
 #include "support/clip_set_fixture.h"
-#include "motion/anim/ping_pong.h"
+#include "motion/anim/time.h"
 #include "motion/anim/tracks.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 static noh_track started(const scene *s, noh_track_desc d)
 {

@@ -1,7 +1,11 @@
 /* Spots under actors: where they are, how dark, on floors and slopes. */
 #include "support/stage_fixture.h"
 
-#include "stage/actors/blob.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #include <math.h>
 

@@ -1,5 +1,18 @@
 /* Tests of character.c: one block that steps, chooses, poses and shows; and a crowd of them. */
-#include "core/base/arena.h"
+#include "motion/anim/controller.h"
+#include "motion/anim/tracks.h"
+#include "stage/character/character.h"
+#include "stage/character/scheduler.h"
+#include "stage/character/skin_palette.h"
+#include "stage/character/time_lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "support/support.h"
 
 #include <math.h>

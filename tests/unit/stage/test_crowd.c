@@ -1,6 +1,7 @@
 /* Tests of runtime/stage/crowd/: agents that arrive, pass each other, and stay out of walls; the same bits however they are
  * stepped. Scenes with bounds are in cli/crowd.sh. */
-#include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 /* Tests of agents on a height field (crowd_ground.c): slopes slow them, what is too steep they leave
  * alone, and flow fields lead around it. */
-#include "stage/crowd/crowd.h"
-#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,9 @@
  * job and with four, whatever the agents' order. Of everything: walls, flow fields that are aimed anew, slopes, agents
  * of each sort that hold their place, leave and enter. */
 #include "stage/crowd/crowd.h"
-#include "life/physics/world.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Tests of crowd_round.c and of doors in crowd_plan.c: whatever the shape of what is in the way, an agent
  * gets round it without a flow field; crowds that meet in a narrow door all get through. */
-#include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,13 +1,16 @@
 /* Marks on actors: the ring, where they lie, what fades, what is refused. */
 #include "support/stage_fixture.h"
 
+#include "deform/morph/morph.h"
 #include "stage/actors/decal.h"
-#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/marks.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "deform/morph/morph.h"
 
 /* A mask in front of the camera, and where a ray through a pixel meets it. */
 typedef struct target {

@@ -2,6 +2,10 @@
 #include "support/stage_fixture.h"
 
 #include "stage/actors/decal_grow.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/marks.h"
+#include "noh/pack.h"
 
 #include <math.h>
 

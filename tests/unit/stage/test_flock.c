@@ -1,11 +1,13 @@
 /* Tests of flock.c: what the source writes, and what is right; and flocks in a crowd. */
-#include "stage/crowd/flock.h"
+#include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_stage.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/crowd/crowd.h"
 #include "support/support.h"
 
 static float length_of(const float v[2])

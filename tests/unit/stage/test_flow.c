@@ -1,12 +1,13 @@
 /* Tests of flow fields (crowd_flow.c): they lead to their goals by short ways past any walls, in bounded
  * slices, and with the same bits however they are built and followed. */
-#include "stage/crowd/crowd.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
 #include "support/support.h"
 
 #define SIDE 32.0f

@@ -6,6 +6,10 @@
 #include <string.h>
 
 #include "core/base/trig.h"
+#include "stage/character/lod.h"
+#include "noh/base.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
 
 #define LEVELS 4u
 #define FRAME 800u

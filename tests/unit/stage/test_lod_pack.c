@@ -11,6 +11,10 @@
 #include "support/clip_bank_fixture.h"
 #include "support/pack_walk.h"
 #include "support/skin_asset.h"
+#include "stage/character/bounds.h"
+#include "stage/character/lod.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #define FOUR 1u /* the skeleton and the mesh of the arm that four joints hold */
 

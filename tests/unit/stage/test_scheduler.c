@@ -1,5 +1,7 @@
 /* Tests of scheduler.c: budgets are kept, and no instance waits for ever. */
-#include "core/base/arena.h"
+#include "stage/character/scheduler.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
 #include "support/support.h"
 
 #include <math.h>

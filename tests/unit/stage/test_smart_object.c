@@ -1,6 +1,7 @@
 /* Smart objects: a million random reservations against a model that is written from the header alone; what objects tell
  * agents to do; and what is refused. */
-#include "stage/crowd/smart_object.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
 
 #include <math.h>
 #include <stdio.h>

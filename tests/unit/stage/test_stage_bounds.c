@@ -7,7 +7,10 @@
 
 #include "convert/model/model_build.h"
 #include "deform/morph/morph.h"
-#include "deform/skin/skin.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #define HALF_ROOT 0.70710678f
 

@@ -3,6 +3,7 @@
 #include "support/stage_fixture.h"
 
 #include <math.h>
+#include "noh/low_motion.h"
 
 #define DAY_TICKS (24LL * 3600 * NOH_TICKS_PER_SECOND)
 #define KEYS_MAX 64u

@@ -8,10 +8,11 @@
 
 #include "motion/anim/root_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/cast/stage_feet.h"
-#include "stage/cast/stage_gaze.h"
-#include "stage/cast/stage_ragdoll.h"
-#include "stage/cast/view.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "support/stage_fixture.h"
 
 static const float places[] = { 100000.0f, -100000.0f, 1000000.0f };

@@ -4,7 +4,12 @@
 
 #include <math.h>
 
-#include "stage/cast/stage_feet.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #define STEPS 14u
 #define FRAMES 420u

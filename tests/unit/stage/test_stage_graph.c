@@ -4,6 +4,8 @@
 #include "support/stage_fixture.h"
 
 #include <math.h>
+#include "noh/graph.h"
+#include "noh/low_motion.h"
 
 #define FRAMES 240u
 

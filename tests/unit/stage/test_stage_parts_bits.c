@@ -7,12 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/clip/pack_clip.h"
-#include "platform.h"
 #include "stage/cast/springs.h"
-#include "stage/cast/stage_feet.h"
-#include "stage/cast/stage_gaze.h"
-#include "stage/cast/stage_ragdoll.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
+#include "platform.h"
 
 #define FRAMES 300u
 #define ACTORS 4u

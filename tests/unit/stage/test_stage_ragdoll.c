@@ -2,7 +2,11 @@
  * many may fall, who is dead; states saved, put back and tampered with; the same bits for any number of jobs. */
 #include "support/stage_fixture.h"
 
-#include "stage/cast/fall.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "support/stage_fixture.h"
+#include "stage/cast/springs.h"
 
 #define SLEEVES 2u
 #define CAST 6u

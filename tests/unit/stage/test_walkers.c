@@ -4,7 +4,13 @@
 
 #include <math.h>
 
-#include "stage/actors/walkers.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
 #define RADIUS 0.25f

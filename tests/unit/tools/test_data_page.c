@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "support/support.h"
+#include "deform/morph/morph.h"
+#include "noh/low_core.h"
 
 typedef struct scene {
     uint8_t *bytes;

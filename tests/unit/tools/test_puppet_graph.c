@@ -10,7 +10,11 @@
 #include <string.h>
 
 #include "file/pack_file.h"
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 #define FRAME 800u /* ticks: 60 Hz */
 #define FRAMES 600u

@@ -9,7 +9,12 @@
 #include "budget/stage_desc_file.h"
 #include "cli/message.h"
 #include "gpu/gpu.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 static noh_file files[2];
 static noh_pack packs[2];

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "byte_buffer.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
 
 void *buffer_append(byte_buffer *b, const void *bytes, size_t count)
 {

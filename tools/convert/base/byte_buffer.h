@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 /* A growing block of bytes. */
 typedef struct byte_buffer {

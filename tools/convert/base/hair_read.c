@@ -6,6 +6,7 @@
 
 #include "convert/base/input_file.h"
 #include "convert/base/text_scan.h"
+#include "noh/base.h"
 
 /* A setting: its numbers, their range, and what they are without it. */
 typedef struct setting {

@@ -5,7 +5,6 @@
 
 #include <stdint.h>
 
-#include "core/base/limits.h"
 #include "convert/base/error.h"
 
 #define HAIR_SPHERES_MAX 3u /* of a text; the skull takes up to five more */

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "convert/base/error.h"
 
 typedef struct ragdoll_line {

@@ -5,8 +5,9 @@
 
 #include "convert/base/input_file.h"
 #include "convert/base/text_scan.h"
-#include "life/face/recipe.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
 
 #define CHANNEL_ANY "blink-left, eye-right-up, lids-down, joy-upper, joy-mouth, PP, aa and so on (noh help FORMATS)"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "bvh_internal.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"

@@ -10,7 +10,6 @@
 #ifndef NOH_CONVERT_CLIPS_JOINT_ORDER_H
 #define NOH_CONVERT_CLIPS_JOINT_ORDER_H
 
-#include "core/pack/format.h"
 #include "convert/clips/raw_clip.h"
 
 /* Put the joints of all sets into that order: in skeletons, in tracks and in the model's skins. To be called once all

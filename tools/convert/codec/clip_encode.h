@@ -1,4 +1,4 @@
-/* clip_encode.h: from a raw clip to the bytes of clip_format.h.
+/* clip_encode.h: from a raw clip to the bytes of low_motion.h.
  *
  * The error is an object-space distance: any point at `shell_cm` from a joint (in the bind pose, in
  * the world's centimetres, whatever scale its nodes have), carried by the whole chain of parents,

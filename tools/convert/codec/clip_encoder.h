@@ -17,6 +17,8 @@
 #include "motion/clip/clip_synth_internal.h"
 #include "clip_encode.h"
 #include "clip_space.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define ENC_FRAMES_MAX NOH_CLIP_SEGMENT_FRAMES_MAX
 #define ENC_PARTS 8     /* errors are measured at eighths of a frame */

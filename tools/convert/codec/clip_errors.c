@@ -4,9 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/clip/clip_cache.h"
-#include "motion/anim/clip_set.h"
 #include "stage/character/joint_lod.h"
+#include "stage/character/time_lod.h"
+#include "stage/character/time_lod_points.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
 #include "convert/clips/joint_order.h"
 #include "convert/model/model_build.h"
 

@@ -1,11 +1,12 @@
 /* clip_errors.h: the error of an encoded clip that is posed with fewer joints, or at lower update rates. The runtime
- * chooses LOD levels by it (lod.h). */
+ * chooses LOD levels by it (low_stage.h). */
 #ifndef NOH_CONVERT_CODEC_CLIP_ERRORS_H
 #define NOH_CONVERT_CODEC_CLIP_ERRORS_H
 
-#include "stage/character/time_lod_points.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_stage.h"
 #include "convert/base/byte_buffer.h"
-#include "core/pack/format.h"
 #include "convert/clips/raw_clip.h"
 
 /* In the skeleton's unit; as noh_clip_header has them. */

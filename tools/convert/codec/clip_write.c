@@ -1,7 +1,9 @@
-/* clip_write.c: writes the bits of clip_format.h, in the order in which clip_open.c and clip_decode.c read them. */
+/* clip_write.c: writes the bits of low_motion.h, in the order in which clip_open.c and clip_decode.c read them. */
 #include <stdlib.h>
 
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "clip_encoder.h"
 
 #define BYTE 8u

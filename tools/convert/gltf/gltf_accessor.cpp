@@ -1,7 +1,7 @@
 /* gltf_accessor.cpp: accessors, dense and sparse, to floats and indices. */
 #include "gltf_internal.h"
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 #include <algorithm>
 #include <cmath>

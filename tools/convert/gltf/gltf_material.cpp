@@ -6,10 +6,10 @@
 #include <cstring>
 #include <memory>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "convert/base/webp_file.h"
 #include "convert/model/surface_kind.h"
-#include "core/pack/format.h"
 
 #include <stb/stb_image.h>
 

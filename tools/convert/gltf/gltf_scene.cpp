@@ -1,7 +1,7 @@
 /* gltf_scene.cpp: the node hierarchy. */
 #include "gltf_internal.h"
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 #include <cmath>
 #include <cstring>

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 namespace gltf
 {

@@ -4,6 +4,7 @@
 
 #include "convert/graph/graph_text.h"
 #include "convert/model/model_build.h"
+#include "noh/format.h"
 
 #define LOOP_OF_CLIP 0u /* noh_loop */
 #define LOOP_ONCE 1u

@@ -3,7 +3,9 @@
 #include <string.h>
 
 #include "convert/base/nearest.h"
-#include "motion/graph/blend_space.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
 #include "graph_internal.h"
 
 #define LOOP_ONCE 1u /* noh_loop */

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/time.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "convert/base/input_file.h"
 #include "graph_internal.h"
 
@@ -12,7 +13,7 @@ static const char *const curves[] = { "linear", "smooth", NULL };
 static const char *const entries[] = { "start", "keep", NULL };
 static const char *const yes_no[] = { "no", "yes", NULL };
 
-#define FLAG_INERTIAL 1u /* NOH_TRANSITION_* of graph.h */
+#define FLAG_INERTIAL 1u /* NOH_TRANSITION_* of low_motion.h */
 #define FLAG_KEEP 2u
 
 static graph_ref ref_of(graph_word word)

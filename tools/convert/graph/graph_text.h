@@ -12,7 +12,7 @@
 
 #include "convert/clips/raw_clip.h"
 #include "convert/model/model.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
 
 /* A name that another statement defines. */
 typedef struct graph_ref {

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/time.h"
+#include "noh/base.h"
+#include "noh/clip.h"
 #include "convert/base/nearest.h"
 
 int graph_fail(graph_reader *r, uint32_t line, const char *format, ...)

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/trig.h"
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
 
 #define GOLDEN_TURN 1640531527u /* 2^32 (1 - 1 / golden ratio) */
 

@@ -2,7 +2,6 @@
 #ifndef NOH_CONVERT_LIGHT_LIGHT_RAYS_H
 #define NOH_CONVERT_LIGHT_LIGHT_RAYS_H
 
-#include "gl/light/sh.h"
 #include "light_surface.h"
 
 /* Directions of a spherical Fibonacci lattice, and the basis in each.

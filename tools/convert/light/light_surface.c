@@ -5,7 +5,10 @@
 #include <string.h>
 
 #include "convert/model/affine.h"
-#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 static int blends(const noh_pack *pack, const noh_submesh *s)
 {

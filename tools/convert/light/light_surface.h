@@ -3,7 +3,7 @@
 #define NOH_CONVERT_LIGHT_LIGHT_SURFACE_H
 
 #include "convert/base/error.h"
-#include "core/mesh/mesh.h"
+#include "noh/pack.h"
 #include "ray_tree.h"
 
 /* In the model space of the mesh. Occluders are the triangles of the full mesh and, where the pack's nodes draw others,

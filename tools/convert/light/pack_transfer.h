@@ -4,6 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "transfer_make.h"
+#include "noh/pack.h"
 
 /* Copy a pack that has no transfers, with one for each mesh after the last mesh. Every other chunk stays as it is. 0,
  * or 1 and a filled error. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/octahedral_internal.h"
+#include "noh/low_gl.h"
 
 void transfer_axis(const float *transfer, const float fallback[3], float axis[3])
 {

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "gl/light/transfer.h"
+#include "noh/light.h"
 
 /* The axis of a lobe: where band 1 points, the mean direction of the light that arrives; `fallback` where there is
  * none. */

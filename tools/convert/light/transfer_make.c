@@ -4,7 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/light/transfer.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/light.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 #include "transfer_fit.h"
 
 /* A vertex that is darker than this in the bind pose takes the form of its lobe from the target that opens it most: a

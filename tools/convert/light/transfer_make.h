@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "light_rays.h"
+#include "noh/pack.h"
 
 #define TRANSFER_RAYS 1024u /* directions over the sphere, half of them in front of a vertex */
 

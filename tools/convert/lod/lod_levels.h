@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "lod.h"
 #include "lod_frames.h"
 

@@ -7,6 +7,7 @@
 #define NOH_CONVERT_MODEL_HAIR_GROW_H
 
 #include "convert/base/hair_read.h"
+#include "noh/base.h"
 
 typedef struct hair_grown {
     float *points; /* [hair_count][point_count][3] */

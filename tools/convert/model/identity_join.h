@@ -1,5 +1,5 @@
 /* identity_join.h: the targets of another file's mesh, of the same vertices, as targets that make people
- * (identity.h): characters are often modelled with the expressions in one file and the people in another.
+ * (face.h): characters are often modelled with the expressions in one file and the people in another.
  */
 #ifndef NOH_CONVERT_MODEL_IDENTITY_JOIN_H
 #define NOH_CONVERT_MODEL_IDENTITY_JOIN_H

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/face.h"
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "convert/model/target_append.h"
-#include "life/face/recipe.h"
 
 #define LINKS_MAX 512u
 #define RIM_MAX 512u

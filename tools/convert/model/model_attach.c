@@ -136,7 +136,7 @@ static int is_joint(const model *m, uint32_t node)
     return 0;
 }
 
-/* As gazes find it (gaze.h). */
+/* As gazes find it (low_life.h). */
 static int is_head(const char *name)
 {
     static const char *const others[] = { "headtop", "headend", "headnub", "forehead", "headlight" };

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
+#include "noh/face.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/model_build.h"
-#include "life/face/recipe.h"
 
 /* ---- extras ---- */
 
@@ -24,7 +24,7 @@ static int is_corrective(const recipe_row *row)
     return row->channel[0] == '+';
 }
 
-/* A rule for the weights of a target (weight_rule.h). */
+/* A rule for the weights of a target (low_life.h). */
 static int is_rule(const recipe_row *row)
 {
     return row->channel[0] == '-' || row->channel[0] == '=' || strncmp(row->channel, "range-", 6) == 0;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
 

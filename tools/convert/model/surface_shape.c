@@ -7,7 +7,7 @@
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "convert/skin/eye_split.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 #define BALL_VERTICES_MIN 24u
 #define BALL_RESIDUAL_MAX 0.1

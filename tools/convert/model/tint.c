@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "core/pack/format.h"
+#include "noh/format.h"
 #include "surface_kind.h"
 
 static int is_of_a_body(uint32_t surface)

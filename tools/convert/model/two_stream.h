@@ -2,7 +2,7 @@
  *
  * The classic method binds two vertex streams and mixes them in the shader. Here the difference of the second mesh from
  * the first becomes a target with the second's name, is encoded and accumulated like any other, and is driven by one
- * weight (ping_pong.h). */
+ * weight (clip.h). */
 #ifndef NOH_CONVERT_MODEL_TWO_STREAM_H
 #define NOH_CONVERT_MODEL_TWO_STREAM_H
 

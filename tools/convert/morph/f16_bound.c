@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 #define WEIGHT_MAX 2.0
 #define HALF_MAX 65504.0

@@ -2,7 +2,7 @@
  * each target, and fills their texels. */
 #include "morph_internal.h"
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 #include <math.h>
 #include <stdio.h>

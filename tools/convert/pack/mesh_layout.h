@@ -8,7 +8,8 @@
 
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 /* One LOD level: how many of the first vertices, and its ranges of indices and submeshes. */
 typedef struct level_layout {

@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/time.h"
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 #include "convert/clips/joint_order.h"
 #include "convert/skin/joint_points.h"
 #include "convert/skin/joint_radius.h"
 #include "convert/clips/loop_check.h"
-#include "core/pack/format.h"
 #include "convert/clips/raw_set.h"
 
 static uint32_t float_count(const raw_clip *clip)

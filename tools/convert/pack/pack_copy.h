@@ -4,7 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/base/error.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 /* Appends what becomes of chunk `index`; its first byte is the next of `out`. */
 typedef void pack_copy_chunk(void *context, uint32_t index, byte_buffer *out);

@@ -2,8 +2,10 @@
 
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "motion/graph/blend_space.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 
 typedef struct packer {
     const graph_def *g;

@@ -4,7 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/graph/graph_text.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 /* Append the bytes of a graph's chunk. Its arrays follow the order of its nodes, so the same graph has the same bytes
  * whatever the order of its text. */

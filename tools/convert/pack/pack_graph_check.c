@@ -2,8 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "motion/bank/clip_bank.h"
-#include "motion/graph/graph_pack.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/graph.h"
+#include "noh/pack.h"
 #include "pack_graph.h"
 
 /* What of a graph is wrong. */

@@ -1,7 +1,7 @@
 /* pack_limits.c: refuses models that exceed the format's limits, and names the limit. */
 #include <stdio.h>
 
-#include "core/pack/format.h"
+#include "noh/base.h"
 #include "pack_write.h"
 
 static int over(uint64_t count, uint64_t limit, const char *what, const char *kind, const char *name,

@@ -4,11 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 #include "convert/morph/f16_bound.h"
 #include "convert/skin/influence_pack.h"
 #include "mesh_layout.h"
-#include "core/pack/format.h"
 #include "pack_skin.h"
 
 /* A unit vector as an octahedral pair in -1 to 1. */

@@ -8,8 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "deform/skin/skin_list.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 #define EDGES 15u   /* that the filter can go on from */
 #define FIXED 0xffu /* of a texel under two rectangles of a target: it stays where it is */

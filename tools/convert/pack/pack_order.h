@@ -4,7 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/base/error.h"
-#include "core/mesh/mesh.h"
+#include "noh/pack.h"
 
 /* The same pack in `out`, of the same size: triangles of a submesh follow each other over their edges, unless it is
  * blended, where their order shows; vertices that the same targets move are in the order in which triangles come to

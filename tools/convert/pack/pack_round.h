@@ -5,6 +5,7 @@
 #include "convert/base/byte_buffer.h"
 #include "convert/base/error.h"
 #include "pack_wire.h"
+#include "noh/pack.h"
 
 #define ROUND_NORMAL_STEPS 255u  /* of a half of the octahedron: half a degree at most */
 #define ROUND_UV_STEPS 4095u     /* of a mesh's range of texture coordinates */

@@ -4,6 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "mesh_layout.h"
+#include "noh/format.h"
 
 /* Append a skin chunk. skeleton: the n-th skeleton chunk. */
 void pack_skin(const model_skin *skin, uint32_t skeleton, byte_buffer *out);

@@ -8,8 +8,10 @@
 
 #include <string.h>
 
-#include "deform/skin/skin_list.h"
-#include "core/mesh/mesh.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 #include "pack_copy.h"
 
 /* ---- which levels ---- */

@@ -4,7 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/base/error.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 /* Which levels stay, as given on the command line. */
 typedef struct strip_levels {

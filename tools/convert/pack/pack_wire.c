@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "core/mesh/mesh.h"
-#include "core/wire/wire.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 #include "core/wire/wire_internal.h"
 #include "wire_like.h"
 

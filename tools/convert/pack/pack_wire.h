@@ -4,7 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/model/model.h"
-#include "noh.h"
+#include "noh/pack.h"
 
 /* A grid that all positions of a mesh lie on: origin + step * a whole number, in float arithmetic. */
 typedef struct wire_grid {

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "core/base/version.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 #include "convert/model/tint.h"
-#include "core/pack/format.h"
 #include "pack_clips.h"
 #include "pack_graph.h"
 #include "pack_mesh.h"

@@ -11,7 +11,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/model/model.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 /* Append the levels of a texture, as blocks where from->etc2 asks for them and they fit: not with `nearest`, nor with a
  * side below 4, nor up to 64 x 64 below 38 dB. Normal maps are ETC2_RGB from 40 dB on, else EAC_RG; what is only cut

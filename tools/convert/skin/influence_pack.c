@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/pack/format.h"
+#include "noh/base.h"
+#include "noh/format.h"
 
 uint32_t influence_count(const model_mesh *mesh, uint32_t vertex)
 {

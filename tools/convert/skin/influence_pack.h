@@ -3,7 +3,7 @@
 #ifndef NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 #define NOH_CONVERT_SKIN_INFLUENCE_PACK_H
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "convert/model/model.h"
 
 typedef struct influence_list {

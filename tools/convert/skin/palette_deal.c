@@ -6,7 +6,7 @@
 
 #include "influence_pack.h"
 #include "convert/model/model_build.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
 
 int palette_deal_begin(palette_deal *deal, uint32_t joint_count, uint32_t limit)
 {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "convert/clips/model_clips.h"
 #include "mesh_join.h"
 #include "convert/model/model_build.h"

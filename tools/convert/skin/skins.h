@@ -10,7 +10,7 @@ struct model_clips; /* clips/model_clips.h */
 
 typedef struct skin_options {
     uint32_t influences; /* the most per vertex, 1 to MODEL_INFLUENCES_MAX; 0: NOH_INFLUENCES_MAX. More than that are
-                          listed for the CPU (skin_list.h) */
+                          listed for the CPU (deform.h) */
     uint32_t palette;    /* joints that one draw may use; 0: as many as the format holds */
     const char *const
         *dual_quaternion; /* [dual_quaternion_count] meshes to skin by dual quaternions: names, or "all" */

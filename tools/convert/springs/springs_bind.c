@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 #include "springs_chain.h"

@@ -4,7 +4,7 @@
 
 #include "convert/clips/raw_set.h"
 #include "convert/springs/springs_read.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 /* Of one skeleton. */
 typedef struct set_springs {

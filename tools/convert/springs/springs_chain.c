@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/quat.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 #define SHORTEST 1e-5f /* bones below this have no direction, in the skeleton's unit */
 

@@ -3,6 +3,7 @@
 #define NOH_CONVERT_SPRINGS_SPRINGS_CHAIN_H
 
 #include "convert/springs/springs_bind.h"
+#include "noh/format.h"
 
 /* A way down a skeleton, each joint below the one before. */
 typedef struct springs_path {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "convert/base/input_file.h"
 #include "convert/base/text_scan.h"
 

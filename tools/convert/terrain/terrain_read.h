@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "convert/base/error.h"
-#include "life/physics/world.h"
+#include "noh/body.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,7 +4,7 @@
 #include <limits.h>
 #include <string.h>
 
-#include "core/pack/etc2.h"
+#include "noh/low_core.h"
 
 /* clang-format off */
 static const int8_t tables[16][8] = {

@@ -2,7 +2,8 @@
 
 #include <limits.h>
 
-#include "core/pack/etc2.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 /* Modes T and H are tried where the others are off by more than this in the mean of texels and channels: 41 dB. */
 #define GOOD_ENOUGH (16u * 3u * 5u)

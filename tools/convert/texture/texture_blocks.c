@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "etc2_block.h"
-#include "core/pack/etc2.h"
-#include "core/pack/pack.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 static const uint8_t *texel_at(const texture_image *level, uint32_t x, uint32_t y)
 {

@@ -10,7 +10,7 @@
 #define NOH_CONVERT_TEXTURE_TEXTURE_BLOCKS_H
 
 #include "convert/base/byte_buffer.h"
-#include "core/pack/format.h"
+#include "noh/format.h"
 
 /* A level: rgba[height][width][4]. */
 typedef struct texture_image {

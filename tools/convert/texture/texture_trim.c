@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/hash.h"
-#include "core/pack/format.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
 
 #define CELLS_MAX 64u          /* columns, and rows: bits of a word */
 #define MARGIN_TEXELS 4.0      /* of the smallest map */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "convert/base/image_file.h"
 #include "convert/model/model_build.h"
 #include "wrinkle_creases.h"

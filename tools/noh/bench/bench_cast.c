@@ -16,7 +16,17 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "gl/draw/gl_skin_internal.h"
-#include "stage/cast/view.h"
+#include "stage/character/lod.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
 
 #define SAMPLE_NS 2e7

@@ -6,6 +6,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "deform/morph/morph.h"
 
 typedef struct check {
     bench_stage *stage;

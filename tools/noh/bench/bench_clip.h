@@ -7,6 +7,8 @@
 #define NOH_NOH_BENCH_BENCH_CLIP_H
 
 #include "bench_job.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
 
 #define BENCH_CLIPS_MAX 5u
 #define BENCH_INSTANCES 100u
@@ -41,7 +43,7 @@ typedef struct bench_cache {
 int bench_clip_set_open(bench_clip_set *set, const bench_job *job);
 void bench_clip_set_close(bench_clip_set *set);
 
-/* Another set, of the first clip alone, halved (clip_codec.h) and without keys; count 0 where the clip has less
+/* Another set, of the first clip alone, halved (low_motion.h) and without keys; count 0 where the clip has less
  * than 100 frames a second. */
 int bench_clip_set_halve(const bench_clip_set *set, bench_clip_set *halved);
 

@@ -5,7 +5,8 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "life/face/ear.h"
+#include "noh/face.h"
+#include "noh/noh_gl.h"
 
 #define SAMPLE_NS 1e7
 #define RATE 16000u

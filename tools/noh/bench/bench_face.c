@@ -6,6 +6,10 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/pack.h"
 
 #define SAMPLE_NS 5e6
 #define FACES 1000u

@@ -7,7 +7,9 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "life/hair/hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #define HAIRS 48u
 #define POINTS 12u

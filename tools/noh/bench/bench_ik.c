@@ -1,4 +1,4 @@
-/* bench_ik.c: rows sim/two-bone: a leg by the closed form of ik.h against the book's, which takes arc cosines and
+/* bench_ik.c: rows sim/two-bone: a leg by the closed form of body.h against the book's, which takes arc cosines and
  * makes rotations of axes and angles; and sim/feet: both feet of the first pack's figure on a slope, in two-bone
  * solves.
  */
@@ -8,8 +8,12 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "life/reach/feet.h"
-#include "life/reach/ik.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #define SOLVES BENCH_TWO_BONE_SOLVES
 #define SAMPLE_NS 5e6

@@ -35,8 +35,11 @@
 #ifndef NOH_NOH_BENCH_BENCH_JOB_H
 #define NOH_NOH_BENCH_BENCH_JOB_H
 
-#include "gl/device/gl_program.h"
-#include "gl/device/gl_timer.h"
+#include "noh/deform.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gpu/gpu.h"
 #include "file/pack_file.h"
 
@@ -238,7 +241,7 @@ int bench_springs(bench_job *job);
 int bench_hair(bench_job *job);
 int bench_ik(bench_job *job);
 
-/* A cell of so many two-bone solves (ik.h): what springs and hair are measured against. self: unused */
+/* A cell of so many two-bone solves (body.h): what springs and hair are measured against. self: unused */
 #define BENCH_TWO_BONE_SOLVES 1000u
 void bench_two_bone(void *self, uint32_t frame);
 int bench_agents(bench_job *job);

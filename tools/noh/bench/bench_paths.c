@@ -5,7 +5,12 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph/morph_finish.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 typedef struct path_method {
     bench_stage *stage;

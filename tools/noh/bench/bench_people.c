@@ -12,11 +12,17 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "motion/clip/pack_clip.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/crowd.h"
+#include "noh/gl_device.h"
+#include "noh/low_life.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "crowd/crowd_scene.h"
 #include "crowd/place_people.h"
-#include "stage/cast/view.h"
-#include "gl/stage/stage_gl.h"
 
 #define BODIES 1000u
 #define BODIES_QUICK 50u

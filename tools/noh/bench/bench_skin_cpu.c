@@ -7,6 +7,8 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "deform/skin/skin.h"
+#include "noh/low_core.h"
 
 #define SAMPLE_NS 5e6
 #define OUT_FLOATS 10u /* position, normal, tangent */

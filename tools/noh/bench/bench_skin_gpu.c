@@ -4,11 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/pose/local_to_model.h"
-#include "motion/clip/pack_clip.h"
-#include "core/base/quat.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "bench_job.h"
-#include "deform/skin/skin.h"
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7

@@ -7,8 +7,9 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "life/reach/ik.h"
-#include "life/physics/spring.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 #define CHARACTERS 10u
 #define CHAINS 10u /* of a character */

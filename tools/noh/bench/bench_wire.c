@@ -7,7 +7,7 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "convert/pack/pack_wire.h"
-#include "core/wire/wire.h"
+#include "noh/pack.h"
 
 #define SAMPLE_NS 2e7
 #define ZSTD_LEVEL 19

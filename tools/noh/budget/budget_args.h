@@ -4,6 +4,7 @@
 
 #include "cli/args.h"
 #include "draw/figure.h"
+#include "noh/gl_device.h"
 
 /* Options that are whole numbers. */
 enum { ACTORS, NEAR, MIDDLE, FINEST, BYTES, CPU_BYTES, GPU_BYTES, HEIGHT, JOBS, RAGDOLLS, COUNT_OPTIONS };

@@ -3,7 +3,7 @@
 #define NOH_NOH_BUDGET_BUDGET_WHY_H
 
 #include "cli/json.h"
-#include "noh_gl.h"
+#include "noh/noh_gl.h"
 
 void budget_why_print(const noh_gl_morph_plan *plan);
 void budget_why_json(json *j, const noh_gl_morph_plan *plan);

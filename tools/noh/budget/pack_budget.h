@@ -3,6 +3,10 @@
 #define NOH_NOH_BUDGET_PACK_BUDGET_H
 
 #include "draw/figure.h"
+#include "noh/base.h"
+#include "noh/noh.h"
+#include "noh/gl_device.h"
+#include "noh/noh_gl.h"
 
 /* One level of everything: bytes to load it and all coarser ones, and the work of a frame at it. */
 typedef struct level_cost {

@@ -6,6 +6,8 @@
 
 #include "cli/json.h"
 #include "cli/message.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 /* ---- planning ---- */
 

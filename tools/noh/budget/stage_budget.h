@@ -2,8 +2,8 @@
 #ifndef NOH_NOH_BUDGET_STAGE_BUDGET_H
 #define NOH_NOH_BUDGET_STAGE_BUDGET_H
 
-#include "noh.h"
-#include "noh_gl.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
 
 typedef struct stage_budget {
     const char *subject; /* the pack or the text that the stage is of, for messages */

@@ -3,8 +3,10 @@
 #define NOH_NOH_BUDGET_STAGE_DESC_FILE_H
 
 #include "file/pack_file.h"
-#include "noh.h"
-#include "stage/cast/stage_ragdoll.h"
+#include "noh/base.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
 #define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 2u))

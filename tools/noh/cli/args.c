@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 #include "message.h"
 #include "convert/base/nearest.h"
 

@@ -3,7 +3,7 @@
 #ifndef NOH_NOH_CLI_MESSAGE_H
 #define NOH_NOH_CLI_MESSAGE_H
 
-#include "core/base/result.h"
+#include "noh/base.h"
 
 #define EXIT_FAILED 1 /* the input or the check failed */
 #define EXIT_USAGE 2  /* the command line is wrong */

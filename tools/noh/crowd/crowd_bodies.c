@@ -6,7 +6,12 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "stage/cast/view.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define NEAREST_M 1.5f
 #define HALF_ANGLE_RAD 0.68f /* a little more than a 16 : 9 view shows */

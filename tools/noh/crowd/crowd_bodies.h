@@ -1,4 +1,4 @@
-/* crowd_bodies.h: bodies of one pack, spread over a field, on a stage (stage.h): what `noh crowd` draws and `noh
+/* crowd_bodies.h: bodies of one pack, spread over a field, on a stage (noh.h): what `noh crowd` draws and `noh
  * bench` times. Each has a place, a clip, a phase and a playback speed of its own, and a clip of the face over it.
  *
  *   crowd_open      plan, make, place
@@ -16,7 +16,9 @@
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "crowd_hair.h"
-#include "gl/stage/stage_gl.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define CROWD_FIELD_M 100.0f /* radius of the field around the first camera */
 

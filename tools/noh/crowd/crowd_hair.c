@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/low_life.h"
 
 int crowd_hair_plan(crowd_hair *h, const pack_file *file, uint32_t kind, uint32_t skeleton, uint32_t actors)
 {

@@ -9,7 +9,11 @@
 
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
-#include "gl/stage/stage_hairs.h"
+#include "noh/body.h"
+#include "noh/gl_device.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define CROWD_HAIR_NEAR 16u /* bodies whose hair moves */
 

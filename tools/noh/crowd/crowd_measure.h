@@ -3,6 +3,7 @@
 #define NOH_NOH_CROWD_CROWD_MEASURE_H
 
 #include "crowd_scene.h"
+#include "noh/crowd.h"
 
 /* Agents by cells, found anew in each step. */
 typedef struct crowd_meter {

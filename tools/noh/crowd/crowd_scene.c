@@ -7,7 +7,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "core/base/trig.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
 #include "cli/message.h"
 #include "convert/base/nearest.h"
 #include "crowd_measure.h"

@@ -3,7 +3,7 @@
 #ifndef NOH_NOH_CROWD_CROWD_SCENE_H
 #define NOH_NOH_CROWD_CROWD_SCENE_H
 
-#include "stage/crowd/crowd.h"
+#include "noh/crowd.h"
 
 typedef struct crowd_scene_options {
     const char *name; /* circle250, door200, dense1000, open10000, maze400, stalls600 */

@@ -3,6 +3,7 @@
 #define NOH_NOH_CROWD_CROWD_TEST_H
 
 #include "crowd_scene.h"
+#include "noh/body.h"
 
 /* dump: a .csv of every agent in every step, or NULL. Returns an exit code. */
 int crowd_test_run(const crowd_scene_options *options, const char *dump, int as_json);

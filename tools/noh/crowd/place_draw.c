@@ -7,7 +7,8 @@
 
 #include "cli/message.h"
 #include "gpu/canvas.h"
-#include "stage/cast/view.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define SHOWN_FRAMES 24u /* before the picture, so that feet and levels have settled */
 #define RADIAN 0.017453292519943295

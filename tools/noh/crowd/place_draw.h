@@ -3,6 +3,7 @@
 #define NOH_NOH_CROWD_PLACE_DRAW_H
 
 #include "place_scene.h"
+#include "noh/noh.h"
 
 /* What was drawn. */
 typedef struct place_drawn {

@@ -1,11 +1,12 @@
 /* place_file.h: a place for a crowd, as text (noh help FORMATS): walls, posts, steps, where agents enter and walk to,
- * and what they use (smart_object.h). */
+ * and what they use (crowd.h). */
 #ifndef NOH_NOH_CROWD_PLACE_FILE_H
 #define NOH_NOH_CROWD_PLACE_FILE_H
 
 #include "convert/base/error.h"
-#include "stage/crowd/crowd.h"
-#include "stage/crowd/smart_object.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
 
 #define PLACE_SPAWNS_MAX 64u
 #define PLACE_GOALS_MAX 64u

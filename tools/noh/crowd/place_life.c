@@ -6,7 +6,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "core/base/hash.h"
+#include "noh/base.h"
+#include "noh/crowd.h"
+#include "noh/low_core.h"
 #include "cli/message.h"
 #include "place_people.h"
 

@@ -5,6 +5,7 @@
 
 #include "crowd_measure.h"
 #include "place_file.h"
+#include "noh/crowd.h"
 
 typedef struct place_life place_life;
 

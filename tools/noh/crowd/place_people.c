@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/low_life.h"
 
 #define REACH_M 2.5f
 #define CELL_M 0.4f

@@ -4,10 +4,11 @@
 #define NOH_NOH_CROWD_PLACE_PEOPLE_H
 
 #include "file/pack_file.h"
-#include "noh.h"
+#include "noh/body.h"
+#include "noh/crowd.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "place_file.h"
-#include "stage/cast/stage_ragdoll.h"
-#include "stage/actors/walkers.h"
 
 #define PLACE_NEAR 48u     /* whose feet are put on the ground */
 #define PLACE_RAGDOLLS 16u /* who falls at once, where something makes them */

@@ -15,9 +15,10 @@
 #include "gpu/gpu.h"
 #include "place_life.h"
 #include "place_people.h"
-#include "gl/stage/backdrop.h"
-#include "gl/stage/stage_gl.h"
-#include "gl/stage/stage_terrain.h"
+#include "noh/crowd.h"
+#include "noh/gl_device.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 /* A push: who is within `radius` metres of x, z then falls, away from there. */
 typedef struct place_hit {

@@ -5,7 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
 #include "tool_shaders.gen.h"
 #include "cli/message.h"
 

@@ -5,6 +5,8 @@
 
 #include "camera.h"
 #include "gpu/gpu.h"
+#include "noh/clip.h"
+#include "noh/low_gl.h"
 
 typedef struct bones {
     gpu *g;

@@ -2,7 +2,7 @@
 #ifndef NOH_NOH_DRAW_CAMERA_H
 #define NOH_NOH_DRAW_CAMERA_H
 
-#include "noh_gl.h"
+#include "noh/low_gl.h"
 
 typedef struct bounds {
     double low[3], high[3];

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/deform.h"
+#include "noh/low_core.h"
 
 const char *const data_layer_names[DATA_LAYERS] = { "position", "normal", "tangent" };
 

@@ -9,7 +9,7 @@
 #ifndef NOH_NOH_DRAW_DATA_PAGE_H
 #define NOH_NOH_DRAW_DATA_PAGE_H
 
-#include "noh.h"
+#include "noh/pack.h"
 
 #define DATA_LAYERS 3u
 

@@ -2,7 +2,7 @@
 #ifndef NOH_NOH_DRAW_DEBUG_KIND_H
 #define NOH_NOH_DRAW_DEBUG_KIND_H
 
-#include "noh_gl.h"
+#include "noh/noh_gl.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -27,12 +27,16 @@
 #include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
-#include "gl/stage/backdrop.h"
-#include "gl/stage/stage_blob.h"
-#include "gl/stage/stage_floor.h"
-#include "gl/stage/stage_decal.h"
-#include "gl/stage/stage_patch.h"
-#include "gl/stage/stage_hair.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/marks.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */
@@ -57,7 +61,7 @@ typedef struct figure_desc {
     int weight_rules;     /* 1: rules of the pack for weights are kept, whoever says them */
     uint32_t level;       /* the finest LOD level that is there, as `noh info` counts them */
     int by_error;         /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
-    noh_lod_settings lod; /* by which they are chosen; zeros: as lod.h has them */
+    noh_lod_settings lod; /* by which they are chosen; zeros: as low_stage.h has them */
     uint32_t actor_count; /* of each kind; 0: 1. Only the first of each is there */
     uint32_t track_count; /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
     const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */

@@ -9,7 +9,16 @@
 #include "cli/args.h"
 #include "cli/message.h"
 #include "figure.h"
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "tool_shaders.gen.h"
 
 #define STEP_HEIGHT 0.17f /* metres */

@@ -4,7 +4,10 @@
 #define NOH_NOH_DRAW_FIGURE_BODY_H
 
 #include "gpu/gpu.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 #include "file/ground_file.h"
 

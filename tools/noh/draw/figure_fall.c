@@ -4,7 +4,12 @@
 
 #include "cli/message.h"
 #include "figure.h"
-#include "stage/cast/fall.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #define STEP_TICKS (NOH_TICKS_PER_SECOND / 60u)
 #define PUSH_STEP 30 /* half a second */

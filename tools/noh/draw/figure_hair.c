@@ -5,6 +5,7 @@
 
 #include "cli/message.h"
 #include "figure.h"
+#include "noh/low_life.h"
 
 int figure_add_hair(figure *f)
 {

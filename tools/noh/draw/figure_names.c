@@ -4,7 +4,11 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "motion/clip/pack_clip.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "convert/base/nearest.h"
 #include "figure.h"
 

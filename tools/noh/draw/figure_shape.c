@@ -4,8 +4,13 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "deform/skin/dual_quaternion.h"
-#include "deform/skin/skin.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "figure.h"
 
 /* ---- meshes and levels ---- */

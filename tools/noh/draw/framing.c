@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/low_core.h"
 
 #define DIRECTIONS 26u
 

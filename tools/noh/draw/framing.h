@@ -12,6 +12,7 @@
 #define NOH_NOH_DRAW_FRAMING_H
 
 #include "figure.h"
+#include "noh/low_gl.h"
 
 #define FRAMING_RATE_HZ 15.0 /* how often a clip is measured */
 

@@ -4,6 +4,9 @@
 
 #include "camera.h"
 #include "gpu/gpu.h"
+#include "noh/noh.h"
+#include "noh/light.h"
+#include "noh/noh_gl.h"
 
 typedef struct light_options {
     const char *light, *tonemap, *shadow, *transfer, *background; /* of OPTIONS_LIGHT; NULL: their defaults */

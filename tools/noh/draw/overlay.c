@@ -6,7 +6,12 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "tool_shaders.gen.h"
 
 #define NEARER 1e-4f        /* of the depth range: edges in front of the surface that they bound */

@@ -10,6 +10,7 @@
 #define NOH_NOH_DRAW_OVERLAY_H
 
 #include "figure.h"
+#include "noh/low_gl.h"
 
 #ifdef __cplusplus
 extern "C" {

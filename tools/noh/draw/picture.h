@@ -7,6 +7,8 @@
 #include "figure.h"
 #include "gpu/canvas.h"
 #include "overlay.h"
+#include "noh/base.h"
+#include "noh/low_gl.h"
 
 typedef struct picture {
     figure figure;

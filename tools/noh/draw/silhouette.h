@@ -6,6 +6,7 @@
 #define NOH_NOH_DRAW_SILHOUETTE_H
 
 #include "figure.h"
+#include "noh/low_gl.h"
 
 typedef struct silhouette {
     double inside; /* 0..1, of what is covered: the share in the picture; 0 where some is behind the camera */

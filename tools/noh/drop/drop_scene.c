@@ -8,7 +8,12 @@
 #include <string.h>
 #include <time.h>
 
-#include "core/base/quat.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
 #include "cli/message.h"
 
 #define FRICTION 0.6f

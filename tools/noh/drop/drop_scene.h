@@ -3,7 +3,8 @@
 #define NOH_NOH_DROP_DROP_SCENE_H
 
 #include "file/pack_file.h"
-#include "noh.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
 
 typedef struct drop_scene {
     noh_ragdoll_rig rig;

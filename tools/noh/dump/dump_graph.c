@@ -1,6 +1,7 @@
 #include "dump_graph.h"
 
 #include <string.h>
+#include "noh/low_motion.h"
 
 /* A name as a word of its own: in quotes where it would not be read as one. */
 static void put_text(byte_buffer *out, const char *text)

@@ -3,7 +3,7 @@
 #define NOH_NOH_DUMP_DUMP_GRAPH_H
 
 #include "convert/base/byte_buffer.h"
-#include "motion/graph/graph_pack.h"
+#include "noh/graph.h"
 
 /* Append the text; built again, it gives the same chunk. */
 void dump_graph(byte_buffer *out, const noh_pack_graph *g);

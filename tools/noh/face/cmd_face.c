@@ -7,9 +7,11 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
-#include "life/face/corrective.h"
-#include "life/face/recipe.h"
-#include "life/face/weight_rule.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 #include "file/pack_file.h"
 
 #define LINKS_MAX 4096u

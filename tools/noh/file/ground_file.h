@@ -4,6 +4,7 @@
 
 #include "convert/terrain/terrain_read.h"
 #include "pack_file.h"
+#include "noh/body.h"
 
 typedef struct ground_file {
     noh_field field; /* metres; points into the rest */

@@ -9,6 +9,7 @@
 #include "cli/message.h"
 #include "convert/base/image_file.h"
 #include "convert/base/input_file.h"
+#include "noh/low_gl.h"
 
 #define PI 3.14159265358979323846
 #define WIDTH_MAX 1024u /* wider ones are averaged: a texel of a reflection sees 4 of them in a row */

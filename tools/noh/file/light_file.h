@@ -4,7 +4,7 @@
 #ifndef NOH_NOH_FILE_LIGHT_FILE_H
 #define NOH_NOH_FILE_LIGHT_FILE_H
 
-#include "noh.h"
+#include "noh/light.h"
 
 typedef struct light_file {
     uint32_t width, height;

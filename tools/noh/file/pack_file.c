@@ -4,7 +4,10 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "core/wire/wire.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 int pack_file_open(pack_file *file, const char *path)
 {

@@ -2,7 +2,9 @@
 #ifndef NOH_NOH_FILE_PACK_FILE_H
 #define NOH_NOH_FILE_PACK_FILE_H
 
-#include "noh.h"
+#include "noh/clip.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 #include "platform.h"
 
 typedef struct pack_file {

@@ -11,7 +11,7 @@
 
 #include <stddef.h>
 
-#include "core/base/limits.h"
+#include "noh/base.h"
 
 typedef enum weights_kind {
     WEIGHTS_END,

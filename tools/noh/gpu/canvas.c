@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "gl/device/gl_api.h"
 
 #define SAMPLES 4
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/low_core.h"
 
 /* For tests and debuggers: NOH_GL_DEBUG=1 ends the program at the first GL error. */
 static void GL_APIENTRY stop_at_error(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,

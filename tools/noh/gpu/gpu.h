@@ -2,7 +2,8 @@
 #ifndef NOH_NOH_GPU_GPU_H
 #define NOH_NOH_GPU_GPU_H
 
-#include "noh_gl.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 #include "platform.h"
 
 typedef struct gpu {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "noh/low_gl.h"
 
 int parse_path(const char *text, noh_morph_path *path)
 {

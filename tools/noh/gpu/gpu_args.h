@@ -3,7 +3,7 @@
 #define NOH_NOH_GPU_GPU_ARGS_H
 
 #include "cli/args.h"
-#include "noh_gl.h"
+#include "noh/noh_gl.h"
 
 /* Of --path, --accumulate and --instances. Return 0, or EXIT_USAGE after printing an error. */
 int parse_path(const char *text, noh_morph_path *path);

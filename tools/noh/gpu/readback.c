@@ -6,7 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gpu.h"
 #include "tool_shaders.gen.h"
 #include "cli/message.h"

@@ -3,6 +3,9 @@
 #define NOH_NOH_GPU_READBACK_H
 
 #include "gpu.h"
+#include "noh/pack.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* Programs and a target that read results back; not counted in the ledger. */
 typedef struct readback {

@@ -7,6 +7,7 @@
 #include "gpu.h"
 #include "cli/message.h"
 #include "readback.h"
+#include "noh/low_core.h"
 
 /* The shader variant that draws such a mesh, with transform feedback; the last one is cached. */
 static int use_variant(readback *r, noh_gl_variant_key key)

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/base/version.h"
+#include "noh/base.h"
 #include "cli/message.h"
 #include "cli/verbs.h"
 

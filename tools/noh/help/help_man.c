@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/base/version.h"
+#include "noh/base.h"
 #include "help.h"
 #include "cli/verbs.h"
 

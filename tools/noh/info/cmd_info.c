@@ -14,7 +14,13 @@
 #include "verify/half_bound.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
-#include "deform/skin/skin_list.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
+#include "noh/pack.h"
 
 static uint64_t target_bytes(const noh_mesh_header *h)
 {

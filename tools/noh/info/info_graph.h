@@ -4,7 +4,6 @@
 
 #include "cli/json.h"
 #include "file/pack_file.h"
-#include "motion/graph/graph_pack.h"
 
 /* Counts, parameters, and the nodes as a tree, the root first. Return an exit code: a broken graph is an error. */
 int info_print_graph(const pack_file *file, uint32_t index);

@@ -2,7 +2,11 @@
 
 #include <stdio.h>
 
-#include "gl/stage/stage_hair.h"
+#include "noh/body.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 void info_print_hair(const noh_pack *pack)
 {

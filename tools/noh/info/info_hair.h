@@ -3,7 +3,7 @@
 #define NOH_NOH_INFO_INFO_HAIR_H
 
 #include "cli/json.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 /* Nothing where there is none. */
 void info_print_hair(const noh_pack *pack);

@@ -3,7 +3,12 @@
 #include <stdio.h>
 
 #include "cli/message.h"
-#include "stage/cast/springs.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_motion.h"
+#include "noh/modules.h"
+#include "noh/pack.h"
 
 void info_print_levels(const noh_pack *pack, uint32_t skeleton)
 {

@@ -3,7 +3,8 @@
 #define NOH_NOH_INFO_INFO_JOINTS_H
 
 #include "cli/json.h"
-#include "noh.h"
+#include "noh/clip.h"
+#include "noh/pack.h"
 
 /* Print the end of a skeleton's line, and the lines below a clip's; or add members to the open object. */
 void info_print_levels(const noh_pack *pack, uint32_t skeleton);

@@ -3,7 +3,10 @@
 #include <stdio.h>
 
 #include "convert/texture/texture_blocks.h"
-#include "noh_gl.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 
 #define MAPS 9u
 #define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)

@@ -3,7 +3,7 @@
 #define NOH_NOH_INFO_INFO_MATERIALS_H
 
 #include "cli/json.h"
-#include "noh.h"
+#include "noh/pack.h"
 
 void info_print_materials(const noh_pack *pack);
 /* "material_list": an array of objects. */

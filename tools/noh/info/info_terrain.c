@@ -2,7 +2,9 @@
 
 #include <stdio.h>
 
-#include "life/physics/terrain.h"
+#include "noh/body.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 
 /* The lowest and the highest of its heights, metres. */
 static void range_of(const noh_field *f, double range[2])

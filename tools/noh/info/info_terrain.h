@@ -3,7 +3,7 @@
 #define NOH_NOH_INFO_INFO_TERRAIN_H
 
 #include "cli/json.h"
-#include "core/pack/pack.h"
+#include "noh/pack.h"
 
 void info_print_terrain(const noh_pack *pack);
 void info_json_terrain(json *j, const noh_pack *pack);

@@ -1,6 +1,7 @@
 #include "info_transfer.h"
 
 #include <stdio.h>
+#include "noh/light.h"
 
 static uint32_t record_bytes(const noh_transfer *t)
 {

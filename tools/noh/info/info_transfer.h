@@ -3,7 +3,7 @@
 #define NOH_NOH_INFO_INFO_TRANSFER_H
 
 #include "cli/json.h"
-#include "noh.h"
+#include "noh/pack.h"
 
 /* A line; nothing where there is none. */
 void info_print_transfer(const noh_mesh *mesh);

@@ -4,7 +4,8 @@
 #define NOH_NOH_LIGHT_LIGHT_MEASURE_H
 
 #include "convert/light/light_rays.h"
-#include "gl/light/transfer.h"
+#include "noh/light.h"
+#include "noh/pack.h"
 
 /* Random lights: a gradient and one to three lamps, soft (about 60 degrees wide) or sharp (about 25). */
 #define LIGHT_KINDS 2u

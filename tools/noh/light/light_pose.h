@@ -3,7 +3,7 @@
 #define NOH_NOH_LIGHT_LIGHT_POSE_H
 
 #include "cli/args.h"
-#include "core/mesh/mesh.h"
+#include "noh/pack.h"
 
 /* weights[target_count] of a mesh. Without assignments ("NAME=V", as --weight takes them): the targets whose names
  * speak of an open jaw or mouth, of brows that go down, of mouth corners that are pulled or smile, at 1; if none does,

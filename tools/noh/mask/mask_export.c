@@ -7,7 +7,10 @@
 #include "convert/sources.h"
 #include "convert/wrinkle/wrinkle_make.h"
 #include "file/pack_file.h"
-#include "core/pack/etc2.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
 
 static int ends_in(const char *path, const char *const *endings, size_t count)
 {

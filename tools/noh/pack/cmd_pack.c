@@ -13,7 +13,8 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
 #include "file/pack_file.h"
-#include "core/wire/wire.h"
+#include "noh/base.h"
+#include "noh/pack.h"
 
 typedef struct pack_args {
     const char *pack, *output;

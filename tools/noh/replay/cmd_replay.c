@@ -10,6 +10,7 @@
 #include "file/pack_file.h"
 #include "session.h"
 #include "session_text.h"
+#include "noh/low_core.h"
 
 typedef struct replay_args {
     const char *pack, *input, *output;

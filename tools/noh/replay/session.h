@@ -11,7 +11,10 @@
 #ifndef NOH_NOH_REPLAY_SESSION_H
 #define NOH_NOH_REPLAY_SESSION_H
 
-#include "noh.h"
+#include "noh/base.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #define SESSION_ACTORS_MAX 64u
 #define SESSION_FRAMES_MAX 1000000u

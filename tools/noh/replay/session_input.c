@@ -3,7 +3,11 @@
 #include <string.h>
 
 #include "session.h"
-#include "stage/cast/fall.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 
 const session_form session_forms[SESSION_WHATS] = {
     { "spawn", 0, 3 },     { "despawn", 0, 0 }, { "play", 1, 3 },   { "stop", 0, 2 }, { "graph", 1, 2 },

@@ -3,9 +3,14 @@
 #include <string.h>
 
 #include "session.h"
-#include "stage/cast/stage_face.h"
-#include "stage/cast/stage_ragdoll.h"
-#include "stage/cast/view.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/deform.h"
+#include "noh/low_core.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 #define VERTEX_FRAMES 30u /* one actor's vertices are hashed every so many frames */
 

@@ -1,9 +1,10 @@
-/* sheet_faces.h: people by seed (identity.h), one a tile. */
+/* sheet_faces.h: people by seed (face.h), one a tile. */
 #ifndef NOH_NOH_SHEET_SHEET_FACES_H
 #define NOH_NOH_SHEET_SHEET_FACES_H
 
 #include "draw/figure.h"
-#include "life/face/identity.h"
+#include "noh/face.h"
+#include "noh/pack.h"
 
 typedef struct sheet_faces {
     noh_identity identity;

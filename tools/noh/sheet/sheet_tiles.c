@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/ping_pong.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "cli/message.h"
 
 #define AROUND_S 0.3 /* shown before and after a transition */

@@ -6,6 +6,7 @@
 #include "draw/figure.h"
 #include "sheet_faces.h"
 #include "sheet_wrinkles.h"
+#include "noh/base.h"
 
 #define SHEET_FALL_S 6.0    /* a push, a fall, and time to get up */
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */

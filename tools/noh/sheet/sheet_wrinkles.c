@@ -5,8 +5,11 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/recipe.h"
-#include "core/mesh/wrinkles.h"
+#include "noh/base.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 #include "sheet_lods.h"
 
 #define LINKS_MAX 1024u

@@ -3,6 +3,7 @@
 #define NOH_NOH_SHEET_SHEET_WRINKLES_H
 
 #include "draw/figure.h"
+#include "noh/pack.h"
 
 #define SHEET_WRINKLE_ROWS 5u
 #define SHEET_WRINKLE_FACES 5u /* emotions, where no targets are asked for */

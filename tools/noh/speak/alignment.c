@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/speech.h"
+#include "noh/face.h"
 #include "warp.h"
 
 #define TOP_HZ 7600.0f

@@ -5,11 +5,10 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/amplitude.h"
-#include "life/face/ear.h"
+#include "noh/face.h"
 
 #define RATE 16000u
-#define WINDOW_FRAMES (SPEECH_TRACK_RATE / NOH_AMPLITUDE_RATE) /* of a track, in a window of amplitude.h */
+#define WINDOW_FRAMES (SPEECH_TRACK_RATE / NOH_AMPLITUDE_RATE) /* of a track, in a window of face.h */
 
 typedef struct listening {
     int16_t *samples;

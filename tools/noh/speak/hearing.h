@@ -7,7 +7,7 @@
 
 typedef struct hearing {
     int live;      /* in one go, as a program hears a microphone; else what is learnt of the voice is known at once */
-    int amplitude; /* by loudness alone (amplitude.h), not by the ear (ear.h) */
+    int amplitude; /* by loudness alone (face.h), not by the ear (face.h) */
 } hearing;
 
 /* Fills `said` with runs of one shape, each as a phone that stands for its shape, and `track` with frames. Prints an

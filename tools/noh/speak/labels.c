@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/speech.h"
+#include "noh/face.h"
 
 #define RATE 100.0
 #define NEAR_S 0.15

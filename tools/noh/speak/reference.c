@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/speech.h"
+#include "noh/face.h"
 
 static int is_pause(const synthesis *s, size_t phone)
 {

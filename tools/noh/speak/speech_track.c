@@ -280,7 +280,7 @@ static int add_words(const synthesis *said, const char *text, raw_clip *clip)
     return 0;
 }
 
-/* A named float that tells a face (stage_face.h) how much of the mouth is taken: an emotion leaves it that. */
+/* A named float that tells a face (modules.h) how much of the mouth is taken: an emotion leaves it that. */
 static int add_float(const speech_track *t, const char *name, int shut_alone, raw_clip *clip)
 {
     raw_floats *out = &clip->floats[clip->float_count++];

@@ -5,6 +5,7 @@
 #include "convert/base/byte_buffer.h"
 #include "file/pack_file.h"
 #include "synthesis.h"
+#include "noh/face.h"
 
 #define SPEECH_TRACK_RATE 100u /* frames a second */
 

@@ -10,6 +10,7 @@
 #include "cli/verbs.h"
 #include "convert/pack/pack_strip.h"
 #include "file/pack_file.h"
+#include "stage/character/lod_pack.h"
 
 typedef struct strip_args {
     const char *pack, *output;

@@ -1,4 +1,5 @@
 #include "half_bound.h"
+#include "deform/morph/morph.h"
 
 #include <math.h>
 #include <stdlib.h>

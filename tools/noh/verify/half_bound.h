@@ -2,7 +2,8 @@
 #ifndef NOH_NOH_VERIFY_HALF_BOUND_H
 #define NOH_NOH_VERIFY_HALF_BOUND_H
 
-#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/pack.h"
 
 /* What is known of the weights, and of how sums are rounded. */
 typedef struct half_range {

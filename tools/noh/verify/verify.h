@@ -7,6 +7,7 @@
 #define NOH_NOH_VERIFY_VERIFY_H
 
 #include "draw/figure.h"
+#include "noh/pack.h"
 
 typedef struct verify_row {
     const char *path, *accumulate, *reason;

@@ -6,7 +6,15 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "deform/morph/morph_finish.h"
+#include "deform/morph/morph.h"
+#include "noh/base.h"
+#include "noh/deform.h"
+#include "noh/format.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
+#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "gpu/readback.h"
 #include "half_bound.h"
 #include "verify.h"

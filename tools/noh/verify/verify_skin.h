@@ -4,6 +4,8 @@
 
 #include "gpu/gpu.h"
 #include "file/pack_file.h"
+#include "noh/pack.h"
+#include "noh/noh_gl.h"
 
 #define VERIFY_SKIN_TIMES 20u /* random times of each clip; as many random poses where no clip fits a skeleton */
 /* The allowed error of a vertex, as a share of the larger of the mesh's box and its distance to the origin, at rest and

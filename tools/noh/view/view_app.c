@@ -1,8 +1,14 @@
 #include "view/view_app.h"
 #include "cli/message.h"
 #include "file/png_file.h"
-#include "gl/device/gl_lost.h"
-#include "stage/cast/view.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 
 #include <math.h>
 #include <stdio.h>

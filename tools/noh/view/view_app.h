@@ -28,7 +28,10 @@
 #include <stdio.h>
 
 #include "draw/framing.h"
-#include "gl/device/gl_timer.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/pack.h"
 #include "view/view_compare.h"
 #include "view/view_export.h"
 #include "view/view_fall.h"

@@ -12,6 +12,8 @@
 
 #include "view/view_lod.h"
 #include "view/view_setting.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -2,7 +2,9 @@
 
 #include <string.h>
 
-#include "gl/device/gl_lost.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_core.h"
 #include "cli/message.h"
 #include "view/view_glfw.h"
 

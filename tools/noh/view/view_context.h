@@ -29,7 +29,7 @@ void view_context_close(view_context *c);
 int view_context_lost(const view_context *c);
 
 /* A new window of the same size in the same place, since GLFW makes no context without one; fills the same table. It
- * has no callbacks yet. On failure there is no context, and the table's calls do nothing (gl_lost.h). */
+ * has no callbacks yet. On failure there is no context, and the table's calls do nothing (gl_device.h). */
 int view_context_reopen(view_context *c, const char *title);
 
 /* pixels[2]: of the framebuffer. scale: pixels in a point. units[2]: points in a unit of the window system, in which

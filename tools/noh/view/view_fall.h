@@ -6,7 +6,7 @@
 #ifndef NOH_NOH_VIEW_VIEW_FALL_H
 #define NOH_NOH_VIEW_VIEW_FALL_H
 
-#include "stage/cast/fall.h"
+#include "noh/modules.h"
 #include "view/view_pad.h"
 #include "view/view_pick.h"
 

@@ -3,7 +3,9 @@
 #include <stdio.h>
 
 #include "cli/message.h"
-#include "stage/cast/view.h"
+#include "noh/low_gl.h"
+#include "noh/modules.h"
+#include "noh/noh.h"
 #include "view/view_app.h"
 
 /* ---- picking ---- */

@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "gl/device/gl_program.h"
+#include "noh/base.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
 #include "tool_shaders.gen.h"
 #include "cli/message.h"
 

@@ -6,8 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/controller_pose.h"
-#include "gl/device/gl_lost.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/gl_device.h"
+#include "noh/low_gl.h"
+#include "noh/low_motion.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/pack.h"
 #include "cli/message.h"
 
 /* ---- the file ---- */

@@ -15,6 +15,11 @@
 #include "draw/figure.h"
 #include "draw/overlay.h"
 #include "gpu/canvas.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
+#include "noh/low_gl.h"
 
 /* ---- what is shown ---- */
 

@@ -12,6 +12,7 @@
 #define NOH_NOH_VIEW_VIEW_PAD_H
 
 #include "view/view_model.h"
+#include "noh/base.h"
 
 #define VIEW_PAD_CLIPS NOH_LAYER_TRACKS_MAX
 

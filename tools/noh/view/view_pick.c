@@ -3,7 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "stage/cast/view.h"
+#include "noh/base.h"
+#include "noh/low_gl.h"
+#include "noh/noh.h"
+#include "noh/pack.h"
 
 /* The world from the joint that the point hangs on, or from its actor. */
 static void hook(const view_pick *p, const view_model *m, float matrix[12])

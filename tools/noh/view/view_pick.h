@@ -7,6 +7,7 @@
 #define NOH_NOH_VIEW_VIEW_PICK_H
 
 #include "view/view_model.h"
+#include "noh/noh.h"
 
 typedef struct view_pick {
     int is_on;

@@ -6,7 +6,8 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "life/face/recipe.h"
+#include "noh/base.h"
+#include "noh/face.h"
 #include "file/weights_text.h"
 
 #define LINKS_MAX 1024u

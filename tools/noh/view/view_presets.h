@@ -12,6 +12,7 @@
 #define NOH_NOH_VIEW_VIEW_PRESETS_H
 
 #include "view/view_model.h"
+#include "noh/base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -12,6 +12,7 @@
 
 #include "draw/data_page.h"
 #include "gpu/canvas.h"
+#include "noh/noh_gl.h"
 
 /* As Dear ImGui lays them out. */
 typedef struct view_vertex {

@@ -4,6 +4,7 @@
 #define NOH_NOH_VIEW_VIEW_SETTING_H
 
 #include "view/view_model.h"
+#include "noh/base.h"
 
 typedef struct setting {
     figure *figure;

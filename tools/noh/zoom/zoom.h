@@ -16,6 +16,9 @@
 #define NOH_NOH_ZOOM_ZOOM_H
 
 #include "draw/figure.h"
+#include "noh/base.h"
+#include "noh/noh.h"
+#include "noh/noh_gl.h"
 
 #define ZOOM_TICKS 800 /* per frame: 60 frames a second */
 #define ZOOM_FINE 4u   /* silhouettes are compared in pictures this many times larger */

@@ -1,0 +1,490 @@
+/* body.h: what bodies stand on, bump into and reach for: the ground and its obstacles, rigid bodies, inverse
+ * kinematics. Bodies of actors: modules.h. */
+
+#ifndef NOH_BODY_H
+#define NOH_BODY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base.h"
+#include "format.h"
+#include "pack.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ======== boxes, rays and capsules ======== */
+
+typedef struct noh_obb {
+    float centre[3], half[3]; /* half: half the sides, 0.. */
+    float rotation[4];
+} noh_obb;
+
+typedef struct noh_ray {
+    float from[3], direction[3]; /* of any length but 0: distances are in multiples of it */
+    float distance_max;          /* 0.. */
+} noh_ray;
+
+/* ======== what bodies collide with ========
+ * Static obstacles for bodies: planes, capsules, boxes and a height field.
+ *
+ *   noh_world_check       check a world
+ *   noh_field_height      height and normal of a height field at a place
+ *   noh_field_ray         intersect a ray with a height field
+ *
+ * The caller owns the world's arrays and keeps them while it is used. Up is +Y.
+ * source   Amanatides, Woo: A fast voxel traversal algorithm, 1987 (the ray's walk through cells)
+ * Threads: read-only; any number of threads. */
+
+/* Solid below: points with normal . x < distance are inside. */
+typedef struct noh_plane {
+    float normal[3]; /* unit */
+    float distance;
+} noh_plane;
+
+/* A sphere if `from` and `to` are equal. */
+typedef struct noh_capsule {
+    float from[3], to[3];
+    float radius;
+} noh_capsule;
+
+/* A grid of heights with bilinear interpolation: solid below, nothing outside. */
+typedef struct noh_field {
+    const uint16_t *heights; /* [depth][width], rows along +X, consecutive rows along +Z */
+    uint32_t width, depth;   /* 2..65536 */
+    float origin[3];         /* of heights[0][0] at height 0 */
+    float spacing;           /* between heights */
+    float scale;             /* y per unit of height */
+} noh_field;
+
+typedef struct noh_world {
+    const noh_plane *planes;
+    const noh_capsule *capsules;
+    const noh_obb *boxes;
+    uint32_t plane_count, capsule_count, box_count; /* each 0..NOH_OBSTACLES_MAX */
+    const noh_field *field;                         /* NULL: none */
+    float friction;                                 /* 0.., of everything */
+    float restitution; /* 0..1: share of its velocity towards an obstacle that a body rebounds with; 0: no bounce */
+} noh_world;
+
+/* Check a world.
+ * errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area (where: the index);
+ *         LIMIT more than NOH_OBSTACLES_MAX of one kind */
+noh_result noh_world_check(const noh_world *world, noh_error *error);
+
+/* Get the height and normal of a field at a place.
+ * shapes   normal[3] unit, or NULL
+ * returns  0 outside the grid; nothing is written then */
+int noh_field_height(const noh_field *field, float x, float z, float *height, float normal[3]);
+
+/* Intersect a ray with a field, from above.
+ * returns  the distance, in lengths of the ray's direction; below 0: no hit */
+float noh_field_ray(const noh_field *field, const noh_ray *ray);
+
+/* ======== ragdolls ======== */
+
+/* ---- rigs ---- */
+
+/* A capsule: z is its axis, its centre the centre of mass. */
+typedef struct noh_ragdoll_body {
+    uint32_t parent;                     /* a lower index; NOH_NONE for the first body only */
+    uint32_t joint;                      /* the joint of a skeleton that it moves; unused here */
+    float half;                          /* half the axis between the centres of its round ends, metres, 0.. */
+    float radius;                        /* above 0 */
+    float mass;                          /* above 0, kilograms */
+    float inertia_across, inertia_along; /* about its centre: perpendicular to z, and about z; kg m^2, above 0 */
+    float position[3], rotation[4];      /* at rest */
+} noh_ragdoll_body;
+
+/* The joint between a body and its parent. One record for ball joint, hinge, swing-twist cone and six degrees of
+ * freedom. Angles count from rest. */
+typedef struct noh_ragdoll_joint {
+    uint32_t flags;
+    float anchor[3];                    /* at rest, in the space of the bodies' positions */
+    float frame[4];                     /* at rest: z along the child's bone or the hinge, x and y the two swing axes */
+    float swing_min[2], swing_max[2];   /* radians about x and y: an ellipse about their middle; -pi..0, 0..pi */
+    float twist_min, twist_max;         /* radians, -pi..0 and 0..pi */
+    float linear_min[3], linear_max[3]; /* metres along the frame's axes, with SLIDES; 0 and 0: locked */
+    float friction;                     /* N m, 0.. */
+} noh_ragdoll_joint;
+
+typedef struct noh_ragdoll_rig {
+    uint32_t body_count; /* 1..NOH_RAGDOLL_BODIES_MAX */
+    uint32_t pair_count; /* 0..NOH_RAGDOLL_PAIRS_MAX */
+    noh_ragdoll_body bodies[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_joint joints[NOH_RAGDOLL_BODIES_MAX]; /* [i] joins bodies[i] to its parent; [0] is unused */
+    uint8_t pairs[NOH_RAGDOLL_PAIRS_MAX][2];          /* pairs of bodies that collide with each other */
+} noh_ragdoll_rig;
+
+/* ======== feet ======== */
+
+#define NOH_FEET_POINTS 6u /* per sole: heel, ball and toes, inner and outer side of each */
+
+/* ---- the ground ---- */
+
+typedef struct noh_ground {
+    const noh_world *world; /* checked by noh_world_check; NULL: none */
+    /* Instead of a world: returns the distance from a point straight down to the ground, at most `depth`, and its unit
+     * normal; below 0: no ground. Must be a pure function */
+    float (*below)(const void *user, const float from[3], float depth, float normal[3]);
+    const void *user;
+} noh_ground;
+
+/* ---- legs ---- */
+
+typedef struct noh_feet_point {
+    uint32_t joint; /* of the foot or below it */
+    float at[3];    /* in the joint's space */
+} noh_feet_point;
+
+typedef struct noh_feet_leg {
+    uint32_t thigh, shin, foot;
+    float knee[3];                          /* unit, in the thigh's space: direction of the knee */
+    noh_feet_point points[NOH_FEET_POINTS]; /* heel, heel, ball, ball, toes, toes */
+} noh_feet_leg;
+
+typedef struct noh_feet_rig {
+    noh_feet_leg legs[NOH_FEET_LEGS_MAX];
+    uint32_t leg_count; /* 1..NOH_FEET_LEGS_MAX */
+    uint32_t top;       /* the joint that moves with the pelvis, with all its descendants */
+    uint32_t last;      /* the highest index of all joints above: a pose without it is not changed */
+    float length;       /* of the longest leg, in the skeleton's unit */
+} noh_feet_rig;
+
+/* ======== hair ======== */
+
+typedef struct noh_hair_sphere {
+    float centre[3];
+    float radius; /* including half the width of a hair strip, 0.. */
+} noh_hair_sphere;
+
+/* Data shared by hair of one kind. */
+typedef struct noh_hair_desc {
+    /* [hair_count][point_count][3], from the root to the tip; no two points of a hair are equal */
+    const float *rest;
+    uint32_t hair_count;  /* 1..NOH_HAIRS_MAX */
+    uint32_t point_count; /* per hair, 2..NOH_HAIR_POINTS_MAX */
+    /* [sphere_count]; for a hair with its root inside a sphere, the sphere shrinks to that root */
+    const noh_hair_sphere *spheres;
+    uint32_t sphere_count; /* 0..NOH_HAIR_SPHERES_MAX */
+    uint32_t seed;         /* for gusts */
+    float pull;            /* share of the distance to rest that a point moves per step, 0..1; usually 0.02 */
+    float pull_at_tip;     /* pull at the tip; linear in between */
+    float damping;         /* of velocity, per second, 0..; usually 2 to 4 */
+    float gravity;         /* metres per second squared not yet included in `rest`, 0.. */
+} noh_hair_desc;
+
+/* ======== hair of a pack ======== */
+
+typedef struct noh_haircut {
+    const noh_pack_hair_header *header;
+    const char *joint;       /* the joint that carries it; "": the actor itself */
+    const uint32_t *patches; /* [header->patch_count][4] */
+    noh_hair_desc desc;      /* of the control hairs */
+} noh_haircut;
+
+/* ======== levels of a terrain ========
+ * A height field in square blocks, each drawn at the coarsest level that its screen error allows.
+ *
+ *   noh_terrain_lod_size, noh_terrain_lod_init   compute the error of each level of each block
+ *   noh_terrain_lod_choose                       choose a level for each block, by its error in pixels
+ *   noh_terrain_lod_block                        how to draw a block
+ *
+ * A block has NOH_TERRAIN_BLOCK cells per side; level k uses every 2^k-th height. Along an edge to a coarser block the
+ * finer one uses only the coarser one's heights, so that there is no crack between any two levels. Cells are split from
+ * the corner of the next row to the corner of the next column.
+ * source   de Boer: Fast Terrain Rendering Using Geometrical MipMapping, 2000 (levels by the error of blocks)
+ * Threads: pure functions of their arguments; a block of memory belongs to one thread at a time. */
+
+typedef struct noh_terrain_lod {
+    noh_field field;       /* a view: heights are used in place */
+    uint32_t width, depth; /* blocks along x and z; the last ones may extend beyond the field */
+    float *errors;         /* [width * depth][NOH_TERRAIN_LEVELS] largest height error, in the field's unit */
+    uint16_t *bounds;      /* [width * depth][2] lowest and highest */
+    uint8_t *levels;       /* [width * depth] chosen levels */
+    uint8_t *seen;         /* [width * depth] 0: not visible */
+} noh_terrain_lod;
+
+/* ======== fixed steps ======== */
+
+/* ---- time ---- */
+
+/* Time left over from frame to frame. Initialise to zero. */
+typedef struct noh_steps {
+    uint32_t left;    /* ticks (1/48,000 s) short of a full step */
+    uint32_t dropped; /* ticks dropped by all calls; saturates */
+} noh_steps;
+
+/* ======== rigid bodies ========
+ * A free rigid body moved by forces, torques and impulses: a box, capsule, ball or rounded box.
+ *
+ *   noh_rigid_init          a body at rest
+ *   noh_rigid_set_motion    set velocity and spin
+ *   noh_rigid_force         a force at a point, for the next step
+ *   noh_rigid_torque        a torque, for the next step
+ *   noh_rigid_push          an impulse at a point
+ *   noh_rigid_step          advance time
+ *   noh_rigid_place         position and rotation; noh_rigid_motion: velocity, spin and momentum
+ *   noh_rigid_energy        kinetic energy
+ *   noh_rigid_shift         move the origin of its space
+ *   noh_point_touch         collide a point mass with a world, with bounce and friction
+ *
+ * A force F at a point p accelerates the body by F / mass and applies the torque (p - x) x F about its centre x. The
+ * state is angular momentum, not spin, so free rotation conserves momentum to the last bits, and energy within a bound:
+ * rotation is composed of exact turns about the three principal axes. Steps are 1/600 s. Free flight under constant
+ * forces is exact.
+ *
+ * It collides with a noh_world through up to 24 contacts, with that world's friction and restitution: corners, edges
+ * and round ends; with a height field only where corners touch. Bodies do not collide with each other or with ragdolls.
+ * Overlaps separate at NOH_PUSH_OUT_SPEED. A body that moves by more than its own thickness in 1/600 s can pass through
+ * a thin obstacle. A body that touches something and is slower than 0.08 m/s at its rim for half a second falls asleep
+ * until a call changes it.
+ *
+ * A noh_rigid is the caller's, 144 bytes without pointers: a copy continues identically, with the same bits everywhere.
+ * It is simulated about its own origin, like ragdolls (low_life.h). Read its fields with the functions below.
+ * source   Granberg, Character Animation with Direct3D, 2009, chapter 6 (rigid bodies, which it leaves to a library);
+ *          Dullweber, Leimkuhler, McLachlan: Symplectic splitting methods for rigid body molecular dynamics, 1997;
+ *          Catto: Iterative Dynamics with Temporal Coherence, 2005 (impulses of contacts)
+ * Threads: a body belongs to one thread at a time. */
+
+typedef struct noh_rigid_desc {
+    float half[3];     /* half the box's sides, 0..: all 0 a ball; 0, 0, z a capsule */
+    float radius;      /* thickness added all around, 0..; half or radius above 0 */
+    float mass;        /* kilograms, above 0 */
+    float inertia[3];  /* kg m^2 about x, y, z of the body, above 0; all 0: of a solid of this shape and mass */
+    float position[3]; /* of its centre of mass and of the box */
+    float rotation[4]; /* unit; all 0: identity */
+} noh_rigid_desc;
+
+typedef struct noh_rigid {
+    float half[3], radius;
+    float mass, inertia[3];
+    float origin[3], position[3]; /* position: relative to the origin */
+    float rotation[4];
+    float velocity[3], momentum[3]; /* momentum: angular, about its centre */
+    float force[3], torque[3];
+    noh_steps steps;
+    uint32_t still; /* substeps since it became slow */
+    uint32_t reserved[3];
+} noh_rigid;
+
+/* Make a body at rest.
+ * errors  ARG a number out of its range (where: 0 a side, 1 the mass, 2 the inertia, 3 the place) */
+noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error *error);
+
+/* Set velocity and spin.
+ * shapes  velocity[3] m/s of its centre; spin[3] rad/s about the world's axes
+ * errors  ARG not finite; nothing changes */
+noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error);
+
+/* Apply a force at a point, a torque, or an impulse at a point. Forces and torques add up, act during the whole next
+ * noh_rigid_step, and are then cleared. Gravity is separate. Calls with values that are not finite do nothing.
+ * units  force newtons, torque newton metres, impulse newton seconds; points in world space */
+void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3]);
+void noh_rigid_torque(noh_rigid *body, const float torque[3]);
+void noh_rigid_push(noh_rigid *body, const float point[3], const float impulse[3]);
+
+/* Advance time, in pieces of any length, by up to a quarter of a second per call.
+ * world    NULL: no obstacles
+ * gravity  m/s^2; NULL: NOH_GRAVITY downwards
+ * returns  ticks dropped in this call */
+uint32_t noh_rigid_step(noh_rigid *body, const noh_world *world, const float gravity[3], uint32_t ticks);
+
+void noh_rigid_place(const noh_rigid *body, float position[3], float rotation[4]);
+
+/* Get the motion.
+ * shapes  velocity[3], spin[3] as set; momentum[3] angular, about its centre, kg m^2/s. Each may be NULL */
+void noh_rigid_motion(const noh_rigid *body, float velocity[3], float spin[3], float momentum[3]);
+
+/* Get the kinetic energy, including spin, in joules. */
+float noh_rigid_energy(const noh_rigid *body);
+
+int noh_rigid_sleeps(const noh_rigid *body);
+
+/* Move the origin: each point p of its space becomes p + by, metres. Precise to what floats at the new place can
+ * hold. */
+void noh_rigid_shift(noh_rigid *body, const float by[3]);
+
+/* ======== the height field of a pack ========
+ * The height field in a pack, used in place.
+ *
+ *   noh_terrain_of        get the height field (body.h): heights, normals, rays, and the ground of a world
+ *
+ * Threads: no state; any thread. */
+
+/* Get the height field: a view, valid as long as the pack and its bytes.
+ * units   metres
+ * errors  NOT_FOUND  the pack has no terrain (build it with --terrain); *field is then unchanged */
+noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *error);
+
+/* ======== two bones, and a head that looks ========
+ * Closed-form inverse kinematics: an arm or a leg that reaches a point, a head that looks at one.
+ *
+ *   noh_ik_two_bone     turn two bones so that their end meets a target
+ *   noh_ik_look_init    look ahead
+ *   noh_ik_look_step    turn towards a target, within a cone, at a limited speed
+ *   noh_ik_share        a fraction of a rotation, to share a turn among spine, neck and head
+ *
+ * For chains of more bones see body.h. All positions and directions of a call are in the same space, which may be
+ * any; rotations are applied in that space, on the left of a joint's rotation.
+ *
+ * No solution uses an arc cosine: bends come from lengths, and rotations from sums of vectors, so targets out of reach,
+ * at the root or in line with the pole give a pose and never NaN.
+ * source   Granberg, Character Animation with Direct3D, 2009, chapter 11 (law of cosines, a look-at with a limit), with
+ *          its degenerate cases added
+ * Threads: no state but the noh_ik_look passed; any thread. */
+
+/* ---- two bones ---- */
+
+/* Shoulder, elbow and hand, or hip, knee and ankle. */
+typedef struct noh_ik_limb {
+    float start[3], middle[3], end[3]; /* present positions of the joints */
+    float bend_min, bend_max;          /* radians between the bones: 0 straight, pi folded. Default (0, 0): no limit */
+    float soft; /* share of its length beyond which a stretching limb slows down, 0.5..1; default (0) 1: never */
+} noh_ik_limb;
+
+typedef struct noh_ik_bend {
+    float start[4];  /* turns the start joint with its descendants */
+    float middle[4]; /* then turns the middle joint with its descendants */
+    float missed;    /* distance from the target to the end; 0 within rounding if reached */
+} noh_ik_bend;
+
+/* Turn two bones so that their end meets the target. A target out of reach is approached as near as lengths and limits
+ * allow, in its direction.
+ * ranges  any finite positions; bones may have no length. soft 0 or 0.5..1, 0 <= bend_min <= bend_max <= pi
+ * pole    the direction, perpendicular to the line from start to target, in which the middle joint should lie; any
+ *         length. NULL, or along that line: it stays on its present side
+ * weight  0..1: fraction of both rotations
+ * errors  the end is off by at most 2e-5 of the limb's length; continuous in target and pole, except where they are in
+ *         line
+ * source  law of cosines; softness as in ozz-animation's two-bone job: d' = s + (1 - s) (1 - 81 / (3 + t)^4), t = (d -
+ *         s) / (1 - s), in lengths of the limb */
+void noh_ik_two_bone(const noh_ik_limb *limb, const float target[3], const float pole[3], float weight,
+                     noh_ik_bend *bend);
+
+/* ---- looking ---- */
+
+/* Limits of a head. Zero is a good value for all. */
+typedef struct noh_ik_look_desc {
+    float angle_max; /* radians from ahead; 0..pi; default (0) 60 degrees */
+    /* a target farther off than this is released until it is within angle_max again; angle_max..pi; default (0) pi:
+     * never */
+    float release_max;
+    float speed_max; /* radians per second; default (0) 4 */
+} noh_ik_look_desc;
+
+/* The state of a look. May be copied. */
+typedef struct noh_ik_look {
+    float direction[3]; /* unit, the present direction */
+    /* 0: no target, or a released one; 1: a target; 2, 3: a target behind, over the left or the right shoulder */
+    uint32_t follows;
+} noh_ik_look;
+
+/* Make a look ahead.
+ * shapes  ahead[3], unit: direction of the head at rest */
+void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
+
+/* Advance time and turn the look towards a target along a great circle, never beyond the cone. Targets outside the cone
+ * are approached as far as the cone allows. Within 20 degrees of straight behind, the look stays over the shoulder from
+ * which the target came, instead of turning from side to side with every small motion.
+ * ranges   seconds >= 0
+ * ahead    unit; of the animated pose, in the space of the head's parent
+ * target   from the head, any length; NULL or 0: no target
+ * rotation turns ahead to the look
+ * source   Granberg 2009, chapter 11, "Look-At Inverse Kinematics" */
+void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
+                      float seconds, float rotation[4]);
+
+/* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */
+void noh_ik_share(const float rotation[4], float share, float out[4]);
+
+/* ======== gaze ======== */
+
+/* The joints that turn. May also be filled in by hand. */
+typedef struct noh_gaze_rig {
+    uint32_t joints[NOH_GAZE_JOINTS_MAX]; /* each below the previous one; the last is the head */
+    float shares[NOH_GAZE_JOINTS_MAX];    /* of the turn, 0..1; their sum is 1 */
+    uint32_t joint_count;                 /* 1..NOH_GAZE_JOINTS_MAX */
+    uint32_t eyes[2];                     /* below the head; NOH_NONE: the head turns all the way */
+    float ahead[3];                       /* unit, in the head's space: direction of the face */
+    float middle[3];                      /* midpoint of the eyes, in the head's space */
+    float eyes_ahead[2][3];               /* unit, in the eyes' spaces */
+    float size;                           /* from the first joint to `middle`, in the skeleton's unit, above 0 */
+    uint32_t last;                        /* the highest index of all joints above */
+} noh_gaze_rig;
+
+/* ======== chains of joints ========
+ * Inverse kinematics of chains of any length: tails, tentacles, a reaching spine.
+ *
+ *   noh_ik_chain_solve   turn the joints of a chain until its end meets a target
+ *   noh_ik_limit_apply   clamp one joint's rotation to its limits
+ *
+ * Three solvers, all iterative, all with limits:
+ *   NOH_IK_CCD      turns one joint after the other, the last first. Curls the end of the chain most
+ *   NOH_IK_FABRIK   drags the joints along, to and from the target. Fewest iterations: tails
+ *   NOH_IK_DLS      damped least squares: the smallest change of all joints together. Spines
+ *
+ * The best pose so far is kept: more iterations never make it worse. A chain points at a target out of reach.
+ * source   Wang, Chen: A combined optimization method for solving the inverse kinematics problem of mechanical
+ *          manipulators, 1991 (CCD); Aristidou, Lasenby: FABRIK, Graphical Models 73, 2011; Buss: Introduction to
+ *          inverse kinematics with Jacobian transpose, pseudoinverse and damped least squares methods, 2004
+ * Threads: no state; any thread. */
+
+typedef enum noh_ik_solver { NOH_IK_CCD = 0, NOH_IK_FABRIK, NOH_IK_DLS } noh_ik_solver;
+
+/* Limits of a joint from its bind rotation: swing away from the bone's direction, and twist about it. */
+typedef struct noh_ik_limit {
+    uint32_t flags;             /* NOH_IK_LIMIT_*: the limits in use */
+    float swing_max;            /* radians, in all directions, 0..pi */
+    float twist_min, twist_max; /* radians, -pi..0 and 0..pi */
+} noh_ik_limit;
+
+typedef struct noh_ik_chain {
+    uint32_t count;             /* joints that turn, 1..NOH_IK_JOINTS_MAX */
+    const float *root;          /* [3] position of the first joint */
+    const float *root_rotation; /* [4] rotation of its parent; NULL: the identity */
+    const float *bones; /* [count][3] from each joint to the next, and from the last to the end, in the joint's space */
+    const float *binds; /* [count][4] local rotations from which limits count; NULL: identities */
+    const noh_ik_limit *limits; /* [count]; NULL: none */
+} noh_ik_chain;
+
+typedef struct noh_ik_chain_result {
+    uint32_t iterations; /* iterations used */
+    float missed;        /* distance from the target to the end */
+} noh_ik_chain_result;
+
+/* Turn the joints of a chain until its end is within `tolerance` of the target.
+ * ranges     iterations 1..1000, the most to run; tolerance > 0, in the chain's unit
+ * rotations  [count][4] local, in and out; input is the start pose. Joints beyond their limits are clamped to them
+ * errors     ARG a count of 0 or above NOH_IK_JOINTS_MAX, or a target that is not finite; nothing is written */
+noh_result noh_ik_chain_solve(const noh_ik_chain *chain, noh_ik_solver solver, const float target[3], float tolerance,
+                              uint32_t iterations, float *rotations, noh_ik_chain_result *result, noh_error *error);
+
+/* Clamp a local rotation to a limit.
+ * bone  [3] the joint's bone, the axis of twist, in the joint's space
+ * bind  [4] or NULL: the identity */
+void noh_ik_limit_apply(const noh_ik_limit *limit, const float bone[3], const float *bind, float rotation[4]);
+
+/* ======== reach ======== */
+
+typedef struct noh_reach_arm {
+    uint32_t upper, fore, hand;
+    float elbow[3]; /* unit, in the upper arm's space: direction of the elbow */
+    /* the point of the hand to put on the target, in the hand's space; rigs from noh_reach_rig_make have 0: the
+     * wrist */
+    float palm[3];
+} noh_reach_arm;
+
+typedef struct noh_reach_rig {
+    noh_reach_arm arms[NOH_REACH_ARMS_MAX]; /* the left one first: greater x in the bind pose */
+    uint32_t arm_count;                     /* 1..NOH_REACH_ARMS_MAX */
+    uint32_t last;                          /* the highest index of all joints above */
+} noh_reach_rig;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

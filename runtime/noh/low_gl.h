@@ -1,0 +1,899 @@
+/* low_gl.h: meshes, morph targets, palettes and a plain renderer without a stage: for engines built of parts
+ * (noh_low.h).
+ *
+ *     noh_gl_mesh_create      upload a mesh of the pack; noh_gl_picture_create uploads a texture
+ *     noh_gl_morph_init       an accumulator for the morph targets of all instances
+ *     noh_gl_skin_init        palettes for the skins of all instances
+ *     noh_gl_renderer_create  the plain renderer; or use shaders of your own (gl_device.h)
+ *
+ * In a frame, call noh_gl_morph_set_weights and noh_gl_skin_set_matrices for each instance that moved, then
+ * noh_gl_morph_update and noh_gl_skin_update once, then draw. */
+
+#ifndef NOH_LOW_GL_H
+#define NOH_LOW_GL_H
+
+#include <stdint.h>
+
+#include "base.h"
+#include "format.h"
+#include "pack.h"
+#include "gl_device.h"
+#include "noh_gl.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ======== what a GPU can do ======== */
+
+/* `version` and `geometry_defines` for the desc of a program with a geometry stage (low_gl.h). The version is NULL
+ * without geometry shaders; the defines are NULL if no #extension is needed. */
+const char *noh_gl_geometry_version(const noh_gl_api *api);
+const char *noh_gl_geometry_defines(const noh_gl_api *api);
+
+/* ======== names for debuggers ========
+ * Object labels and call groups for RenderDoc and apitrace (KHR_debug).
+ *
+ *   noh_gl_label        name an object
+ *   noh_gl_group_begin  open a named group of calls
+ *   noh_gl_group_end    close it
+ *
+ * All do nothing if the context has no debug functions. The library labels every object that it makes and groups every
+ * pass.
+ *
+ * Threads: the context's own thread, for every function. */
+
+/* Label an object "what of", or "what" if `of` is NULL or "". The label is cut to NOH_GL_LABEL_BYTES.
+ * kind  GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or GL_RENDERBUFFER
+ * name  the object, which must have been bound at least once */
+void noh_gl_label(const noh_gl_api *api, unsigned kind, unsigned name, const char *what, const char *of);
+
+/* Begin and end a group of calls, named like a label. Groups nest; each begin needs an end. */
+void noh_gl_group_begin(const noh_gl_api *api, const char *what, const char *of);
+void noh_gl_group_end(const noh_gl_api *api);
+
+/* ======== GL objects ========
+ * GL objects with counted bytes.
+ *
+ *   noh_gl_texel_bytes          bytes of one texel of an internal format
+ *   noh_gl_texture_bytes        bytes of a texture with its mip levels
+ *   noh_gl_renderbuffer_bytes   bytes of a renderbuffer with its samples
+ *   noh_gl_ledger_bytes         bytes of all existing objects
+ *   noh_gl_buffer_create / noh_gl_buffer_delete
+ *   noh_gl_texture_create / noh_gl_texture_delete
+ *   noh_gl_renderbuffer_create / noh_gl_renderbuffer_delete
+ *   noh_gl_framebuffer_create / noh_gl_framebuffer_delete
+ *
+ * Sizes are the requested sizes: OpenGL ES does not report what a driver adds for alignment or metadata. The same
+ * functions plan a budget and count its use, so both agree to the byte.
+ *
+ * Every create clears pending GL errors first and leaves nothing bound to its target; on error it deletes what it made,
+ * and the ledger is unchanged. Deleting an object twice does nothing.
+ *
+ * Threads: the context's own thread; any thread for the functions that only return bytes. */
+
+typedef struct noh_gl_renderbuffer {
+    unsigned name; /* 0: none */
+    uint64_t bytes;
+} noh_gl_renderbuffer;
+
+#define NOH_GL_CUBE UINT32_MAX
+
+typedef struct noh_gl_texture_desc {
+    unsigned format; /* a sized internal format known to noh_gl_texel_bytes, an ETC2 format, or RG11_EAC */
+    uint32_t width;  /* texels, 1..65536 */
+    uint32_t height; /* texels, 1..65536 */
+    uint32_t layers; /* 0: GL_TEXTURE_2D; NOH_GL_CUBE: GL_TEXTURE_CUBE_MAP with six square faces; 1..65536:
+                      * GL_TEXTURE_2D_ARRAY with this many layers */
+    uint32_t levels; /* mip levels, at most 1 + log2 of the longer side; 0: one */
+    unsigned filter; /* for minification and magnification; 0: GL_NEAREST. GL_LINEAR with mip levels is trilinear */
+    unsigned wrap;   /* 0: GL_CLAMP_TO_EDGE */
+} noh_gl_texture_desc;
+
+/* The bytes of a texture; 0 for an invalid desc. */
+uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc);
+
+/* The bytes of a renderbuffer; 0 for invalid arguments. samples 0 and 1 are equal. */
+uint64_t noh_gl_renderbuffer_bytes(unsigned format, uint32_t width, uint32_t height, uint32_t samples);
+
+/* The bytes of all existing objects. */
+uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
+
+/* Make a buffer of `bytes` bytes, filled from `data` (NULL: contents undefined). A GL_ELEMENT_ARRAY_BUFFER becomes part
+ * of the bound vertex array: bind vertex array 0 first.
+ * errors  ARG bytes is 0; LIMIT bytes does not fit a GLsizeiptr; MEMORY GL_OUT_OF_MEMORY (need: `bytes`); GL the driver
+ *         refused the buffer */
+noh_result noh_gl_buffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned target, uint64_t bytes,
+                                const void *data, unsigned usage, noh_gl_buffer *out, noh_error *error);
+void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_buffer *buffer);
+
+/* Make a texture with undefined contents. Leaves texture unit 0 active. Compare the size with the limits of noh_gl_caps
+ * first: for a texture that is too large the result is only GL.
+ * errors  ARG an invalid desc; MEMORY, GL as noh_gl_buffer_create */
+noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_texture_desc *desc,
+                                 noh_gl_texture *out, noh_error *error);
+void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_texture *texture);
+
+/* Make a renderbuffer. samples: 0 or 1 for none. The driver may use more samples than requested; the ledger counts the
+ * requested ones.
+ * errors  ARG an unknown format, a size of 0, or more than 64 samples; MEMORY, GL as noh_gl_buffer_create */
+noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned format, uint32_t width,
+                                      uint32_t height, uint32_t samples, noh_gl_renderbuffer *out, noh_error *error);
+void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_renderbuffer *renderbuffer);
+
+/* Make a framebuffer; it has no bytes of its own.
+ * errors  MEMORY, GL as noh_gl_buffer_create */
+noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *out, noh_error *error);
+void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *framebuffer);
+
+/* ======== GL programs ========
+ * Compiling and linking shaders.
+ *
+ *   noh_gl_program_create  compile up to three stages, link, bind samplers and blocks
+ *   noh_gl_program_delete
+ *
+ * A source is a #version line and the rest of the text in pieces, passed to glShaderSource without copying.
+ *
+ * Threads: the context's own thread, for every function. */
+
+/* The text of one shader stage. */
+typedef struct noh_gl_source {
+    const char *version;       /* "#version 300 es\n" */
+    const char *const *pieces; /* the text after it */
+    uint32_t piece_count;      /* 1..NOH_GL_PIECES_MAX */
+} noh_gl_source;
+
+typedef struct noh_gl_program_desc {
+    const char *name;              /* for the debug label and the log; NULL: none */
+    const noh_gl_source *vertex;   /* required */
+    const noh_gl_source *geometry; /* NULL: none */
+    const noh_gl_source *fragment; /* required */
+    const char *version;           /* a #version line with its newline for all stages, which must be equal in ES; NULL:
+                                    * the sources' own */
+    const char *defines; /* whole lines directly after #version in every stage: #extension, #define; NULL: none */
+    const char *geometry_defines; /* more such lines for the geometry stage only; NULL: none */
+
+    const char *const *samplers; /* sampler i reads texture unit i; names removed by the linker are skipped */
+    uint32_t sampler_count;      /* default 0 */
+    const char *const *blocks;   /* uniform block i reads binding i; names removed by the linker are skipped */
+    uint32_t block_count;        /* default 0 */
+
+    const char *const *varyings; /* outputs of the vertex stage for transform feedback */
+    uint32_t varying_count;      /* default 0: no transform feedback */
+    unsigned varying_mode;       /* 0: GL_INTERLEAVED_ATTRIBS */
+
+    /* All attributes of the vertex arrays that the program will draw. Reading an integer as a float, or a missing
+     * attribute, is undefined and no GL error, so each active input is checked: it must be at one of these locations,
+     * of the same kind (float, integer, unsigned), with no more components, except a vec4 whose w is then 1 */
+    const noh_gl_input *inputs;
+    uint32_t input_count; /* default 0: not checked */
+
+    noh_gl_ledger *ledger; /* counts the program; NULL: not counted */
+} noh_gl_program_desc;
+
+/* Compile, link and label a program. Leaves program 0 in use; `program` is untouched on error.
+ * log     [log_bytes], NULL with 0: no log. Empty on success, otherwise "NAME: STAGE: " and the driver's log, cut to
+ *         fit and always zero-terminated. For the library's shaders, comments in shaders.gen.c explain its source
+ *         numbers
+ * memory  none
+ * errors  ARG a stage is missing or has too many pieces; DATA a stage does not compile or link (`what` names it; where:
+ *         the GL stage, 0: linking), or it reads an input that is not in `inputs` (where: the location); GL, MEMORY the
+ *         driver refused a call */
+noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_desc *desc, unsigned *program, char *log,
+                                 size_t log_bytes, noh_error *error);
+
+/* Delete a program and set it to 0; does nothing for 0. ledger NULL: the program was not counted. */
+void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *program);
+
+/* ======== known drivers ========
+ * Workarounds chosen by the renderer's name.
+ *
+ *   noh_gl_quirk_find   the entry for a renderer, with its reason and source
+ *   noh_gl_quirk_table  all entries
+ *
+ * Capabilities are tested (gl_device.h). Only what cannot be tested is decided by the renderer's name, with this table.
+ * To force or disable a quirk, change caps.renderer.
+ *
+ * Threads: any; the table is constant. */
+
+typedef enum noh_quirk {
+    NOH_QUIRK_SOFTWARE,    /* rasterises on the CPU: auto chooses the path cpu */
+    NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto chooses gather for any number of targets */
+    NOH_QUIRK_HALF_UNSURE, /* rounds halves irregularly: the probe sets half-float modes to NOH_HALF_UNKNOWN */
+    NOH_QUIRK_TILE_16, /* renders in tiles with 16 bytes per pixel: three float layers make tiles smaller, or spill */
+    NOH_QUIRK_TILE_32  /* renders in tiles with 32 bytes per pixel */
+} noh_quirk;
+
+typedef struct noh_gl_quirk {
+    const char *renderer; /* a substring of GL_RENDERER */
+    noh_quirk quirk;
+    const char *reason; /* a sentence; if the quirk decides the path, the plan's `reason` */
+    const char *source; /* a document, an issue, or the measurement */
+} noh_gl_quirk;
+
+/* The first entry with this quirk whose name occurs in `renderer`; NULL: none. */
+const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
+
+/* ======== spherical harmonics ========
+ * Real spherical harmonics of order 1 to 6: functions on the sphere as 1, 4, 9, 16, 25 or 36 numbers.
+ *
+ *   noh_sh_basis         the basis functions in a direction
+ *   noh_sh_evaluate      a function, from its coefficients, in a direction
+ *   noh_sh_add_sample    projection: one sample of a function
+ *   noh_sh_from_zonal    a function symmetric about an axis
+ *   noh_sh_convolve      convolution with a kernel symmetric about its axis, by band
+ *   noh_sh_cosine_lobe   the kernel of irradiance
+ *   noh_sh_rotate        a rotated function
+ *
+ * Order n has the bands 0 to n - 1, band l has the 2 l + 1 functions m = -l to l, and coefficient (l, m) is number
+ * l (l + 1) + m. The functions are orthonormal over the sphere and have no Condon-Shortley phase: band 0 is the
+ * constant 0.2821, band 1 is 0.4886 times y, z, x. A zonal function has one coefficient per band, m = 0 about its axis.
+ *
+ * All functions use only sums, products, quotients and square roots: the same bits on every machine.
+ * source   Ramamoorthi, Hanrahan: An efficient representation for irradiance environment maps, SIGGRAPH 2001; Sloan,
+ *          Kautz, Snyder: Precomputed radiance transfer, SIGGRAPH 2002; Ivanic, Ruedenberg: Rotation matrices for real
+ *          spherical harmonics, J. Phys. Chem. 100, 1996, with the additions and corrections of 102, 1998
+ * Threads: no state; any thread. */
+
+#define NOH_SH_COUNT(order) ((order) * (order))
+
+/* Compute the basis functions in a direction.
+ * shapes  direction[3], basis[NOH_SH_COUNT(order)]
+ * ranges  order 1..NOH_SH_ORDER_MAX; direction is unit
+ * errors  at most 3e-6 absolute */
+void noh_sh_basis(uint32_t order, const float direction[3], float *basis);
+
+/* The function's value in a direction.
+ * shapes  coefs[NOH_SH_COUNT(order)] */
+float noh_sh_evaluate(uint32_t order, const float *coefs, const float direction[3]);
+
+/* Add value * weight in a direction. For a projection, add samples in directions that cover the sphere, with their
+ * solid angles as weights, which add up to 4 pi. */
+void noh_sh_add_sample(uint32_t order, const float direction[3], float value, float weight, float *coefs);
+
+/* Write coefs[NOH_SH_COUNT(order)] of the zonal function zonal[order], rotated from the z axis to `axis`: each band is
+ * the basis in the axis, scaled.
+ * source  Sloan, Luna, Snyder: Local, deformable precomputed radiance transfer, SIGGRAPH 2005, equation 3 */
+void noh_sh_from_zonal(uint32_t order, const float *zonal, const float axis[3], float *coefs);
+
+/* Multiply band l of coefs by bands[l]. For convolution with a symmetric kernel of zonal coefficients k_l, bands[l] =
+ * sqrt(4 pi / (2 l + 1)) k_l.
+ * source  Funk-Hecke theorem; Ramamoorthi, Hanrahan 2001, equation 5 */
+void noh_sh_convolve(uint32_t order, const float *bands, float *coefs);
+
+/* bands[NOH_SH_ORDER_MAX] of the clamped cosine over pi: 1, 2/3, 1/4, 0, -1/24, 0. Convolving radiance with it gives
+ * the light reflected by a white matte surface, by its normal. */
+extern const float noh_sh_cosine_lobe[NOH_SH_ORDER_MAX];
+
+/* Rotate a function: its value in direction d moves to direction rotation * d.
+ * shapes  rotation[9] 3 rows of 3, orthonormal with determinant 1; from, to [NOH_SH_COUNT(order)], to is not from
+ * errors  at most 1e-6 of the length of each band
+ * source  Ivanic, Ruedenberg 1996 and 1998: band l from bands l - 1 and 1 */
+void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, float *to);
+
+/* ======== morph targets on the GPU ========
+ * Morph targets accumulated on the GPU, for many instances at once.
+ *
+ *   noh_gl_morph_blocks       blocks of 4 x 4 accumulation texels touched by the targets of a mesh
+ *   noh_gl_morph_strips       rows of such blocks
+ *   noh_gl_morph_plan_make    choose the path and compute its exact bytes, without GL calls
+ *   noh_gl_morph_calibrate    choose the path by measuring at start-up
+ *   noh_gl_morph_calibrate_size
+ *   noh_gl_morph_init         build the accumulator in your memory and make its GL objects
+ *   noh_gl_morph_delete       delete the GL objects
+ *   noh_gl_morph_restore      make the GL objects again after a lost context
+ *   noh_gl_morph_set_mesh     vertex arrays for finished vertices
+ *   noh_gl_morph_set_weights  set one instance's weights; costs only a comparison if they did not change
+ *   noh_gl_morph_set_lod      accumulate an instance only for an LOD level
+ *   noh_gl_morph_update       accumulate the instances whose weights changed
+ *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
+ *   noh_gl_morph_plan_of      the plan of an accumulator
+ *   noh_gl_morph_instance     the number of an instance of a mesh
+ *   noh_gl_morph_streamed     the targets that the path streams adds
+ *   noh_gl_morph_bind_streams bind the streams for your own draw
+ *   noh_morph_path_name, noh_accumulate_name
+ *
+ * Deltas of position, normal and tangent are accumulated in the three layers of one texture array. Without tangents
+ * there are two layers, and tangents of the bind pose are turned with the normal. For meshes with a transfer
+ * (light.h) the fourth component of positions accumulates the change of occlusion. Each instance has a tile with one
+ * accumulation texel per vertex that any target moves. The base mesh stays in the vertex buffers, and the vertex shader
+ * adds the accumulated deltas (shaders_es/common_layers.glsl), so a half-float accumulator rounds only deltas.
+ * Microsoft's SparseMorphTargets sample (DirectX SDK) accumulates in the same way, but whole vertices, and only one
+ * mesh.
+ *
+ *   path       needs                      how
+ *   layered    geometry shader, blending  one additive pass into three layers
+ *   mrt        ES 3.0, blending           one additive pass with three outputs
+ *   per-layer  ES 3.0, blending           three additive passes
+ *   gather     ES 3.0                     no blending: each fragment sums the active targets of one vertex
+ *   cpu        nothing                    SIMD on the CPU; uploads the sums, or vertices (desc.vertices)
+ *   streams    ES 3.0                     no accumulation: the draw adds up to four targets as vertex streams
+ *
+ * Two policies choose a path: `auto` takes the cheapest on this GPU; `blend` takes layered draws if supported,
+ * otherwise per-layer passes. Blending into the accumulation format needs an extension. Most phones have it for
+ * float16, but not for float32 (EXT_float_blend).
+ *
+ * Threads: the context's own thread; any thread for noh_gl_morph_plan_make and the names. */
+
+/* The names "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams"; and "auto", "f32", "f16". */
+const char *noh_morph_path_name(noh_morph_path path);
+const char *noh_accumulate_name(noh_accumulate accumulate);
+
+typedef struct noh_gl_morph_desc {
+    /* [mesh_count]; copied, but the packs must stay. May contain several LOD levels of one mesh, each with its own tile
+     * size, for a few near and many far instances; they share the tables of the finest one */
+    const noh_mesh *meshes;
+    uint32_t mesh_count;
+    const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
+    noh_morph_path path;             /* 0: the cheapest on this GPU; or the policy blend, or a path */
+    noh_accumulate accumulate;       /* 0: f32 */
+    float expected_active;           /* for auto and calibration: share of targets active at once, 0..1; 0: 0.5 */
+    int without_tangents;            /* 1: two layers, a third less memory, if no shader reads morphed tangents */
+    /* For levels loaded later: `meshes` are levels of one mesh, and only their headers are read, which must stay. Until
+     * noh_gl_morph_use is called, this coarser level of the same mesh, possibly of another pack, is the finest that is
+     * accumulated. Default (NULL) all of `meshes` is loaded */
+    const noh_mesh *coarse;
+    /* 1: on the path cpu, writes finished vertices to vertex buffers (deform.h) instead of sums to a texture,
+     * which is faster. Draw with noh_gl_draw_mesh or noh_gl_mesh_bind, with a binding taken after the last update, and
+     * a renderer with layers_uint NOH_LAYERS_VERTICES; noh_gl_draw_crowd does not support it. Shaders read the bind
+     * pose from noh_a_rest. f16, transfers, UV targets and `coarse` need sums; plan.vertex_ring is then 0. Default (0)
+     * sums in a texture */
+    int vertices;
+    const char *simd; /* name of the kernel of the path cpu (deform.h), for tests. NULL or unavailable: the fastest */
+    /* With `coarse`: noh_gl_morph_blocks and noh_gl_morph_strips of the finest mesh, counted on the whole mesh */
+    uint32_t later_blocks, later_strips;
+} noh_gl_morph_desc;
+
+typedef struct noh_gl_morph noh_gl_morph;
+struct noh_gl_mesh; /* low_gl.h */
+
+/* Counts of one update. */
+typedef struct noh_gl_morph_stats {
+    uint32_t instances;            /* accumulated */
+    uint32_t draws;                /* accumulation draws, without clears */
+    uint32_t targets;              /* active targets, summed over instances */
+    uint32_t rects, texels, pairs; /* rectangles and texels drawn, pairs added */
+} noh_gl_morph_stats;
+
+/* Choose the path and compute its exact bytes, without GL calls.
+ * errors  ARG a desc field is out of range; UNSUPPORTED the path of the desc cannot run here (`what` names the missing
+ *         capability); LIMIT the atlas or a table exceeds the texture size */
+noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
+                                  noh_error *error);
+
+/* Returns the time in nanoseconds after the GPU has finished: call glFinish first, or, if it returns at once as in
+ * browsers, read a pixel back. The library has no clock of its own. */
+typedef uint64_t (*noh_gl_clock)(void *user);
+
+/* Results of noh_gl_morph_calibrate. */
+typedef struct noh_gl_morph_times {
+    noh_morph_path path;               /* the fastest */
+    uint64_t ns[NOH_MORPH_PATH_COUNT]; /* by path: the fastest update of all instances; 0: not measured */
+    uint32_t rounds[NOH_MORPH_PATH_COUNT];
+} noh_gl_morph_times;
+
+/* The memory for noh_gl_morph_calibrate.
+ * errors  as noh_gl_morph_plan_make */
+noh_result noh_gl_morph_calibrate_size(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, uint64_t *bytes,
+                                       noh_error *error);
+
+/* Measure gather, mrt and cpu, as far as they run here, on this driver with your meshes; then set desc.path =
+ * times->path for noh_gl_morph_init. Weights change in each round, with the share desc.expected_active of the targets
+ * active; a round is an update and the wait for it. desc.path is not read, and desc.coarse must be NULL.
+ * shapes  memory[bytes], at least noh_gl_morph_calibrate_size; free again afterwards
+ * ranges  budget_ns: rounds begin until it is spent, at least one for each path; 50,000,000 is enough. Making the
+ *         objects and compiling shaders is not included
+ * state   as after noh_gl_morph_update; all GL objects it makes are deleted
+ * errors  as noh_gl_morph_init */
+noh_result noh_gl_morph_calibrate(void *memory, size_t bytes, const noh_gl_device *device,
+                                  const noh_gl_morph_desc *desc, noh_gl_clock clock, void *user, uint64_t budget_ns,
+                                  noh_gl_morph_times *times, noh_error *error);
+
+/* Build an accumulator in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make its GL
+ * objects, counted in the device's ledger. All weights are initially 0. On error all GL objects made so far are
+ * deleted.
+ * errors  as noh_gl_morph_plan_make; ARG memory is NULL or misaligned; MEMORY memory is too small (need:
+ *         plan.cpu_bytes); GL, MEMORY the driver refused an object; DATA a shader does not compile or link */
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                             noh_gl_morph **morph, noh_error *error);
+
+/* Delete the GL objects. The memory may then be reused. */
+void noh_gl_morph_delete(noh_gl_morph *morph);
+
+/* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
+void noh_gl_morph_forget(noh_gl_morph *morph);
+
+/* Make the GL objects again in a new context (gl_device.h). Weights stay; the next noh_gl_morph_update accumulates every
+ * instance. `log` as in noh_gl_program_create.
+ * errors  GL, MEMORY, DATA as noh_gl_morph_init; it then has no GL objects, and restore may be called again */
+noh_result noh_gl_morph_restore(noh_gl_morph *morph, char *log, size_t log_bytes, noh_error *error);
+
+const noh_gl_morph_plan *noh_gl_morph_plan_of(const noh_gl_morph *morph);
+
+/* The number of the i-th instance of the m-th mesh. */
+uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_t i);
+
+/* Set an instance's weights[target_count of its mesh]: any finite values, including below 0 and above 1.
+ * errors  ARG a weight is not finite (where: its index); nothing is changed */
+noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, const float *weights, noh_error *error);
+
+/* Accumulate an instance only for an LOD level of its mesh. Draw the instance at this level or a coarser one; while two
+ * levels fade, pass the finer. The level's accumulation texels have the same bits as at level 0, except that targets
+ * without a rectangle in the level do not move it. The instance's binding stays the same. A finer level is accumulated
+ * by the next update; a coarser one costs nothing and takes effect when the weights next change.
+ * ranges  level 0 is the full mesh; clamped to the levels of the mesh in the desc */
+void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
+
+/* Accumulate the instances with changed weights or levels. stats may be NULL.
+ * state   gl_device.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
+ * errors  none: init checked everything */
+void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
+
+/* With desc.coarse: set the finest level to accumulate. Deltas are read from the pack of `mesh`, which must stay as
+ * long. The next update accumulates each instance whose level changes.
+ * mesh  a whole mesh: the one of desc.coarse, or the one passed to noh_gl_morph_fill after everything is uploaded */
+void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh);
+
+/* With finished vertices: make a vertex array for each instance of a mesh and each buffer of the ring, so that draws
+ * need not set attribute pointers again, which is slow in drivers. Call it after init and after each restore; without
+ * it noh_gl_mesh_bind changes the pointers of the mesh's own array and restores them. Without finished vertices it does
+ * nothing.
+ * mesh    index in the desc
+ * drawn   the noh_gl_mesh that draws the mesh; its buffers must stay
+ * errors  GL the driver refused a vertex array; the mesh then has none */
+noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const struct noh_gl_mesh *drawn, noh_error *error);
+
+noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
+
+/* Get the targets that the path streams adds, in index order: those with nonzero weights, at most the four with the
+ * largest |weight| x radius.
+ * shapes   weights[target_count]
+ * returns  the number of targets */
+uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
+
+/* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the
+ * uniform noh_streams of the program in use. Does nothing on other paths. The vertex array keeps the buffer: delete the
+ * mesh when the accumulator is deleted.
+ * u_streams  the location of noh_streams in that program: find it once, when the program is linked */
+void noh_gl_morph_bind_streams(const noh_gl_api *api, int u_streams, const noh_gl_morph_binding *binding);
+
+/* ======== palettes on the GPU ========
+ * The joints of skinned meshes on the GPU, for many instances at once.
+ *
+ *   noh_gl_skin_plan_make     choose where palettes are stored, and compute exact bytes, without GL calls
+ *   noh_gl_skin_init          build the palettes in your memory and make the GL object
+ *   noh_gl_skin_delete        delete the GL object
+ *   noh_gl_skin_restore       make the GL object again after a lost context
+ *   noh_gl_skin_set_matrices  set one instance's joint matrices
+ *   noh_gl_skin_write_matrices, noh_gl_skin_touch  set matrices from several threads at once
+ *   noh_gl_skin_set_place     set one instance's place in the world and its morph tile, for crowds
+ *   noh_gl_skin_set_tint      set one instance's tint, for crowds
+ *   noh_gl_skin_set_user      set four floats of one instance, for crowds and your own shaders
+ *   noh_gl_skin_update        upload what changed
+ *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
+ *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
+ *   noh_gl_palette_row, noh_gl_joint_rows, noh_gl_normal_rows
+ *
+ * A palette holds the joints of one draw in rows of four floats: three rows per joint, a 3 x 4 matrix; or, for a mesh
+ * with NOH_MESH_DUAL_QUATERNION, four rows: the rotation, the dual part, and two for the stretch. The converter splits
+ * a mesh if its joints do not fit one palette (Granberg, Character Animation with Direct3D, 2009, ch. 3). Instances are
+ * numbered as in a noh_gl_morph of the same meshes and counts.
+ *
+ *   mode     where                       for
+ *   uniform  a uniform block of 16 KiB   instances drawn one by one
+ *   texture  RGBA32F                     also crowds: noh_gl_draw_crowd draws many instances in one call
+ *
+ * Both are core ES 3.0 and give the same bits.
+ *
+ * Threads: the context's own thread. noh_gl_skin_set_matrices, _set_place and _set_tint make no GL calls: another
+ * thread may call them while no other call on the object runs. Any thread for noh_gl_skin_plan_make and the pure
+ * functions. */
+
+typedef struct noh_gl_skin_desc {
+    const noh_mesh *meshes; /* [mesh_count]; copied, but the packs must stay. Rigid meshes have no palette */
+    uint32_t mesh_count;
+    const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
+    noh_palette_mode mode;           /* 0: auto */
+    int user_values;                 /* 1: room for noh_gl_skin_set_user: one more row per instance, in a texture */
+} noh_gl_skin_desc;
+
+/* The resolved plan on a GPU with these capabilities. All bytes are exact. */
+typedef struct noh_gl_skin_plan {
+    noh_palette_mode mode; /* never AUTO */
+    const char *reason;    /* why this mode was chosen; a string constant */
+    uint32_t instance_count;
+    uint32_t texel_count;   /* rows of four floats, including gaps between palettes */
+    uint32_t width, height; /* of the texture; 0 for a uniform buffer */
+    uint64_t cpu_bytes;     /* the block for noh_gl_skin_init */
+    uint64_t gpu_bytes;
+} noh_gl_skin_plan;
+
+typedef struct noh_gl_skin noh_gl_skin;
+
+/* Choose the mode and compute its exact bytes, without GL calls.
+ * errors  ARG a desc field is out of range; UNSUPPORTED the desc requests uniform blocks, which are too small here;
+ *         LIMIT too many instances, or more rows than a texture of this GPU can hold */
+noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps *caps, noh_gl_skin_plan *plan,
+                                 noh_error *error);
+
+/* Build palettes in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make the GL
+ * object, counted in the device's ledger. All matrices are initially the identity, the bind pose. On error the GL
+ * object is deleted.
+ * errors  as noh_gl_skin_plan_make; ARG memory is NULL or misaligned; MEMORY memory is too small (need:
+ *         plan.cpu_bytes); GL, MEMORY the driver refused the object */
+noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_skin_desc *desc,
+                            noh_gl_skin **skin, noh_error *error);
+
+/* Delete the GL object. The memory may then be reused. */
+void noh_gl_skin_delete(noh_gl_skin *skin);
+
+/* Release the GL object of a lost context without GL calls (gl_device.h). It may be restored later. */
+void noh_gl_skin_forget(noh_gl_skin *skin);
+
+/* Make the GL object again in a new context (gl_device.h); the next noh_gl_skin_update sends everything.
+ * errors  GL, MEMORY as noh_gl_skin_init; it then has no GL object, and restore may be called again */
+noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error);
+
+const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin);
+
+/* The number of the i-th instance of the m-th mesh. */
+uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i);
+
+/* Set the joint matrices of one instance. Does nothing for a rigid mesh.
+ * shapes  matrices[joint_count of the mesh's skin][12]: the joint in model space * its inverse bind matrix */
+void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
+
+/* Set the placement of one instance, for noh_gl_draw_crowd.
+ * shapes  world[12] rows of 3 x 4
+ * morph   its accumulated deltas; NULL: no target is active
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; ARG `world` mirrors (where: the
+ *         instance): one draw cannot have triangles of both windings, so draw this instance alone */
+noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],
+                                 const noh_gl_morph_binding *morph, noh_error *error);
+
+/* Set the tint of one instance, for noh_gl_draw_crowd: noh_vertex.tint in shaders. noh_gl_skin_set_place keeps it.
+ * shapes  tint: sRGB and alpha, multiplied with vertex colours, except for NOH_MATERIAL_UNTINTED; alpha is used only by
+ *         blended materials. NULL: white, the initial value
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds */
+noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint8_t tint[4], noh_error *error);
+
+/* Set four floats of one instance, for noh_gl_draw_crowd: noh_user() in your own vertex shaders. Initially zeros.
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds, or the desc has no user_values */
+noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const float values[4], noh_error *error);
+
+/* Set the wrinkles of one instance's regions, for noh_gl_draw_crowd; initially 0. noh_gl_skin_set_place keeps them.
+ * shapes  regions of noh_wrinkles_weights, 0..1, stored in 255ths; NULL: none
+ * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; NOT_FOUND the instance's mesh has no
+ *         wrinkles */
+noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error);
+
+/* Upload the range of rows changed since the last update, in one call.
+ * state   gl_device.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
+ * errors  none: init checked everything */
+void noh_gl_skin_update(noh_gl_skin *skin);
+
+/* The binding of an instance, with `influences` 0; set `influences` to draw with fewer joints per vertex. */
+noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance);
+
+/* ======== programs of the plain renderer ========
+ * The programs of the plain renderer, one for each type of mesh.
+ *
+ *   noh_gl_variant_key_of   the key of a mesh with given bindings
+ *   noh_gl_variant_key_depth  the key that draws the same depth without colour
+ *   noh_gl_variant_defines  the #defines of a key as text
+ *   noh_gl_shader_prefix    the text between #version and a shader's own text, for a key
+ *   noh_gl_shader_desc      your own shaders instead of mesh.vert and mesh.frag
+ *   noh_gl_variant_create   compile a program for a key
+ *   noh_gl_variant_delete
+ *   noh_gl_variant_skin     bind an instance's palettes
+ *
+ * A key stands for a set of #defines that choose how a vertex is fetched and which pixels are drawn. The texts after
+ * them, shaders_es/common_*.glsl, are the same for the library's and a game's shaders (shaders_es/README.md).
+ *
+ * Threads: the context's own thread; any thread for keys, noh_gl_variant_defines and noh_gl_shader_prefix. */
+
+typedef struct noh_gl_variant {
+    noh_gl_variant_key key;
+    uint8_t has_camera; /* 1: its program has the camera of this pass */
+    unsigned program;
+    int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
+        u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
+        u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
+} noh_gl_variant;
+
+/* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
+#define NOH_UNIT_LAYERS 0u
+#define NOH_UNIT_BASE_COLOR 1u
+#define NOH_UNIT_PALETTES 2u
+#define NOH_UNIT_NORMAL 3u
+#define NOH_UNIT_SURFACE 4u
+#define NOH_UNIT_EMISSIVE 5u
+#define NOH_UNIT_WRINKLE 6u
+#define NOH_UNIT_WRINKLE_WEIGHTS 7u /* and the next two */
+#define NOH_UNIT_SHADOW 10u
+#define NOH_UNIT_ENVIRONMENT 11u
+#define NOH_UNIT_SPECULAR 12u
+#define NOH_UNIT_USER 13u /* the first unit for a game's own shaders */
+
+/* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have no features. */
+uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
+
+/* The key of a mesh with given bindings; set `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features`
+ * yourself, they are 0.
+ * skin   NULL: a rigid mesh, or the bind pose. Not NULL, and in a texture, for a crowd
+ * crowd  1: for noh_gl_draw_crowd */
+noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin_binding *skin, int crowd,
+                                         int layers_uint, noh_debug_view view);
+
+/* Write the text between the line #version 300 es and a shader's own text: defines, precision, and the declarations of
+ * attributes, uniforms and functions (shaders_es/README.md). It ends with a #line, so that a driver's messages count
+ * the lines of your own text.
+ * stage    GL_VERTEX_SHADER or GL_FRAGMENT_SHADER
+ * text     [bytes], zero-terminated; untouched if too small; NULL with 0: only returns the size
+ * returns  the bytes of the text with its zero */
+size_t noh_gl_shader_prefix(noh_gl_variant_key key, unsigned stage, char *text, size_t bytes);
+
+/* Compile a program for a key. The device's ledger may be NULL.
+ * own       the shaders; NULL: the library's. Calls `made`, but not `bind`
+ * varyings  [varying_count] outputs for transform feedback, interleaved; none with 0
+ * errors    LIMIT more samplers than NOH_GL_OWN_SAMPLERS_MAX, or more inputs than NOH_GL_OWN_INPUTS_MAX; DATA, GL,
+ *           MEMORY as noh_gl_program_create; the log then has the driver's messages, which count the lines of your text
+ *           from 1 */
+noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key key, const noh_gl_shader_desc *own,
+                                 const char *const *varyings, uint32_t varying_count, noh_gl_variant *out,
+                                 noh_error *error);
+void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_variant *variant);
+
+/* Bind a palette of an instance, for the submeshes that use it. The variant's program must be in use. For your own
+ * program, fill a variant with `key` and `u_skin`, the location of noh_skin (-1: palettes are in a uniform block).
+ * state   leaves the texture bound to NOH_UNIT_PALETTES, or the buffer's range to uniform binding 0 */
+void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
+                         const noh_gl_skin_binding *skin, uint32_t palette);
+
+/* ======== meshes and a plain renderer ========
+ * Meshes on the GPU, and a plain renderer for them.
+ *
+ *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
+ *   noh_gl_mesh_lod          the indices of an LOD level
+ *   noh_gl_mesh_bind         bind its vertex array, with an instance's finished vertices; noh_gl_mesh_unbind
+ *   noh_gl_mesh_create_empty buffers for levels loaded later; noh_gl_mesh_fill fills them piece by piece
+ *   noh_gl_picture_create    upload a texture; delete it with noh_gl_texture_delete (low_gl.h)
+ *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
+ *                            _variant
+ *   noh_gl_draw_begin        begin drawing; noh_gl_draw_end ends it
+ *   noh_gl_draw_mesh         draw one instance
+ *   noh_gl_draw_crowd        draw many instances of one mesh in one call
+ *   noh_gl_draw_tint         the tint of the next meshes; noh_gl_draw_wrinkles, their wrinkles; noh_gl_draw_user,
+ *                            values for your own shaders; noh_gl_draw_triangles, a part of their triangles;
+ *                            noh_gl_draw_priority, a part of their blended submeshes; noh_gl_next_priority
+ *
+ * The renderer is deliberately small: one shader in variants, one key light, and the textures of glTF materials. A
+ * game's own shaders can replace it (noh_gl_renderer_desc.shaders): two texts, compiled for all types of meshes. A game
+ * with its own renderer needs only noh_gl_mesh, a noh_gl_morph_binding, a noh_gl_skin_binding and noh_gl_shader_prefix.
+ *
+ * Threads: the context's own thread; any thread for noh_gl_mesh_bytes, noh_gl_mesh_lod and noh_gl_picture_bytes. */
+
+/* Attribute locations of a noh_gl_mesh's vertex array. */
+#define NOH_ATTRIBUTE_POSITION 0u   /* vec3 */
+#define NOH_ATTRIBUTE_NORMAL 1u     /* ivec2, octahedral: noh_direction_of_pair in shaders_es/common_attributes.glsl */
+#define NOH_ATTRIBUTE_TANGENT 2u    /* ivec2, octahedral with handedness: noh_tangent_of_pair; not in every mesh */
+#define NOH_ATTRIBUTE_UV 3u         /* vec2 in 0..1, scaled by the mesh's uv_offset and uv_scale */
+#define NOH_ATTRIBUTE_COLOR 4u      /* vec4 in 0..1, rgb as square roots; not in every mesh */
+#define NOH_ATTRIBUTE_INFLUENCES 5u /* uint, uvec2, uvec3 or uvec4: the first words of a vertex's influences */
+#define NOH_ATTRIBUTE_MORE_INFLUENCES 6u /* uvec3: the last three of seven words */
+#define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
+#define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer record; only with a transfer */
+#define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of the record */
+#define NOH_ATTRIBUTE_UV_TEXEL 14u       /* uint: accumulation texel of its UV; only with NOH_MESH_UV_TARGETS */
+/* Locations 10 to 13 are delta texels (uvec3) on the path streams: NOH_ATTRIBUTE_STREAMS (low_gl.h). On other paths
+ * the first two are the bind pose, even if finished vertices are at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL */
+#define NOH_ATTRIBUTE_REST 10u        /* vec3 */
+#define NOH_ATTRIBUTE_REST_NORMAL 11u /* ivec2 */
+
+/* The exact GPU bytes of a mesh's buffers. `mesh` may be any LOD level: data used only by finer levels is not
+ * counted. */
+uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh);
+
+/* Upload a mesh and all its coarser LOD levels directly from the pack. `mesh` may be any level; finer ones are not
+ * uploaded. Leaves vertex array 0 bound.
+ * errors  as noh_gl_buffer_create */
+noh_result noh_gl_mesh_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *mesh, noh_gl_mesh *out,
+                              noh_error *error);
+void noh_gl_mesh_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh);
+
+/* Make a mesh's GL objects again in a new context (gl_device.h).
+ * errors  GL, MEMORY as noh_gl_mesh_create; it then has no GL objects */
+noh_result noh_gl_mesh_restore(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_mesh *mesh, noh_error *error);
+
+/* Bind a mesh's vertex array for one instance, for your own renderer; noh_gl_draw_mesh does it itself. If the instance
+ * has finished vertices, positions, normals and tangents point to them; noh_gl_mesh_unbind restores the pointers and
+ * binds vertex array 0. Leaves array buffer 0 bound.
+ * morph   NULL: the bind pose */
+void noh_gl_mesh_bind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
+void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
+
+/* The mesh at an LOD level, for drawing. Level 0 is the full mesh; clamped to the uploaded levels.
+ * first  receives the byte offset of the level's indices in the index buffer; first_index of submeshes counts from
+ *        there */
+noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
+
+/* The exact GPU bytes of a pack's texture with its mip levels.
+ * etc2  noh_gl_caps.etc2; 0: blocks are decoded to 4 bytes per texel */
+uint64_t noh_gl_picture_bytes(const noh_texture *texture, int etc2);
+
+/* Upload a pack's texture with its mip levels, as sRGB or, with NOH_TEXTURE_LINEAR, as data. If the context does not
+ * support ETC2 (noh_gl_api.etc2), noh_gl_api.decode decodes its blocks.
+ * errors  as noh_gl_texture_create; UNSUPPORTED the texture has blocks, the context does not support them, and
+ *         noh_gl_api.decode is NULL */
+noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                 noh_gl_texture *out, noh_error *error);
+
+/* Make a texture's GL objects again in a new context (gl_device.h).
+ * errors  GL, MEMORY as noh_gl_picture_create; it then has no GL objects */
+noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                  noh_gl_texture *picture, noh_error *error);
+
+/* The passes that a renderer compiles variants for. */
+typedef enum noh_gl_passes {
+    NOH_PASSES_COLOR = 0, /* NOH_DRAW_OPAQUE and NOH_DRAW_BLENDED */
+    NOH_PASSES_ALL,
+    NOH_PASSES_DEPTH /* only NOH_DRAW_DEPTH */
+} noh_gl_passes;
+
+typedef struct noh_gl_renderer_desc {
+    noh_debug_view view;    /* 0: lit */
+    int layers_uint;        /* as in noh_gl_morph_binding.is_uint */
+    int without_tangents;   /* as in noh_gl_morph_desc */
+    const noh_mesh *meshes; /* [mesh_count] to be drawn; not kept */
+    uint32_t mesh_count;
+    noh_palette_mode palettes; /* noh_gl_skin_plan.mode; 0: no skinning, all meshes in the bind pose */
+    int crowds;                /* 1: for noh_gl_draw_crowd; needs NOH_PALETTE_TEXTURE */
+    int fewer_influences;      /* 1: bindings will lower `influences` */
+    int fades;                 /* 1: LOD levels will fade (noh_gl_lod): also compiles variants that discard pixels */
+    int encode_srgb;           /* 1: the shader encodes to sRGB, for framebuffers that do not, such as WebGL's canvas */
+    int lit;                   /* 1: shaders use the light of noh_gl_renderer_light */
+    noh_gl_passes passes;
+    const noh_gl_shader_desc *shaders; /* your own shaders instead of the library's; copied, except its texts. NULL:
+                                        * none */
+} noh_gl_renderer_desc;
+
+typedef struct noh_gl_camera {
+    float view_projection[16]; /* column-major, clip space of GL */
+    float eye[3];              /* world */
+    float key[3];              /* unit vector towards the key light, world */
+} noh_gl_camera;
+
+/* Some triangles of a mesh level, in your own index buffer. */
+typedef struct noh_gl_triangles {
+    unsigned buffer;         /* of uint32_t, three per triangle, in the order of `numbers` */
+    uint32_t first;          /* first triangle in the buffer */
+    const uint32_t *numbers; /* [count] triangle numbers of the level, increasing */
+    uint32_t count;
+} noh_gl_triangles;
+
+typedef struct noh_gl_renderer {
+    const noh_gl_api *gl;
+    noh_gl_ledger *ledger;
+    int layers_uint, without_tangents, encode_srgb, fades, lit;
+    noh_debug_view view;
+    noh_gl_shader_desc shaders; /* zeros: the library's */
+    noh_gl_texture white;       /* 1 x 1, for materials without a texture */
+    const noh_gl_light *light;  /* of this pass; NULL if not lit */
+    const noh_lighting *lighting;
+    noh_gl_camera camera;                /* of this pass */
+    uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
+    float user[4];                       /* of the next noh_gl_draw_mesh */
+    int priority;                        /* of the next draws, or NOH_PRIORITY_ANY */
+    float wrinkles[NOH_WRINKLE_REGIONS]; /* of the next noh_gl_draw_mesh, as vectors of noh_wrinkle_regions */
+    uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
+    const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
+    noh_gl_raster raster;                /* state restored by noh_gl_draw_end */
+    uint32_t variant_count;
+    noh_gl_variant *variants; /* [variant_count] in the memory passed to create */
+} noh_gl_renderer;
+
+#define NOH_GL_RENDERER_BYTES 4u /* the white texel */
+
+/* The bytes of memory for the variants of a desc: a type of mesh needs 2 to 8 variants for each type of material on it,
+ * and twice as many with fades or depth. 0: more than NOH_GL_VARIANTS_MAX variants, or the desc is invalid. */
+size_t noh_gl_renderer_size(const noh_gl_renderer_desc *desc);
+
+/* Compile every variant that the meshes of the desc may need; nothing is compiled later.
+ * memory  [bytes] at least noh_gl_renderer_size(desc), aligned to NOH_MEMORY_ALIGN; used by the renderer until it is
+ *         deleted
+ * out     may be written even on error, but then owns no GL objects
+ * errors  ARG crowds without palettes in a texture, unknown passes, or memory is NULL or misaligned; LIMIT the meshes
+ *         need more variants than NOH_GL_VARIANTS_MAX; MEMORY memory is too small; MEMORY, GL, DATA as
+ *         noh_gl_program_create and noh_gl_texture_create */
+noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, void *memory,
+                                  size_t bytes, noh_gl_renderer *out, noh_error *error);
+void noh_gl_renderer_delete(noh_gl_renderer *renderer);
+
+/* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
+void noh_gl_renderer_forget(noh_gl_renderer *renderer);
+
+/* Make the GL objects again in a new context (gl_device.h). `log` as in noh_gl_program_create.
+ * errors  GL, MEMORY, DATA as noh_gl_renderer_create; it then has no GL objects */
+noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
+
+/* Set the light of a renderer with `lit`, from the next noh_gl_draw_begin on. Both are borrowed, and read by draws. */
+void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting);
+
+/* Begin drawing with your render state (gl_device.h), and open a debug group that noh_gl_draw_end closes. Bind your
+ * framebuffer and set your viewport and depth function first. The camera is copied, and set for each variant at its
+ * first draw. */
+void noh_gl_draw_begin(noh_gl_renderer *renderer, const noh_gl_camera *camera);
+
+#define NOH_DRAW_OPAQUE 0
+#define NOH_DRAW_BLENDED 1
+/* the same depth as NOH_DRAW_OPAQUE, to the bit, without colour: for shadow maps and depth passes */
+#define NOH_DRAW_DEPTH 2
+
+/* The LOD level of a draw, and the part of its pixels to draw. Two draws fade from one level to another: the new level
+ * with (0, f), the old one with (f, 1), f from noh_lod_fade. A pixel that both cover is drawn by exactly one of them,
+ * so its colour and depth come from one surface. The pattern is fixed to the screen. */
+typedef struct noh_gl_lod {
+    uint32_t level; /* as in noh_gl_mesh_lod */
+    float from, to; /* pixels where from <= noise < to, noise in [0, 1); 0 and 1: all. Other values need a renderer
+                     * with `fades` */
+} noh_gl_lod;
+
+/* Draw a mesh's submeshes of one pass. Draw every mesh with NOH_DRAW_OPAQUE first, then every mesh with
+ * NOH_DRAW_BLENDED. For a blended material with a texture, NOH_DRAW_OPAQUE draws the pixels with an alpha of 0.9 or
+ * more, including the tint's alpha; they hide pixels behind them, so hair strands need no sorting. NOH_DRAW_DEPTH
+ * fetches only positions (for alpha-cut materials also uv, colours and texture) and writes no colour. It may precede
+ * the other passes with the same framebuffer, or be used alone. A mesh whose variant is not in the renderer's desc
+ * asserts, and is not drawn.
+ * shapes  world[12] rows of 3 x 4; pictures[texture_count of the pack]
+ * morph   its deltas, accumulated for this LOD level or a finer one; NULL: no target is active
+ * skin    its palettes; NULL: a rigid mesh, or the bind pose
+ * lod     NULL: the finest uploaded level, all pixels */
+void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const float world[12],
+                      const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
+                      const noh_gl_texture *pictures, int pass);
+
+/* Set the tint for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets it to white. Instances of a crowd have
+ * their own (noh_gl_skin_set_tint).
+ * shapes  tint: sRGB and alpha, multiplied with vertex colours, except for NOH_MATERIAL_UNTINTED; alpha is used only by
+ *         blended materials. NULL: white */
+void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
+
+/* Set noh_user() of your own vertex shaders, four floats, for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets
+ * them to 0. Instances of a crowd have their own (noh_gl_skin_set_user). NULL: zeros */
+void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
+
+/* Draw only blended submeshes with materials of this priority in the next noh_gl_draw_mesh and noh_gl_draw_crowd calls.
+ * To sort the meshes of a figure, draw them once for each priority, from low to high, and within a priority from far to
+ * near. NOH_PRIORITY_ANY, the state after noh_gl_draw_begin: all, from low to high, and for equal priorities in the
+ * order of the pack. Opaque submeshes are always drawn. */
+void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
+
+/* The lowest priority above `above` of a mesh's blended materials; NOH_PRIORITY_ANY: there is none. */
+int noh_gl_next_priority(const noh_mesh *mesh, int above);
+
+/* Set the wrinkles of regions for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets them to none. Instances of
+ * a crowd have their own (noh_gl_skin_set_wrinkles).
+ * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
+void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
+
+/* Set the wrinkle models for the next noh_gl_draw_mesh and noh_gl_draw_crowd calls.
+ * models    NOH_WRINKLE_BY_*; 0, the state after noh_gl_draw_begin: the material's
+ * smoothed  0..255: how far wrinkles are smoothed out; 255: completely */
+void noh_gl_draw_wrinkle_look(noh_gl_renderer *renderer, uint32_t models, uint32_t smoothed);
+
+/* Draw `count` consecutive instances of one mesh, from the binding `first` on, with one draw call per submesh.
+ * noh_gl_skin_set_place places the instances. Rigid meshes work too; palettes must be in a texture. Blended submeshes
+ * are not sorted between instances.
+ * morph   the binding of any instance, for its texture; NULL if noh_gl_skin_set_place had none */
+void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const noh_gl_morph_binding *morph,
+                       const noh_gl_skin_binding *first, uint32_t count, const noh_gl_lod *lod,
+                       const noh_gl_texture *pictures, int pass);
+
+/* End drawing: unbind program, vertex array, textures and uniform buffer, and restore render state (gl_device.h). */
+void noh_gl_draw_end(const noh_gl_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

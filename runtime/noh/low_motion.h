@@ -1,0 +1,612 @@
+/* low_motion.h: caches, poses and graphs step by step: for engines built of parts (noh_low.h). */
+
+#ifndef NOH_LOW_MOTION_H
+#define NOH_LOW_MOTION_H
+
+#include <stdint.h>
+
+#include "base.h"
+#include "clip.h"
+#include "graph.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ======== time ========
+ * Integer time that does not drift.
+ *
+ * A tick is 1/48,000 s: one audio sample. A position counts 1/65,536 ticks from the start of a clip's first leg and
+ * never wraps: at 2.5 durations a repeating clip is half through its third pass, a ping-pong clip half through its
+ * third leg. So play is one addition per step, exact for any partition of an interval, and pose, events and root motion
+ * are closed functions of the position.
+ *
+ *   noh_ticks_from_seconds   seconds to ticks
+ *   noh_frame_clock_advance  ticks of a frame, without drift
+ *   noh_time_advance         position after a number of ticks
+ *   noh_time_clip            position inside the clip, folded by the loop mode
+ *   noh_time_legs            number of durations passed
+ *   noh_time_rebase          an equivalent position of small magnitude
+ *
+ * All functions accept every argument; results that would overflow are clamped to their range.
+ *
+ * Threads: pure functions of their arguments; any thread. */
+
+/* Convert a frame's seconds to ticks, for noh_stage_step and similar calls. Summed over frames, the ticks are the
+ * nearest to the sum of the seconds. Long pauses, such as in a debugger, are not caught up.
+ * ranges  seconds 0..NOH_FRAME_SECONDS_MAX, clamped; negative values and NaN count as 0 */
+uint32_t noh_frame_clock_advance(noh_frame_clock *clock, double seconds);
+
+/* Convert whole ticks to a position.
+ * ranges  |ticks| < 2^47 (93 years), clamped */
+int64_t noh_position_of(int64_t ticks);
+
+/* ======== tracks ========
+ * One track of a controller: the clip it plays, position, speed and weight (Granberg 2009, chapter 5; here
+ * the position is in integer ticks and cannot drift).
+ *
+ * Plain state without pointers. Change it through clip.h, which updates dependent state.
+ *
+ * Threads: a track belongs to the thread of its controller. */
+
+/* Get the clip tick to sample, `ago` ticks before now at the present speed. */
+uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago);
+
+/* ======== root motion ========
+ * Root displacement, extracted from the pose.
+ *
+ * A chosen part E of the root joint's transform (some axes of the translation, and the heading: the twist about the up
+ * axis) moves the character in the world. The rest stays in the pose, so that world * E * rest is the original root.
+ * From position a to b of a clip the character moves by
+ *   inverse(E(a)) * E(b)                                         within one pass
+ *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)      across n seams, L = inverse(E(0)) * E(end)
+ * Headings count from the clip's own axes: the yaw of the first frame stays in the pose. So a clip that walks along z
+ * moves its character along z, whatever direction its first frame faces.
+ * E(0) and E(end) come from the source clip if the set has them (root_ends); sampled values blend towards them within
+ * NOH_ROOT_SEAM_TICKS of either end. So a loop that closes in the source never drifts, however lossy its compression.
+ * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
+ * without rounding, and the sum of the n displacements is a geometric series of rotations.
+ *
+ *   noh_root_at       displacement since the start of a clip, after any number of passes
+ *   noh_controller_root_motion (clip.h)   weighted displacement of all tracks since the last call
+ *
+ * source  Granberg 2009, chapter 16, names root motion; adding its displacements in floats drifts
+ *
+ * Threads: pure functions; those that call the set's `sample` may run where it may (clip.h). */
+
+/* Split the root joint's transform: extract returns E, with the heading relative to the model's axes; remove leaves the
+ * transform without E. */
+noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root);
+void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
+
+/* Displacement from position 0 to an unwrapped position. */
+noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
+                          int64_t position);
+
+/* ======== skeletons ========
+ * Joints, parents first, so that one pass over them computes model matrices. The arrays are borrowed.
+ *
+ * Threads: read-only; any number of threads may share one. */
+
+#define NOH_JOINT_ROOT 0xffffu /* parent of a joint without one */
+
+/* Check a skeleton of your own; noh_pack_open checks skeletons in packs.
+ * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
+ *         finite, a rotation that is not unit */
+noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
+
+/* ======== blending ========
+ * Weighted blends of poses, layers over them, and additive differences.
+ *
+ *   noh_blend_begin, noh_blend_add (for each pose), noh_blend_finish       pose = sum of w * pose / sum of w
+ *   noh_blend_begin_over, noh_blend_add (for each pose), noh_blend_cover   lay a sum over the pose below
+ *   noh_pose_mix, noh_floats_mix          two poses, masked
+ *   noh_pose_difference, noh_pose_add, noh_floats_add   additive layers
+ *
+ * Every joint and every float has its own sum of weights. So a mask on one track, or a clip that does not animate a
+ * joint, leaves the other tracks at full weight there. Where the sum is 0 the result is the bind pose (for a float, its
+ * default). A quaternion is negated if it points away from the sum so far. With two tracks this equals alignment to the
+ * first one; with more, unlike that alignment, the sum can never vanish, and nothing depends on a first track that has
+ * faded out.
+ *
+ * source  Granberg 2009, chapter 5, blends two clips with weights w and 1 - w; sums that are not divided by their
+ *         weight, or that add q and -q, shrink or cancel
+ *
+ * Threads: pure functions of their arguments; any thread. */
+
+void noh_blend_begin(noh_blend *blend);
+
+/* Begin a sum that noh_blend_cover will lay over the pose of the sum in `blend`. */
+void noh_blend_begin_over(noh_blend *blend);
+
+/* Add one pose. Joints that a clip does not animate, or that a mask excludes, are skipped: the pose neither moves them
+ * nor dilutes the other poses there.
+ * shapes  pose[joint_count], floats[float_count]; NULL: not animated
+ * ranges  weight > 0 */
+void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask);
+
+/* Divide the sums by their weights.
+ * shapes  bind_pose[joint_count], defaults[float_count] (NULL: zeros), pose[joint_count], floats[float_count] */
+void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults,
+                      noh_transform *pose, float *floats);
+
+/* Lay a sum begun by noh_blend_begin_over over the pose below, in place. Each joint is covered by `amount` times the
+ * mean mask of the poses added there (sum of w * mask / sum of w), fully where the pose below has no weight. With
+ * `full` 1 the sum of w counts as at least 1, and so does a pose below without weight, which is the bind pose.
+ * shapes  pose[joint_count], floats[float_count] */
+void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats);
+
+/* Interpolate: out = a at t = 0, b at t = 1; out may be a or b. The mask multiplies t.
+ * shapes  a, b, out and mask (NULL: 1 everywhere) [joint_count]
+ * ranges  t 0..1 */
+void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask,
+                  noh_transform *out);
+void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, const uint8_t *mask, float *out);
+
+/* Compute the difference from a reference to a pose: rotation inverse(reference) * pose, the difference of
+ * translations, the ratio of scales (1 where the reference's is 0). out may be pose, not reference. */
+void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, const noh_transform *pose,
+                         noh_transform *out);
+
+/* Apply a weighted difference in place: multiply the rotation on the right, add the translation, multiply the scale.
+ * Weights above 1 exaggerate. */
+void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask,
+                  noh_transform *pose);
+void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats);
+
+/* ======== a queue of callback keys ========
+ * Collects the events of a step to process later, instead of in the callback.
+ *
+ * A fixed array. With a capacity from noh_controller_events_max or noh_clip_set_events_max it cannot overflow. Pass
+ * noh_event_queue_push as the callback and the queue as its user pointer.
+ *
+ * Threads: a queue belongs to one thread at a time. */
+
+typedef struct noh_event_queue {
+    uint32_t capacity, count;
+    uint32_t lost; /* events that did not fit; always 0 with a capacity from a bound */
+    uint32_t high_water;
+    noh_event *events; /* [capacity], oldest first */
+} noh_event_queue;
+
+/* Exact size in bytes; 0 if the capacity is 0 or too large. */
+size_t noh_event_queue_size(uint32_t capacity);
+
+/* Make a queue in memory[bytes], aligned to NOH_MEMORY_ALIGN.
+ * errors  ARG capacity, or memory NULL or misaligned; MEMORY need: the bytes */
+noh_result noh_event_queue_init(void *memory, size_t bytes, uint32_t capacity, noh_event_queue *queue,
+                                noh_error *error);
+
+/* Append an event; a noh_event_fn. `queue` is a noh_event_queue. */
+void noh_event_queue_push(void *queue, const noh_event *event);
+
+/* Remove all events; keeps `lost` and `high_water`. */
+void noh_event_queue_clear(noh_event_queue *queue);
+
+/* ======== the format of clips ========
+ * The bytes of a compressed clip.
+ *
+ * A clip is one position-independent block: a header of bits, then its segments. Bits fill bytes from the lowest; a
+ * field's lowest bit comes first. There is no alignment and no pointer. The header is a bit stream because a game clip
+ * of 20 frames takes two kilobytes: a plain struct of joints would be a third of it.
+ *
+ * varint: groups of 4 bits, lowest first, each followed by one bit, 1 = another follows; at most 8 groups.
+ * unit quaternion of width w: 2 bits index of the omitted component (the largest, made positive), then 3 x w bits:
+ *         component = (v - mid) * sqrt(1/2) / mid, mid = 2^(w-1) - 1.
+ * floats of width w: the highest w bits of an IEEE single, the rest zero.
+ *
+ * Header
+ *   8        version, NOH_CLIP_VERSION
+ *   8        flags, NOH_CLIP_FLAG_*; other bits are 0
+ *   varint   joints
+ *   varint   frames, at least 1
+ *   1        1: varint sample rate in Hz;  0: 32 bits of sample rate in micro-Hz
+ *   varint   segments; segment s holds frames [s * frames / segments, (s + 1) * frames / segments)
+ *   5        only when segments > 1: width of a segment's byte count
+ *   varint   the bound in nanometres;  varint the shell in micrometres
+ *   20       largest error;  20 rms error (4 bits e, 16 bits m: bound * m * 2^e / 65536)
+ *   varint   joint of the largest error;  varint its time in eighths of a frame
+ *   varint   float groups; each: 32 bits name hash, varint node + 1 (0: none), varint width
+ *   floats   per triple of floats (last padded): track fields, see below
+ *   joints   per joint: 0 = rotation animated, rest as in the bind pose; 10 = all as bind;
+ *            11, then 2 bits each for rotation, translation and (flag SCALE only) scale:
+ *            0 bind, 1 constant, 2 animated. Then the fields of all that is not bind, in the
+ *            order translation, scale, rotation:
+ *              constant rotation   4 bits c, unit quaternion of width 11 + c
+ *              constant linear     2 bits c, 3 floats of width 16, 20, 24, 32
+ *              animated            track fields
+ *   sizes    only when segments > 1: each segment's byte count; a single segment has the rest
+ *   0..7     zeros up to a byte
+ * Track fields
+ *   8        step of reference (segments > 1 only)
+ *   floats:  2 x 8 more: the steps of the second and third float relative to the first, + 128
+ *   rotation: 1 wild: each segment has its own reference. Else as follows.
+ *   1        0: the reference is the bind pose's value (floats: zero);
+ *            1: rotation: unit quaternion of width 8; linear: 3 floats of width 16
+ *   1        joints only. 1: mixed axes: unit quaternion of width 8, whose matrix turns
+ *            decoded triples into components
+ *
+ * A segment is a separate bit stream: 1 bit "has raw tracks", with SPLIT 1 bit "is split", if that is 1 a varint, the
+ * number of bits before the high part, then per track, in header order:
+ *   1        only with raw tracks: this one is raw: frames x (4 or 3) x 32-bit floats, nothing else
+ *   step     symbol of the step table: zigzag difference to the header's step (segments > 1)
+ *            or to the step of the last track of its class (single); 31: 8 bits, absolute.
+ *            step size = 2^(NOH_CLIP_STEP_TOP - id / 4)
+ *   32 + 1   wild rotations: unit quaternion of width 10, then a sign bit
+ *   last     symbol: number of frequencies, 0..frames of the segment, or 0..frames / 2 if it is split
+ *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs_internal.h
+ *   dc       frequency 0: per component a category symbol, then bits and sign
+ * The high part of a split segment has the frequencies from frames / 2 up of each track that is not raw: their number,
+ * as a symbol like `last`, then triples down to frames / 2. Playback of half of the frames skips it.
+ * Values are the orthonormal DCT-II of each component, or with PARABOLA the transform whose rows are the constant, x
+ * and x^2, then the rows of the DCT-II from its second on, made orthonormal in that order among rows of the same
+ * symmetry. A rotation's components are the modified Rodrigues vector u = 4 xyz / (1 + w) relative to the reference; a
+ * linear track's are differences from the reference.
+ *
+ * Threads: constants. */
+
+#define NOH_CLIP_VERSION 5u /* raised for new tables too: clip_tables.c is part of the format */
+
+#define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: 16 bits are too few for some joint's lever */
+#define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale differs from its bind pose */
+#define NOH_CLIP_FLAG_LOOP 4u  /* the last frame equals the first */
+#define NOH_CLIP_FLAG_OPEN 8u  /* coded in an open loop, each joint separately: joints may be masked or replaced */
+/* the bound holds for all points at the shell's distance; without it, for the three on each joint's axes */
+#define NOH_CLIP_FLAG_SPHERE 16u
+#define NOH_CLIP_FLAG_PARABOLA 32u /* the transform begins with a parabola: see above */
+#define NOH_CLIP_FLAG_SPLIT 64u    /* in some segments the high frequencies are stored separately */
+#define NOH_CLIP_FLAGS_ALL 127u
+
+#define NOH_CLIP_JOINTS_MAX 4096u
+#define NOH_CLIP_FLOATS_MAX 4096u
+#define NOH_CLIP_GROUPS_MAX 1024u
+#define NOH_CLIP_FRAMES_MAX (1u << 20)
+#define NOH_CLIP_SEGMENT_FRAMES_MAX 64u
+
+#define NOH_CLIP_TICKS_PER_SECOND 48000u
+#define NOH_CLIP_MICRO 1000000u
+
+#define NOH_CLIP_STEP_TOP 16    /* the largest step is 2^16 ... */
+#define NOH_CLIP_STEP_IDS 256u  /* ... and the smallest 2^-47.75 */
+#define NOH_CLIP_STEP_FIRST 112 /* the reference for the first track of a single segment */
+#define NOH_CLIP_STEP_ESCAPE 31u
+
+#define NOH_CLIP_MODE_BIND 0u
+#define NOH_CLIP_MODE_CONSTANT 1u
+#define NOH_CLIP_MODE_ANIMATED 2u
+
+#define NOH_CLIP_CONSTANT_BITS 11u /* smallest width of a constant rotation */
+#define NOH_CLIP_REFERENCE_BITS 8u
+#define NOH_CLIP_WILD_BITS 10u
+#define NOH_CLIP_MIX_BITS 8u
+#define NOH_CLIP_ERROR_ONE 65536u
+#define NOH_CLIP_TIME_PARTS 8u /* a certificate's time is in eighths of a frame */
+
+#define NOH_CLIP_MAGNITUDE_BITS 23u /* of a coefficient */
+
+/* ======== compressed clips ========
+ * A compressed clip, opened for playing.
+ *
+ * The clip's bytes are used in place; its header, a few bits per joint, is expanded once into the caller's memory.
+ * Frames are decoded through a cache: low_motion.h.
+ *
+ *   noh_clip_measure   counts, duration, certificate and memory size, before it is opened
+ *   noh_clip_size      the bytes that noh_clip_init needs
+ *   noh_clip_init      check a clip and expand its header
+ *   noh_clip_info_of   counts, duration and certificate
+ *   noh_clip_group_at  a group of its floats
+ *   noh_clip_frame_at  frame and fraction of a time
+ *
+ * Threads: an open clip is read-only; any number of threads may share it. */
+
+typedef struct noh_clip_desc {
+    const void *bytes; /* the clip, any alignment; must outlive the noh_clip */
+    size_t byte_count;
+    /* [joint_count] the skeleton's bind pose that the clip was built with; used by init only */
+    const noh_transform *bind;
+    uint32_t joint_count; /* joints of the skeleton; must equal the clip's; 0 for a clip that animates floats only */
+    /* sample rate, in frames per second, that suffices; default (0) the full rate. A clip with at least twice this rate
+     * (less 1%) is halved: about every second frame is decoded and cached, and frames between are interpolated. Its
+     * certificate does not hold then. Split segments (NOH_CLIP_FLAG_SPLIT) also lose the higher half of their
+     * frequencies */
+    uint32_t sample_rate_enough;
+} noh_clip_desc;
+
+typedef struct noh_clip noh_clip;
+
+/* Contents of a clip's header. Distances in centimetres. */
+typedef struct noh_clip_info {
+    uint32_t joint_count, frame_count, segment_count, float_count, group_count;
+    uint32_t track_count;     /* animated rotations, translations, scales and triples of floats */
+    uint32_t sample_rate_uhz; /* frames per second, times 10^6 */
+    uint64_t duration_ticks;  /* 1/48,000 s; frame_count - 1 frames: the last frame is shown at the end */
+    uint32_t flags;           /* NOH_CLIP_FLAG_* */
+    /* the error bound that it was built for, and the distance in the bind pose from a joint to the points that the
+     * bound covers: with NOH_CLIP_FLAG_SPHERE all points at that distance, without it the three on the joint's axes */
+    double error_cm, shell_cm;
+    double max_error_cm, rms_error_cm; /* certificate: measured errors, at frames and between them */
+    uint32_t max_error_joint;
+    double max_error_time_s;
+    uint32_t segment_frames_max;
+    uint32_t halved;          /* 1: half of its frames suffice (noh_clip_desc.sample_rate_enough) */
+    size_t segment_bytes_max; /* of the longest segment, decoded in the cache */
+} noh_clip_info;
+
+/* Check a clip completely; get its info and the size of its noh_clip.
+ * errors  as noh_clip_init, except MEMORY */
+noh_result noh_clip_measure(const noh_clip_desc *desc, noh_clip_info *info, size_t *bytes, noh_error *error);
+
+/* Exact size of a noh_clip in bytes; 0 for a clip that noh_clip_measure rejects. */
+size_t noh_clip_size(const noh_clip_desc *desc, noh_error *error);
+
+/* Check a clip completely and expand its header into memory[noh_clip_size()], aligned to NOH_MEMORY_ALIGN.
+ * errors  ARG bytes or bind NULL, joint_count not the clip's (need: the clip's), memory NULL or misaligned; MEMORY
+ *         need: the bytes; VERSION need: the version read; LIMIT need: the clip's count; DATA where: the byte in the
+ *         clip */
+noh_result noh_clip_init(void *memory, size_t bytes, const noh_clip_desc *desc, noh_clip **out, noh_error *error);
+
+void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
+
+/* ======== the clip cache ========
+ * Decoded segments of clips in a fixed block, and poses sampled from them.
+ *
+ * A clip is stored in segments of up to NOH_CLIP_SEGMENT_FRAMES_MAX frames; a pose is sampled from one or two of them.
+ * One cache serves all instances that play its clips. In each frame of a game call
+ *   noh_clip_cache_begin_frame(cache);                     once
+ *   noh_clip_cache_want(cache, clip, soon, joints);        per playing track: what it needs next
+ *   noh_clip_cache_work(cache, budget);                    once: decodes requested segments within the budget
+ *   noh_clip_sample(cache, clip, ticks, joints, out, f);   per playing track
+ * A sample whose segments are missing (not requested, budget too small, track jumped) decodes them immediately: the
+ * same bits, at the cost of up to two segments, counted in `decoded_late`. If nothing is requested and a clip plays
+ * steadily, forwards or backwards, each sample decodes part of the next segment if there is room, so no single frame
+ * decodes all of it.
+ *
+ *   noh_clip_cache_size, _init                    for clips that are open
+ *   noh_clip_cache_needs_add, _needs_size         the size for clips that are not open yet
+ *   noh_clip_cache_begin_frame, _want, _want_frames, _work   decode ahead
+ *   noh_clip_sample                               a pose
+ *   noh_clip_cache_stats_of, _capacity, _holds_all, _clip   statistics and contents
+ *
+ * Threads: every call that takes a non-const cache is for one thread at a time, with no other call on that cache at the
+ * same time. To sample on several threads between those calls, give each a view: low_motion.h.
+ *
+ * Memory: a cached segment takes the bytes of its frames. A cache of n segments has room for the n largest segments of
+ * its clips: segments are sorted into size classes (four per doubling), and each class has as many entries as it has
+ * segments among those n, each entry as large as the largest segment of the class. A segment is stored in its own
+ * class, or in the next larger class with a free entry. */
+
+typedef struct noh_clip_cache_desc {
+    const noh_clip *const *clips; /* [clip_count], copied; the clips must outlive the cache */
+    uint32_t clip_count;          /* 1..NOH_CLIP_CACHE_CLIPS_MAX */
+    /* segments held at the same time, 2..NOH_CLIP_CACHE_SEGMENTS_MAX; default (0) NOH_CLIP_CACHE_SEGMENTS_PER_TRACK for
+     * each clip, as if one track played each. Never more than the clips have */
+    uint32_t cached_segment_count;
+} noh_clip_cache_desc;
+
+/* Counts since init, to tune the cache size. A sample that jumps to a segment whose neighbours are not cached decodes
+ * two of its frames, and counts two per track. */
+typedef struct noh_clip_cache_stats {
+    uint64_t samples;
+    uint64_t misses; /* segments that a sample had to decode, partly or fully */
+    uint64_t evictions;
+    uint64_t decoded;      /* track-frames: each frame of each track of a segment counts as one */
+    uint64_t decoded_late; /* track-frames that a sample had to wait for */
+} noh_clip_cache_stats;
+
+/* Exact size of a cache in bytes; 0 if the desc is invalid (see the error). */
+size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error);
+
+/* Make a cache in memory[bytes], aligned to NOH_MEMORY_ALIGN.
+ * errors  ARG a field of desc, or memory NULL or misaligned; MEMORY need: the bytes */
+noh_result noh_clip_cache_init(void *memory, size_t bytes, const noh_clip_cache_desc *desc, noh_clip_cache **out,
+                               noh_error *error);
+
+/* Inputs of a cache's size, for clips that are measured but not open yet. Zero it, add each clip, then get the size. */
+#define NOH_CLIP_CACHE_SIZES 120u
+typedef struct noh_clip_cache_needs {
+    uint32_t clip_count, segment_count;
+    uint32_t size_segments[NOH_CLIP_CACHE_SIZES];      /* segments in each size class */
+    uint32_t size_bytes[NOH_CLIP_CACHE_SIZES];         /* bytes of the largest segment in each class */
+    uint8_t lengths[NOH_CLIP_SEGMENT_FRAMES_MAX + 1u]; /* bit b: some segment of transform b has this many frames */
+} noh_clip_cache_needs;
+
+/* Begin a frame of the game. Until the next call no request evicts a segment that this frame has requested or
+ * sampled. */
+void noh_clip_cache_begin_frame(noh_clip_cache *cache);
+
+/* Request the first `joint_count` joints of the segment at a time. Decodes nothing.
+ * units    ticks, clamped to the clip
+ * returns  1 if the segment is cached or will be; 0 if there is no room because this frame uses every cached segment */
+int noh_clip_cache_want(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count);
+
+/* Decode requested segments, in the order of the requests, until `budget` track-frames are spent (the last track may
+ * exceed it).
+ * returns  the track-frames spent */
+uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget);
+
+/* Sample a pose. Between frames, translations, scales and floats are interpolated linearly; rotations linearly, then
+ * normalised. At sample rates whose frames are not a whole number of ticks, rotations are taken at a time within
+ * 1/65,000 of a frame of the requested one.
+ * shapes  out[joint_count], floats[float_count of the clip] (NULL: not wanted)
+ * ranges  clip below clip_count; joint_count up to the clip's: only these first joints are decoded and sampled */
+void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                     float *floats);
+
+/* Get the cache's own statistics; each view has its own. */
+noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
+
+/* ======== views of a clip cache, for threads ========
+ * Sampling one clip cache from several threads.
+ *
+ * A view only reads its cache. It decodes missing segments into two segments of its own: the same bits, counted as
+ * late. So request and decode segments on one thread, then sample on many:
+ *   noh_clip_cache_begin_frame, _want, _work   one thread
+ *   noh_clip_view_sample(view, ...)            any number of threads, each with its own view
+ * Begin the next frame after all of them have finished.
+ *
+ * Threads: a view belongs to one thread at a time. While views sample, nothing may change their cache (low_motion.h
+ * lists the calls that do). There is no lock and no atomic; the caller orders the two phases (a join, a barrier, a job
+ * counter). */
+
+/* Exact size in bytes: the head, and two segments as large as the largest of the cache's clips. */
+size_t noh_clip_view_size(const noh_clip_cache *cache);
+size_t noh_clip_view_needs_size(const noh_clip_cache_needs *needs); /* before the cache is made */
+
+/* Make a view in memory[bytes], aligned to NOH_MEMORY_ALIGN. The cache must outlive it.
+ * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
+noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out,
+                              noh_error *error);
+
+/* Sample a pose; bit-identical to noh_clip_sample. */
+void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
+                          float *floats);
+
+/* ======== blend spaces ========
+ * Weights of clips placed along one or two parameters.
+ *
+ * 1-D: linear between two neighbours. 2-D: a Delaunay triangulation, made once with the space, and barycentric weights
+ * in the triangle that contains the point: at most three clips are sampled, the weights are continuous, and at a clip's
+ * own point it has full weight. A point outside uses the nearest point of the hull. (Inverse distance weighting needs
+ * no triangles, but samples every clip and gives each some weight everywhere.)
+ *
+ * Threads: pure functions of their arguments; any thread. */
+
+/* Compute the weights of clips along one parameter.
+ * shapes  thresholds[count] increasing, weights[count]
+ * ranges  |thresholds| <= NOH_BLEND_SPACE_COORDINATE_MAX; x is clamped to the first and last threshold, NaN counts as
+ *         the first */
+void noh_blend_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
+
+/* Triangulate the points. They are first rounded to 1/4096 of their extent, so that all geometric tests are exact in
+ * integers and the result is the same on every machine.
+ * shapes  points[count][2], triangles[NOH_BLEND_SPACE_TRIANGLES_MAX][3]
+ * errors  ARG count; DATA (where: the point) not finite, beyond NOH_BLEND_SPACE_COORDINATE_MAX, or equal to another
+ *         point */
+noh_result noh_blend_space_2d_triangulate(uint32_t count, const float *points, uint8_t *triangles,
+                                          uint32_t *triangle_count, noh_error *error);
+
+/* Compute the weights of clips over two parameters.
+ * shapes  weights[point_count]; the sum is 1, at most three are not zero
+ * ranges  x, y are clamped to NOH_BLEND_SPACE_COORDINATE_MAX; NaN counts as 0 */
+void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float y, float *weights);
+
+/* ======== graphs ========
+ * An animation graph in a fixed array.
+ *
+ * Nodes are stored in post-order: each node directly follows the subtrees of its children; the last node produces the
+ * pose. Evaluation runs in stored order, without recursion, with noh_graph_buffers pose buffers. Nodes of weight 0 are
+ * not sampled.
+ *
+ *   CLIP      a clip: one track of the internal controller, which keeps time, events and sync groups
+ *   BLEND     a * (1 - t) + b * t
+ *   ADD       a + t * (b as a difference): b's clips are differences already (NOH_CLIP_ADDITIVE), or are taken against
+ *             the bind pose, or against the first frame of a clip
+ *   MASK      b over a where the mask allows, by t
+ *   SPACE_1D, SPACE_2D   see low_motion.h
+ *   MACHINE   one of the children at a time; transitions cross-fade, or switch immediately and let the difference decay
+ *             (inertial_internal.h)
+ *   SELECT    the child whose number a parameter holds; a change cross-fades, or switches by inertia
+ *   ONE_SHOT  b plays once over a, where the mask allows, each time a parameter triggers it
+ * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to
+ * the other children of a node.
+ *
+ * An instance is one block without pointers: clone it with one memcpy. Weights and transitions are decided at the start
+ * of a step; the controller runs the rest of the step, including events (clip.h).
+ *
+ * source  animation trees: Granberg 2009, chapter 16
+ *
+ * Threads: an instance and a scratch belong to one thread at a time; graph and set are read-only and shared. */
+
+typedef enum noh_condition {
+    NOH_WHEN_ABOVE = 0, /* param > threshold */
+    NOH_WHEN_BELOW,     /* param < threshold */
+    NOH_WHEN_TRIGGERED, /* param > threshold; taking the transition sets the parameter to 0 */
+    NOH_WHEN_ENDING     /* the state's first clip plays ONCE and ends within the transition's duration, or has ended */
+} noh_condition;
+
+#define NOH_TRANSITION_INERTIAL 1u /* switch immediately; the difference decays over the duration */
+#define NOH_TRANSITION_KEEP 2u     /* the state's clips continue where they stopped, instead of from the beginning */
+
+/* Check a graph once, before making instances.
+ * errors  ARG a count or pointer, or a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX; DATA a node (where: its index); LIMIT
+ *         more pose buffers than NOH_GRAPH_BUFFERS_MAX */
+noh_result noh_graph_check(const noh_graph *graph, const noh_clip_set *set, noh_error *error);
+
+/* Get the number of pose buffers that evaluating a checked graph needs. */
+uint32_t noh_graph_buffers(const noh_graph *graph);
+
+/* ---- instances ---- */
+
+/* Size and make an instance, aligned to NOH_MEMORY_ALIGN, with all clips at their starts and all machines in their
+ * first states. The size is 0 for a graph that noh_graph_check rejects.
+ * errors  as noh_graph_check; ARG memory NULL or misaligned, or the desc of a clip; MEMORY need: the bytes */
+size_t noh_graph_state_size(const noh_graph *graph, const noh_clip_set *set);
+noh_result noh_graph_state_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                noh_graph_state **state, noh_error *error);
+
+/* Get the internal controller, with one track per clip node. */
+noh_controller *noh_graph_controller(noh_graph_state *state);
+
+/* Set or get a parameter.
+ * errors  ARG param, or a value that is not finite */
+noh_result noh_graph_set_param(noh_graph_state *state, uint32_t param, float value);
+float noh_graph_param(const noh_graph_state *state, uint32_t param);
+
+/* Get the state that a machine is in or fades to: for a MACHINE or SELECT the number of the child, for a ONE_SHOT 1
+ * while it plays, until it fades out. `machine` is the node's `index`. */
+uint32_t noh_graph_machine_state(const noh_graph_state *state, uint32_t machine);
+
+/* Take transitions, compute weights, advance time. The callback may set parameters; changes that it makes to the
+ * internal tracks last until the next step.
+ * returns  the number of events delivered */
+uint32_t noh_graph_step(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, uint32_t ticks,
+                        noh_event_fn fn, void *user);
+
+/* Take the root displacement since the last call, with the weights of joint 0: blends by their weights, MASK and
+ * ONE_SHOT by their mask at joint 0. The additive input of ADD and clips that animate no joints do not count. Zero
+ * without set->roots. All roots of a set must have the same up axis. */
+noh_root_pose noh_graph_root_motion(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set);
+
+/* ---- poses ---- */
+
+/* Working memory for posing. It holds no state, so instances of a graph that are posed one after another share it. */
+typedef struct noh_graph_scratch {
+    noh_pose_scratch pose;
+    noh_transform *poses[NOH_GRAPH_BUFFERS_MAX];
+    float *float_poses[NOH_GRAPH_BUFFERS_MAX];
+} noh_graph_scratch;
+
+/* Size and make a scratch for a checked graph, aligned to NOH_MEMORY_ALIGN. The size is 0 for a set over NOH_JOINTS_MAX
+ * or NOH_FLOATS_MAX.
+ * errors  ARG the set is over a limit, or memory NULL or misaligned; MEMORY need: the bytes */
+size_t noh_graph_scratch_size(const noh_graph *graph, const noh_clip_set *set);
+noh_result noh_graph_scratch_init(void *memory, size_t bytes, const noh_graph *graph, const noh_clip_set *set,
+                                  noh_graph_scratch *scratch, noh_error *error);
+
+/* Compute the present pose. This begins the inertial transitions of the last step; a step that is not posed before the
+ * next one switches without inertia.
+ * shapes  pose[joint_count], floats[float_count] of the set */
+void noh_graph_pose(noh_graph_state *state, const noh_graph *graph, const noh_clip_set *set, noh_graph_scratch *scratch,
+                    noh_transform *pose, float *floats);
+
+/* ======== poses to matrices ========
+ * From a pose to matrices.
+ *
+ * A matrix has 3 rows of 4, stored by row: position = rows * (x, y, z, 1), the layout of noh_node.world and of palettes
+ * in uniform buffers or textures; 48 bytes per joint. Column vectors: model = parent's model * local.
+ *
+ * source  C. Granberg, "Character Animation with Direct3D", Charles River Media 2009, chapter 3
+ *
+ * Threads: pure functions of their arguments; any thread. */
+
+/* Compute translation * rotation * scale of one joint. */
+void noh_transform_matrix(const noh_transform *t, float matrix[12]);
+
+/* Multiply: out = a * b; out may be a or b. */
+void noh_matrix_multiply(const float a[12], const float b[12], float out[12]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

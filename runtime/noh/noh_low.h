@@ -1,0 +1,18 @@
+/* noh_low.h: parts for engines that do not use a stage: everything that noh.h is built of and that has a use alone.
+ * It may change between minor versions; the other headers do so less often.
+ *
+ *   low_core.h    memory, small mathematics, texels
+ *   low_motion.h  clip caches, poses, graphs
+ *   low_life.h    ragdolls, springs, hair, feet, rays
+ *   low_stage.h   a character and its level of detail
+ *   low_gl.h      meshes, morph targets, palettes and a plain renderer on the GPU */
+#ifndef NOH_LOW_H
+#define NOH_LOW_H
+
+#include "low_core.h"
+#include "low_motion.h"
+#include "low_life.h"
+#include "low_stage.h"
+#include "low_gl.h"
+
+#endif
