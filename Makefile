@@ -132,7 +132,7 @@ help:
 	@echo 'make web        the page, WebGL 2 (WEB_PACK=PACK: for another pack); make web-serve, web-check, web-bench'
 	@echo 'make npm        the package noh-character for npm: build/npm/'
 	@echo 'make look-compare  pictures beside three.js in the light of a room'
-	@echo 'make lint       clang-tidy and cppcheck over runtime/, platform/ and tools/'
+	@echo 'make lint       prose.sh, clang-tidy and cppcheck over runtime/, platform/ and tools/'
 	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
 	@echo 'make amalgam    the library as one source file, $(BUILD)/amalgam/noh.c, and its public headers'
 	@echo 'make docs       the API reference out of the headers, $(BUILD)/docs/html/index.html'

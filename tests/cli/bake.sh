@@ -25,17 +25,17 @@ END
     says '--depth'
     noh bake "$work/ramp.png" -o "$work/no.png" --from "$mask"
     expect 2 'heights and a fine model'
-    says 'a height map (.png), or a model and --from'
+    says 'a height map (.png), or a model with --from'
 else
     skip 'heights' 'python3, which makes them, is not here'
 fi
 
 noh bake "$mask" -o "$work/self.png" --from "$mask" --size 128
 expect 0 'a model on itself'
-check 'leans nowhere' grep -q 'normals lean by 0.0[0-2] degrees' "$work/out"
+check 'leans nowhere' grep -q 'mean tilt of normals 0.0[0-2] degrees' "$work/out"
 noh bake "$mask" -o "$work/no.png"
 expect 2 'a model alone'
-says 'a model and --from'
+says 'a model with --from'
 noh bake "$mask" -o "$work/no.png" --from "$mask" --size 100.5
 expect 2 'half a texel'
 says '--size'

@@ -80,7 +80,7 @@ expect 0 'by degrees'
 check 'it is another skeleton' sh -c '! cmp -s "$1" "$2"' - "$work/x.noh" "$work/turned.noh"
 noh build "$work/walk.bvh" -o "$work/x.noh" --facing auto
 expect 1 'no joint is left or right'
-says 'give --facing the degrees'
+says 'give --facing DEG'
 
 # Sixty frames of an arm that swings, which is elsewhere for one frame and held for five.
 awk 'BEGIN {
@@ -99,8 +99,8 @@ expect 0 'a recording with gaps'
 check 'of which nothing is said unasked' sh -c '! grep -q clean "$1"' - "$work/out"
 noh build "$work/swing.bvh" -o "$work/clean.noh" --clean all
 expect 0 'cleaned up'
-check 'both gaps are filled' grep -q "^clean 'swing': 2 gaps in 1 tracks filled, the longest of 0.083 s; 0 longer" "$work/out"
-check 'its foot, which never moves, makes it go nowhere' grep -q "^clean 'swing': the root goes 0.0 cm" "$work/out"
+check 'both gaps are filled' grep -q "^clean 'swing': filled 2 gaps in 1 tracks, the longest of 0.083 s; left 0 longer" "$work/out"
+check 'its foot, which never moves, makes it go nowhere' grep -q "^clean 'swing': the root moves 0.0 cm" "$work/out"
 noh build "$work/swing.bvh" -o "$work/x.noh" --clean gaps
 check 'gaps alone give the same pack' cmp -s "$work/x.noh" "$work/clean.noh"
 # ---- footsteps ----

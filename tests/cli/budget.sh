@@ -54,7 +54,7 @@ check 'the parts add up' adds_up "$work/small"
 check 'it keeps the bound' test $(($(sum_of 2 "$work/small") + $(sum_of 3 "$work/small"))) -le 2097152
 noh budget "$puppet" --actors 20 --nominal --bytes 2097152 --strict
 expect 1 'strictly, that does not fit'
-check 'and the message says so' grep -q 'the stage keeps its bytes by giving up [1-9]' "$work/err"
+check 'and the message says so' grep -q 'the stage meets its limit only by giving up [1-9]' "$work/err"
 noh budget "$puppet" --actors 20 --nominal --strict
 expect 0 'strictly, without a bound'
 noh budget "$puppet" --actors 20 --nominal --bytes 2097152
@@ -232,12 +232,12 @@ check 'a pack of clips alone is planned or refused, not more' test $code -le 1
 for value in 0 65536 -1 2.5 many nan; do
     noh budget "$puppet" --actors "$value"
     expect 2 "--actors $value"
-    says '--actors wants a whole number from 1 to 65535'
+    says '--actors must be a whole number from 1 to 65535'
 done
 for option in --near --middle --finest --bytes --cpu-bytes --gpu-bytes --pixels --height --jobs; do
     noh budget "$puppet" --actors 20 $option -1
     expect 2 "$option -1"
-    says "$option wants a"
+    says "$option must be a"
     noh budget "$puppet" $option 1
     expect 2 "$option alone"
     says "$option has no effect without"
@@ -268,7 +268,7 @@ expect 2 '--actors and --desc'
 says '--actors has no effect with --desc'
 noh budget --nominal
 expect 2 'neither a pack nor a text'
-says 'noh budget wants PACK or --desc'
+says 'noh budget needs PACK or --desc'
 
 # faces and graphs in a text
 printf 'kind puppet\n mesh %s\n actor_count 2\n graphs "*"\n face 0.035 1.55 0.11 -0.035 1.55 0.11\n' \
@@ -283,5 +283,5 @@ says 'no joints for the eyes'
 sed 's/face 0.*/face 1 2/' "$work/cast/face.txt" >"$work/cast/joints.txt"
 noh budget --desc "$work/cast/joints.txt" --nominal
 expect 1 'eyes without all numbers'
-says "face wants 'joints'"
+says "face must be 'joints'"
 finish

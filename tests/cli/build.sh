@@ -70,7 +70,7 @@ expect 0 'what is attached shares the joints'
 sh "$(dirname "$0")/../support/small_glb.sh" >"$work/small.glb"
 noh build "$work/small.glb" --attach "$mask" --only mesh -o "$work/x.noh"
 expect 0 'a face that nothing moves'
-check 'is a warning' grep -q "nothing moves it: no joint of the model has 'head' in its name" "$work/out" "$work/err"
+check 'is a warning' grep -q "no joint moves it, as none of the model's joints has 'head' in its name" "$work/out" "$work/err"
 noh build "$work/small.glb" --attach "$mask" --attach-joint b --only mesh -o "$work/x.noh"
 expect 0 'a face on a joint'
 check 'without a warning' sh -c '! grep -q "nothing moves it" "$1" "$2"' - "$work/out" "$work/err"
@@ -104,9 +104,9 @@ cat >"$work/corner.gltf" <<'END'
 END
 noh build "$work/corner.gltf" -o "$work/corner.noh"
 expect 0 'build of a corner of a texture'
-check 'the report says what is left' grep -q '1 of 1 textures without what no triangle reads: 10%' "$work/out"
+check 'the report says what is left' grep -q '1 of 1 textures trimmed to what triangles read: 10%' "$work/out"
 noh info "$work/corner.noh"
-check 'and info what it was' grep -q ': 20 x 20, .*, of 64 x 64 what triangles read' "$work/out"
+check 'and info what it was' grep -q ': 20 x 20, .*, trimmed from 64 x 64' "$work/out"
 noh info "$work/corner.noh" --json
 check 'in JSON, too' grep -q '"whole_width": 64' "$work/out"
 noh verify "$work/corner.noh"

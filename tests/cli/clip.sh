@@ -110,7 +110,7 @@ for option in '--joint-error knee=none' '--clip-error walk' '--clip-error walk='
     # shellcheck disable=SC2086
     noh build "$work/walk.bvh" -o "$work/x.noh" $option
     expect 2 "a bad bound is a usage error: $option"
-    says "${option%% *} wants NAME=CM"
+    says "${option%% *} must be NAME=CM"
 done
 
 sed '$d' "$work/walk.bvh" >"$work/short.bvh"
@@ -147,11 +147,11 @@ assert len(s['joint_list']) == s['joints'] and s['joint_list'][0]['parent'] is N
 printf 'walk 0.1 left marker\n' >"$work/keys.txt"
 noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"
 expect 1 'a marker at the end of its clip'
-says 'where a loop has begun again'
+says 'where a loop begins again'
 printf 'walk 0.05 left marker\nwalk 0.050001 right marker\n' >"$work/keys.txt"
 noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"
 expect 1 'two markers at one time'
-says 'lies where another marker does'
+says 'has the time of another marker'
 
 # ---- several files ----
 
@@ -199,7 +199,7 @@ expect 1 'an animation pack without clips'
 says 'no clips for'
 noh clip "$build/mask.noh" --clip speak --dump "$work/x.rcl"
 expect 1 'a clip of weights as .rcl'
-says 'animates floats only'
+says 'animates only floats'
 
 # ---- memory ----
 

@@ -10,14 +10,14 @@ says '-o'
 for value in 0 -1 nan many; do
     noh crowd "$pack" -o "$work/out.png" --pixels $value
     expect 2 "--pixels $value"
-    says '--pixels wants'
+    says '--pixels must be'
 done
 noh crowd "$pack" -o "$work/out.png" --time -1
 expect 2 'a time before the start'
-says '--time wants'
+says '--time must be'
 noh crowd "$pack" -o "$work/out.png" --debug normal
 expect 2 'a debug view that crowds do not have'
-says '--debug wants lod'
+says '--debug must be lod'
 noh crowd "$pack" -o "$work/out.png" --instances 0
 expect 2 'a crowd of no bodies'
 noh bench "$pack" --only crwod
@@ -115,7 +115,7 @@ expect 1 'a place that is not there'
 printf 'area 0 0 9 9\nspawn 0 0 1 1\ngoal 5 5\n' >"$work/small.place"
 noh crowd --place "$work/small.place" --agents 100
 expect 1 'too many for where they enter'
-says 'there is no room'
+says 'have room for only'
 for refused in '--place door --test door200' '--scenery x.noh' '--place door --camera 1' '--place door --orca' '--place door -o out.png'; do
     # shellcheck disable=SC2086 # words
     noh crowd $refused

@@ -49,13 +49,13 @@ bad() { # ROW MESSAGE
     check "line and cause of: $1" grep -q "bad.ragdoll:2: .*$2" "$work/err"
     check 'and no pack is left' test ! -e "$work/bad.noh"
 }
-bad 'spine bend 5 25' 'bend, the least angle: 5 is not within -180 to 0'
+bad 'spine bend 5 25' 'bend, the least angle: 5 must be -180 to 0'
 bad 'spine bend -5' 'bend, the largest angle: the number is missing'
 bad 'spine twist nan' ''
-bad 'spine friction -1' 'friction: -1 is not within 0 to 10000'
+bad 'spine friction -1' 'friction: -1 must be 0 to 10000'
 bad 'spine hinge side 5' 'a hinge only bends'
-bad 'spine elastic' "'elastic' is no setting of a body"
-bad 'hips' 'this joint has a row already, in line 1'
+bad 'spine elastic' "a body has no setting 'elastic'"
+bad 'hips' 'this joint is given twice; the first row is in line 1'
 bad 'tail' "no skeleton has the joint 'tail'"
 bad '"spine' 'a quote is not closed'
 printf '# nothing\n' >"$work/bad.ragdoll"
@@ -69,13 +69,13 @@ says 'not a descendant of the first'
 
 noh lab drop "$build/mask.noh"
 expect 1 'a mask has no skeleton'
-says 'nothing of it can fall'
+says 'no skeleton, and so no ragdoll'
 noh lab drop "$work/puppet.noh" --dolls 0
 expect 2 'no dolls'
-says '--dolls wants a whole number from 1 to 1024'
+says '--dolls must be a whole number from 1 to 1024'
 noh lab drop "$work/puppet.noh" --substeps 4
 expect 2 'too few substeps'
-says '--substeps wants a whole number from 5 to 20'
+says '--substeps must be a whole number from 5 to 20'
 noh lab drop "$work/puppet.noh" --seconds 0
 expect 2 'no time'
 noh lab drop "$work/puppet.noh" --seconds 1 --dump "$work/no/such/fall.csv"
@@ -96,7 +96,7 @@ else
 fi
 noh sheet "$build/demo/puppet_falls.noh" -o "$work/x.png" --clip walk --push 1,2
 expect 2 'a push of two numbers'
-says '--push wants X,Y,Z'
+says '--push must be X,Y,Z'
 noh sheet "$build/demo/puppet_falls.noh" -o "$work/x.png" --clip walk --push 1,2,nan
 expect 2 'a push that is no number'
 finish

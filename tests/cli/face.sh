@@ -44,23 +44,23 @@ refused() {
     check "line and cause of: $1" grep -q "bad.recipe:2: .*$2" "$work/err"
     check 'no pack' test ! -e "$work/bad.noh"
 }
-refused 'wink smile' "'wink' is no channel"
+refused 'wink smile' "'wink' is not a channel"
 refused 'PP' 'the target is missing'
-refused 'PP smile 5' 'not within -4 to 4'
+refused 'PP smile 5' 'must be -4 to 4'
 refused 'PP smile x' 'not a number'
 refused 'PP smile 1 2' 'one word too many'
 refused 'PP "smile' 'quote is not closed'
-refused 'aa smile' 'has this target already, in line 1'
+refused 'aa smile' 'has this target twice; the first is in line 1'
 printf '# nothing\n' >"$work/empty.recipe"
 noh build "$mask" -o "$work/bad.noh" --recipe "$work/empty.recipe"
 expect 1 'an empty recipe'
-check 'says so' grep -q 'the recipe has no row' "$work/err"
+check 'says so' grep -q 'the recipe is empty' "$work/err"
 noh build "$mask" -o "$work/bad.noh" --recipe "$work/none.recipe"
 expect 1 'no such file'
 
 noh build "$mask" -o "$work/eyes.noh" --eyes
 expect 0 'eyes of the mask'
-check 'both are reported' sh -c 'grep -q "left eye, a ball of radius 0.018" "$1" && grep -q "right eye" "$1"' - "$work/out"
+check 'both are reported' sh -c 'grep -q "left eye, a sphere of radius 0.018" "$1" && grep -q "right eye" "$1"' - "$work/out"
 noh info "$work/eyes.noh"
 check 'their joints are there' grep -q "skin 'face': 3 joints" "$work/out"
 noh build "$build/demo_none.glb" -o "$work/bad.noh" --eyes
@@ -81,8 +81,8 @@ END
 printf 'PP jaw_grin 0.25\ncorrective grin jaw 0.5 jaw50\n' >"$work/both.recipe"
 noh build "$work/both.gltf" -o "$work/both.noh"
 expect 0 'correctives by name'
-check 'they are counted' grep -q '^2 correctives by the names' "$work/out"
-check 'a line of extras that is none is a warning' grep -q "'wink jaw' was left out: 'wink' is no channel" "$work/out"
+check 'they are counted' grep -q '^2 correctives by target names' "$work/out"
+check 'a line of extras that is none is a warning' grep -q "'wink jaw' was left out: 'wink' is not a channel" "$work/out"
 noh face "$work/both.noh"
 expect 0 'face of that'
 check 'extras give a recipe' grep -q '^  aa  *pack  *jaw 0.8$' "$work/out"
@@ -110,8 +110,8 @@ check 'the text goes first' grep -q '^  PP  *pack  *jaw_grin 0.25$' "$work/out"
 check 'what it lacks is of extras' grep -q '^  aa  *pack  *jaw 0.8$' "$work/out"
 check 'its correctives' grep -q '^  corrective grin: jaw at 0.5 (0 to 1) jaw50$' "$work/out"
 refused 'corrective smile' 'corrective TARGET DRIVER'
-refused 'corrective smile smile' 'does not drive itself'
-refused 'corrective smile blink 1.5' 'not above 0 and at most 1'
+refused 'corrective smile smile' 'cannot drive itself'
+refused 'corrective smile blink 1.5' 'must be above 0 and at most 1'
 
 # Rules for weights, kept where they are asked for.
 cat >"$work/rules.recipe" <<'END'
@@ -139,9 +139,9 @@ noh face "$work/both.noh"
 check 'a text goes before extras' grep -q '^  range jaw: -2 to 0.5$' "$work/out"
 check 'which keep what it does not say' grep -q '^  range grin: 0 to 0.25$' "$work/out"
 refused 'range jaw 0' 'range TARGET MIN MAX'
-refused 'range jaw 0.5 1' 'from -4 to 0 at least'
+refused 'range jaw 0.5 1' 'needs MIN from -4 to 0'
 refused 'range jaw 0 1 2' 'one word too many'
-refused 'oppose jaw jaw' 'does not exclude itself'
+refused 'oppose jaw jaw' 'cannot exclude itself'
 refused 'oppose jaw' 'oppose TARGET TARGET'
 refused 'share jaw' 'share TARGET TARGET'
 
@@ -151,7 +151,7 @@ expect 0 'the mask, whose lips are a little apart'
 check 'has a target' grep -q "^mesh 'mask': lipToTeeth brings the lower lip to" "$work/out"
 noh build "$work/both.gltf" -o "$work/lips.noh" --lips
 expect 0 'a triangle has no lips'
-check 'a warning says so' grep -q "^warning: --lips: mesh 'mesh_0': .*; f and v show what its recipe has" "$work/out"
+check 'a warning says so' grep -q "^warning: --lips: mesh 'mesh_0': .*; f and v use its recipe" "$work/out"
 if [ -e "${NOH_ASSETS:-none}/hero/head.glb" ]; then
     noh build "$NOH_ASSETS/hero/head.glb" -o "$work/lips.noh" --lips
     expect 0 'a head with teeth'

@@ -13,7 +13,7 @@ check 'with wrinkles and springs it is the pack of the demo' cmp "$work/demo.noh
 noh info "$work/a.noh"
 expect 0 'info'
 check 'shows the graph' grep -q "^graph 'puppet': 11 nodes, 7 clips, 4 parameters, 1 mask" "$work/out"
-check 'its parameters' grep -q "parameter 'act': calm, look_round, dance; at first calm" "$work/out"
+check 'its parameters' grep -q "parameter 'act': calm, look_round, dance; initially calm" "$work/out"
 check 'its nodes' grep -q "one-shot 'bows' on 'bow'" "$work/out"
 noh info "$work/a.noh" --json
 check 'and as JSON' grep -q '"graphs"' "$work/out"
@@ -30,7 +30,7 @@ expect 1 'dump of a graph that is not there'
 says "no graph 'pupet'; did you mean 'puppet'?"
 noh dump "$build/mask.noh" --graph all -o "$work/x.graph"
 expect 1 'dump of graphs where there are none'
-says 'holds no animation graph'
+says 'has no animation graph'
 noh dump "$work/a.noh" --graph puppet --clip walk -o "$work/x.graph"
 expect 2 'a graph has no clip to pose'
 
@@ -47,7 +47,7 @@ refused 3 "no input has a joint 'nek'; did you mean 'neck'?"
 printf 'graph a\nclip walk\nclip bow\nmachine m walk bow\n  from walk to bow when ending\n' >"$work/ending.graph"
 noh build "$puppet" -o "$work/ending.noh" --only anim --graph "$work/ending.graph"
 expect 0 'a state that never ends is no error'
-check 'but warned of' grep -q "ending.graph:5: .from walk to bow when ending. never comes true: 'walk' loops" "$work/out" "$work/err"
+check 'but warned of' grep -q "ending.graph:5: .from walk to bow when ending. is never true: 'walk' loops" "$work/out" "$work/err"
 printf 'graph a\nclip walk sped=2\n' >"$work/bad.graph"
 refused 2 "'clip' has no option 'sped', or has it twice; did you mean 'speed'?"
 printf 'graph a\nclip walk loop=once sync=feet\n' >"$work/bad.graph"

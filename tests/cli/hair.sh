@@ -57,12 +57,12 @@ bad() { # ROW MESSAGE
     expect 1 "refused: $1"
     check "line and cause of: $1" grep -q "bad.hair:2: .*$2" "$work/err"
 }
-bad 'beard 1' 'no setting of a haircut'
-bad 'rows 1' 'not within'
-bad 'around' 'wants 1 number'
+bad 'beard 1' "has no setting 'beard'"
+bad 'rows 1' 'must be'
+bad 'around' 'needs 1 number'
 bad 'around nan' ''
-bad 'around 200' 'above 256 control hairs'
-bad 'comb 0 0 0' 'no direction'
+bad 'around 200' 'more than 256 control hairs'
+bad 'comb 0 0 0' 'give it a direction'
 bad 'strips 200 300' 'one word too many'
 bad 'sphere 0 0 0 -1' 'above 0'
 printf 'rows 3\n' >"$work/bad.hair"

@@ -18,7 +18,7 @@ says '--transfer 4 or 6'
 
 noh build "$mask" -o "$work/x.noh" --transfer 5
 expect 2 'an order that is none'
-says "--transfer wants 4, 6, seed-4 or seed-6, not '5'"
+says "--transfer must be 4, 6, seed-4 or seed-6, not '5'"
 noh build "$mask" -o "$work/x.noh" --transfer 4 --only anim
 expect 2 'no transfer without meshes'
 
@@ -45,7 +45,7 @@ noh render "$work/sheet.noh" -o "$work/lacks_off.png" --size 100x100 --transfer 
 check 'but not of a pack that has none' cmp "$work/lacks.png" "$work/lacks_off.png"
 noh render "$work/sheet4.noh" -o "$work/x.png" --transfer soft
 expect 2 'an unknown switch'
-says "--transfer wants on or off, not 'soft'"
+says "--transfer must be on or off, not 'soft'"
 noh verify "$work/sheet4.noh"
 expect 0 'verify'
 
@@ -64,11 +64,11 @@ expect 2 'no reflection without a transfer'
 says '--transfer'
 noh build "$sheet" -o "$work/x.noh" --transfer 4 --bounce 1.5
 expect 2 'more light than there is'
-says '--bounce wants a number from 0 to 1'
+says '--bounce must be a number from 0 to 1'
 
 noh lab light "$work/sheet4.noh" --rays 10
 expect 2 'too few rays'
-says '--rays wants a whole number from 64 to 65536'
+says '--rays must be a whole number from 64 to 65536'
 noh lab light "$work/sheet4.noh" --rays 256 --weight no-such=1
 expect 1 'a target that is not there'
 says 'no-such'

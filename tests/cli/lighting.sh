@@ -39,15 +39,15 @@ noh render "$pack" -o "$work/cut.png" --light "$work/none.hdr"
 expect 1 'no such file'
 noh render "$pack" -o "$work/cut.png" --light rooom
 expect 2 'an unknown environment'
-says "--light wants auto, none, white, studio, room, sky or a file (.hdr, .png), not 'rooom'"
+says "--light must be auto, none, white, studio, room, sky or a file (.hdr, .png), not 'rooom'"
 noh render "$pack" -o "$work/cut.png" --light room --tonemap bright
 expect 2 'an unknown tone map'
-says "--tonemap wants filmic or none, not 'bright'"
+says "--tonemap must be filmic or none, not 'bright'"
 noh render "$pack" -o "$work/cut.png" --light room --shadow soft
 expect 2 'an unknown shadow'
 noh render "$pack" -o "$work/cut.png" --light room --background red
 expect 2 'an unknown background'
-says "--background wants light, gradient or plain, not 'red'"
+says "--background must be light, gradient or plain, not 'red'"
 
 # ---- without --light ----
 

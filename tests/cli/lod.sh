@@ -65,7 +65,7 @@ expect 0 'verify of what is left'
 for value in 0 9 -1 2.5 x '' 4x; do
     noh build "$arm" -o "$work/refused.noh" --lod "$value"
     expect 2 "build --lod '$value'"
-    says "--lod wants auto or a whole number from 1 to 8, not '$value'"
+    says "--lod must be auto or a whole number from 1 to 8, not '$value'"
 done
 for value in 0 -1 101 x; do
     noh build "$arm" -o "$work/refused.noh" --lod 4 --lod-color "$value"

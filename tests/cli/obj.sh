@@ -31,7 +31,7 @@ check "to a tenth of a millimetre ($same of $all positions are equal)" test $((s
 
 noh build "$build/mask.glb" --targets "$work/shapes" -o "$work/x.noh"
 expect 2 '--targets of a glTF file'
-says 'is for an .obj model'
+says 'needs an .obj model'
 noh build "$work/mask.obj" --targets "$work/nowhere" -o "$work/x.noh"
 expect 1 'a folder that is not there'
 says 'cannot be read'

@@ -9,7 +9,7 @@ expect 0 'draw a session'
 check 'says what it is' grep -q '^180 frames, [0-9]* inputs in [0-9]* bytes ([0-9.]* a frame), hash [0-9a-f]\{8\}$' "$work/out"
 noh lab replay "$pack" --play "$work/a.session" -o "$work/b.session"
 expect 0 'play it'
-check 'to the same hashes' grep -q 'every part of every frame is as in' "$work/out"
+check 'to the same hashes' grep -q 'every part of every frame equals' "$work/out"
 check 'and the same file' cmp "$work/a.session" "$work/b.session"
 noh lab replay "$pack" --seconds 3 --actors 2 --seed 6 -o "$work/other.session"
 expect 0 'another seed'
@@ -24,7 +24,7 @@ floats=$(sed -n '/^hashes/,$s/^100 [0-9a-f]* [0-9a-f]* [0-9a-f]* \([0-9a-f]*\) .
 sed "s/^\(100 [0-9a-f]* [0-9a-f]* [0-9a-f]* \)$floats/\10badf00d/" "$work/a.session" >"$work/c.session"
 noh lab bisect "$work/a.session" "$work/c.session"
 expect 1 'one hash that differs'
-check 'in its frame' grep -q '^frame 100 is the first that differs; 100 before it are equal$' "$work/out"
+check 'in its frame' grep -q '^frame 100 is the first that differs; the 100 before it are equal$' "$work/out"
 check 'in its part alone' sh -c 'test "$(grep -c " differs$" "$1")" = 1 && grep -q "^  floats   differs$" "$1"' - "$work/out"
 noh lab replay "$pack" --play "$work/c.session"
 expect 1 'play it'
@@ -64,19 +64,19 @@ refused() { # TEXT MESSAGE
 crc=$(sed -n 's/^pack //p' "$work/a.session")
 head="noh-session 1\npack $crc\nactors 2\nframes 10\n"
 refused '' "expected 'noh-session'"
-refused 'noh-session 2\n' 'version 2 of sessions is not known'
+refused 'noh-session 2\n' 'the session has version 2'
 refused "noh-session 1\npack 12\n" 'expected eight hexadecimal digits'
-refused "noh-session 1\npack 00000000\nactors 2\nframes 10\n" 'the session is of another pack'
-refused "noh-session 1\npack $crc\nactors 65\n" 'the limit is 64'
+refused "noh-session 1\npack 00000000\nactors 2\nframes 10\n" 'the session belongs to another pack'
+refused "noh-session 1\npack $crc\nactors 65\n" 'above the limit of 64'
 refused "noh-session 1\npack $crc\nactors 0\n" 'at least one actor'
-refused "${head}3 dance 0\n" "no input is called 'dance'"
-refused "${head}3 stop 0 0 0\n2 stop 0 0 0\n" 'frame 2 comes after frame 3'
-refused "${head}10 stop 0 0 0\n" 'frame 10 is past the last one'
-refused "${head}3 stop 2 0 0\n" 'the limit is 1'
+refused "${head}3 dance 0\n" "there is no input 'dance'"
+refused "${head}3 stop 0 0 0\n2 stop 0 0 0\n" 'frame 2 follows frame 3'
+refused "${head}10 stop 0 0 0\n" 'frame 10 is past the last frame'
+refused "${head}3 stop 2 0 0\n" 'above the limit of 1'
 refused "${head}3 stop 0 0\n" "'' is not a number"
 refused "${head}3 stop 0 0 1e99\n" 'a number is too large'
 refused "${head}3 stop 0 0 nan\n" 'is not finite'
-refused "${head}3 stop 0 0 0 0\n" "'0' is too much on this line"
+refused "${head}3 stop 0 0 0 0\n" "'0' is one word too many on this line"
 refused "${head}3 play 0\n" 'expected a name'
 refused "${head}hashes state\n" "expected 'events'"
 refused "${head}hashes state events places floats joints palettes vertices\n1 0\n" 'expected the hashes of frame 0, not of 1'

@@ -45,12 +45,12 @@ warns() { # NAME UNIT TEXT OPTIONS...: what a build with this unit warns of; TEX
 
 warns 'a leg' 1 none
 warns 'a leg of 10 m' 10 none
-warns 'a leg of 1 cm' 0.01 'so coarse that it shows: --error-cm 6e-05 --shell-cm 0.02'
-warns 'a leg of 1 cm' 0.01 'is it 100 cm large? Then its unit is wrong: export it scaled by 100'
+warns 'a leg of 1 cm' 0.01 'visibly coarse: --error-cm 6e-05 --shell-cm 0.02'
+warns 'a leg of 1 cm' 0.01 'if it should be 100 cm large, its unit is wrong: export it scaled by 100'
 warns 'a leg of 1 cm, as suggested' 0.01 none --error-cm 6e-05 --shell-cm 0.02
-warns 'a leg of 100 m' 100 'finer than anyone sees: --error-cm 0.6 --shell-cm 200'
-warns 'a leg of 100 m' 100 'is it 100 cm large? Then its unit is wrong: export it scaled by 0.01'
+warns 'a leg of 100 m' 100 'finer than visible: --error-cm 0.6 --shell-cm 200'
+warns 'a leg of 100 m' 100 'if it should be 100 cm large, its unit is wrong: export it scaled by 0.01'
 warns 'a leg of 100 m, as suggested' 100 none --error-cm 0.6 --shell-cm 200
-warns 'a leg of 1 cm, coarser' 0.01 'coarse that it shows' --error-cm 0.1
+warns 'a leg of 1 cm, coarser' 0.01 'visibly coarse' --error-cm 0.1
 
 finish

@@ -11,7 +11,7 @@ noh speak 'Hello' --wav
 expect 2 'an option without its value'
 
 noh speak 'Papa bought me five boats.' --json
-if grep -q 'eSpeak NG is not here' "$work/err"; then
+if grep -q 'eSpeak NG is not installed' "$work/err"; then
     expect 1 'without eSpeak NG it is an error that says what to install'
     says 'espeak-ng'
     skip 'noh speak' 'eSpeak NG is not installed'
@@ -90,6 +90,6 @@ check 'leaves nothing behind' sh -c '! test -e "$1"' - "$work/other.noh"
 if [ -f "$build/demo/arm.noh" ]; then
     noh speak 'Hello' --face "$build/demo/arm.noh" -o "$work/other.noh"
     expect 1 'a pack without a mouth'
-    says 'no targets that shape a mouth'
+    says 'no mouth targets'
 fi
 finish

@@ -11,12 +11,12 @@ if ! command -v python3 >/dev/null 2>&1; then
     finish
 fi
 noh speak 'Papa bought me five boats.' --wav "$work/said.wav"
-if grep -q 'eSpeak NG is not here' "$work/err"; then
+if grep -q 'eSpeak NG is not installed' "$work/err"; then
     skip 'noh speak on recordings' 'eSpeak NG is not installed'
     finish
 fi
 noh speak "$work/said.wav" --text 'Papa bought me five boats.'
-if grep -q 'libsndfile is not here' "$work/err"; then
+if grep -q 'libsndfile, which is not installed' "$work/err"; then
     expect 1 'without libsndfile it is an error that says what to install'
     says 'libsndfile1'
     skip 'noh speak on recordings' 'libsndfile is not installed'
@@ -106,17 +106,17 @@ done
 for kind in opposite:1 three:2; do
     noh speak "$work/${kind%:*}.wav" --text 'Papa bought me five boats.' --json
     expect 0 "${kind%:*}.wav is read"
-    says "channel ${kind#*:} alone is used"
+    says "only channel ${kind#*:} is used"
     cp "$work/out" "$work/phase.json"
     check 'its phones begin where they do, 20 ms' python3 "$work/near.py" "$work/text.json" "$work/phase.json" 0.02
 done
 noh speak "$work/opposite.wav" --json
-says 'channel 1 alone is used'
+says 'only channel 1 is used'
 for kind in stereo one_side; do
     noh speak "$work/$kind.wav" --text 'Papa bought me five boats.' --json
-    check "$kind.wav: no warning" sh -c '! grep -q "alone is used" "$1"' - "$work/err"
+    check "$kind.wav: no warning" sh -c '! grep -q "only channel" "$1"' - "$work/err"
 done
-for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'cut.wav:' \
+for broken in 'empty.wav:cannot be read as sound' 'none.wav:contains no samples' 'cut.wav:' \
     'kinds.py:cannot be read as sound' \
     'silent.wav:silent' 'nan.wav:silent' 'slow.wav:samples a second' 'short.wav:too short' 'missing.wav:'; do
     noh speak "$work/${broken%%:*}" --text 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/other.noh"
@@ -180,7 +180,7 @@ for kind in silent short nan; do
         [ $kind = short ] || check 'and the mouth stays shut' python3 "$work/heard.py" "$work/heard.json" $method
     done
 done
-for broken in 'empty.wav:cannot be read as sound' 'none.wav:holds no sound' 'slow.wav:samples a second'; do
+for broken in 'empty.wav:cannot be read as sound' 'none.wav:contains no samples' 'slow.wav:samples a second'; do
     noh speak "$work/${broken%%:*}" --face "$build/mask.noh" -o "$work/other.noh"
     expect 1 "${broken%%:*} is refused"
     says "${broken#*:}"
@@ -201,7 +201,7 @@ expect 0 'a clipped recording'
 says 'clipped'
 noh speak "$work/said.wav" --text-file "$work/empty.txt"
 expect 1 'an empty text'
-says 'nothing to say'
+says 'no words to speak'
 noh speak "$work/said.wav" --text ' . '
 expect 1 'a text without words'
 noh speak "$work/said.wav" --text 'The sun rose over seven hills.'

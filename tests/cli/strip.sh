@@ -44,7 +44,7 @@ expect 0 'budget'
 check 'lists the levels that are there' sh -c 'grep -q "^  2 " "$1" && grep -q "^  3 " "$1" && ! grep -q "^  [01] " "$1"' - "$work/out"
 noh info "$work/puppet_2.noh"
 expect 0 'info'
-check 'says what was left out' sh -c 'test "$(grep -c "finer levels than 2 were left out" "$1")" = 2' - "$work/out"
+check 'says what was left out' sh -c 'test "$(grep -c "levels finer than 2 were left out" "$1")" = 2' - "$work/out"
 noh sheet "$work/mask_2.noh" -o "$work/lods.png" --lods --tile 64
 expect 0 'sheet --lods'
 check 'says nothing' test ! -s "$work/err"
@@ -93,10 +93,10 @@ fi
 for value in '' x -1 8 1.5 =1 mask= mask=9; do
     noh strip "$full" -o "$work/refused.noh" --from-level "$value"
     expect 2 "--from-level '$value'"
-    says "--from-level wants K or MESH=K, K from 0 to 7, not '$value'"
+    says "--from-level must be K or MESH=K, K from 0 to 7, not '$value'"
     noh build "$build/demo/arm.glb" -o "$work/refused.noh" --lod 2 --lod-fast --lod-from "$value"
     expect 2 "build --lod-from '$value'"
-    says "--lod-from wants K or MESH=K"
+    says "--lod-from must be K or MESH=K"
 done
 noh strip "$full" -o "$work/refused.noh"
 expect 2 'without --from-level'

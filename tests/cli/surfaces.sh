@@ -62,9 +62,9 @@ check 'take a tint away' grep -q "material 'robe': plain, opaque, without tint" 
 gltf skin '{"surface":"wood","unitMm":-1,"tint":"no"}'
 noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras that say nothing'
-check 'are named' grep -q "the extra 'surface' is none of plain, skin, eye, teeth and toon" "$work/out"
-check 'each of them' grep -q "the extra 'unitMm' is no number" "$work/out"
-check 'that of tint, too' grep -q "the extra 'tint' is neither true nor false" "$work/out"
+check 'are named' grep -q "the extra 'surface' must be plain, skin, eye, teeth or toon" "$work/out"
+check 'each of them' grep -q "the extra 'unitMm' must be" "$work/out"
+check 'that of tint, too' grep -q "the extra 'tint' must be true or false" "$work/out"
 noh info "$work/extras.noh"
 check 'and the name counts' grep -q "material 'skin': skin" "$work/out"
 

@@ -63,10 +63,10 @@ expect 2 'build without -o'
 says '-o'
 noh build in.glb -o
 expect 2 'an option without its value'
-says '-o wants a value'
+says '-o needs a value'
 noh build in.glb -o "$work/out.noh" --error-um ten
 expect 2 'a number that is none'
-says "--error-um wants a number, not 'ten'"
+says "--error-um must be a number, not 'ten'"
 for value in 0 -1 1e9 nan inf; do
     noh build in.glb -o "$work/out.noh" --error-um $value
     expect 2 "--error-um $value"
@@ -74,35 +74,35 @@ done
 for value in 0 -3 2.5 65536 many; do
     noh build in.glb -o "$work/out.noh" --rects $value
     expect 2 "--rects $value"
-    says '--rects wants'
+    says '--rects must be'
 done
 for value in 0 33 2.5 many; do
     noh build in.glb -o "$work/out.noh" --influences $value
     expect 2 "--influences $value"
-    says '--influences wants'
+    says '--influences must be'
 done
 for value in 3 257 4.5 many; do
     noh build in.glb -o "$work/out.noh" --palette $value
     expect 2 "--palette $value"
-    says '--palette wants'
+    says '--palette must be'
 done
 for value in 0x512 512 512x 512x0 9000x10 -1x5 axb; do
     noh render "$pack" -o "$work/out.png" --size $value
     expect 2 "--size $value"
-    says '--size wants'
+    says '--size must be'
 done
 noh render "$pack" -o "$work/out.png" --path fastest
 expect 2 'an unknown path'
-says "--path wants auto, blend, layered, mrt, per-layer, gather, cpu or streams, not 'fastest'"
+says "--path must be auto, blend, layered, mrt, per-layer, gather, cpu or streams, not 'fastest'"
 noh render "$pack" -o "$work/out.png" --accumulate f64
 expect 2 'an unknown accumulator'
-says '--accumulate wants'
+says '--accumulate must be'
 noh render "$pack" -o "$work/out.png" --driver vulkan
 expect 2 'an unknown driver'
 says "no driver 'vulkan'"
 noh render "$pack" -o "$work/out.png" --debug skeleton
 expect 2 'an unknown debug view'
-says "--debug wants none, position, normal, tangent, lod, light, occlusion, wrinkle, wireframe, joints, weights or bones, not 'skeleton'"
+says "--debug must be none, position, normal, tangent, lod, light, occlusion, wrinkle, wireframe, joints, weights or bones, not 'skeleton'"
 noh render "$pack" -o "$work/out.png" --debug bones
 expect 1 'bones of a pack without a skeleton'
 noh render "$pack" -o "$work/out.png" --camera sideways

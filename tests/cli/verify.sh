@@ -84,7 +84,7 @@ for path in '' "$build/mask.noh"; do
     pack=${path:-$work/ball.noh}
     noh verify "$pack" --driver null
     expect 1 'verify with the null driver'
-    says 'this driver draws nothing that could be read back'
+    says "this driver's pictures cannot be read back"
     check 'and prints no result' test ! -s "$work/out"
 done
 noh render "$build/mask.noh" -o "$work/null.png" --driver null

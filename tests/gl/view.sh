@@ -92,7 +92,7 @@ check 'the camera follows it' test $((3 * $(changed followed))) -lt "$(changed f
 check 'or is fixed' test "$(changed fixed)" -gt 150
 noh view "$work/run.bvh" --frames 1 --camera sideways
 expect 2 'an unknown camera'
-says '--camera wants follow or fixed'
+says '--camera must be follow or fixed'
 noh view "$work/leg.bvh" --frames 2 --clip jump
 expect 1 'a clip that is not there'
 says "no clip named 'jump'"

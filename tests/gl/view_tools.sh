@@ -184,11 +184,11 @@ expect 0 'frames as a film, without a hand'
 check 'every second one' sh -c 'test -f "$1/walk_0002.png" && ! test -f "$1/walk_0003.png"' - "$work"
 noh view "$puppet" --clip walk --frames 1 --size 700x400 --film "$work/walk.avi"
 expect 1 'a film of an unknown kind'
-says 'a film ends in .gif, .mp4, .webm or .apng'
+says 'must end in .gif, .mp4, .webm or .apng'
 (PATH=/nowhere && export PATH && "$build/noh" view "$puppet" --frames 3 --size 700x400 --film "$work/walk.gif") >"$work/out" 2>"$work/err"
 code=$?
 expect 1 'a GIF without ffmpeg'
-says 'ffmpeg is not installed'
+says 'ffmpeg, which is not installed'
 check 'leaves no file' test ! -e "$work/walk.gif"
 if command -v ffmpeg >/dev/null 2>&1; then
     noh view "$puppet" --clip walk --frames 5 --size 700x400 --film "$work/walk.gif"

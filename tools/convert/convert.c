@@ -62,7 +62,7 @@ static int apply_events(const convert_options *options, source *s, model_error *
     return failed;
 }
 
-/* The graphs, and whether the inputs have what they name; *out NULL: there are none. */
+/* The graphs, checked against the inputs; *out NULL: there are none. */
 static int read_graphs(const convert_options *options, const source *s, graph_file **out, convert_failure *failure)
 {
     const char *model_file = failure->file;
@@ -92,8 +92,8 @@ static int has_target(const model *m, const char *name)
     return 0;
 }
 
-/* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and what is missing
- * falls back. */
+/* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and missing
+ * targets fall back. */
 static int read_recipe_text(const convert_options *options, const source *s, recipe_text **out,
                             convert_failure *failure)
 {
@@ -191,7 +191,7 @@ static int read_terrain(const convert_options *options, terrain *read, const ter
         fprintf(options->report, "terrain: %u x %u heights, %g x %g m, %.3f to %.3f m, steps of %.3g mm", read->width,
                 read->depth, (double)read->spacing * (read->width - 1u), (double)read->spacing * (read->depth - 1u),
                 (double)read->low, (double)read->high, 1000.0 * (double)read->scale);
-        if (read->hole_count) fprintf(options->report, "; %u without ground, at its lowest", read->hole_count);
+        if (read->hole_count) fprintf(options->report, "; %u without ground, set to the lowest", read->hole_count);
         fprintf(options->report, "\n");
     }
     failure->file = model_file;
@@ -214,11 +214,11 @@ static int read_recipe(const convert_options *options, const source *s, recipe_t
     if (!*out || recipe_add_extras(*out, s->m) || recipe_add_lips(*out, s->m) ||
         (!options->no_correctives && recipe_add_named(*out, s->m, &named))) {
         (void)snprintf(failure->error.what, sizeof failure->error.what,
-                       "there is no memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
+                       "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
         return 1;
     }
     if (named && options->report) {
-        fprintf(options->report, "%u correctives by the names of their targets (--no-correctives: none)\n", named);
+        fprintf(options->report, "%u correctives by target names (--no-correctives turns them off)\n", named);
     }
     if (!(*out)->count && !(*out)->wrinkle_count) {
         recipe_free(*out);
@@ -244,7 +244,7 @@ static int read_spring_line(const char *given, springs_text *text, convert_failu
     return 0;
 }
 
-/* Those of the file's extras, and of its extension. */
+/* The springs of the file's extras and of its extension. */
 static int bind_own_springs(const source *s, set_springs *out, convert_failure *failure)
 {
     springs_text *text = springs_text_new();
@@ -409,7 +409,7 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
     noh_error refusal = { NOH_OK, "", 0, 0 };
     if (noh_pack_open(out->bytes, out->count, &pack, &refusal)) {
         snprintf(error->what, sizeof error->what,
-                 "the pack that was built does not open: %s (byte %llu); this is a bug of noh", refusal.what,
+                 "the built pack does not open: %s (byte %llu); this is a bug in noh: please report it", refusal.what,
                  (unsigned long long)refusal.where);
         error->where[0] = 0;
         buffer_free(out);
@@ -447,7 +447,7 @@ static int add_transfers(byte_buffer *out, const convert_options *options, model
     return failed || check_own_pack(out, NULL, error);
 }
 
-/* Leave out the finest levels, from the finished pack: so the bytes are those of `noh strip`. */
+/* Leave out the finest levels, from the finished pack, which gives the same bytes as `noh strip`. */
 static int strip(byte_buffer *out, const strip_levels *levels, model_error *error)
 {
     byte_buffer stripped = { NULL, 0, 0, 0 };
@@ -504,8 +504,8 @@ static int trim_textures(model *m, const mesh_levels *levels, const convert_opti
     if (texture_trim(m, levels, &done)) return out_of_memory(error);
     if (options->report && done.count) {
         fprintf(options->report,
-                "%u of %u textures without what no triangle reads: %.0f%% of their texels are left "
-                "(--whole-textures: all)\n",
+                "%u of %u textures trimmed to what triangles read: %.0f%% of their texels are left "
+                "(--whole-textures keeps all)\n",
                 done.count, m->texture_count, 100.0 * (double)done.texels / (double)done.whole);
     }
     return 0;
@@ -582,7 +582,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
     return 0;
 }
 
-/* What the materials are made of, and what the meshes tell of that. */
+/* The kinds of materials, and shapes that follow from meshes. */
 static int make_surfaces(const convert_options *options, source *s, model_error *error)
 {
     for (uint32_t i = 0; i < options->surface_count; i++) {

@@ -1,4 +1,4 @@
-/* convert.h: makes the bytes of one pack out of files, and reports what was done. */
+/* convert.h: makes the bytes of one pack from files, and reports the result. */
 #ifndef NOH_CONVERT_CONVERT_H
 #define NOH_CONVERT_CONVERT_H
 
@@ -29,15 +29,15 @@ typedef struct convert_options {
     uint32_t priority_count;
     joint_match_options joints; /* how clips of other files find their joints */
     int etc2;                   /* 1: textures are compressed */
-    uint32_t texture_max;       /* they are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
-    int whole_textures;         /* 1: they keep what no triangle reads (texture/texture_trim.h) */
+    uint32_t texture_max;       /* textures are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
+    int whole_textures;         /* 1: textures are not trimmed (texture/texture_trim.h) */
     convert_only only;
     const char *events;              /* a text file of callback keys; NULL: none */
     const char *graph;               /* a text file of animation graphs; NULL: none */
-    const char *springs;             /* a text file of springs (springs/springs_read.h); NULL: those of the glTF file */
-    const char *const *spring_lines; /* [spring_line_count] lines of such a text, after those of the file */
+    const char *springs;             /* a text file of springs (springs/springs_read.h); NULL: the glTF file's */
+    const char *const *spring_lines; /* [spring_line_count] lines of such a text, after the file's */
     uint32_t spring_line_count;
-    const char *recipe;     /* a text file of what a face's targets are for; NULL: none */
+    const char *recipe;     /* a text file of a face's recipes; NULL: none */
     const char *ragdoll;    /* a text file of a ragdoll's bodies; NULL: none */
     const char *hair;       /* a text file of a haircut; NULL: none */
     const char *terrain;    /* a picture or a model of the ground (terrain/terrain_read.h); NULL: none */
@@ -55,12 +55,12 @@ typedef struct convert_failure {
 } convert_failure;
 
 /* Read, join (sources.h; the first input with meshes gives the model; none is needed with a terrain), encode and write.
- * 0 on success: *out is the
- * whole pack, to be freed with buffer_free. The same inputs and options give the same bytes on every machine. */
+ * 0 on success: *out is the whole pack, to be freed with buffer_free. The same inputs and options give the same bytes
+ * on every machine. */
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);
 
-/* Report one encoded mesh: counts, bits, and its bytes beside those of other engines' layouts. scale: model_mesh_scale,
+/* Report one encoded mesh: counts, bits, and its bytes compared with other engines' layouts. scale: model_mesh_scale,
  * so that errors are printed in world units. */
 void convert_report_mesh(FILE *out, const model_mesh *mesh, const morph_encoding *e, float scale, float error_um);
 
@@ -70,7 +70,7 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
 /* Report the skin of each skinned mesh of a finished pack, and the parts that the mesh was split into. */
 void convert_report_skins(FILE *out, const noh_pack *pack);
 
-/* Report what blocks cost the textures of a finished pack. */
+/* Report the textures of a finished pack that lose much as blocks. */
 void convert_report_textures(FILE *out, const noh_pack *pack);
 
 #endif

@@ -42,7 +42,7 @@ static const morph_target *worst_target(const morph_encoding *e, uint32_t *index
     return worst;
 }
 
-/* What targets move of texture coordinates. */
+/* The motion of texture coordinates by targets. */
 static void report_uvs(FILE *out, const model_mesh *m, const morph_encoding *e, float error)
 {
     uint32_t count = 0;
@@ -70,7 +70,7 @@ void convert_report_mesh(FILE *out, const model_mesh *m, const morph_encoding *e
     fprintf(out,
             "  %u pairs (%u in the source) in %u rectangles of %u texels: %.3f texels blended per vertex touched\n",
             e->pair_count, e->source_pairs, e->rect_count, e->texel_count, ratio(e->texel_count, e->pair_count));
-    fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um asked)\n",
+    fprintf(out, "  %.0f bytes, %.2f per pair; largest position error %.2f um in '%s' (%u bits, %.1f um requested)\n",
             bytes, ratio(bytes, e->pair_count), 1e6 * (double)(scale * worst->position_error), m->targets[index].name,
             worst->position_bits, (double)error_um);
     report_uvs(out, m, e, worst->position_error);
@@ -84,7 +84,8 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
         const uint32_t triangles = levels->built->levels[levels->which[k]].index_count / 3;
         fprintf(
             out,
-            "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, %.2f with left and right",
+            "  level %u: %u triangles (%.1f %%), off by at most %.2f mm at rest (99 %%: %.2f), %.2f with one target, "
+            "%.2f with left and right",
             k, triangles, 300.0 * triangles / (double)mesh->index_count, 1e3 * (double)(scale * e->rest),
             1e3 * (double)(scale * e->rest_p99), 1e3 * (double)(scale * e->targets), 1e3 * (double)(scale * e->pairs));
         if (e->clip > 0.0f) {
@@ -95,7 +96,7 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
     if (levels->count == 1 && levels->built) {
         fprintf(out, "  no coarser levels: %u of %u points may not move (seams without a partner, borders that touch, ",
                 levels->built->stuck, levels->built->points);
-        fprintf(out, "folds); the rest saves less than a twentieth at the errors asked\n");
+        fprintf(out, "folds); the rest saves less than a twentieth at the requested errors\n");
     }
 }
 
@@ -134,8 +135,8 @@ void convert_report_textures(FILE *out, const noh_pack *pack)
     for (uint32_t i = 0; noh_pack_texture_at(pack, i, &t, NULL) == NOH_OK; i++) {
         const double quality = texture_quality_db(t.header);
         if (t.header->format && quality < TEXTURE_QUALITY_DB) {
-            fprintf(out, "texture '%s' is %.1f dB from its source as %s, below %.0f: --textures raw keeps it exact\n",
-                    t.name, quality, texture_format_name(t.header->format), TEXTURE_QUALITY_DB);
+            fprintf(out, "texture '%s' has %.1f dB as %s, below %.0f: --textures raw keeps it exact\n", t.name, quality,
+                    texture_format_name(t.header->format), TEXTURE_QUALITY_DB);
         }
     }
 }

@@ -19,7 +19,7 @@
 #include "convert/obj/obj_read.h"
 #include "convert/skin/eye_split.h"
 
-#define BONES_RATIO 2.0 /* bones so much longer or shorter are no other person's, but another unit's */
+#define BONES_RATIO 2.0 /* a larger ratio of bone lengths means another unit, not another person */
 
 static int out_of_memory(model_error *error)
 {
@@ -64,9 +64,9 @@ static int turn(raw_set *set, const source_options *options, model_error *error)
     }
     if (options->turn.faces_ahead) {
         if (raw_facing(&set->skeleton, &degrees)) {
-            return model_fail(error, "",
-                              "--facing auto: no joints are named left and right, or they are above each other: give "
-                              "--facing the degrees");
+            return model_fail(
+                error, "",
+                "--facing auto: no joints are named left and right, or they lie above each other: give --facing DEG");
         }
         degrees = -degrees;
         if (options->skin.report) fprintf(options->skin.report, "turned by %.1f degrees to face +z\n", degrees);
@@ -193,20 +193,20 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, const
         if (strcmp(here, there) != 0) {
             return model_fail(
                 error, "",
-                "its skeleton is not that of %.80s: joint %u is '%.40s' here and '%.40s' there; --partial takes "
-                "what both have, --rename FILE gives other names",
+                "its skeleton differs from %.80s: joint %u is '%.40s' here and '%.40s' there; --partial uses the "
+                "joints that both have, --rename FILE maps names",
                 base_path, j, here, there);
         }
         if (other->joints[j].parent != base->joints[j].parent) {
             return model_fail(
                 error, "",
-                "its skeleton is not that of %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there",
+                "its skeleton differs from %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there",
                 base_path, here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
         }
     }
     return model_fail(
         error, "",
-        "its skeleton is not that of %.80s: it has %u joints here and %u there; --partial takes what both have",
+        "its skeleton differs from %.80s: it has %u joints here and %u there; --partial uses the joints that both have",
         base_path, other->joint_count, base->joint_count);
 }
 
@@ -223,7 +223,9 @@ static int find_set(const source *base, const char *base_path, const raw_set *fr
         first = !first && s->joint_count ? s : first;
     }
     return first ? fail_skeletons(first, base_path, &from->skeleton, error)
-                 : model_fail(error, "", "it animates a skeleton, and %.150s has none", base_path);
+                 : model_fail(error, "",
+                              "it animates a skeleton, and %.150s has none: give a model with a skeleton first",
+                              base_path);
 }
 
 /* A set for clips without joints: any of the base's, or a new one. */
@@ -353,7 +355,7 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
     }
     if (has_clip(to, clip->name) && number_clip(base, to, clip, error)) return 1;
     if (clip->joint_count == 0 && clip->float_count == 0) {
-        return 0; /* nothing of it was kept */
+        return 0; /* none of it was kept */
     }
     *joined += 1;
     scale_translations(clip, from->skeleton.unit_cm / to->skeleton.unit_cm);
@@ -405,15 +407,16 @@ static int warn_of_bones(source *base, const char *base_path, const raw_set *fro
                                  ? bones_ratio(from, &from->clips[0], to)
                                  : 1.0;
         if (ratio >= 1.0 / BONES_RATIO && ratio <= BONES_RATIO) continue;
-        return model_warn(base->m,
-                          "%s: its bones are %.3g times as long as those of %s, and the clips make the body as large; "
-                          "with --unit-cm %.3g (now %.3g) they are as long",
-                          path, ratio, base_path, from->skeleton.unit_cm / ratio, from->skeleton.unit_cm);
+        return model_warn(
+            base->m,
+            "%s: its bones are %.3g times as long as in %s, and the clips scale the body to match; --unit-cm %.3g "
+            "(now %.3g) makes them equal",
+            path, ratio, base_path, from->skeleton.unit_cm / ratio, from->skeleton.unit_cm);
     }
     return 0;
 }
 
-/* What reading the other file had to say. A size is told beside the base's. */
+/* Warnings from reading the other file. Sizes are compared with the base's. */
 static int keep_warnings(source *base, const char *base_path, const source *other, const char *path)
 {
     for (uint32_t i = 0; i < other->m->warning_count; i++) {
@@ -447,8 +450,7 @@ int source_join(source *base, const char *base_path, source *other, const char *
         return model_fail(error, "", "it has no clips to add to %.150s", base_path);
     }
     if (other->m->mesh_count &&
-        model_warn(base->m, "%s: of this file only the clips were taken: the meshes are those of %s", other_path,
-                   base_path)) {
+        model_warn(base->m, "%s: only its clips were used: the meshes come from %s", other_path, base_path)) {
         return out_of_memory(error);
     }
     return 0;

@@ -26,13 +26,13 @@ typedef struct source_options {
     skin_options skin;
     const char *const *two_streams; /* [two_stream_count] "SOURCE=TARGET", see two_stream.h */
     uint32_t two_stream_count;
-    const char *identity;        /* a file of targets that make people, see identity_join.h; NULL: none */
+    const char *identity;        /* a file of identity targets, see identity_join.h; NULL: none */
     int split_eyes;              /* 1: eyeballs get joints, see eye_split.h */
     int lips;                    /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
     const char *targets;         /* of .obj: a folder of targets, see obj_read.h; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first, see model_attach.h */
     uint32_t attached_count;
-    const char *attach_joint; /* that carries those that have no joints; NULL: the head */
+    const char *attach_joint; /* the joint that carries models without joints; NULL: the head */
     seam_mode seam;
     turn_options turn;
     unsigned clean; /* bits of mocap/clean.h */
@@ -43,11 +43,11 @@ int source_read(const char *path, const source_options *options, source *s, mode
 void source_free(source *s);
 
 /* Move the clips of `other` to `base`. Translations are converted to the base's unit. A clip whose name the base
- * already has is renamed FILE/NAME, where FILE is the file's name without its ending. What is left out becomes a
- * warning of base.
- * options  how joints of other names, or only some of them, are taken
+ * already has is renamed FILE/NAME, where FILE is the file's name without its ending. Omissions become
+ * warnings of base.
+ * options  how joints are matched by other names, or only in part
  * errors   1: no skeleton of base has these joints (the message names the first difference), `other` has no clips, or
- *          what is wrong with the file of names */
+ *          the file of names is wrong */
 int source_join(source *base, const char *base_path, source *other, const char *other_path,
                 const joint_match_options *options, model_error *error);
 

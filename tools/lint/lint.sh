@@ -1,7 +1,7 @@
 #!/bin/sh
 # lint.sh: clang-tidy (.clang-tidy) and cppcheck over the C of runtime/, platform/ and tools/. `make lint` calls it.
 #
-# Findings that are none are in accepted.txt, one a line: FILE CHECK REASON. A finding is fixed, or it gets a line there
+# False positives are in accepted.txt, one a line: FILE CHECK REASON. A finding is fixed, or it gets a line there
 # with the reason; what the list does not hold is a failure. Lines that no longer match anything are named, so that the
 # list does not grow stale. With NOH_LONG set, the paths through what games link are followed too, by clang and by gcc
 # -fanalyzer (make check-long). Closes with "N passed, N failed, N skipped": a file that a tool has nothing to say about is

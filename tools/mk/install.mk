@@ -55,6 +55,7 @@ deps-lint:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build view lint
 lint: deps-lint
 	@$(MAKE) --no-print-directory $(BUILD)/gen/shaders.gen.h $(BUILD)/gen/tool_shaders.gen.h
+	@sh tools/lint/prose.sh
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/lint/lint.sh
 
 deps-docs:

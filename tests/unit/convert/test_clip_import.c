@@ -568,7 +568,7 @@ static void zero_rotations_are_refused(void **state)
     const float keys[8] = { 0, 0, 0, 1, 0, 0, 0, 0 };
     scene *s = scene_new("{\"name\":\"n\"}");
     add_turn(s, 0, "LINEAR", two_times, 2, keys, 8);
-    refused(s, 0.0, "quaternion without length", "animation 'act' channel 0 output (accessor 1), element 1");
+    refused(s, 0.0, "quaternion of length 0", "animation 'act' channel 0 output (accessor 1), element 1");
     const float spline[24] = { 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0 };
     s = scene_new("{\"name\":\"n\"}");
     add_turn(s, 0, "CUBICSPLINE", two_times, 2, spline, 24);
@@ -740,7 +740,7 @@ static void held_steps_and_fast_turns_keep_the_rate(void **state)
     s = turning(40, 30.0, 50.0, 0.0);
     add_move(s, 0, "STEP", times, 2, jump, 6);
     l = load(s, 0.0);
-    assert_true(only_clip(&l)->sample_rate_hz > 30.0 && has_warning(l.m, "--rate 30 keeps the keys alone"));
+    assert_true(only_clip(&l)->sample_rate_hz > 30.0 && has_warning(l.m, "--rate 30 keeps only the keys"));
     loaded_free(&l);
 }
 
@@ -772,8 +772,8 @@ static void asked_rates_keep_the_length(void **state)
 static void impossible_rates_are_refused(void **state)
 {
     (void)state;
-    refused(turning(2, 1.0, 5.0, 0.0), -1.0, "rate of -1 Hz", "");
-    refused(turning(2, 1.0, 5.0, 0.0), (double)NAN, "is not possible", "");
+    refused(turning(2, 1.0, 5.0, 0.0), -1.0, "not -1 Hz", "");
+    refused(turning(2, 1.0, 5.0, 0.0), (double)NAN, "the sample rate must be above 0", "");
     refused(turning(2, 1e-7, 5.0, 0.0), 0.0, "which is the limit; ask for a lower sample rate", "animation 'act'");
     refused(turning(2, 1e-11, 5.0, 0.0), 1000.0, "which is the limit", "animation 'act'");
     refused(turning(2, 1e-30, 5.0, 0.0), 1000.0, "the limit is 1e12", "accessor");

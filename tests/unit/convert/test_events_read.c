@@ -47,7 +47,8 @@ static void all_forms(void **state)
     (void)state;
     event_list *list = load(
         "# steps of the walk\n\nwalk 0.5 step_left\r\n  walk\t1.0 step_right 7 min=0.25 # the heavy one\n"
-        "\"a long walk\" 0 \"bell rings\" 0xDEADbeef\nrun 2 x min=1 -3\nrun 2 y 0xffffffffffffffff\nrun 2 z 1.5\nrun 2.5e-1 w 18446744073709551615\n"
+        "\"a long walk\" 0 \"bell rings\" 0xDEADbeef\nrun 2 x min=1 -3\nrun 2 y 0xffffffffffffffff\nrun 2 z 1.5\nrun "
+        "2.5e-1 w 18446744073709551615\n"
         "run 0 x#1 #comment to the end");
     assert_int_equal(list->count, 8);
     assert_string_equal(list->entries[0].clip, "walk");
@@ -93,20 +94,20 @@ static void bad_lines_are_refused(void **state)
     refused("walk 1 left marker 7\n", "'7' follows marker", "line 1");
     refused("walk 1 left marker min=1\n", "follows marker", "line 1");
     refused("walk 1 left marker marker\n", "follows marker", "line 1");
-    refused("walk 1 left 7 marker\n", "'marker' is neither", "line 1");
+    refused("walk 1 left 7 marker\n", "'marker' must be", "line 1");
     refused("walk\n", "the time is missing", "line 1");
     refused("# c\nwalk 1 # x\n", "the name is missing", "line 2");
     refused("walk x step\n", "'x' is not a number", "line 1");
     refused("walk nan step\n", "not finite", "line 1");
     refused("walk -1 step\n", "negative", "line 1");
-    refused("walk 1 step 1 2\n", "'2' is neither", "line 1");
-    refused("walk 1 step min=1 min=2\n", "neither", "line 1");
-    refused("walk 1 step min=-1\n", "not possible", "line 1");
-    refused("walk 1 step min=\n", "neither", "line 1");
-    refused("walk 1 step 0x\n", "neither", "line 1");
-    refused("walk 1 step 0x11112222333344445\n", "neither", "line 1");
-    refused("walk 1 step 18446744073709551616\n\n", "neither", "line 1");
-    refused("walk 1 step -9223372036854775809.x\n", "neither", "line 1");
+    refused("walk 1 step 1 2\n", "'2' must be", "line 1");
+    refused("walk 1 step min=1 min=2\n", "must be a payload", "line 1");
+    refused("walk 1 step min=-1\n", "min must be 0 or more", "line 1");
+    refused("walk 1 step min=\n", "must be a payload", "line 1");
+    refused("walk 1 step 0x\n", "must be a payload", "line 1");
+    refused("walk 1 step 0x11112222333344445\n", "must be a payload", "line 1");
+    refused("walk 1 step 18446744073709551616\n\n", "must be a payload", "line 1");
+    refused("walk 1 step -9223372036854775809.x\n", "must be a payload", "line 1");
     refused("\n\n\"walk 1 step\n", "quote is not closed", "line 3");
     refused("\"\" 1 step\n", "name is empty", "line 1");
 }
@@ -157,7 +158,7 @@ static void keys_without_a_place_are_refused(void **state)
 {
     (void)state;
     apply_refused("walk 0 a\n\nhop 0 a\n", "there is no clip 'hop'", "line 3");
-    apply_refused("walk 1.01 a\n", "behind the end of clip 'walk' at 1 s", "line 1");
+    apply_refused("walk 1.01 a\n", "past the end of clip 'walk' at 1 s", "line 1");
 }
 
 static void mutations_never_crash(void **state)

@@ -138,10 +138,10 @@ static void what_has_no_two_eyes_is_refused(void **state)
         const ball *const *balls;
         uint32_t count;
         const char *says;
-    } cases[] = { { none, 0, "no mesh has two balls" },
-                  { none, 1, "no mesh has two balls" },
-                  { unequal, 2, "no mesh has two balls" },
-                  { four, 4, "more than two balls" } };
+    } cases[] = { { none, 0, "no mesh has two spheres" },
+                  { none, 1, "no mesh has two spheres" },
+                  { unequal, 2, "no mesh has two spheres" },
+                  { four, 4, "more than two spheres" } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         model *m = face_with(cases[i].balls, cases[i].count);

@@ -92,20 +92,19 @@ static void textures_of_a_material(void **state)
         "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}},"
         "{\"name\":\"cloth\",\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},\"emissiveFactor\":[0,0.5,0]}]" ONE_TEXTURE,
         NULL, 0);
-    EXPECT(
-        "", ",\"material\":0",
-        ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0,\"texCoord\":1},"
-        "\"occlusionTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,2]}}},"
-        "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},"
-        "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularTexture\":{\"index\":0,"
-        "\"texCoord\":1}}}}],"
-        "\"extensionsUsed\":[\"KHR_texture_transform\"]" ONE_TEXTURE,
-        "material 'skin': the normal texture was left out: its texture coordinates, or their transform, are not those of "
-        "the material's other textures",
-        "material 'skin': the occlusion texture was left out: its texture coordinates, or their transform, are not those "
-        "of the material's other textures",
-        "material 'skin': the specular texture was left out: its texture coordinates, or their transform, are not those of "
-        "the material's other textures");
+    EXPECT("", ",\"material\":0",
+           ",\"materials\":[{\"name\":\"skin\",\"normalTexture\":{\"index\":0,\"texCoord\":1},"
+           "\"occlusionTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,2]}}},"
+           "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},"
+           "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularTexture\":{\"index\":0,"
+           "\"texCoord\":1}}}}],"
+           "\"extensionsUsed\":[\"KHR_texture_transform\"]" ONE_TEXTURE,
+           "material 'skin': the normal texture was left out: its texture coordinates or their transform differ "
+           "from the material's other textures",
+           "material 'skin': the occlusion texture was left out: its texture coordinates or their transform differ "
+           "from the material's other textures",
+           "material 'skin': the specular texture was left out: its texture coordinates or their transform differ "
+           "from the material's other textures");
 }
 
 /* An extension is named once, with what carries it first, whether "extensionsUsed" lists it or not. */
@@ -140,7 +139,7 @@ static void further_uvs_and_colours(void **state)
     EXPECT(
         "", ",\"material\":0",
         ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":3}}}]" ONE_TEXTURE,
-        "mesh 'm' primitive 0: it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
+        "mesh 'm' primitive 0: it lacks the UV set that its texture uses; TEXCOORD_0 was used");
 }
 
 static void samplers(void **state)

@@ -1163,7 +1163,7 @@ static void bind_matrices_of_zeros(void **state)
     add_array(s, binds, sizeof binds, F32, 1, "MAT4");
     APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",\"scale\":[2,0,2]}],"
                     "\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
-    refused(s, "joint 'hip' is all zeros, and where it rests has no inverse", "skin 0");
+    refused(s, "joint 'hip' is all zeros, and its rest transform has no inverse", "skin 0");
 }
 
 static void matrices_are_decomposed(void **state)
@@ -1237,7 +1237,7 @@ static void vrm_expressions_are_recipes(void **state)
     assert_string_equal(m->nodes[0].name, "Armature");
     assert_string_equal(m->meshes[0].recipe,
                         "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n");
-    assert_true(has_warning(m, "VRM expression 'happy': what it changes of materials was left out"));
+    assert_true(has_warning(m, "VRM expression 'happy': its changes to materials were left out"));
     assert_true(m->nodes[2].world[14] == 3.5);
     model_free(m);
 }
@@ -1299,7 +1299,7 @@ static void mtoon_is_a_toon(void **state)
     assert_int_equal(hair->surface, NOH_SURFACE_TOON);
     assert_true(hair->surface_values[0] == 0.0f && hair->surface_more[0] == 0.9f);
     assert_true(m->materials[2].unlit && m->materials[2].surface == NOH_SURFACE_PLAIN);
-    assert_true(has_warning(m, "of its MToon shading the two tones were taken"));
+    assert_true(has_warning(m, "the two tones of its MToon shading were kept"));
     model_free(m);
 }
 
@@ -1640,7 +1640,7 @@ static void webp_textures(void **state)
     static const char texture[] = "{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}";
     const uint8_t pixels[8] = { 255, 0, 0, 255, 0, 128, 255, 51 };
     model *m = load(webp_scene(texture, sizeof webp_2x1 - 1));
-    if (has_warning(m, "libwebp is not here")) {
+    if (has_warning(m, "libwebp, which is not installed")) {
         model_free(m);
         printf("libwebp is missing\n");
         skip();
@@ -1659,7 +1659,7 @@ static void webp_textures(void **state)
     assert_true(has_warning(m, "image 7 does not exist"));
     model_free(m);
     m = load(webp_scene("{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}", sizeof webp_2x1 - 1));
-    assert_true(has_warning(m, "KHR_texture_basisu (KTX2), which is not read"));
+    assert_true(has_warning(m, "KHR_texture_basisu (KTX2), which is not supported"));
     model_free(m);
 }
 
@@ -1749,7 +1749,7 @@ static void missing_members_are_refused_by_name(void **state)
     (void)state;
     static const char *const all[][3] = {
         { "\"accessors\":[{\"componentType\":5126,\"count\":3}]", "'type' is missing", "glTF JSON/accessors/0" },
-        { "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC9\"}]", "the type 'VEC9' is none of",
+        { "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC9\"}]", "the type 'VEC9' must be",
           "glTF JSON/accessors/0" },
         { "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{"
           "\"bufferView\":0},\"values\":{\"bufferView\":0}}}]",

@@ -126,7 +126,7 @@ static void what_is_broken_is_left_out(void **state)
                         VRM1_HEAD
                         "\"colliders\":[{\"node\":0,\"shape\":{\"box\":{}}}],\"springs\":[{\"joints\":[" VRM1_JOINT(
                             1) "," VRM1_JOINT(2) "],\"center\":0}]}}",
-                        &d, "no sphere and no capsule"));
+                        &d, "neither a sphere nor a capsule"));
     assert_int_equal(d.collider_count, 0);
     free(bytes);
     assert_true(convert("", VRM1_HEAD "\"springs\":[{\"joints\":[" VRM1_JOINT(1) "," VRM1_JOINT(2) "],\"center\":0}]}}",

@@ -64,9 +64,8 @@ static void warns(const char *text, int all_loop, const char *what)
 
 static void what_waits_for_the_end_of_a_loop_is_warned_of(void **state)
 {
-    static const char *const by_walk =
-        "a.graph:5: `from walk to run when ending` never comes true: 'walk' loops, so it "
-        "never ends: give the clip loop=once\n";
+    static const char *const by_walk = "a.graph:5: `from walk to run when ending` is never true: 'walk' loops, so it "
+                                       "never ends: give the clip loop=once\n";
     (void)state;
     warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 0, by_walk);
     warns("graph a\nclip walk loop=ping-pong\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 0,
@@ -74,24 +73,24 @@ static void what_waits_for_the_end_of_a_loop_is_warned_of(void **state)
     warns("graph a\nclip walk loop=once\nclip run\nmachine m walk run\nfrom walk to run when ending\n", 1, "");
     warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom run to walk when ending\n", 0, "");
     warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom run to walk when ending\n", 1,
-          "a.graph:5: `from run to walk when ending` never comes true: 'run' loops, so it never ends: give the clip "
+          "a.graph:5: `from run to walk when ending` is never true: 'run' loops, so it never ends: give the clip "
           "loop=once\n");
     warns("graph a\nclip walk\nclip run paused=yes\nmachine m walk run\nfrom run to walk when ending\n", 0,
-          "a.graph:5: `from run to walk when ending` never comes true: 'run' is paused, so it never ends: take out "
+          "a.graph:5: `from run to walk when ending` is never true: 'run' is paused, so it never ends: remove "
           "paused=yes\n");
     /* from any state: one that ends is enough, but for the one that it leads to */
     warns("graph a\nclip walk\nclip run\nclip w walk\nmachine m walk run w\nfrom any to w when ending\n", 0, "");
     warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom any to run when ending\n", 0,
-          "a.graph:5: `from any to run when ending` never comes true: 'walk' loops, so it never ends: give the clip "
+          "a.graph:5: `from any to run when ending` is never true: 'walk' loops, so it never ends: give the clip "
           "loop=once\n");
     /* a state of several clips ends with its first */
     warns("graph a\nnumber v 0 1\nclip walk\nclip run\nclip r run\nblend b walk run by=v\nmachine m b r\n"
           "from b to r when ending\n",
           0,
-          "a.graph:8: `from b to r when ending` never comes true: 'walk' loops, so it never ends: give the clip "
+          "a.graph:8: `from b to r when ending` is never true: 'walk' loops, so it never ends: give the clip "
           "loop=once\n");
     warns("graph a\ntrigger t\nclip walk\nclip run paused=yes\none-shot s walk run on=t\n", 0,
-          "a.graph:5: the one-shot 's' never ends: 'run' is paused, so it never ends: take out paused=yes\n");
+          "a.graph:5: the one-shot 's' never ends: 'run' is paused, so it never ends: remove paused=yes\n");
     warns("graph a\ntrigger t\nclip run\nclip walk\none-shot s run walk on=t\n", 1, "");
 }
 
@@ -100,9 +99,9 @@ static void bad_lines_are_refused_with_their_number(void **state)
     (void)state;
     refused("", 0, "the file has no graph");
     refused("# nothing\n\n", 0, "the file has no graph");
-    refused("clip walk\n", 1, "the first statement is: graph NAME");
+    refused("clip walk\n", 1, "the first statement must be: graph NAME");
     refused("graph a\ngraph a\n", 1, "has no nodes");
-    refused("graph a\nclip walk\ngraph a\n", 3, "a graph 'a' already, in line 1");
+    refused("graph a\nclip walk\ngraph a\n", 3, "the graph 'a' is given twice; the first is in line 1");
     refused("graph a\nclpi walk\n", 2, "no statement begins with 'clpi'; did you mean 'clip'?");
     refused("graph a\nclip \"walk\n", 2, "a quote is not closed");
     refused("graph a\nclip \"\"\n", 2, "a name is empty");
@@ -112,9 +111,9 @@ static void bad_lines_are_refused_with_their_number(void **state)
     refused("graph a\nclip walk speed=2 speed=2\n", 2, "has it twice");
     refused("graph a\nclip walk speed=fast\n", 2, "'fast' is not a number");
     refused("graph a\nclip walk speed=0\n", 2, "the speed of 'walk' is 0");
-    refused("graph a\nclip walk speed=300\n", 2, "it is -256 to 256");
+    refused("graph a\nclip walk speed=300\n", 2, "must be -256 to 256");
     refused("graph a\nclip walk loop=repeats\n", 2, "did you mean 'repeat'?");
-    refused("graph a\nclip walk\nclip walk\n", 3, "a node 'walk' already, in line 2");
+    refused("graph a\nclip walk\nclip walk\n", 3, "the node 'walk' is given twice; the first is in line 2");
     refused("graph a\nclip any\n", 2, "'any' means every state");
 }
 
@@ -123,7 +122,7 @@ static void parameters_are_checked(void **state)
     (void)state;
     refused("graph a\nnumber x 1\n", 2, "the highest value is missing");
     refused("graph a\nnumber x 2 1\n", 2, "the range of 'x' is empty");
-    refused("graph a\nnumber x 0 1 initial=2\n", 2, "it is 0 to 1");
+    refused("graph a\nnumber x 0 1 initial=2\n", 2, "must be 0 to 1");
     refused("graph a\nnumber x 0 1e39\n", 2, "too large");
     refused("graph a\ninteger x 0 1.5\n", 2, "whole numbers");
     refused("graph a\nnumber 2x 0 1\n", 2, "reads as a number");
@@ -131,11 +130,11 @@ static void parameters_are_checked(void **state)
     refused("graph a\nenum e\n", 2, "'e' has no values");
     refused("graph a\nenum e a b a\n", 2, "the value 'a' twice");
     refused("graph a\nenum e calm glad initial=glda\n", 2, "did you mean 'glad'?");
-    refused("graph a\ntrigger t\nnumber t 0 1\n", 3, "a parameter 't' already, in line 2");
-    refused("graph a\nmask m\nbelow head weight=2\n", 3, "it is 0 to 1");
+    refused("graph a\ntrigger t\nnumber t 0 1\n", 3, "the parameter 't' is given twice; the first is in line 2");
+    refused("graph a\nmask m\nbelow head weight=2\n", 3, "must be 0 to 1");
     refused("graph a\nbelow head\n", 2, "belongs to a mask");
     refused("graph a\nmask m\nclip walk\njoint head\n", 4, "belongs to a mask");
-    refused("graph a\nmask m\nmask m\n", 3, "a mask 'm' already, in line 2");
+    refused("graph a\nmask m\nmask m\n", 3, "the mask 'm' is given twice; the first is in line 2");
 }
 
 #define TWO "graph a\nnumber v 0 1\nenum e p q\ntrigger t\nmask m\nclip walk\nclip run\n" /* 7 lines */
@@ -143,15 +142,15 @@ static void parameters_are_checked(void **state)
 static void nodes_are_checked(void **state)
 {
     (void)state;
-    refused(TWO, 7, "'run' is nobody's child, nor is 'walk' in line 6");
+    refused(TWO, 7, "'run' is not a child of a node, and neither is 'walk' in line 6");
     refused(TWO "blend b walk\n", 8, "a second node is missing");
-    refused(TWO "blend b walk run\n", 8, "by=PARAMETER is missing");
-    refused(TWO "blend b walk run by=2\n", 8, "it is 0 to 1");
+    refused(TWO "blend b walk run\n", 8, "'b' needs by=PARAMETER");
+    refused(TWO "blend b walk run by=2\n", 8, "must be 0 to 1");
     refused(TWO "blend b walk ruin by=v\n", 8, "there is no node 'ruin'; did you mean 'run'?");
-    refused(TWO "blend b walk walk by=v\n", 8, "'walk' is a child of 'b' already");
+    refused(TWO "blend b walk walk by=v\n", 8, "'walk' is already a child of 'b'");
     refused(TWO "blend b walk run by=w\n", 8, "there is no parameter 'w'; did you mean 'v'?");
-    refused(TWO "blend b walk run by=t\n", 8, "'t' has to be a number here");
-    refused(TWO "layer b walk run by=v\n", 8, "mask=MASK is missing");
+    refused(TWO "blend b walk run by=t\n", 8, "'t' must be a number here");
+    refused(TWO "layer b walk run by=v\n", 8, "'b' needs mask=MASK");
     refused(TWO "add b walk run by=v reference=wlak\n", 8, "no input has a clip 'wlak'; did you mean 'walk'?");
     refused(TWO "blend b walk run by=v reference=walk\n", 8, "no option 'reference'");
     refused(TWO "layer b walk run by=v mask=n\n", 8, "there is no mask 'n'");
@@ -159,17 +158,17 @@ static void nodes_are_checked(void **state)
     refused(TWO "space b walk 1 run 1 by=v\n", 8, "'run' is not above 'walk'");
     refused(TWO "space b walk 1 1 run 1 1 by=v,v\n", 8, "two points are in one place");
     refused(TWO "space b walk 1 1 run 1 by=v,v\n", 8, "the second coordinate of a node is missing");
-    refused(TWO "select b walk run by=v\n", 8, "'v' has to be an enum or an integer here");
-    refused(TWO "select b walk run by=e fade=0.1 inertia=0.1\n", 8, "a fade or inertia, not both");
+    refused(TWO "select b walk run by=v\n", 8, "'v' must be an enum or an integer here");
+    refused(TWO "select b walk run by=e fade=0.1 inertia=0.1\n", 8, "fade or inertia, not both");
     refused(TWO "clip c wave\nselect b walk run c by=e\n", 9, "'b' has 3 children, and 'e' 2 values");
     refused(TWO "integer i 0 2\nselect b walk run by=i\n", 9, "'b' has children 0 to 1, and 'i' goes from 0 to 2");
-    refused(TWO "one-shot b walk run\n", 8, "on=TRIGGER is missing");
-    refused(TWO "one-shot b walk run on=v\n", 8, "'v' has to be a trigger here");
+    refused(TWO "one-shot b walk run\n", 8, "'b' needs on=TRIGGER");
+    refused(TWO "one-shot b walk run on=v\n", 8, "'v' must be a trigger here");
     refused(TWO "clip c wave loop=repeat\nblend d walk run by=v\none-shot b d c on=t\n", 10, "'c' never ends");
     refused("graph a\nnumber v 0 1\nclip walk\nblend b c walk by=v\nblend c b d by=v\nclip d run\n", 1,
             "every node is a child");
     refused("graph a\nnumber v 0 1\nclip walk\nblend b c d by=v\nblend c b e by=v\nclip d run\nclip e run\n", 4,
-            "'b' lies below itself");
+            "'b' is its own descendant");
 }
 
 static void transitions_are_checked(void **state)
@@ -178,12 +177,12 @@ static void transitions_are_checked(void **state)
     refused(TWO "from walk to run when ending\n", 8, "'from' belongs to a machine");
     refused(TWO "machine b walk run\nfrom walk run\n", 9, "'to' is missing");
     refused(TWO "machine b walk run\nfrom walk to run\n", 9, "'when' is missing");
-    refused(TWO "machine b walk run\nfrom walk to run when v\n", 9, "'v' has to be a trigger, or above or below");
+    refused(TWO "machine b walk run\nfrom walk to run when v\n", 9, "'v' must be a trigger, or above or below");
     refused(TWO "machine b walk run\nfrom walk to run when v over 1\n", 9, "'over' is neither above nor below");
-    refused(TWO "machine b walk run\nfrom walk to run when t above 1\n", 9, "'t' has to be a number");
+    refused(TWO "machine b walk run\nfrom walk to run when t above 1\n", 9, "'t' must be a number");
     refused(TWO "machine b walk run\nfrom wlak to run when t\n", 9, "no state 'wlak'; did you mean 'walk'?");
     refused(TWO "machine b walk run\nfrom run to run when t\n", 9, "from 'run' to itself");
-    refused(TWO "machine b walk run\nfrom any to run when t fade=-1\n", 9, "it is 0 to 3600");
+    refused(TWO "machine b walk run\nfrom any to run when t fade=-1\n", 9, "must be 0 to 3600");
     refused(TWO "machine b walk run\nfrom any to run when ending fade=1 entre=keep\n", 9, "did you mean 'enter'?");
 }
 

@@ -242,7 +242,7 @@ static void what_has_no_triangles_is_told(void **state)
     (void)state;
     model *m = load(SQUARE "l 1 2\np 1\nf 1 2 \\\n 3\n");
     assert_int_equal(m->meshes[0].index_count, 3);
-    assert_true(has_warning(m, "line 5: 'l' was left out, as were 1 more lines"));
+    assert_true(has_warning(m, "line 5: 'l' was left out, and 1 more lines"));
     model_free(m);
 }
 
@@ -331,12 +331,12 @@ static void bad_targets_are_refused(void **state)
 static void bad_lines_are_refused(void **state)
 {
     (void)state;
-    refused("", "there is no position", "");
-    refused(SQUARE, "there is no face", "");
-    refused("v 1 2\n", "3 numbers are wanted here, and there are 2", "line 1");
+    refused("", "it has no position", "");
+    refused(SQUARE, "it has no face", "");
+    refused("v 1 2\n", "3 numbers are needed here, and there are 2", "line 1");
     refused("v 1 2 nan\n", "not finite", "line 1");
     refused("v 1 2 1e30\n", "too large", "line 1");
-    refused(SQUARE "f 1 2\n", "a face wants three corners, and this one has 2", "line 5");
+    refused(SQUARE "f 1 2\n", "a face needs at least three corners, and this one has 2", "line 5");
     refused(SQUARE "f 1 2 5\n", "position 5 does not exist: the file has 4", "line 5");
     refused(SQUARE "f 1 2 0\n", "position 0 does not exist", "line 5");
     refused(SQUARE "f 1 2 -5\n", "position -5 does not exist", "line 5");
@@ -344,7 +344,7 @@ static void bad_lines_are_refused(void **state)
     refused(SQUARE "f 1//1 2//1 3//1\n", "normal 1 does not exist", "line 5");
     refused(SQUARE "f 1/1/1/1 2 3\n", "one number too many", "line 5");
     refused(SQUARE "f 1 2 x\n", "'x' is not a whole number", "line 5");
-    refused("solid cube\n", "'solid' begins no line of an OBJ file", "line 1");
+    refused("solid cube\n", "an OBJ file has no line 'solid'", "line 1");
 }
 
 static void mutations_never_crash(void **state)

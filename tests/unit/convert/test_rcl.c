@@ -230,10 +230,10 @@ static void bad_fields_are_refused(void **state)
     const uint32_t nan_bits = 0x7fc00000u, infinity_bits = 0x7f800000u;
     with_u32(0, 0x31435352u, "not a .rcl file", "byte 0");
     with_u32(AT_JOINTS, 0, "0 joints", "byte 4");
-    with_u32(AT_JOINTS, 4097, "1 to 4096 are", "byte 4");
+    with_u32(AT_JOINTS, 4097, "1 to 4096", "byte 4");
     with_u32(AT_FRAMES, 0, "0 frames", "byte 8");
     with_u32(AT_FRAMES, 0xffffffffu, "frames", "byte 8");
-    with_u32(AT_FRAMES, 1000000, "ends before the last frame", "byte 292");
+    with_u32(AT_FRAMES, 1000000, "ends before the end of its last frame", "byte 292");
     with_u32(AT_RATE, 0, "rate", "byte 12");
     with_u32(AT_RATE, nan_bits, "not finite", "byte 12");
     with_u32(AT_NAME, 0xfffffff0u, "ends too early", "byte 20");
@@ -245,7 +245,7 @@ static void bad_fields_are_refused(void **state)
     with_u32(AT_ROOT_BIND + 16, infinity_bits, "not finite", "byte 56");
     with_u32(AT_ROOT_BIND + 12, 0, "unit quaternion", "byte 40");
     with_u32(AT_ROOT_FIRST + 36, nan_bits, "not finite", "byte 116");
-    with_u32(AT_CHILD_FLAGS, 7, "ends before the last frame", "byte 292");
+    with_u32(AT_CHILD_FLAGS, 7, "ends before the end of its last frame", "byte 292");
     with_u32(AT_CHILD_FLAGS, 4, "bytes follow", "byte 268");
 }
 

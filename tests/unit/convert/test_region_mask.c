@@ -273,7 +273,7 @@ static void gamma_is_found(void **state)
 {
     (void)state;
     static double (*const curves[])(double) = { to_srgb, from_srgb, darker, mac_to_pc };
-    static const char *const names[] = { "linear taken for sRGB", "sRGB taken for linear", "a power of 2.2",
+    static const char *const names[] = { "linear data read as sRGB", "sRGB data read as linear", "a power of 2.2",
                                          "a power of 1.8/2.2" };
     for (size_t k = 0; k < 8; ++k) {
         region_mask clean = paint(k < 4 ? 8 : 0), damaged = copy_of(&clean);

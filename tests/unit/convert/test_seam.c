@@ -227,7 +227,7 @@ static void an_open_seam_is_closed(void **state)
     shape above = head;
     (void)state;
     above.low += 0.004;
-    expect_mended(&above, "places are up to 4 mm apart");
+    expect_mended(&above, "positions are up to 4 mm apart");
 }
 
 static void a_shifted_head_is_closed(void **state)
@@ -235,7 +235,7 @@ static void a_shifted_head_is_closed(void **state)
     shape above = head;
     (void)state;
     above.aside = 0.009; /* more than half a vertex: still each has the partner that it was modelled with */
-    expect_mended(&above, "places are up to 9 mm apart");
+    expect_mended(&above, "positions are up to 9 mm apart");
 }
 
 static void equal_places_with_other_weights_are_closed(void **state)

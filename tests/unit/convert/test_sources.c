@@ -109,7 +109,7 @@ static void the_first_difference_is_told(void **state)
 {
     source base = source_of(clip_bvh("walk", "abcd", FRAMES)), other = source_of(clip_bvh("run", "abxd", FRAMES));
     (void)state;
-    expect_refused(&base, &other, "not that of base.glb: joint 2 is 'x' here and 'c' there");
+    expect_refused(&base, &other, "its skeleton differs from base.glb: joint 2 is 'x' here and 'c' there");
     base = source_of(clip_bvh("walk", "abcd", FRAMES));
     other = source_of(clip_bvh("run", "abc", FRAMES));
     expect_refused(&base, &other, "it has 3 joints here and 4 there");
@@ -150,7 +150,7 @@ static void weights_go_to_nodes_of_the_same_name(void **state)
     assert_int_equal(base.sets[0]->clips[4].float_count, 1);
     assert_int_equal(base.sets[0]->clips[4].floats[0].node, 1);
     assert_int_equal(base.sets[0]->clips[3].event_count, 3); /* keys and markers too */
-    assert_true(has_warning(base.m, "other.glb: of this file only the clips were taken"));
+    assert_true(has_warning(base.m, "other.glb: only its clips were used"));
     source_free(&base);
     source_free(&other);
 }
@@ -267,8 +267,8 @@ static void a_bad_file_of_names_is_refused_by_line(void **state)
 {
     (void)state;
     refuse_names("x a\nz nobody\n", "the pack has no joint 'nobody'");
-    refuse_names("x a\nz\n", "a line of names has two");
-    refuse_names("x a\n", "its skeleton is not that of walk.bvh");
+    refuse_names("x a\nz\n", "a line needs two names");
+    refuse_names("x a\n", "its skeleton differs from walk.bvh");
 }
 
 /* Where a joint of a clip is in object space, below another joint. */
@@ -323,7 +323,7 @@ static void a_joint_that_the_file_lacks_keeps_the_bind_pose(void **state)
     source_free(&base);
     source_free(&other);
     source_free(&same);
-    expect_refused(&more, &again, "--partial takes what both have");
+    expect_refused(&more, &again, "--partial uses the joints that both have");
 }
 
 static void strangers_are_refused_in_part_too(void **state)
@@ -352,10 +352,10 @@ static void warnings_of_joined_files_are_kept(void **state)
         assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, &error), 0);
         assert_true(has_warning(base.m, "run.bvh: the skeleton is odd"));
         assert_true(has_warning(base.m, "run.bvh: a sentence"));
-        snprintf(advice, sizeof advice, "its bones are %.3g times as long as those of walk.bvh", units[i]);
+        snprintf(advice, sizeof advice, "its bones are %.3g times as long as in walk.bvh", units[i]);
         assert_int_equal(has_warning(base.m, "its bones"), units[i] < 0.5 || units[i] > 2.0);
         assert_int_equal(has_warning(base.m, advice), units[i] < 0.5 || units[i] > 2.0);
-        assert_int_equal(has_warning(base.m, "with --unit-cm 1 "), units[i] < 0.5 || units[i] > 2.0);
+        assert_int_equal(has_warning(base.m, "--unit-cm 1 "), units[i] < 0.5 || units[i] > 2.0);
         source_free(&base);
         source_free(&other);
     }

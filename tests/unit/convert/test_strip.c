@@ -315,7 +315,7 @@ static void meshes_are_cut_by_name(void **state)
         uint32_t first[3];
         model_error error = { "", "" };
         assert_int_equal(strip_levels_of(&wrong, &levels.pack, first, &error), 1);
-        assert_non_null(strstr(error.what, i == 2 ? "no mesh is named 'x'" : "is no level"));
+        assert_non_null(strstr(error.what, i == 2 ? "no mesh is named 'x'" : "is not a level"));
     }
     fixture_levels_close(&levels);
     free(bytes);

@@ -232,15 +232,15 @@ static void bad_lines_are_refused(void **state)
     refused_line("chain", "the joint is missing");
     refused_line("chain \"tail", "a quote is not closed");
     refused_line("chain hair1", "no skeleton has this joint");
-    refused_line("chain chest to tail1", "no skeleton has this joint, or the one behind `to`");
+    refused_line("chain chest to tail1", "no skeleton has this joint with the joint after `to`");
     refused_line("chain hips to chest", "it cannot swing");
-    refused_line("chain tail2", "swings already");
+    refused_line("chain tail2", "already in a chain");
     refused_line("chain chest stiff 1", "'stiff' is not understood");
     refused_line("chain chest stiffness", "the number of stiffness is missing");
-    refused_line("chain chest drag 2", "drag is 2, and has to be 0 to 1");
+    refused_line("chain chest drag 2", "drag is 2: it must be 0 to 1");
     refused_line("chain chest end 0 1", "the number of end is missing");
-    refused_line("chain chest hits", "`hits` names no joint");
-    refused_line("chain chest to", "`to` names no joint");
+    refused_line("chain chest hits", "`hits` needs the name of a joint");
+    refused_line("chain chest to", "`to` needs the name of a joint");
     refused_line("collider", "the joint is missing");
     refused_line("collider nose 0.1", "no skeleton has this joint");
     refused_line("collider hips", "the number of radius is missing");
@@ -264,7 +264,7 @@ static void bad_files_are_told_by_line(void **state)
     assert_int_equal(failure.line, 2);
     test_write_file(path, "# none\n", 7);
     assert_null(springs_fixture_build(NULL, 0, path, &count, &failure));
-    assert_non_null(strstr(failure.error.what, "no line has a chain"));
+    assert_non_null(strstr(failure.error.what, "the file has no chain"));
 }
 
 static const struct CMUnitTest tests[] = {

@@ -312,7 +312,7 @@ static void a_palette_too_small_for_a_triangle_is_refused(void **state)
     assert_int_equal(morph_encode(&m->meshes[0], &morph, &e, &error), 0);
     assert_int_equal(clips_encode(moved->sets, moved->set_count, &settings, &encoded, &error), 0);
     assert_int_equal(pack_write(m, NULL, &e, &encoded, &out, &error), 1);
-    assert_non_null(strstr(error.what, "give --palette at least"));
+    assert_non_null(strstr(error.what, "raise --palette to at least"));
     assert_non_null(strstr(error.where, "cylinder"));
     assert_null(out.bytes);
     morph_encoding_free(e);

@@ -493,7 +493,7 @@ static void what_floats_cannot_hold_is_refused(void **state)
     fixture x;
     (void)state;
     assert_string_equal(fixture_build(&x, fixture_swing(4, 30, 1, 3e7f, 0.5, 1.0), NULL, 2),
-                        "the bound is finer than single precision holds so far from the origin");
+                        "the error bound is below single precision this far from the origin: raise the bound");
     fixture_free(&x);
 }
 

@@ -1,4 +1,4 @@
-/* error.h: why an input is refused; allocations that may fail. */
+/* error.h: errors of inputs; allocations that may fail. */
 #ifndef NOH_CONVERT_BASE_ERROR_H
 #define NOH_CONVERT_BASE_ERROR_H
 
@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* What is wrong, and where (e.g. "accessor 7, element 12"; may be empty). */
+/* The failure and its place (e.g. "accessor 7, element 12"; may be empty). */
 typedef struct model_error {
     char what[256];
     char where[128];

@@ -8,7 +8,7 @@
 #include "convert/base/text_scan.h"
 #include "noh/base.h"
 
-/* A setting: its numbers, their range, and what they are without it. */
+/* A setting: its numbers, their range and defaults. */
 typedef struct setting {
     const char *name;
     size_t at;
@@ -49,11 +49,11 @@ static int read_numbers(text_scan *s, text_word name, uint32_t count, double low
         const text_word word = text_next_on_line(s);
         double value = 0.0;
         if (!word.size) {
-            return text_fail(s, name.line, "'%s' wants %u numbers", text_show(name, shown), count);
+            return text_fail(s, name.line, "'%s' needs %u numbers", text_show(name, shown), count);
         }
         if (text_number(s, word, &value)) return 1;
         if (!(value >= low && value <= high)) {
-            return text_fail(s, word.line, "%s is not within %g to %g", text_show(word, shown), low, high);
+            return text_fail(s, word.line, "%s must be %g to %g", text_show(word, shown), low, high);
         }
         out[i] = (float)value;
     }
@@ -64,7 +64,7 @@ static int read_joint(text_scan *s, hair_text *hair)
 {
     text_word word;
     if (text_take_on_line(s, &word)) return 1;
-    if (!word.size || hair->joint) return text_fail(s, word.line, "`joint` wants one name, once");
+    if (!word.size || hair->joint) return text_fail(s, word.line, "`joint` must be given once, with one name");
     if (word.size >= NOH_NAME_BYTES_MAX) {
         return text_fail(s, word.line, "the joint's name is longer than %u bytes", NOH_NAME_BYTES_MAX - 1u);
     }
@@ -75,7 +75,7 @@ static int read_joint(text_scan *s, hair_text *hair)
 static int read_sphere(text_scan *s, text_word name, hair_text *hair)
 {
     if (hair->sphere_count == HAIR_SPHERES_MAX) {
-        return text_fail(s, name.line, "there are more than %u spheres, which is the limit", HAIR_SPHERES_MAX);
+        return text_fail(s, name.line, "too many spheres: the limit is %u", HAIR_SPHERES_MAX);
     }
     float *sphere = hair->spheres[hair->sphere_count++];
     if (read_numbers(s, name, 4, -100.0, 100.0, sphere)) return 1;
@@ -92,7 +92,8 @@ static int read_setting(text_scan *s, text_word word, hair_text *hair)
         if (!text_is(word, k->name)) continue;
         return read_numbers(s, word, k->count, k->low, k->high, (float *)(void *)((char *)hair + k->at));
     }
-    return text_fail(s, word.line, "'%s' is no setting of a haircut (noh help FORMATS)", text_show(word, shown));
+    return text_fail(s, word.line, "a haircut has no setting '%s' (noh help FORMATS lists them)",
+                     text_show(word, shown));
 }
 
 static int read_line(text_scan *s, hair_text *hair)
@@ -110,13 +111,14 @@ static int check_whole(text_scan *s, const hair_text *h)
     const float *comb = h->comb;
     if (!(h->skull[3] > 1e-3f && h->skull[4] > 1e-3f && h->skull[5] > 1e-3f)) {
         return text_fail(s, s->line,
-                         "the skull is missing, or a radius of it is not above a millimetre: skull X Y Z RX RY RZ");
+                         "the skull is missing, or one of its radii is below a millimetre: add `skull X Y Z RX RY RZ`");
     }
     if (h->around * h->rows > (float)NOH_HAIRS_MAX || h->around * (h->rows - 1.0f) > (float)NOH_HAIR_PATCHES_MAX) {
-        return text_fail(s, s->line, "around times rows is above %u control hairs, which is the limit", NOH_HAIRS_MAX);
+        return text_fail(s, s->line, "around times rows is more than %u control hairs, which is the limit",
+                         NOH_HAIRS_MAX);
     }
     if (!(comb[0] * comb[0] + comb[1] * comb[1] + comb[2] * comb[2] > 1e-6f)) {
-        return text_fail(s, s->line, "`comb` has no direction");
+        return text_fail(s, s->line, "`comb` is 0 0 0: give it a direction");
     }
     return 0;
 }
@@ -147,7 +149,7 @@ int hair_read(const char *path, hair_text **out, uint32_t *line, model_error *er
         failed = read_line(&s, *out);
     }
     failed = failed || check_whole(&s, *out);
-    if (failed) error->where[0] = 0; /* *line says it */
+    if (failed) error->where[0] = 0; /* *line has the line */
     free(text);
     return failed;
 }

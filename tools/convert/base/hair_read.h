@@ -15,7 +15,7 @@ typedef struct hair_text {
     float hairline[3]; /* angles from the crown in front, at the sides, behind */
     float comb[3];     /* direction */
     float length[2];   /* at the crown and at the hairline */
-    float lift;        /* how far hair lies above hair that grows behind it */
+    float lift;        /* height of hair above the hair that grows behind it */
     float around, rows, points, strips, segments, seed;
     float width[2], curl[2], scatter;
     float root[3], tip[3]; /* sRGB colours */

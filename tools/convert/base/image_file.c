@@ -37,7 +37,7 @@ static int decode(const unsigned char *bytes, size_t count, image_file *image, m
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
     image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
     if (!image->rgba) {
-        return model_fail(error, "", "the image data is damaged, or memory is out");
+        return model_fail(error, "", "the image data is damaged, or there is not enough memory");
     }
     image->width = (uint32_t)width;
     image->height = (uint32_t)height;
@@ -65,7 +65,7 @@ static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2
     int width = 0, height = 0, channels = 0;
     if (check_size(bytes, count, error)) return 1;
     *grey = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
-    if (!*grey) return model_fail(error, "", "the image data is damaged, or memory is out");
+    if (!*grey) return model_fail(error, "", "the image data is damaged, or there is not enough memory");
     size[0] = (uint32_t)width;
     size[1] = (uint32_t)height;
     return 0;
@@ -80,7 +80,7 @@ int image_read_grey(const char *path, uint32_t *width, uint32_t *height, uint16_
     if (!bytes) return 1;
     const int failed = count > 8 && memcmp(bytes, "\x89PNG", 4) == 0
                            ? decode_grey((const unsigned char *)bytes, count, size, grey, error)
-                           : model_fail(error, "", "it is no PNG");
+                           : model_fail(error, "", "it is not a PNG file");
     free(bytes);
     *width = size[0];
     *height = size[1];

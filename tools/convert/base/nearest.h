@@ -1,4 +1,4 @@
-/* nearest.h: what a misspelt name may have meant. */
+/* nearest.h: suggests a name for a misspelt one. */
 #ifndef NOH_CONVERT_BASE_NEAREST_H
 #define NOH_CONVERT_BASE_NEAREST_H
 

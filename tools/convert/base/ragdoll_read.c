@@ -17,7 +17,7 @@ static int read_number(text_scan *s, const char *what, double low, double high, 
     if (!word.size) return text_fail(s, s->line, "%s: the number is missing", what);
     if (text_number(s, word, value)) return 1;
     if (*value >= low && *value <= high) return 0;
-    return text_fail(s, word.line, "%s: %s is not within %g to %g", what, text_show(word, shown), low, high);
+    return text_fail(s, word.line, "%s: %s must be %g to %g", what, text_show(word, shown), low, high);
 }
 
 /* Degrees, as radians; 180 is no more than half a turn in floats. */
@@ -60,19 +60,20 @@ static int read_setting(text_scan *s, text_word word, ragdoll_line *row)
         row->friction = (float)friction;
         return 0;
     }
-    return text_fail(s, word.line, "'%s' is no setting of a body: a row is " ROW, text_show(word, shown));
+    return text_fail(s, word.line, "a body has no setting '%s': a row is " ROW, text_show(word, shown));
 }
 
-/* What a hinge cannot do is an error rather than lost. */
+/* Settings that a hinge cannot have are errors, not ignored. */
 static int check_row(text_scan *s, const ragdoll_text *ragdoll, const ragdoll_line *row)
 {
     for (uint32_t i = 0; i < ragdoll->count; i++) {
         if (strcmp(ragdoll->rows[i].joint, row->joint) == 0) {
-            return text_fail(s, row->line, "this joint has a row already, in line %u", ragdoll->rows[i].line);
+            return text_fail(s, row->line, "this joint is given twice; the first row is in line %u",
+                             ragdoll->rows[i].line);
         }
     }
     if (row->hinge && (row->side > 0.0f || row->twist > 0.0f)) {
-        return text_fail(s, row->line, "a hinge only bends: it has no side and no twist");
+        return text_fail(s, row->line, "a hinge only bends: remove side and twist");
     }
     return 0;
 }
@@ -84,7 +85,7 @@ static int read_line(text_scan *s, ragdoll_text *ragdoll)
     int failed = text_take_on_line(s, &word);
     if (failed || !word.size) return failed; /* a comment */
     if (ragdoll->count == NOH_RAGDOLL_BODIES_MAX) {
-        return text_fail(s, word.line, "there are more than %u bodies, which is the limit", NOH_RAGDOLL_BODIES_MAX);
+        return text_fail(s, word.line, "too many bodies: the limit is %u", NOH_RAGDOLL_BODIES_MAX);
     }
     if (word.size >= NOH_NAME_BYTES_MAX) {
         return text_fail(s, word.line, "the joint's name is longer than %u bytes", NOH_NAME_BYTES_MAX - 1u);
@@ -123,9 +124,9 @@ int ragdoll_read(const char *path, ragdoll_text **out, uint32_t *line, model_err
     }
     if (!failed && !(*out)->count) {
         *line = 1;
-        failed = text_fail(&s, 1, "the ragdoll has no body: a row is " ROW);
+        failed = text_fail(&s, 1, "the ragdoll has no body: add a row " ROW);
     }
-    if (failed) error->where[0] = 0; /* *line says it */
+    if (failed) error->where[0] = 0; /* *line has the line */
     free(text);
     return failed;
 }

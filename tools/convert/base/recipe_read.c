@@ -66,11 +66,11 @@ static int add_row(text_scan *s, recipe_text *recipe, uint32_t line, const char 
     for (uint32_t i = 0; i < recipe->count; i++) {
         const recipe_row *other = &recipe->rows[i];
         if (strcmp(other->channel, channel) == 0 && strcmp(other->target, target) == 0) {
-            return text_fail(s, line, "%s has this target already, in line %u", channel, other->line);
+            return text_fail(s, line, "%s has this target twice; the first is in line %u", channel, other->line);
         }
     }
     if (recipe->count == NOH_FACE_ROWS_MAX) {
-        return text_fail(s, line, "there are more than %u rows, which is the limit", NOH_FACE_ROWS_MAX);
+        return text_fail(s, line, "too many rows: the limit is %u", NOH_FACE_ROWS_MAX);
     }
     return recipe_add_row(recipe, target, channel, weight, line) ? text_fail(s, line, "out of memory") : 0;
 }
@@ -90,7 +90,7 @@ static int read_weight(text_scan *s, float *weight)
     if (text_take_on_line(s, &word)) return 1;
     if (word.size && text_number(s, word, &value)) return 1;
     if (!(value >= -4.0 && value <= 4.0) || value == 0.0) {
-        return text_fail(s, word.line, "the weight %s is not within -4 to 4, or is 0", text_show(word, shown));
+        return text_fail(s, word.line, "the weight %s must be -4 to 4, and not 0", text_show(word, shown));
     }
     *weight = (float)value;
     if (word.size && text_take_on_line(s, &word)) return 1;
@@ -111,7 +111,7 @@ static int read_peak(text_scan *s, text_word *next, float *peak)
     if (!next->size || !((next->text[0] >= '0' && next->text[0] <= '9') || next->text[0] == '.')) return 0;
     if (text_number(s, *next, &value)) return 1;
     if (!(value > 0.0 && value <= 1.0)) {
-        return text_fail(s, next->line, "the peak %s is not above 0 and at most 1", text_show(*next, shown));
+        return text_fail(s, next->line, "the peak %s must be above 0 and at most 1", text_show(*next, shown));
     }
     *peak = (float)value;
     return text_take_on_line(s, next);
@@ -126,20 +126,20 @@ static int read_corrective(text_scan *s, recipe_text *recipe)
     float peak;
     if (text_take_on_line(s, &target) || text_take_on_line(s, &driver)) return 1;
     if (!target.size || !driver.size) {
-        return text_fail(s, line, "a corrective is `corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ...`");
+        return text_fail(s, line, "write `corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ...`");
     }
     if (check_target(s, target)) return 1;
     for (uint32_t i = 0; i < first; i++) {
         if (recipe->rows[i].channel[0] == '+' && strlen(recipe->rows[i].target) == target.size &&
             memcmp(recipe->rows[i].target, target.text, target.size) == 0)
-            return text_fail(s, line, "this corrective was told already, in line %u", recipe->rows[i].line);
+            return text_fail(s, line, "this corrective is given twice; the first is in line %u", recipe->rows[i].line);
     }
     for (; driver.size; driver = next) {
         if (recipe->count - first == NOH_CORRECTIVE_DRIVERS_MAX) {
             return text_fail(s, line, "a corrective has more than %u drivers", NOH_CORRECTIVE_DRIVERS_MAX);
         }
         if (driver.size == target.size && memcmp(driver.text, target.text, target.size) == 0) {
-            return text_fail(s, line, "a corrective does not drive itself");
+            return text_fail(s, line, "a corrective cannot drive itself");
         }
         if (check_target(s, driver) || read_peak(s, &next, &peak)) return 1;
         memcpy(channel + 1, driver.text, driver.size);
@@ -154,7 +154,7 @@ static int read_corrective(text_scan *s, recipe_text *recipe)
 static int take_target(text_scan *s, uint32_t line, const char *form, text_word *target)
 {
     if (text_take_on_line(s, target)) return 1;
-    return target->size ? check_target(s, *target) : text_fail(s, line, "a rule is `%s`", form);
+    return target->size ? check_target(s, *target) : text_fail(s, line, "write the rule as `%s`", form);
 }
 
 static int end_rule(text_scan *s, const char *form)
@@ -162,9 +162,9 @@ static int end_rule(text_scan *s, const char *form)
     text_word word;
     char shown[TEXT_SHOWN];
     if (text_take_on_line(s, &word)) return 1;
-    return word.size
-               ? text_fail(s, word.line, "'%s' is one word too many: a rule is `%s`", text_show(word, shown), form)
-               : 0;
+    return word.size ? text_fail(s, word.line, "'%s' is one word too many: write the rule as `%s`",
+                                 text_show(word, shown), form)
+                     : 0;
 }
 
 /* Behind the word `range`. */
@@ -175,11 +175,10 @@ static int read_range(text_scan *s, recipe_text *recipe)
     text_word target, low, high;
     double from, to;
     if (take_target(s, line, form, &target) || text_take_on_line(s, &low) || text_take_on_line(s, &high)) return 1;
-    if (!low.size || !high.size) return text_fail(s, line, "a rule is `%s`", form);
+    if (!low.size || !high.size) return text_fail(s, line, "write the rule as `%s`", form);
     if (text_number(s, low, &from) || text_number(s, high, &to)) return 1;
     if (!(from >= -4.0 && from <= 0.0 && to >= 0.0 && to <= 4.0)) {
-        return text_fail(s, line,
-                         "a range goes from -4 to 0 at least to 0 to 4 at most: 0 is the target that is not shown");
+        return text_fail(s, line, "a range needs MIN from -4 to 0 and MAX from 0 to 4");
     }
     return end_rule(s, form) || add_row(s, recipe, line, "range-min", target, (float)from) ||
            add_row(s, recipe, line, "range-max", target, (float)to);
@@ -201,7 +200,7 @@ static int read_opposites(text_scan *s, recipe_text *recipe)
     text_word a, b;
     if (take_target(s, line, form, &a) || take_target(s, line, form, &b) || end_rule(s, form)) return 1;
     if (a.size == b.size && memcmp(a.text, b.text, a.size) == 0) {
-        return text_fail(s, line, "a target does not exclude itself");
+        return text_fail(s, line, "a target cannot exclude itself");
     }
     name_channel(channel, '-', b);
     return add_row(s, recipe, line, channel, a, 1.0f);
@@ -218,7 +217,7 @@ static int read_shares(text_scan *s, recipe_text *recipe)
     name_channel(channel, '=', target);
     for (uint32_t i = 0; i < recipe->count; i++) {
         if (strcmp(recipe->rows[i].channel, channel) == 0)
-            return text_fail(s, line, "line %u has a group of this first target", recipe->rows[i].line);
+            return text_fail(s, line, "a group with this first target is already in line %u", recipe->rows[i].line);
     }
     if (add_row(s, recipe, line, channel, target, 1.0f)) return 1;
     for (; next.size;) {
@@ -238,11 +237,11 @@ static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_wo
     for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
         const wrinkle_row *other = &recipe->wrinkles[i];
         if (other->region == region && strcmp(other->target, target) == 0) {
-            return text_fail(s, line, "%s has region %u already, in line %u", target, region, other->line);
+            return text_fail(s, line, "%s has region %u twice; the first is in line %u", target, region, other->line);
         }
     }
     if (recipe->wrinkle_count == NOH_FACE_ROWS_MAX) {
-        return text_fail(s, line, "there are more than %u rows of wrinkles, which is the limit", NOH_FACE_ROWS_MAX);
+        return text_fail(s, line, "too many rows of wrinkles: the limit is %u", NOH_FACE_ROWS_MAX);
     }
     return recipe_add_wrinkle(recipe, target, region, weight, line) ? text_fail(s, line, "out of memory") : 0;
 }
@@ -259,14 +258,14 @@ static int read_wrinkle(text_scan *s, recipe_text *recipe)
     if (!word.size) return text_fail(s, line, "the region is missing: a row of wrinkles is `%s`", form);
     if (text_number(s, word, &region)) return 1;
     if (!(region >= 0.0 && region < NOH_WRINKLE_REGIONS) || region != (double)(uint32_t)region) {
-        return text_fail(s, line, "'%s' is no region: they are 0 to %u, in the order of noh mask",
+        return text_fail(s, line, "'%s' is not a region: regions are 0 to %u, numbered as by noh mask",
                          text_show(word, shown), NOH_WRINKLE_REGIONS - 1u);
     }
     if (text_take_on_line(s, &word)) return 1;
     if (word.size) {
         if (text_number(s, word, &weight)) return 1;
         if (!(weight >= 0.0 && weight <= 1.0)) {
-            return text_fail(s, line, "the weight %s is not within 0 to 1", text_show(word, shown));
+            return text_fail(s, line, "the weight %s must be 0 to 1", text_show(word, shown));
         }
         if (end_rule(s, form)) return 1;
     }
@@ -290,7 +289,8 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
     count = find_channels(channel, channels);
     if (!count) {
-        return text_fail(s, channel.line, "'%s' is no channel: they are " CHANNEL_ANY, text_show(channel, shown));
+        return text_fail(s, channel.line, "'%s' is not a channel: channels are " CHANNEL_ANY,
+                         text_show(channel, shown));
     }
     if (text_take_on_line(s, &target)) return 1;
     if (!target.size) {
@@ -334,9 +334,9 @@ int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error
         text_scan s;
         *line = 1;
         text_start(&s, text, size, error);
-        failed = text_fail(&s, 1, "the recipe has no row: CHANNEL TARGET [WEIGHT]");
+        failed = text_fail(&s, 1, "the recipe is empty: add a row CHANNEL TARGET [WEIGHT]");
     }
-    if (failed) error->where[0] = 0; /* *line says it */
+    if (failed) error->where[0] = 0; /* *line has the line */
     free(text);
     return failed;
 }

@@ -24,7 +24,7 @@ typedef struct wrinkle_row {
 
 typedef struct recipe_text {
     recipe_row *rows;
-    wrinkle_row *wrinkles; /* for wrinkles_make; packs have the table that comes of them */
+    wrinkle_row *wrinkles; /* for wrinkles_make; packs have the resulting table */
     uint32_t count, wrinkle_count;
 } recipe_text;
 

@@ -136,8 +136,7 @@ int text_count(text_scan *s, text_word word, uint32_t limit, uint32_t *out)
         if (word.text[i] < '0' || word.text[i] > '9')
             return text_fail(s, word.line, "'%s' is not a whole number", text_show(word, shown));
         value = value * 10 + (uint64_t)(word.text[i] - '0');
-        if (value > limit)
-            return text_fail(s, word.line, "%s is too many: the limit is %u", text_show(word, shown), limit);
+        if (value > limit) return text_fail(s, word.line, "%s is above the limit of %u", text_show(word, shown), limit);
     }
     *out = (uint32_t)value;
     return word.size > 0 ? 0 : text_fail(s, word.line, "a number is missing");

@@ -27,7 +27,7 @@ text_word text_next(text_scan *s);
 /* The next word of this line; of size 0 at its end, where the scan stays. */
 text_word text_next_on_line(text_scan *s);
 
-/* The next word of this line, or what is between quotes; of size 0 at the line's end and at a comment, which it skips.
+/* The next word of this line, or the text between quotes; of size 0 at the line's end and at a comment, which it skips.
  * 0, or 1 and an error. */
 int text_take_on_line(text_scan *s, text_word *out);
 

@@ -17,14 +17,13 @@ static int load(webp *w, model_error *error)
     if (!library) library = dlopen("libwebp.so.6", RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         return model_fail(error, "",
-                          "it is a WebP picture, and libwebp is not here to read it (Debian: apt install "
-                          "libwebp7)");
+                          "WebP pictures need libwebp, which is not installed (Debian: apt install libwebp7)");
     }
     /* ISO C has no cast from an object's address to a function's: POSIX takes this one */
     *(void **)&w->info = dlsym(library, "WebPGetInfo");
     *(void **)&w->decode = dlsym(library, "WebPDecodeRGBAInto");
     if (!w->info || !w->decode) {
-        return model_fail(error, "", "it is a WebP picture, and this libwebp lacks functions: is it 0.6 or newer?");
+        return model_fail(error, "", "WebP pictures need libwebp 0.6 or newer: the installed one lacks functions");
     }
     return 0;
 }

@@ -1,5 +1,5 @@
-/* webp_file.h: WebP pictures. libwebp reads them; it is looked for when the first one is met, so that nothing else
- * needs it. */
+/* webp_file.h: WebP pictures. libwebp reads them; it is loaded for the first picture, so that other files do not
+ * need it. */
 #ifndef NOH_CONVERT_BASE_WEBP_FILE_H
 #define NOH_CONVERT_BASE_WEBP_FILE_H
 
@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/* Whether a file that begins with these bytes is one. */
+/* Whether a file that begins with these bytes is a WebP picture. */
 int webp_begins(const unsigned char *bytes, size_t count);
 
 /* Returns 0, the size and [height][width][4], to be freed with free(); or 1 and *error: the data is damaged, there are

@@ -61,7 +61,7 @@ static int read_sample_rate(bvh_file *f, double *sample_rate_hz)
     text_word word = text_next_on_line(&f->text);
     if (text_number(&f->text, word, &period_s) || expect_line_end(f)) return 1;
     if (!(period_s >= 1e-6 && period_s <= 1e3))
-        return text_fail(&f->text, word.line, "a frame time of %g s is not possible: 0.000001 to 1000 s is", period_s);
+        return text_fail(&f->text, word.line, "the frame time is %g s: it must be 0.000001 to 1000 s", period_s);
     *sample_rate_hz = sample_rate_of(period_s, last_digit_of(word));
     return 0;
 }
@@ -152,8 +152,8 @@ static int check_end(bvh_file *f, double *values)
     const uint32_t line = f->text.line;
     if (read_values(f, f->frame_count, values)) return 1;
     if (text_next_line(&f->text))
-        return text_fail(&f->text, line, "more lines follow the %u frames that were announced", f->frame_count);
-    f->set->warning = model_string("one frame more follows than was announced; it was left out");
+        return text_fail(&f->text, line, "more lines follow the %u frames that the header gives", f->frame_count);
+    f->set->warning = model_string("the file has one frame more than its header gives; it was left out");
     return f->set->warning ? 0 : bvh_out_of_memory(f);
 }
 

@@ -214,7 +214,7 @@ static int read_member(bvh_file *f, uint32_t *open, text_word word)
     if (text_is(word, "}")) return close_joint(f, open, word.line);
     if (word.size == 0)
         return text_fail(&f->text, word.line, "the file ends inside joint '%.48s'", f->joints[*open].name);
-    return text_fail(&f->text, word.line, "'%s' is not known inside a joint", text_show(word, shown));
+    return text_fail(&f->text, word.line, "'%s' is not allowed inside a joint", text_show(word, shown));
 }
 
 /* Up to the word MOTION, and past it. */
@@ -312,9 +312,8 @@ static int warn_of_size(bvh_file *f, double unit_cm)
     char text[256];
     if (!(size > 0.0) || (cm >= 40.0 && cm <= 400.0) || f->set->warning) return 0;
     (void)snprintf(text, sizeof text,
-                   "the skeleton is %.3g cm large, its unit taken as %g cm; for a person, about "
-                   "--unit-cm %.3g",
-                   cm, unit_cm, unit_of_person(size));
+                   "the skeleton is %.3g cm large with a unit of %g cm; if it is a person, try --unit-cm %.3g", cm,
+                   unit_cm, unit_of_person(size));
     f->set->warning = model_string(text);
     return f->set->warning ? 0 : bvh_out_of_memory(f);
 }
@@ -332,7 +331,8 @@ int bvh_read(const char *path, const bvh_options *options, raw_set **out, model_
     size_t size = 0;
     double unit_cm = options && options->unit_cm != 0.0 ? options->unit_cm : 1.0;
     *out = NULL;
-    if (!(unit_cm > 0.0 && unit_cm <= 1e9)) return model_fail(error, "", "a unit of %g cm is not possible", unit_cm);
+    if (!(unit_cm > 0.0 && unit_cm <= 1e9))
+        return model_fail(error, "", "the unit must be above 0, not %g cm", unit_cm);
     char *text = input_read(path, &size, error);
     if (!text) return 1;
     text_start(&f.text, text, size, error);

@@ -33,7 +33,7 @@ static int parse_real(const char *text, size_t size, uint64_t *bits)
     if (size == 0 || size >= sizeof digits) return 0;
     memcpy(digits, text, size);
     digits[size] = '\0';
-    /* a whole number too large for an integer is not taken as a float */
+    /* a whole number too large for an integer is not read as a float */
     if (strspn(digits, "+-.0123456789eE") != size || !strpbrk(digits, ".eE")) return 0;
     double value = strtod(digits, &end);
     memcpy(bits, &value, sizeof *bits);

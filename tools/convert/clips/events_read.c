@@ -49,7 +49,7 @@ static int take_needed(text_scan *s, const char *what, text_word *out)
     return out->size > 0
                ? 0
                : text_fail(s, out->line,
-                           "%s is missing: a key is CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT] or CLIP TIME_S NAME marker",
+                           "%s is missing: write CLIP TIME_S NAME [PAYLOAD] [min=WEIGHT] or CLIP TIME_S NAME marker",
                            what);
 }
 
@@ -73,14 +73,13 @@ static int take_options(text_scan *s, raw_event *event)
             const text_word number = { word.text + 4, word.size - 4, word.line };
             if (text_number(s, number, &minimum)) return 1;
             if (!(minimum >= 0.0 && minimum <= 1e6))
-                return text_fail(s, word.line, "the least weight %g is not possible: it is 0 or more", minimum);
+                return text_fail(s, word.line, "min must be 0 or more, not %g", minimum);
             event->weight_min = (float)minimum;
             has_minimum = 1;
         } else if (!has_payload && event_payload(word.text, word.size, event->payload)) {
             has_payload = 1;
         } else {
-            return text_fail(s, word.line,
-                             "'%s' is neither a payload (a number), min=WEIGHT nor marker, or one too many",
+            return text_fail(s, word.line, "'%s' must be a payload (a number), min=WEIGHT or marker, each at most once",
                              text_show(word, shown));
         }
     }
@@ -108,7 +107,7 @@ static int read_line(events_reader *r)
     if (take_word(s, &clip)) return 1;
     if (clip.size == 0) return 0; /* a comment */
     if (r->list->count == RAW_EVENTS_MAX)
-        return text_fail(s, clip.line, "there are more than %u keys, which is the limit", RAW_EVENTS_MAX);
+        return text_fail(s, clip.line, "too many keys: the limit is %u", RAW_EVENTS_MAX);
     event_entry *entry = add_entry(r);
     if (!entry) return out_of_memory(s);
     entry->line = clip.line;
@@ -166,7 +165,7 @@ static int apply_entry(const event_entry *entry, raw_set *const *sets, uint32_t 
     if (!clip) return text_fail(s, entry->line, "there is no clip '%.100s'", entry->clip);
     double duration_s = raw_clip_duration_s(clip);
     if (event.time_s > duration_s + TIME_ROUNDING_S)
-        return text_fail(s, entry->line, "the time %g lies behind the end of clip '%.100s' at %g s", event.time_s,
+        return text_fail(s, entry->line, "the time %g is past the end of clip '%.100s' at %g s", event.time_s,
                          entry->clip, duration_s);
     event.time_s = fmin(event.time_s, duration_s);
     if (clip->event_count >= RAW_EVENTS_MAX)

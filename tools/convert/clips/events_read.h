@@ -35,7 +35,7 @@ void events_free(event_list *list);
  * key fires twice. An unknown name, or a time outside the clip, is an error with its line. */
 int events_apply(const event_list *list, raw_set *const *sets, uint32_t set_count, model_error *error);
 
-/* The bytes of a payload written as above. Returns 0 if the text is not one. */
+/* The bytes of a payload written as above. Returns 0 if the text is not a payload. */
 int event_payload(const char *text, size_t size, uint8_t out[8]);
 
 #ifdef __cplusplus

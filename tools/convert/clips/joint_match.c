@@ -57,7 +57,7 @@ static int pair_line(matcher *m, text_scan *scan, text_word word)
     uint32_t a, b;
     int failed = 0;
     if (text_take_on_line(scan, &other)) return 1;
-    if (!other.size) return text_fail(scan, word.line, "a line of names has two: the file's and the pack's");
+    if (!other.size) return text_fail(scan, word.line, "a line needs two names: the file's and the pack's");
     theirs = text_copy(word);
     ours = text_copy(other);
     if (!theirs || !ours) {
@@ -150,7 +150,7 @@ static place inverse(const place *p)
 
 /* ---- frames ---- */
 
-/* Of a joint of the set in a frame, below one of its parents, or MODEL_NONE: in the file's space. */
+/* The transform of a joint of the set in a frame, below one of its parents; MODEL_NONE: in the file's space. */
 static place below_parent(const raw_skeleton *s, const raw_clip *c, uint32_t frame, uint32_t joint, uint32_t parent)
 {
     place p = nowhere;
@@ -252,7 +252,7 @@ static char *copy_name(const char *name)
     return copy ? strcpy(copy, name) : NULL;
 }
 
-/* The bind pose is that of `to`, in the set's unit. */
+/* Take the bind pose of `to`, in the set's unit. */
 static int refit_skeleton(const matcher *m)
 {
     raw_set copy, old;
@@ -278,7 +278,7 @@ static int refit_skeleton(const matcher *m)
     return 0;
 }
 
-/* ---- what is said ---- */
+/* ---- messages ---- */
 
 /* "what: 'a', 'b' and 3 more" of the joints that have no counterpart. */
 static void list_left(byte_buffer *out, const raw_skeleton *s, const uint32_t *counterpart, const uint8_t *taken,
@@ -321,7 +321,7 @@ static char *write_report(const matcher *m)
     list_left(&out, m->to, m->counterpart, NULL, "; these keep the bind pose:");
     list_left(&out, &m->set->skeleton, NULL, m->taken, "; these were left out:");
     if (apart > LENGTHS_EQUAL)
-        buffer_print(&out, "; bones are up to %.0f %% longer or shorter than here, and stay so", 100.0 * apart);
+        buffer_print(&out, "; bones differ in length by up to %.0f %%, and the pack's lengths are kept", 100.0 * apart);
     buffer_append(&out, "", 1);
     return out.failed ? NULL : (char *)out.bytes;
 }

@@ -6,7 +6,7 @@
 
 #define CLASS_PART (1.0 / 2000.0) /* of the largest extent: extents closer than this are equal */
 #define END_PART 0.125            /* of the longest chain: the most that the end of a chain counts */
-#define LESS_PART 0.2             /* how far beside the wanted share of joints a level may be cut */
+#define LESS_PART 0.2             /* how far from the wanted share of joints a level may be cut */
 #define MORE_PART 0.3
 
 static const double level_shares[] = { 0.6, 0.35, 0.2, 0.1 };

@@ -1,7 +1,7 @@
 /* model_clips.h: from a model's nodes, skins and animations to skeletons and sampled clips.
  *
- * Skeletons. Skins that share joints, or one of which has joints below the other's, share one skeleton. It holds their
- * joints, the animated nodes below these, and those of the nodes above them that are animated or have a transform: a
+ * Skeletons. Skins that share joints, or whose joints lie below another skin's, share one skeleton. It holds their
+ * joints, the animated nodes below these, and the nodes above them that are animated or have a transform: a
  * skeleton's object space is the scene, and no transforms are merged or rounded. Animated nodes that belong to no skin
  * form one more skeleton.
  *
@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 typedef struct sample_options {
-    double sample_rate_hz; /* 0: that of the keys, if they lie on a grid of 15 Hz or more and are linear. Else
+    double sample_rate_hz; /* 0: the rate of the keys, if they lie on a grid of 15 Hz or more and are linear. Else
                             * the lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames
                             * is off the curves by at most 1/1000 of the skeleton's size; at most 120 */
 } sample_options;

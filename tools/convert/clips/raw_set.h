@@ -1,7 +1,7 @@
 /* raw_set.h: allocates, frees and inspects raw clips (raw_clip.h).
  *
  *   raw_set_new, raw_set_free       a set on the heap
- *   raw_set_clear                   what a set holds, not the set itself
+ *   raw_set_clear                   frees the contents of a set, not the set itself
  *   raw_skeleton_alloc              joints, all with an identity bind pose
  *   raw_clip_alloc, raw_clip_clear  frames
  *   raw_clip_add_event              keeps the events in time order
@@ -33,7 +33,7 @@ int raw_floats_alloc(raw_floats *floats, uint32_t frame_count, uint32_t width);
 void raw_floats_clear(raw_floats *floats);
 void raw_clip_clear(raw_clip *clip);
 
-/* Add a copy, after those of the same time. The caller keeps the count within RAW_EVENTS_MAX. */
+/* Add a copy, after all events of the same time. The caller keeps the count within RAW_EVENTS_MAX. */
 int raw_clip_add_event(raw_clip *clip, const raw_event *event);
 
 double raw_clip_duration_s(const raw_clip *clip);

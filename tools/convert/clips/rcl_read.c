@@ -91,18 +91,16 @@ static int check_counts(rcl_reader *r, uint32_t joints, uint32_t frames, double 
 {
     char what[128];
     if (joints == 0 || joints > RAW_JOINTS_MAX) {
-        (void)snprintf(what, sizeof what, "%u joints are not possible: 1 to %u are", joints, RAW_JOINTS_MAX);
+        (void)snprintf(what, sizeof what, "the file has %u joints: it must have 1 to %u", joints, RAW_JOINTS_MAX);
         return refuse(r, 4, what);
     }
     if (frames == 0 || frames > RAW_FRAMES_MAX || (uint64_t)frames * joints * RAW_JOINT_BYTES > RAW_BYTES_MAX) {
         (void)snprintf(what, sizeof what,
-                       "%u frames of %u joints are not possible: 1 to %u frames, and %u MiB in all, are", frames,
-                       joints, RAW_FRAMES_MAX, (uint32_t)(RAW_BYTES_MAX >> 20));
+                       "%u frames of %u joints are too many, or none: the limits are 1 to %u frames and %u MiB in all",
+                       frames, joints, RAW_FRAMES_MAX, (uint32_t)(RAW_BYTES_MAX >> 20));
         return refuse(r, 8, what);
     }
-    return sample_rate_hz >= 1e-3 && sample_rate_hz <= 1e6
-               ? 0
-               : refuse(r, 12, "the rate is not possible: 0.001 to 1000000 Hz is");
+    return sample_rate_hz >= 1e-3 && sample_rate_hz <= 1e6 ? 0 : refuse(r, 12, "the rate must be 0.001 to 1000000 Hz");
 }
 
 static int read_header(rcl_reader *r)
@@ -167,7 +165,7 @@ static int check_frame_bytes(rcl_reader *r)
     uint64_t per_frame = 0, left = r->size - r->at;
     for (uint32_t j = 0; j < r->set->skeleton.joint_count; ++j)
         per_frame += (r->flags[j] & 1 ? 16u : 0u) + (r->flags[j] & 2 ? 12u : 0u) + (r->flags[j] & 4 ? 12u : 0u);
-    if (left < frames * per_frame) return refuse(r, r->size, "the file ends before the last frame does");
+    if (left < frames * per_frame) return refuse(r, r->size, "the file ends before the end of its last frame");
     return left == frames * per_frame ? 0
                                       : refuse(r, r->at + (size_t)(frames * per_frame), "bytes follow the last frame");
 }

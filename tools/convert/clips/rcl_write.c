@@ -98,7 +98,7 @@ int rcl_write(const char *path, const raw_skeleton *skeleton, const raw_clip *cl
 {
     byte_buffer b = { 0 };
     if (clip->joint_count == 0 || clip->joint_count != skeleton->joint_count)
-        return model_fail(error, "", "the clip moves no joints: .rcl holds nothing else");
+        return model_fail(error, "", "the clip moves no joints, and .rcl files hold only joints");
     uint8_t *flags = model_zeros(clip->joint_count, 1);
     if (!flags) return model_fail(error, "", "there is not enough memory to write this clip");
     put_clip(&b, skeleton, clip, flags);

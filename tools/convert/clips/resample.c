@@ -139,7 +139,7 @@ int raw_clip_resample(const raw_clip *clip, double sample_rate_hz, raw_clip *out
     const double duration_s = raw_clip_duration_s(clip), steps = fmax(floor(duration_s * sample_rate_hz + 0.5), 1.0);
     memset(out, 0, sizeof *out);
     if (!(sample_rate_hz > 0.0 && sample_rate_hz <= 1e6))
-        return model_fail(error, "", "a sample rate of %g Hz is not possible", sample_rate_hz);
+        return model_fail(error, "", "the sample rate must be above 0 and at most 1000000 Hz, not %g", sample_rate_hz);
     if (duration_s == 0.0) return copy_frames(clip, 1, sample_rate_hz, 0, 1, out, error);
     if (steps + 1.0 > (double)RAW_FRAMES_MAX || steps * (double)bytes_per_frame(clip) > (double)RAW_BYTES_MAX)
         return model_fail(error, "",
@@ -152,7 +152,7 @@ int raw_clip_resample(const raw_clip *clip, double sample_rate_hz, raw_clip *out
 int raw_clip_decimate(const raw_clip *clip, uint32_t step, raw_clip *out, model_error *error)
 {
     memset(out, 0, sizeof *out);
-    if (step == 0) return model_fail(error, "", "every 0th frame is not possible");
+    if (step == 0) return model_fail(error, "", "the step between frames must be 1 or more");
     return copy_frames(clip, (clip->frame_count - 1) / step + 1, clip->sample_rate_hz / (double)step, step, 1, out,
                        error);
 }

@@ -398,8 +398,8 @@ static void float_tracks(encoder *e)
 
 /* ---- mixed axes ---- */
 
-/* Eigenvectors of a symmetric matrix in the columns of v, by Jacobi rotations: each one zeroes an element beside the
- * diagonal and shrinks their sum of squares, so a few sweeps reach single precision (Golub and Van Loan, Matrix
+/* Eigenvectors of a symmetric matrix in the columns of v, by Jacobi rotations: each one zeroes an element off the
+ * diagonal and shrinks the sum of their squares, so a few sweeps reach single precision (Golub and Van Loan, Matrix
  * Computations, 8.5). */
 static void eigen3(double a[9], double v[9])
 {

@@ -1,9 +1,9 @@
-/* clip_basis.c: which transform a clip is coded in.
+/* clip_basis.c: chooses the transform of a clip.
  *
  * Both are tried on the raw values of all tracks, with the step that each track's search begins at. A coefficient of
- * x steps takes about log2(1 + 4 x^2) / 2 bits; the transform of fewer bits is taken. Motion that goes on beyond its
- * segments is smaller with the parabola, up to 30 % where its rate is high; what swings about a mean, within segments
- * that begin and end alike, is up to 5 % smaller with cosines alone. Where clips jump the guess has been off by a
+ * x steps takes about log2(1 + 4 x^2) / 2 bits; the transform with fewer bits is used. Motion that continues beyond its
+ * segments is smaller with the parabola, up to 30 % at high rates; motion about a mean, within segments that begin and
+ * end alike, is up to 5 % smaller with cosines alone. Where clips jump the guess has been off by a
  * quarter, so from effort 2 on the other one is tried, too. */
 #include <stdlib.h>
 

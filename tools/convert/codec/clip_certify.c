@@ -37,7 +37,7 @@ static int open_blob(certifier *c, const byte_buffer *blob, size_t begin)
     c->lossy = enc_alloc(e, e->joint_count, sizeof *c->lossy);
     if (!c->memory || !c->pose || !c->floats || !c->raw || !c->lossy) return 1;
     if (noh_clip_init(c->memory, size, &desc, &c->clip, NULL) != NOH_OK)
-        return enc_fail(e, "the decoder refuses what was written");
+        return enc_fail(e, "the decoder rejects the encoded clip");
     for (int i = 0; i < 2; i++) {
         c->frames[i] = enc_alloc(e, c->clip->info.segment_bytes_max, 1);
         if (!c->frames[i]) return 1;
@@ -158,9 +158,9 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Half of a segment's frames at `frames` (slots_only: nothing else is there), what is between them blended, against its
- * raw ones. How far a frame is off, rms of joints and floats, in bounds; three quarters of the frames are off by less:
- * about a jump a few are off by so much, whatever is done, that they would hide what becomes of the others. */
+/* Half of a segment's frames at `frames` (slots_only: the buffer holds only these), with blends between them, against
+ * the raw frames. Returns the error of a frame, rms of joints and floats, in bounds, at the upper quartile: a few
+ * frames near a jump always have large errors, which would hide the errors of the others. */
 static double halved_error(certifier *c, const enc_segment *s, const uint8_t *frames, int slots_only)
 {
     const encoder *e = c->e;

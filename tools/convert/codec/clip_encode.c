@@ -6,13 +6,16 @@
  *   analyse   which tracks are constant, what each joint's rotation carries, the reference and axes of each track
  *   basis     the transform that promises fewer bits for this clip
  *   segments  for each run of about 24 frames, parents first: a transform along time, quantised by the largest step
- * whose decoded result keeps the object-space error within the bound (clip_segment.c, clip_fit.c) write     the
- * coefficients, in prefix codes whose tables were trained on other clips (tools/clip_tables) certify   the bytes are
- * decoded by the runtime's own code and measured; only then are they returned
+ *             whose decoded result keeps the object-space error within the bound (clip_segment.c, clip_fit.c)
+ *   write     the coefficients, in prefix codes with tables trained on other clips (tools/clip_tables)
+ *   certify   the bytes are decoded by the runtime's own code and measured, and only then returned
  *
- * The certificate therefore does not depend on the encoder's reasoning: a mistake shows there, and the clip is encoded
- * again at a more careful level: level 0  everything that saves bytes level 1  rotations cached as floats, and almost
- * nothing stored as constant level 2  constants to single precision, animated tracks raw
+ * So the certificate does not depend on the encoder's reasoning: a mistake shows there, and the clip is encoded again
+ * at a more careful level:
+ *
+ *   level 0   everything that saves bytes
+ *   level 1   rotations cached as floats, and almost nothing stored as constant
+ *   level 2   constants to single precision, animated tracks raw
  *
  * Compare Arikan, "Compression of Motion Capture Databases" (2006), who bounds nothing per joint, and Nicholas
  * Frechette's Animation Compression Library, which measures at a shell of virtual points as this does. */
@@ -33,9 +36,9 @@
 #define DEFAULT_SPLIT_HZ 100.0 /* below it few play half of the frames; a split costs up to a hundredth of the bytes */
 #define SEGMENT_FRAMES_MIN 8u
 #define SEGMENT_FRAMES_MAX 40u /* a single segment may be half as long again */
-/* Frames of segments that are tried beside the usual ones: long ones are a few percent smaller where motion is smooth
- * (a cache takes more for them), short ones up to a sixth where it starts, stops or strikes. Clips of one or two
- * segments stay in a cache whole, those of more are decoded as they play: short ones have to pay for that. */
+/* Segment lengths that are tried in addition to the usual ones: long segments are a few percent smaller where motion is
+ * smooth (a cache takes more for them), short ones up to a sixth where it starts, stops or strikes. Clips of one or two
+ * segments stay in a cache whole, longer clips are decoded as they play, which short segments must pay for. */
 #define LONG_SEGMENT 40u
 #define SHORT_SEGMENT 16u
 #define SHORTEST_SEGMENT 10u
@@ -58,7 +61,7 @@ static const enc_tuning tunings[] = {
 
 typedef enum which_basis { BASIS_GUESSED, BASIS_OTHER, BASIS_OF_SMALLEST } which_basis;
 
-/* What is tried, in this order: each effort all that those below it try, so that its result is never larger. */
+/* The attempts, in this order. Each effort includes the attempts of the lower ones, so that it is never larger. */
 typedef struct attempt {
     uint32_t effort;
     uint32_t first, count; /* tunings */
@@ -201,7 +204,7 @@ static void report_progress(const encoder *e, uint32_t segments)
     if (e->options.progress) e->options.progress(e->options.user, before + segments, count * e->segment_count);
 }
 
-/* One attempt. *worst_part is above 1 if the bound did not hold; `out` is then as before. *decoded says whether only
+/* One attempt. *worst_part is above 1 if the bound did not hold; `out` is then as before. *decoded: whether only
  * decoding showed it. */
 static int encode_once(encoder *e, byte_buffer *out, double *worst_part, int *decoded)
 {
@@ -251,7 +254,7 @@ static int encode_attempt(encoder *e, const encoder *from, byte_buffer *out, cli
             tight = 1.0;
         }
         if (!failed && level == LEVELS && !(worst_part <= 1.0)) {
-            failed = enc_fail(e, "the bound is finer than single precision holds so far from the origin");
+            failed = enc_fail(e, "the error bound is below single precision this far from the origin: raise the bound");
         }
         free_encoder(e);
     }

@@ -25,8 +25,7 @@ typedef struct clip_options {
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t effort;              /* 1 to 3: time for bytes, a higher one never larger; 0 = 2 */
     uint32_t segment_frames; /* wanted length of a segment, 8..40; 0: a third of a second, 24 to 32 (effort 3: or 40) */
-    /* segments of clips of at least so many frames a second are split, so that a halved clip decodes less; 0 = 100;
-     * INFINITY: none */
+    /* split the segments of clips of at least this rate, so that a halved clip decodes less; 0 = 100; INFINITY: none */
     double split_hz;
     int axes;      /* bound only the three points on each joint's axes, as other libraries measure */
     int open_loop; /* joints do not correct their parents' errors, so that single joints can be masked out */
@@ -43,7 +42,7 @@ typedef struct clip_report {
     double max_error_time_s;
     double max_float_error; /* as a share of its bound: at most 1 */
     uint32_t segment_count, track_count, raw_track_segments;
-    int level; /* 0 = normal; higher: what it took to hold the bound, see clip_encode.c */
+    int level; /* 0 = normal; higher: more careful levels to hold the bound, see clip_encode.c */
     int wide;
     uint32_t parabola; /* 1: the transform begins with a parabola; 0: the DCT */
 } clip_report;

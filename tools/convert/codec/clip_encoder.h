@@ -1,14 +1,14 @@
-/* clip_encoder.h (private to clip_*.c): what the parts of the encoder share.
+/* clip_encoder.h (private to clip_*.c): types shared by the parts of the encoder.
  *
  * clip_prepare.c  raw clip to double, in one hemisphere; object space
- * clip_analyse.c  what is animated, levers, references, mixes
+ * clip_analyse.c  finds animated tracks, levers, references, mixes
  * clip_basis.c    which transform
  * clip_search.c   which way coefficients are rounded
  * clip_fit.c      one track of one segment: the largest step that holds the bound
  * clip_segment.c  one segment: tracks in order, parents first, in a closed loop
  * clip_write.c    bits
- * clip_certify.c  decodes what was written and measures it; which segments are split
- * clip_encode.c   the order of these, and what happens when the bound does not hold */
+ * clip_certify.c  decodes and measures the result; chooses the segments to split
+ * clip_encode.c   calls these in order, and tightens where the bound does not hold */
 #ifndef NOH_CONVERT_CODEC_CLIP_ENCODER_H
 #define NOH_CONVERT_CODEC_CLIP_ENCODER_H
 
@@ -81,7 +81,7 @@ typedef struct enc_segment {
  *   rho_root, rho_tip  a joint's share of the bound for what it carries, at the root and at the tip of its chain
  *   headroom           share of the bound that a frame gets beyond its parents' error
  *   linear_part        share of the bound for translations
- *   correction         how much of a joint's position error its rotation makes up for
+ *   correction         how much of a joint's position error its rotation compensates
  *   shell_weight       weight of the shell's points in that correction
  *   dead_zone          widening of the quantiser's zero, in steps
  *   nudges             attempts to save a step that just fails
@@ -102,8 +102,8 @@ typedef struct enc_probe {
 typedef struct enc_model {
     uint32_t probe_count;
     double weights[ENC_FRAMES_MAX];     /* 1 / (the frame's limit)^2 */
-    double turns[ENC_FRAMES_MAX][3];    /* what the target itself is off by: a vector about the axis, radians */
-    double turns_by[ENC_FRAMES_MAX][9]; /* 3 x 3: what a change of the components adds to that */
+    double turns[ENC_FRAMES_MAX][3];    /* the target's own error: a vector about the axis, radians */
+    double turns_by[ENC_FRAMES_MAX][9]; /* 3 x 3: the effect of a change of the components on it */
     enc_probe probes[ENC_FRAMES_MAX * ENC_PROBES];
 } enc_model;
 
@@ -143,7 +143,7 @@ typedef struct encoder {
     clip_report report;
 } encoder;
 
-/* The decoded values of the current segment, [joint][frame], and what they are measured against. */
+/* The decoded values of the current segment, [joint][frame], and their references. */
 typedef struct enc_loop {
     space_local *local; /* [joint][ENC_FRAMES_MAX] */
     space_global *global;
@@ -156,14 +156,14 @@ typedef struct enc_loop {
     double *errors; /* [ENC_FRAMES_MAX][ENC_PARTS][joint] as shares of the bound: at each frame, then before it */
     double *errors_before, *errors_end; /* [joint] likewise of the last frames */
     double *turns;          /* [ENC_FRAMES_MAX][joint] radians that it and its parents turn from the frame before */
-    uint8_t *stale, *moved; /* [joint] to be fitted again; what it does has changed since it was measured */
+    uint8_t *stale, *moved; /* [joint] to be fitted again; its motion has changed since it was measured */
     double *slack;          /* [joint][ENC_FRAMES_MAX] share of the bound that is aimed at */
     enc_model model;
-    double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation\'s parents take, however exact it is */
+    double *floor; /* [joint][ENC_FRAMES_MAX] share of it that a rotation's parents take, however exact it is */
     double rho_scale;
     uint8_t *raw; /* [joint] its tracks are stored raw */
     int all_raw;
-    int gives_up; /* whoever is to blame is stored raw */
+    int gives_up; /* tracks that cause the error are stored raw */
 } enc_loop;
 
 /* Symbol counts, to train the tables. */
@@ -211,7 +211,7 @@ int enc_certify(encoder *e, const byte_buffer *blob, size_t begin, double *worst
 /* Judges decoded frames: violations [frames] gets each frame's error over the allowed one; returns the largest. */
 typedef double (*enc_check)(encoder *e, void *user, const uint8_t *frames, double *violations);
 
-/* What a fitted track must meet. */
+/* The requirements on a fitted track. */
 typedef struct enc_goal {
     const float *reference; /* [4] */
     double (*targets)[3];   /* [frames] components, relative to the reference */
@@ -223,8 +223,8 @@ typedef struct enc_goal {
 /* Fit one track (clip_fit.c). */
 int enc_fit(encoder *e, enc_track *track, enc_piece *piece, uint32_t count, const enc_goal *goal);
 
-/* Change quantised coefficients so that all frames hold (clip_search.c). Returns whether the model says that they do.
- * `spectrum` [count][3]: what was quantised, with steps of `size`. */
+/* Change quantised coefficients so that all frames hold (clip_search.c). Returns whether they do by the model.
+ * `spectrum` [count][3]: the coefficients before quantisation with steps of `size`. */
 int enc_search(const encoder *e, const enc_model *m, uint32_t count, double (*spectrum)[3], enc_piece *piece,
                double size);
 

@@ -17,7 +17,7 @@
 
 #define CACHED_SEGMENTS 4u /* an eighth of a second lies in two or three segments */
 
-/* A skeleton and its one clip as the runtime has them. */
+/* A skeleton and its one clip in the runtime's form. */
 typedef struct player {
     noh_skeleton skeleton;
     uint16_t *parents;

@@ -58,7 +58,7 @@ static void into_axes(const enc_track *t, double v[3])
     }
 }
 
-/* Add what a change of one frame's components, in mixed axes, does to the spectrum. */
+/* Add the effect of a change of one frame's components, in mixed axes, to the spectrum. */
 static void add_frame(const encoder *e, uint32_t n, uint32_t f, const double x[3], double (*out)[3])
 {
     const double *b = e->transforms[n] + f;
@@ -98,7 +98,7 @@ static void forward(const encoder *e, const enc_track *t, uint32_t n, double (*x
     }
 }
 
-/* Returns 0 if a coefficient exceeds what the format holds. */
+/* Returns 0 if a coefficient exceeds the format's limit. */
 static int quantise(const encoder *e, double (*spectrum)[3], uint32_t n, double step, enc_piece *piece)
 {
     uint32_t last = 0;

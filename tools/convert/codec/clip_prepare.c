@@ -6,7 +6,7 @@
 
 #define SHELL_SCALE_MIN 1e-6
 #define SEGMENT_FRAMES 24u      /* of a segment, and ... */
-#define SEGMENT_FRAMES_FAST 32u /* ... where a third of a second has more: so many, at most these */
+#define SEGMENT_FRAMES_FAST 32u /* ... and the most, where a third of a second has more */
 #define SEGMENT_S (1.0 / 3.0)
 
 int enc_fail(encoder *e, const char *what)
@@ -39,7 +39,7 @@ static int check(encoder *e)
     const size_t samples = (size_t)c->frame_count * c->joint_count;
     const double micro = floor(c->sample_rate_hz * (double)NOH_CLIP_MICRO + 0.5);
     if (c->joint_count && c->joint_count != e->skeleton->joint_count)
-        return enc_fail(e, "clip and skeleton differ in joints");
+        return enc_fail(e, "clip and skeleton have different numbers of joints");
     if (c->joint_count > NOH_CLIP_JOINTS_MAX) return enc_fail(e, "more joints than the format holds (4096)");
     if (c->frame_count == 0u || c->frame_count > NOH_CLIP_FRAMES_MAX)
         return enc_fail(e, "frames: at least 1, at most 1048576");

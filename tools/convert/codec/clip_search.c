@@ -1,27 +1,27 @@
-/* clip_search.c: which way each coefficient of a rotation is rounded.
+/* clip_search.c: chooses the rounding of each coefficient of a rotation.
  *
  * Rounding to the nearest is best for the mean error; the bound is on the largest. Near a solution errors are linear in
- * the coefficients: a joint's rotation is off by a small vector w, which is what the target leaves plus, for each
- * coefficient, its error times its row of the transform times a matrix of that frame. A point at `arm` from the joint
- * is then off by base + w x arm, so what one step up or down of a coefficient does to every frame is known without
+ * the coefficients: a joint's rotation is off by a small vector w, which is the target's own error plus, for
+ * each coefficient, its error times its row of the transform times a matrix of that frame. A point at `arm` from the
+ * joint is then off by base + w x arm, so the effect of a step of a coefficient on every frame is known without
  * decoding. Two searches use that:
  *
  *   settle  steps that bring the worst frame down, until all frames hold
  *   thin    coefficients towards zero wherever that breaks no bound: room that no frame needs becomes bytes
  *
- * What they find is decoded and judged by the exact check like every other attempt. */
+ * Their result is decoded and judged by the exact check like every other attempt. */
 #include <stdlib.h>
 
 #include "clip_encoder.h"
 
-#define AIM 0.996      /* what is aimed at, squared: the rest is for what is not linear, and for 16 bits */
+#define AIM 0.996      /* the target share, squared: the rest is for nonlinear parts and 16 bits */
 #define CANDIDATES 24u /* of the steps that help the worst frame most, how many are weighed in all frames */
 #define SETTLE_MAX 100
 #define SETTLE_FROM 9.0  /* squared violation above which no search helps */
 #define THIN_COST 0.7    /* of a step squared: a coefficient is not moved where that adds more to the error's square */
 #define THIN_MAGNITUDE 3 /* larger coefficients save hardly anything by one step */
 
-/* What a fit is working on: the error of every frame as the current coefficients leave it. */
+/* The state of a fit: the error of every frame with the current coefficients. */
 typedef struct search {
     const enc_model *m;
     const double *rows; /* [count][count] */

@@ -21,7 +21,7 @@
 #define BETWEEN (ENC_PARTS - 1)
 #define SPIN_W (-0.7) /* beyond this the components of a rotation grow without bound: it is stored raw */
 #define TRANSLATION_SCALE_MIN 1e-9
-#define RAW_TRIES 6  /* of TRIES, the last: what is to blame is stored raw, track by track */
+#define RAW_TRIES 6  /* the last of TRIES: tracks that cause the error are stored raw, one by one */
 #define TURN_MAX 4.0 /* of a correction, in what turns a whole shell by the bound */
 /* A parent that has shrunk to less than this share of its size in the segment shows little of a translation, and what
  * would make up for its own error grows without bound. */
@@ -65,7 +65,7 @@ static const space_global *lossy_parent(const encoder *e, uint32_t joint, uint32
     return p == ENC_NONE ? NULL : placed(e, p, f);
 }
 
-/* What a check needs to know. */
+/* The data of a check. */
 typedef struct judged {
     const enc_segment *segment;
     const enc_track *track;
@@ -77,7 +77,7 @@ typedef struct judged {
 
 /* ---- rotations ---- */
 
-/* The part of the bound that a joint may spend on what it carries: less at the root of long chains. */
+/* The part of the bound that a joint may spend on its descendants: less at the root of long chains. */
 static double rho_of(const encoder *e, uint32_t joint)
 {
     const double depth = e->joints[joint].depth;
@@ -85,7 +85,7 @@ static double rho_of(const encoder *e, uint32_t joint)
            e->loop->rho_scale;
 }
 
-/* The distance of a joint's shell, and of what it carries, from the raw clip, as a share of what is allowed. */
+/* The distance of a joint's shell and rigid descendants from the raw clip, as a share of the allowed error. */
 static double rotation_violation(const encoder *e, uint32_t joint, uint32_t frame, const space_global *g)
 {
     const enc_joint *t = &e->joints[joint];
@@ -253,7 +253,7 @@ static void rotation_limits(const encoder *e, judged *j, double (*q)[4])
     }
 }
 
-/* ---- the model that a search for coefficients goes by ---- */
+/* ---- the error model that guides the search for coefficients ---- */
 
 static void set_probe(enc_probe *p, const double base[3], const double arm[3], double shell, double allowed)
 {
@@ -580,7 +580,7 @@ static double peak(double before, double here, double after)
     return bend > 0.0 && fabs(slope) < 2.0 * bend ? here + slope * slope / (8.0 * bend) : here;
 }
 
-/* Row `part` of a frame's errors: 0 at the frame, else so many eighths after the frame before. */
+/* Row `part` of a frame's errors: 0 at the frame, else `part` eighths after the frame before. */
 static double *errors_of(const encoder *e, uint32_t f, uint32_t part)
 {
     return e->loop->errors + (size_t)(f * ENC_PARTS + part) * e->joint_count;
@@ -625,9 +625,9 @@ static double fast(double turn)
     return 1.0 + angle * angle / 16.0;
 }
 
-/* ---- who has to be more exact ---- */
+/* ---- tracks that must be more exact ---- */
 
-/* Whether aiming at less changes what a joint does at frame f: it moves, and its parents leave it less than that. */
+/* Whether a lower target changes a joint at frame f: it moves, and its parents leave it less than that. */
 static int can_aim_lower(const encoder *e, uint32_t joint, uint32_t f)
 {
     const enc_joint *t = &e->joints[joint];
@@ -710,8 +710,8 @@ static double worst_between(const encoder *e, uint32_t f, uint32_t j)
     return worst;
 }
 
-/* The largest error at frames and between, as a share of the joints' bounds. blames: lower the slack of those who
- * passed it. */
+/* The largest error at frames and between, as a share of the joints' bounds. blames: lower the slack of joints that
+ * exceed it. */
 static double segment_error(const encoder *e, const enc_segment *s, int blames)
 {
     double worst = 0.0;
@@ -777,8 +777,8 @@ void enc_free_pieces(const encoder *e, enc_piece *pieces)
     free(pieces);
 }
 
-/* How a segment's slack is reduced until it holds: of those to blame alone, of all joints in all frames, or of those to
- * blame, who are stored raw in the last tries. Each way is tried where those before it did not do. */
+/* How a segment's slack is reduced until it holds: only for the tracks that cause the error, for all joints in all
+ * frames, or for these tracks, stored raw in the last tries. Each way is tried when the ways before it failed. */
 enum { APART, TOGETHER, GIVING_UP, WAYS };
 
 static void all_stale(const encoder *e)
@@ -812,7 +812,7 @@ static int fit_tuned(encoder *e, const enc_segment *s, int way, double *worst)
     return 0;
 }
 
-/* Keep what the next segment needs of this one. */
+/* Keep the data that the next segment needs. */
 static void keep_end(encoder *e, const enc_segment *s, space_local *end)
 {
     for (uint32_t j = 0; j < e->joint_count; j++) end[j] = *lossy(e, j, s->count - 1u);

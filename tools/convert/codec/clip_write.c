@@ -70,7 +70,7 @@ static void put_symbol(bit_writer *w, const uint16_t *table, uint32_t bits, uint
 
 /* ---- the header ---- */
 
-/* Rounded up, so that what is written is never below what was measured. */
+/* Rounded up, so that the written value is never below the measured one. */
 static void put_ratio(bit_writer *w, double ratio)
 {
     uint32_t exponent = 0;
@@ -292,7 +292,7 @@ static void put_tracks(bit_writer *w, encoder *e, const enc_segment *s, uint32_t
     }
 }
 
-/* What put_tracks has left out. */
+/* The parts that put_tracks leaves out. */
 static void put_high(bit_writer *w, encoder *e, const enc_segment *s, uint32_t low)
 {
     uint32_t last[2] = { LAST_AT_START, LAST_AT_START };

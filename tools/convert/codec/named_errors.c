@@ -69,7 +69,8 @@ static int check_number(const char *item, const char *option, model_error *error
     if (end && end != number && !*end && isfinite(value) && value > 0.0) {
         return 0;
     }
-    snprintf(error->what, sizeof error->what, "%s wants NAME=CM with centimetres over 0, not '%.100s'", option, item);
+    snprintf(error->what, sizeof error->what, "%s must be NAME=CM with CM above 0 centimetres, not '%.100s'", option,
+             item);
     error->where[0] = 0;
     return 1;
 }

@@ -1,5 +1,5 @@
-/* fbx_animation.cpp: animations of nodes and of shapes. Assimp gives keys; the curves between them are taken as
- * straight. */
+/* fbx_animation.cpp: animations of nodes and of shapes. Assimp gives keys; the curves between them are read as straight
+ * lines. */
 #include "fbx_internal.h"
 
 #include <algorithm>
@@ -186,7 +186,7 @@ void read_animations(job &j)
     }
     if (j.widest_s > sparse_s)
         note(j, "keys of an animation are up to " + std::to_string(j.widest_s).substr(0, 4) +
-                    " s apart, and the curves between them were taken as straight: bake animations when you export");
+                    " s apart, and the curves between them were read as straight lines: bake animations on export");
 }
 
 } // namespace fbx

@@ -1,6 +1,6 @@
 /* fbx_internal.h: an Assimp scene while it becomes glTF (C++, because both libraries are).
  *
- *   fbx_read.cpp       the process that reads, and what it hands over
+ *   fbx_read.cpp       the process that reads, and its result
  *   fbx_scene.cpp      nodes, axes, the unit
  *   fbx_mesh.cpp       meshes, shapes, skins
  *   fbx_material.cpp   materials and pictures

@@ -1,4 +1,4 @@
-/* fbx_material.cpp: materials and the pictures that they name, in the file or beside it. */
+/* fbx_material.cpp: materials and the pictures that they name, in the file or in its folder. */
 #include "fbx_internal.h"
 
 #include <assimp/material.h>
@@ -19,7 +19,7 @@ static std::string base_name(const std::string &path)
     return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-/* Authors' paths are those of their own machine: the picture is looked for by its name, where exporters put it. */
+/* Paths are from the author's machine: the picture is looked up by its name, where exporters put it. */
 static std::string beside(const job &j, const std::string &path)
 {
     const std::filesystem::path file(j.path);
@@ -70,7 +70,7 @@ static bool find_image(job &j, const char *path, tinygltf::Image &out)
     }
     const std::string at = beside(j, path);
     if (at.empty()) {
-        note(j, "the picture '" + out.name + "' is neither in the file nor beside it and was left out");
+        note(j, "the picture '" + out.name + "' is neither in the file nor in its folder and was left out");
         return false;
     }
     out.uri = percent_encode(at);
@@ -103,7 +103,7 @@ static int texture_of_either(job &j, const aiMaterial &m, aiTextureType kind, ai
 
 /* --- materials --- */
 
-/* Colours are what a screen shows, as modelling programs' own are; glTF's are linear. */
+/* Colours are sRGB, as in modelling programs; glTF's are linear. */
 static double linear(ai_real value)
 {
     const double v = std::min(std::max(static_cast<double>(value), 0.0), 1.0);
@@ -153,7 +153,7 @@ static void read_material(job &j, const aiMaterial &m)
         if (colors == opacity)
             out.alphaMode = "MASK";
         else
-            note(j, "pictures of opacity that are not the colours' own were left out");
+            note(j, "separate opacity textures were left out");
     }
     read_colors(m, out);
     if (m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) != AI_SUCCESS) metallic = 0.0f;

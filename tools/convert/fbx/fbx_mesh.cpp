@@ -49,7 +49,7 @@ static void add_bone(job &j, const aiBone &bone, part &p, skin &s)
 {
     const auto node = j.node_named.find(bone.mName.C_Str());
     if (node == j.node_named.end()) {
-        note(j, "a bone has no node of its name and moves nothing: '" + std::string(bone.mName.C_Str()) + "'");
+        note(j, "no node has the name of a bone, which moves nothing: '" + std::string(bone.mName.C_Str()) + "'");
         return;
     }
     auto place = s.place.find(node->second);
@@ -116,7 +116,7 @@ static uint64_t hash_corner(const part &p, unsigned v)
     return hash;
 }
 
-/* Only triangles are kept; what is left of lines and points is noted. */
+/* Only triangles are kept; lines and points are noted. */
 static void join_corners(job &j, part &p)
 {
     std::unordered_multimap<uint64_t, uint32_t> kept;
@@ -128,7 +128,7 @@ static void join_corners(job &j, part &p)
         }
         for (unsigned c = 0; c < 3; ++c) {
             const unsigned corner = face.mIndices[c];
-            if (corner >= p.mesh->mNumVertices) throw std::runtime_error("a triangle has a corner that is not there");
+            if (corner >= p.mesh->mNumVertices) throw std::runtime_error("a triangle refers to a missing vertex");
             const uint64_t hash = hash_corner(p, corner);
             const auto range = kept.equal_range(hash);
             auto found = range.first;

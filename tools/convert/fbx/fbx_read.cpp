@@ -1,4 +1,4 @@
-/* fbx_read.cpp: the process that reads an FBX file, and what it hands over: a .glb and words for the user. */
+/* fbx_read.cpp: the process that reads an FBX file, and its result: a .glb and messages for the user. */
 #include "fbx_read.h"
 
 #include "convert/model/model_build.h"
@@ -36,7 +36,7 @@ static std::string line_of(std::string text)
     return text.substr(0, 230);
 }
 
-/* A file may ask for anything: it gets so much time, and no core is written. */
+/* A hostile file may loop or crash: the time is limited, and no core file is written. */
 static void limit_process()
 {
     const rlimit time = { seconds_max, seconds_max }, none = { 0, 0 };
@@ -53,7 +53,7 @@ static void write_glb(const job &j, FILE *to)
     if (!writer.WriteGltfSceneToStream(&out, stream, false, true)) throw std::runtime_error("it has no scene");
     const std::string bytes = stream.str();
     if (fwrite(bytes.data(), 1, bytes.size(), to) != bytes.size() || fflush(to))
-        throw std::runtime_error("there is no room for a temporary file");
+        throw std::runtime_error("cannot write a temporary file: no space left");
 }
 
 static void convert(const char *path, double unit_cm, FILE *glb, FILE *words)
@@ -112,7 +112,7 @@ static bool wait_for(pid_t process)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/* What the process said; 0 if it came to its end and *glb is there. */
+/* The messages of the process; 0 if it ended normally and *glb is set. */
 static int read_words(const std::string &words, std::vector<std::string> &notes, model_error *error)
 {
     std::istringstream lines(words);
@@ -124,9 +124,9 @@ static int read_words(const std::string &words, std::vector<std::string> &notes,
     }
     return done
                ? 0
-               : model_fail(error, "FBX",
-                            "Assimp, which reads FBX, broke off: the file is damaged, or more than it can take; export "
-                            "it again, or as glTF");
+               : model_fail(
+                     error, "FBX",
+                     "Assimp, which reads FBX, crashed: the file is damaged or too large; export it again, or as glTF");
 }
 
 static int read_in_process(const char *path, double unit_cm, std::string &glb, std::vector<std::string> &notes,
@@ -134,10 +134,10 @@ static int read_in_process(const char *path, double unit_cm, std::string &glb, s
 {
     const temporary to(tmpfile()), said(tmpfile());
     std::string words;
-    if (!to || !said) return model_fail(error, "", "no temporary file can be made");
+    if (!to || !said) return model_fail(error, "", "cannot make a temporary file");
     fflush(nullptr); /* or the other process writes it again */
     const pid_t process = fork();
-    if (process < 0) return model_fail(error, "", "no process can be started to read FBX in");
+    if (process < 0) return model_fail(error, "", "cannot start a process to read FBX");
     if (process == 0) run_process(path, unit_cm, to.get(), said.get());
     const bool ended = wait_for(process);
     if (!read_back(said.get(), words) || !read_back(to.get(), glb))

@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 typedef struct fbx_options {
-    double unit_cm; /* centimetres per unit; 0: what the file says */
+    double unit_cm; /* centimetres per unit; 0: the file's */
 } fbx_options;
 
 /* Returns 0 and *out, or 1 and *error. Calls model_complete. */

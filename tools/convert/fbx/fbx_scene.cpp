@@ -95,8 +95,7 @@ static void read_axes(job &j)
     if (det > 0.5f) {
         j.to_y_up = aiQuaternion(turn);
     } else if (det < -0.5f) {
-        note(j, "the file's axes are left-handed: left and right are exchanged in what is drawn; export it with "
-                "right-handed axes");
+        note(j, "the file's axes are left-handed, so left and right are swapped: export it with right-handed axes");
         turn[2][0] = -turn[2][0];
         turn[2][1] = -turn[2][1];
         turn[2][2] = -turn[2][2];

@@ -54,9 +54,9 @@ timing choose_timing(const std::vector<track> &tracks, double duration_s, double
 
 /* --- weight_radius.cpp --- */
 
-/* What each target at weight 1 moves a vertex by, in the mesh's own units. */
+/* The largest motion of a vertex by each target at weight 1, in the mesh's own units. */
 std::vector<double> target_sizes(const model_mesh &mesh);
-/* The largest factor by which the poses of a clip (NULL: the bind pose) enlarge what a node draws.
+/* The largest factor by which the poses of a clip (NULL: the bind pose) enlarge a node's mesh.
  * skin  the joints of the node's skin in the set's skeleton, or NULL */
 double largest_scale(const model &m, uint32_t node, const uint32_t *skin, uint32_t joint, const raw_set &set,
                      const raw_clip *clip);

@@ -186,7 +186,7 @@ static void load_element(const layout &l, const uint8_t *at, uint64_t element, f
     }
 }
 
-/* The sparse part: which elements it replaces, and by what. */
+/* The sparse part: the replaced elements and their values. */
 struct sparse_part {
     uint64_t count;
     uint32_t index_component;

@@ -94,8 +94,7 @@ static void check_rotations(const model_channel &c, const std::string &where)
         double square = 0.0;
         for (int k = 0; k < 4; ++k) square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
         if (!(square > 1e-6))
-            fail(where + text(", element %zu", i * per_key + per_key / 2),
-                 "the rotation is a quaternion without length");
+            fail(where + text(", element %zu", i * per_key + per_key / 2), "the rotation is a quaternion of length 0");
     }
 }
 
@@ -146,8 +145,7 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
         if (path != MODEL_PATH_WEIGHTS && !f.json.nodes[static_cast<size_t>(a.channels[i].target_node)].matrix.empty())
             leave_out(
                 f, "node '" + printable(f.out->nodes[node].name) + "'",
-                ": it has a matrix and is animated, which glTF forbids; what is not animated was taken out of the "
-                "matrix");
+                ": it has a matrix and is animated, which glTF forbids; the matrix was used for what is not animated");
         model_channel &channel = out.channels[out.channel_count++];
         channel.node = node;
         channel.path = path;
@@ -203,7 +201,7 @@ static void read_clip(file &f, size_t index)
         read_extras(f, a, where, clip);
         return;
     }
-    leave_out(f, where, " was skipped: no channel of it is left");
+    leave_out(f, where, " was skipped: none of its channels is left");
     free(clip.channels);
     free(clip.name);
     clip = model_clip();

@@ -71,13 +71,14 @@ static bytes decode_data_uri(const std::string &uri, const std::string &where)
     return bytes(decoded.begin(), decoded.end());
 }
 
-/* Only files beside the glTF (or above it) are opened: a file from a stranger must not make the converter read the
- * user's own files. */
+/* Only files in the folder of the glTF (or above it) are opened: a file from a stranger must not make the converter
+ * read the user's own files. */
 static std::string path_of(const file &f, const std::string &uri, const std::string &where)
 {
     std::string path = percent_decode(uri);
     if (path.empty() || path[0] == '/' || path.find(':') != std::string::npos || path.find('\0') != std::string::npos)
-        fail(where, "the URI '" + printable(uri) + "' is not a relative path: put the file beside the glTF");
+        fail(where,
+             "the URI '" + printable(uri) + "' is not a relative path: put the file in the folder of the glTF file");
     return f.directory + path;
 }
 

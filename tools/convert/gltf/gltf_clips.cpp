@@ -23,14 +23,14 @@ struct clip_deleter {
 };
 using clips_pointer = std::unique_ptr<model_clips, clip_deleter>;
 
-/* What the clips of one skeleton have in common. */
+/* Shared by the clips of one skeleton. */
 struct set_job {
     model *m;
     const skeleton_plan *plan;
     const model_clips *made;
     uint32_t index;
     raw_set *set;
-    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius of what is below it */
+    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius of its descendants */
     std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
 };
 
@@ -229,20 +229,19 @@ static void copy_events(const model_clip &from, raw_clip &clip)
 
 static void warn_of_error(const set_job &job, const raw_clip &clip, double tolerance_cm, const std::string &where)
 {
-    const double usual_hz = 119.0; /* linear keys at a usual sample rate are taken as frames, without a warning */
+    const double usual_hz = 119.0; /* linear keys at a usual sample rate are used as frames, without a warning */
     if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
         check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames",
                                 where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
 }
 
-/* More frames than keys are more bytes: whoever can do without the curves should know. */
+/* More frames than keys take more bytes, which users who do not need the curves should know. */
 static void warn_of_rate(const set_job &job, const timing &when, const std::string &where)
 {
     if (when.keys_hz > 0.0 && when.sample_rate_hz > 1.5 * when.keys_hz && when.keys_hz >= 15.0)
-        check_memory(model_warn(job.m,
-                                "%s: its keys are %g a second, and curves between them need %g frames; "
-                                "--rate %g keeps the keys alone",
-                                where.c_str(), when.keys_hz, when.sample_rate_hz, when.keys_hz));
+        check_memory(model_warn(
+            job.m, "%s: it has %g keys a second, and its curves need %g frames a second; --rate %g keeps only the keys",
+            where.c_str(), when.keys_hz, when.sample_rate_hz, when.keys_hz));
 }
 
 static void make_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks,
@@ -373,7 +372,7 @@ extern "C" int clips_from_model(model *m, const sample_options *options, model_c
     double sample_rate_hz = options ? options->sample_rate_hz : 0.0;
     *out = nullptr;
     if (!(sample_rate_hz >= 0.0 && sample_rate_hz <= 1e6))
-        return model_fail(error, "", "a sample rate of %g Hz is not possible", sample_rate_hz);
+        return model_fail(error, "", "the sample rate must be above 0, not %g Hz", sample_rate_hz);
     try {
         *out = gltf::make_model_clips(*m, sample_rate_hz);
         return 0;

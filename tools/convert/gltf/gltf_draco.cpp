@@ -141,13 +141,13 @@ static void decode(job &j)
     draco::Decoder decoder;
     buffer.Init(reinterpret_cast<const char *>(s.data), static_cast<size_t>(s.size));
     const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
-    if (!type.ok() || type.value() != draco::TRIANGULAR_MESH) fail(j.where, "its Draco data is no triangle mesh");
+    if (!type.ok() || type.value() != draco::TRIANGULAR_MESH) fail(j.where, "its Draco data is not a triangle mesh");
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) fail(j.where, "its Draco data is damaged: " + printable(decoded.status().error_msg_string()));
     j.mesh = std::move(decoded).value();
     give_indices(j);
     for (const std::string &name : attributes.Keys()) {
-        if (!attributes.Get(name).IsInt()) fail(j.where, "KHR_draco_mesh_compression: an attribute is no number");
+        if (!attributes.Get(name).IsInt()) fail(j.where, "KHR_draco_mesh_compression: an attribute is not a number");
         give_attribute(j, name, attributes.Get(name).Get<int>());
     }
 }
@@ -168,8 +168,9 @@ static void decode(const job &j)
     if (position != j.primitive.attributes.end() &&
         accessor_at(j.f, position->second, j.where + " POSITION").bufferView >= 0)
         return;
-    fail(j.where, "it is compressed by KHR_draco_mesh_compression, and noh was built without Draco (Debian: apt "
-                  "install libdraco-dev, and build again; or export without it)");
+    fail(j.where,
+         "it uses KHR_draco_mesh_compression, and noh was built without Draco: export without it, or install Draco "
+         "(Debian: apt install libdraco-dev) and rebuild noh");
 }
 
 #endif

@@ -111,7 +111,7 @@ void allocate_influences(file &f, const std::string &where, model_mesh &out)
     out.joint_weights = allocate<float>(f, uint64_t{ out.vertex_count } * MODEL_INFLUENCES_MAX, where);
 }
 
-/* A primitive without joints, beside others that have them, follows the first joint. */
+/* A primitive without joints, in a mesh with joints, follows the first joint. */
 static void fill_rigid(const model_submesh &part, model_mesh &out)
 {
     for (size_t v = 0; v < part.vertex_count; ++v)

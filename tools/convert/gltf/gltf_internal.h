@@ -1,12 +1,12 @@
 /* gltf_internal.h: shared by the glTF reader's files (C++, because tinygltf is).
  *
- * tinygltf turns JSON into structs and decodes images. What must survive a hostile file the reader does itself: it
- * opens the container, checks the JSON before tinygltf sees it, loads the buffers, and reads every accessor with its
+ * tinygltf turns JSON into structs and decodes images. The reader itself handles all that a hostile file could abuse:
+ * it opens the container, checks the JSON before tinygltf sees it, loads the buffers, and reads every accessor with its
  * bounds checked. Errors are thrown as gltf::failure and become a model_error at the boundary (model_read_gltf).
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
- *   gltf_members.cpp   members that must be there
+ *   gltf_members.cpp   required members
  *   gltf_file.cpp      failures, warnings, names
  *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression
@@ -15,14 +15,14 @@
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
  *   gltf_scene.cpp     nodes
- *   gltf_influences.cpp which joints move which vertices
+ *   gltf_influences.cpp joints and weights of vertices
  *   gltf_skin.cpp      skins, and the nodes whose meshes they move
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
- *   gltf_vrm.cpp       VRM: bones of a person, expressions, where it faces
+ *   gltf_vrm.cpp       VRM: bones of a person, expressions, direction
  *   gltf_springs.cpp   springs: VRMC_springBone, VRM 0, extras
- *   gltf_left_out.cpp  warnings about what the model has no place for */
+ *   gltf_left_out.cpp  warnings about features that the model does not store */
 #ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 
@@ -72,7 +72,7 @@ struct span {
 
 /* One kind of thing that the model has no place for. */
 struct left_out {
-    std::string first, what; /* where the first one is; what the warning says */
+    std::string first, what; /* the place of the first one; the text of the warning */
     size_t count;
 };
 
@@ -86,7 +86,7 @@ struct file {
     bool has_bin = false;
     std::vector<bytes> decoded_views; /* by meshopt, empty until used; by Draco, behind the file's own */
     uint64_t input_bytes = 0;         /* of all files read */
-    uint64_t output_bytes = 0;        /* of what the model needs so far */
+    uint64_t output_bytes = 0;        /* bytes that the model needs so far */
     ::model *out = nullptr;
     std::vector<uint32_t> mesh_of; /* [json.meshes] index into out->meshes or MODEL_NONE */
     std::vector<uint32_t> node_of; /* [json.nodes] likewise */
@@ -136,7 +136,7 @@ bool is_supported(const std::string &extension);
 /* --- gltf_buffer.cpp --- */
 void load_buffers(file &f);
 bytes read_whole_file(const std::string &path, const std::string &where);
-/* The bytes behind a URI: data: or a file beside the glTF. Throws failure. */
+/* The bytes behind a URI: data: or a file in the folder of the glTF. Throws failure. */
 bytes read_uri(file &f, const std::string &uri, const std::string &where);
 /* A range of a buffer, checked. */
 span buffer_bytes(file &f, int buffer, uint64_t offset, uint64_t size, const std::string &where);
@@ -211,7 +211,7 @@ void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &v
                      const std::string &where, model_mesh &out, influence_changes &changes);
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
 /* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
-/* The texture coordinates of a material's textures, and KHR_texture_transform on them: those of the first texture. */
+/* The texture coordinates of a material, and KHR_texture_transform on them, taken from its first texture. */
 struct uv_use {
     int set = 0;
     double offset[2] = { 0.0, 0.0 }, scale[2] = { 1.0, 1.0 }, rotation = 0.0;

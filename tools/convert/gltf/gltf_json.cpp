@@ -168,7 +168,7 @@ static void check_value(json &value, const std::string &key, const std::string &
     }
 }
 
-/* What should be a top-level array must be one, hold objects, and be small enough for tinygltf's structs. */
+/* Top-level arrays must be arrays of objects, and small enough for tinygltf's structs. */
 static void check_top_level(const json &document)
 {
     static const char *const arrays[] = { "accessors", "animations", "bufferViews", "buffers", "cameras",
@@ -375,9 +375,8 @@ static void run_tinygltf(file &f, const json &document)
     tinygltf::TinyGLTF loader;
     bool loaded = loader.LoadASCIIFromString(&f.json, &error, &warning, text_form.data(),
                                              static_cast<unsigned int>(text_form.size()), "");
-    /* It also reports primitives and channels that it could not read, and goes on. */
-    if (!loaded || !error.empty())
-        fail("glTF JSON", error.empty() ? "the JSON is not that of a glTF file" : first_line(error));
+    /* It also reports primitives and channels that it could not read, and continues. */
+    if (!loaded || !error.empty()) fail("glTF JSON", error.empty() ? "the JSON is not a glTF file" : first_line(error));
 }
 
 void parse_json(file &f, const char *text_begin, size_t size)

@@ -1,4 +1,4 @@
-/* gltf_left_out.cpp: warnings about what the model has no place for, one for each kind. */
+/* gltf_left_out.cpp: warnings about features that the model does not store, one for each kind. */
 #include "gltf_internal.h"
 
 #include <cstring>

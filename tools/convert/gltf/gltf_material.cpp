@@ -106,7 +106,7 @@ static uint32_t wrap_of(file &f, int wrap, const std::string &where)
 {
     bool known = wrap == TINYGLTF_TEXTURE_WRAP_REPEAT || wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ||
                  wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
-    if (!known) leave_out(f, where, text(": the wrap mode %d is unknown and was taken as repeat", wrap));
+    if (!known) leave_out(f, where, text(": the wrap mode %d is unknown; repeat was used", wrap));
     return static_cast<uint32_t>(known ? wrap : TINYGLTF_TEXTURE_WRAP_REPEAT);
 }
 
@@ -132,7 +132,7 @@ static void read_sampler(file &f, int index, model_texture &out, const std::stri
     out.min_filter = filter_of(f, sampler.minFilter, where);
 }
 
-/* The image of a texture: the one that every reader understands, or else that of EXT_texture_webp. */
+/* The image of a texture: the one that every reader understands, or else the image of EXT_texture_webp. */
 static size_t image_of(const file &f, const tinygltf::Texture &texture, const std::string &where)
 {
     int index = texture.source;
@@ -141,8 +141,8 @@ static size_t image_of(const file &f, const tinygltf::Texture &texture, const st
         webp->second.Get("source").IsInt())
         index = webp->second.Get("source").Get<int>();
     if (index < 0 && texture.extensions.count("KHR_texture_basisu"))
-        fail(where, "its only image is that of KHR_texture_basisu (KTX2), which is not read: export PNG, JPEG or WebP, "
-                    "or make PNG of it by KTX-Software's ktx extract");
+        fail(where, "its only image uses KHR_texture_basisu (KTX2), which is not supported: export PNG, JPEG or WebP, "
+                    "or convert it to PNG with ktx extract of KTX-Software");
     if (index < 0) fail(where, "it has no image that can be read");
     if (static_cast<size_t>(index) >= f.images.size())
         fail(where, text("image %d does not exist: the file has %zu", index, f.images.size()));
@@ -199,8 +199,8 @@ static uint32_t texture_for(file &f, int index, model_texture_use use, const std
     return f.texture_of[key] = slot;
 }
 
-/* --- maps of several images: occlusion in red, roughness in green, metallic in blue, the weight of reflections in alpha;
- * and colours of reflections with such a weight, or roughness, in alpha --- */
+/* --- maps of several images: occlusion in red, roughness in green, metallic in blue, the weight of reflections in
+ * alpha; and colours of reflections with such a weight, or roughness, in alpha --- */
 
 static uint8_t between(const uint8_t *rgba, size_t stride, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1,
                        uint64_t fx, uint64_t fy)
@@ -210,7 +210,7 @@ static uint8_t between(const uint8_t *rgba, size_t stride, uint32_t x0, uint32_t
     return static_cast<uint8_t>((top * (256 - fy) + bottom * fy + 32768) / 65536);
 }
 
-/* Where the centre of texel i of `to` lies among the texels of `from`: the two beside it, and 256ths from the first. */
+/* The centre of texel i of `to` among the texels of `from`: its two neighbours, and 256ths from the first. */
 static uint64_t place(uint32_t i, uint32_t from, uint32_t to, uint32_t *low, uint32_t *high)
 {
     const int64_t at = (static_cast<int64_t>(2 * i + 1) * from * 256 / to - 256) / 2;
@@ -257,7 +257,7 @@ static void check_indices(const file &f, std::initializer_list<int> indices, con
             fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
 }
 
-/* Images become one, so that a pixel reads one texture: what is put into it takes its size and sampling. */
+/* Images become one, so that a pixel reads one texture: added images take its size and sampling. */
 static uint32_t make_surface_texture(file &f, int occlusion, int roughness, int weight, const std::string &where)
 {
     int first = roughness;
@@ -310,8 +310,7 @@ static model_alpha alpha_of(file &f, const std::string &mode, const std::string 
 {
     if (mode == "MASK") return MODEL_ALPHA_MASK;
     if (mode == "BLEND") return MODEL_ALPHA_BLEND;
-    if (mode != "OPAQUE")
-        leave_out(f, where, ": the alpha mode '" + printable(mode) + "' is unknown and was taken as OPAQUE");
+    if (mode != "OPAQUE") leave_out(f, where, ": the alpha mode '" + printable(mode) + "' is unknown; OPAQUE was used");
     return MODEL_ALPHA_OPAQUE;
 }
 
@@ -338,7 +337,7 @@ static uv_use uv_use_of(int set, const tinygltf::ExtensionMap &extensions)
     return use;
 }
 
-/* A texture of a material, and what the model calls it. */
+/* A texture of a material, and its field in the model. */
 struct texture_use {
     int index;
     uv_use uv;
@@ -403,15 +402,16 @@ static bool same_use(const uv_use &a, const uv_use &b)
            a.scale[1] == b.scale[1] && a.rotation == b.rotation;
 }
 
-/* A vertex has one pair of texture coordinates: those of the first texture. What uses others is left out. */
+/* A vertex has one pair of texture coordinates, for the first texture. Textures that use others are left out. */
 static int index_of(file &f, const tinygltf::Material &m, size_t which, const std::string &where)
 {
     const texture_use t = textures_of(m)[which];
     if (t.index < 0 || same_use(t.uv, uv_use_of(m))) return t.index;
-    leave_out(f, where,
-              text(": the %s texture was left out: its texture coordinates, or their transform, are not those of the "
-                   "material's other textures",
-                   t.name));
+    leave_out(
+        f, where,
+        text(": the %s texture was left out: its texture coordinates or their transform differ from the material's "
+             "other textures",
+             t.name));
     return -1;
 }
 
@@ -476,8 +476,8 @@ static void set_roughness(model_texture &t, size_t channel, double gloss)
     }
 }
 
-/* Its colours become a map with roughness in alpha, one texture as before. An occlusion map is another one, which may as
- * well have the roughness where all colours are the same. */
+/* Its colours become a map with roughness in alpha, one texture as before. An occlusion map is another one, which may
+ * as well have the roughness where all colours are the same. */
 static void read_gloss_map(file &f, int index, int occlusion, double gloss, model_material &out,
                            const std::string &where)
 {
@@ -536,20 +536,20 @@ static void read_surface(file &f, size_t index, model_material &out, const std::
         const tinygltf::Value &word = m.extras.Get("surface");
         const uint32_t named = word.IsString() ? surface_kind_named(word.Get<std::string>().c_str()) : MODEL_NONE;
         if (named == MODEL_NONE)
-            leave_out(f, where, ": the extra 'surface' is none of plain, skin, eye, teeth and toon, and was ignored");
+            leave_out(f, where, ": the extra 'surface' must be plain, skin, eye, teeth or toon, and was ignored");
         else
             kind = named;
     }
     const bool toon = read_toon(f, index, out);
     if (toon)
-        leave_out(f, where, ": of its MToon shading the two tones were taken; outline, rim and matcap were left out");
+        leave_out(f, where, ": the two tones of its MToon shading were kept; outline, rim and matcap were left out");
     surface_kind_set(&out, toon && !m.extras.Has("surface") ? NOH_SURFACE_TOON : kind);
     if (out.surface != NOH_SURFACE_SKIN || !m.extras.IsObject() || !m.extras.Has("unitMm")) return;
     const double mm = number_in(&m.extras, "unitMm", 0.0);
     if (mm >= 1e-6 && mm <= 1e9)
         out.surface_values[0] = static_cast<float>(mm);
     else
-        leave_out(f, where, ": the extra 'unitMm' is no number of millimetres from 1e-6 to 1e9 and was ignored");
+        leave_out(f, where, ": the extra 'unitMm' must be 1e-6 to 1e9 millimetres, and was ignored");
 }
 
 /* By "extras": {"tint": false}. */
@@ -560,7 +560,7 @@ static void read_tint(file &f, const tinygltf::Material &m, model_material &out,
     if (taken.IsBool())
         out.tint = taken.Get<bool>() ? MODEL_TINT_ON : MODEL_TINT_OFF;
     else
-        leave_out(f, where, ": the extra 'tint' is neither true nor false and was ignored");
+        leave_out(f, where, ": the extra 'tint' must be true or false, and was ignored");
 }
 
 /* A weight alone goes into the surface map; with colours it goes to these: a fetch less either way. */
@@ -584,7 +584,7 @@ static void read_priority(file &f, const tinygltf::Material &m, model_material &
     if (number >= -128.0 && number <= 127.0 && number == static_cast<double>(static_cast<int>(number)))
         out.priority = static_cast<int16_t>(number);
     else
-        leave_out(f, where, ": the extra 'priority' is no whole number from -128 to 127 and was ignored");
+        leave_out(f, where, ": the extra 'priority' must be a whole number from -128 to 127, and was ignored");
 }
 
 static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)

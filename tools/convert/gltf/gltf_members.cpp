@@ -1,5 +1,5 @@
-/* gltf_members.cpp: members that an object of a glTF file must have, and what they may be. tinygltf would refuse the
- * file too, but could not say where. */
+/* gltf_members.cpp: required members of objects in a glTF file, and their allowed values. tinygltf would reject the
+ * file too, but without the place. */
 #include "json_internal.h"
 
 #include "gltf_internal.h"
@@ -64,7 +64,7 @@ static void check_object(const json &object, const char *key, kind what, const s
     if (!is_a(*found, what)) fail(where, text("'%s' must be %s", key, name_of(what)));
 }
 
-/* Follow what is left of the path. What is not there is checked by the row that requires it, if any does. */
+/* Follow the rest of the path. A missing member is checked by the row that requires it, if any. */
 static void follow(const json &value, const std::string &path, const char *key, kind what, const std::string &where)
 {
     if (value.is_array()) {
@@ -89,7 +89,7 @@ static void check_accessor_type(const json &accessor, const std::string &where)
     const std::string given = accessor["type"].get<std::string>();
     for (const char *type : types)
         if (given == type) return;
-    fail(where, "the type '" + printable(given) + "' is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 and MAT4");
+    fail(where, "the type '" + printable(given) + "' must be SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
 }
 
 static void check_stride(const json &view, const std::string &where)
@@ -98,7 +98,7 @@ static void check_stride(const json &view, const std::string &where)
     if (found == view.end()) return;
     const uint64_t stride = found->get<uint64_t>();
     if (stride != 0 && (stride < 4 || stride > 252 || stride % 4 != 0))
-        fail(where, text("'byteStride' is %llu: a multiple of 4 from 4 to 252 is needed",
+        fail(where, text("'byteStride' is %llu: it must be a multiple of 4 from 4 to 252",
                          static_cast<unsigned long long>(stride)));
 }
 

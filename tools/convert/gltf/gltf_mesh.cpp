@@ -322,7 +322,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
     std::string uv = uv_name(f, *p.source);
     if (has(a, uv)) {
         if (uv != text("TEXCOORD_%d", uv_use_of(f, *p.source).set))
-            leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was taken");
+            leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was used");
         read_vertices(f, find(a, uv), 2, accepted_uv(f), p.vertices, where + " " + uv, m.uv + first * 2);
         transform_uvs(f, job, p, 1.0, m.uv + first * 2);
     }
@@ -393,7 +393,7 @@ static void read_delta(file &f, const part &p, size_t t, const std::string &name
         out[i] += 0.0f; /* -0 becomes 0, so that dense and sparse files give the same model */
 }
 
-/* Of the UV set that the primitive's texture uses. */
+/* For the UV set that the primitive's texture uses. */
 static void read_uv_delta(file &f, const mesh_job &job, const part &p, size_t t, const std::string &where,
                           float *deltas)
 {
@@ -459,7 +459,8 @@ static void read_recipe(file &f, mesh_job &job)
         if (line.IsString()) lines += line.Get<std::string>() + "\n";
     }
     if (lines.empty())
-        leave_out(f, job.where + ": the recipe in its extras", " was skipped: it is neither a text nor lines of one");
+        leave_out(f, job.where + ": the recipe in its extras",
+                  " was skipped: it is neither a text nor an array of lines");
     else
         job.out->recipe = copy_string(lines);
 }
@@ -489,7 +490,7 @@ static void name_targets(file &f, mesh_job &job)
         std::string wanted = name_or(given_name(names, t), "target", t), name = unique_name(taken, wanted);
         if (name != wanted)
             leave_out(f, job.where + ": two targets are named '" + printable(wanted) + "'",
-                      "; the second got a number behind its name");
+                      "; a number was added to the second name");
         taken.insert(name);
         job.out->targets[t].name = copy_string(name);
     }

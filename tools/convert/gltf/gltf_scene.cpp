@@ -104,7 +104,7 @@ static void normalize_rotation(file &f, double *q, const std::string &where)
 {
     double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(length > 1e-6)) {
-        leave_out(f, where, ": the rotation has no length and was taken as none");
+        leave_out(f, where, ": the rotation is a quaternion of length 0 and was ignored");
         q[0] = q[1] = q[2] = 0.0;
         q[3] = length = 1.0;
     }

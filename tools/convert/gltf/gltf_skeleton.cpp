@@ -35,7 +35,7 @@ struct survey {
     std::vector<bool> animated; /* its transform is */
     std::vector<bool> has_children;
     std::vector<bool> above_a_joint;
-    std::vector<uint32_t> owner; /* a skin of which it is a joint, or lies below one; or MODEL_NONE */
+    std::vector<uint32_t> owner; /* a skin whose joint it is, or lies below; or MODEL_NONE */
 };
 
 static void survey_animations(const model &m, survey &s)

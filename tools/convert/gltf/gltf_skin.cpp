@@ -54,10 +54,10 @@ static void bind_at_rest(file &f, uint32_t joint, const std::string &where, floa
     double inverse[16];
     if (affine_invert(node.world, inverse))
         fail(where, "the inverse bind matrix of joint '" + printable(node.name) +
-                        "' is all zeros, and where it rests has no inverse either");
+                        "' is all zeros, and its rest transform has no inverse");
     for (int i = 0; i < 16; ++i) m[i] = static_cast<float>(inverse[i]);
     leave_out(f, where + ": the inverse bind matrix of joint '" + printable(node.name) + "'",
-              " is all zeros; the joint was bound where it rests");
+              " is all zeros; the joint was bound at its rest transform");
 }
 
 static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::string &where, model_skin &out)
@@ -91,7 +91,8 @@ static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::s
 static void check_joints(const file &f, const tinygltf::Skin &skin, const std::string &where)
 {
     if (skin.joints.empty()) fail(where, "the skin has no joints");
-    if (skin.joints.size() >= MODEL_NONE / 16) fail(where, text("%zu joints are too many", skin.joints.size()));
+    if (skin.joints.size() >= MODEL_NONE / 16)
+        fail(where, text("the skin has %zu joints, which are too many", skin.joints.size()));
     for (int joint : skin.joints)
         if (joint < 0 || static_cast<size_t>(joint) >= f.json.nodes.size())
             fail(where, text("joint node %d does not exist: the file has %zu nodes", joint, f.json.nodes.size()));

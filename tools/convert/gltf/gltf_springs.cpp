@@ -113,7 +113,7 @@ static uint32_t bits_of(const springs_job &job, const value &indices)
 static void warn_center(springs_job &job, const value &spring)
 {
     if (number_or(spring, "center", -1.0) >= 0.0)
-        leave_out(job.f, "springs", ": a center was ignored: springs swing in the world");
+        leave_out(job.f, "springs", ": a center was ignored: springs are simulated in world space");
 }
 
 /* ---- VRMC_springBone ---- */
@@ -126,7 +126,7 @@ static uint32_t read_collider(springs_job &job, const value &given)
     model_collider c = {};
     c.node = node_of(job.f, member(given, "node"));
     if (c.node == MODEL_NONE || !round.IsObject()) {
-        leave_out(job.f, "springs", ": a collider was left out: it has no node, or is no sphere and no capsule");
+        leave_out(job.f, "springs", ": a collider was left out: it has no node, or is neither a sphere nor a capsule");
         return 0;
     }
     c.radius = limited(round, "radius", 0.0, 0.0, 1e3);
@@ -168,7 +168,7 @@ static model_spring_joint read_joint(springs_job &job, const value &given)
     return joint;
 }
 
-/* The last joint of a spring only says where the bone before it ends. */
+/* The last joint of a spring is only the end of the bone before it. */
 static void read_spring(springs_job &job, const value &given)
 {
     const value &listed = member(given, "joints");
@@ -302,7 +302,9 @@ static void read_lines(file &f, const value &extras, const std::string &where, s
     if (given.IsString()) own = given.Get<std::string>() + "\n";
     for (size_t i = 0; given.IsArray() && i < given.ArrayLen(); ++i)
         if (item(given, i).IsString()) own += item(given, i).Get<std::string>() + "\n";
-    if (own.empty()) leave_out(f, where + ": the springs in its extras", " were skipped: no text and no lines of one");
+    if (own.empty())
+        leave_out(f, where + ": the springs in its extras",
+                  " were skipped: they are neither a text nor an array of lines");
     std::replace(own.begin(), own.end(), ';', '\n');
     lines += own;
 }

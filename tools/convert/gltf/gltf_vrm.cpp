@@ -1,5 +1,5 @@
-/* gltf_vrm.cpp: what a VRM file says about its figure: which nodes are the bones of a person, what its expressions are,
- * which materials are toons (MToon), and, before VRM 1.0, that it faces -z.
+/* gltf_vrm.cpp: the figure of a VRM file: the nodes that are bones of a person, its expressions, its toon materials
+ * (MToon), and, before VRM 1.0, that it faces -z.
  *
  * The bones take VRM's names for them, which are the same in every file: hips, leftUpperArm. Expressions become lines
  * of a face's recipe (base/recipe_read.h). Sources: VRMC_vrm-1.0 and VRM 0.0 of the VRM Consortium's specifications. */
@@ -81,7 +81,7 @@ static std::set<std::string> names_taken(const file &f)
     return taken;
 }
 
-/* A node keeps its own name where another has that of the bone. */
+/* A node keeps its own name if another node already has the bone's name. */
 static void name_bone(file &f, const std::string &bone, size_t node, std::set<std::string> &taken)
 {
     if (bone.empty() || node >= f.node_of.size() || f.node_of[node] == MODEL_NONE) return;
@@ -132,7 +132,7 @@ static void add_line(file &f, const char *channel, uint32_t mesh, size_t target,
 {
     const std::string name = f.out->meshes[mesh].targets[target].name;
     if (name.find_first_of("\"\n\r") != std::string::npos || !(weight >= -4.0 && weight <= 4.0)) {
-        leave_out(f, "target '" + printable(name) + "'", ": its part in a VRM expression was left out");
+        leave_out(f, "target '" + printable(name) + "'", ": it was left out of a VRM expression");
         return;
     }
     const std::string line = text("%s \"%s\" %.6g\n", channel, name.c_str(), weight);
@@ -162,7 +162,7 @@ static void add_expression(file &f, const std::string &name, const value &expres
     const value *binds = array_member(expression, old ? "binds" : "morphTargetBinds");
     const value *colors = array_member(expression, old ? "materialValues" : "materialColorBinds");
     if (colors && colors->ArrayLen() > 0)
-        leave_out(f, "VRM expression '" + printable(name) + "'", ": what it changes of materials was left out");
+        leave_out(f, "VRM expression '" + printable(name) + "'", ": its changes to materials were left out");
     for (size_t i = 0; channel && binds && i < binds->ArrayLen(); ++i)
         add_bind(f, channel, binds->Get(static_cast<int>(i)), old, r);
 }

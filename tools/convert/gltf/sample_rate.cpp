@@ -1,7 +1,7 @@
 /* sample_rate.cpp: how many frames a clip needs.
  *
  * Frames are played with linear interpolation at a constant sample rate; the source's curves need not be linear, and
- * its keys lie at any time. So sample rates are tried, from that of the keys upwards, until the played frames stay
+ * its keys lie at any time. So sample rates are tried, from the rate of the keys upwards, until the played frames stay
  * within a tolerance of the curves. */
 #include "clips_internal.h"
 
@@ -16,7 +16,7 @@ namespace gltf
 {
 
 static const double rate_max_hz = 120.0;       /* the highest that is chosen; keys on a denser grid keep theirs */
-static const double dense_rate_min_hz = 15.0;  /* linear keys at this rate or a higher one are taken as frames */
+static const double dense_rate_min_hz = 15.0;  /* linear keys at this rate or a higher one are used as frames */
 static const double sparse_rate_max_hz = 60.0; /* of a grid on which most frames have no key */
 static const double rounding_s = 1e-6;         /* of key times, which are floats */
 
@@ -29,11 +29,10 @@ static timing timing_at(double duration_s, double sample_rate_hz, uint64_t frame
 {
     double steps = std::fmax(std::floor(duration_s * sample_rate_hz + 0.5), 1.0);
     if (!(steps + 1.0 <= static_cast<double>(frames_max)))
-        fail(
-            where,
-            text(
-                "it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample rate",
-                duration_s, sample_rate_hz, static_cast<unsigned long long>(frames_max)));
+        fail(where,
+             text("it lasts %g s: at %g Hz that is more than %llu frames, which is the limit; ask for a lower sample "
+                  "rate",
+                  duration_s, sample_rate_hz, static_cast<unsigned long long>(frames_max)));
     double exact_hz = steps / duration_s;
     /* the last key's time is a rounded float */
     bool whole = std::fabs(exact_hz - sample_rate_hz) <= 1e-6 * sample_rate_hz;
@@ -76,7 +75,7 @@ static bool changes(const model_channel &c)
 }
 
 /* The tracks that may need more frames than the keys have. Linear keys at a usual sample rate already are frames:
- * played, they give what the curves give. What holds still needs none, whatever its interpolation is called. */
+ * played, they give what the curves give. A constant track needs none, whatever its interpolation. */
 static std::vector<track> curves_of(const std::vector<track> &tracks, double grid_hz)
 {
     std::vector<track> curves;
@@ -191,7 +190,7 @@ static double error_of(const std::vector<track> &tracks, const timing &t, double
     return worst;
 }
 
-/* What ends before is one frame: no rate could be said of it. */
+/* A shorter animation is one frame, without a rate. */
 static const double shortest_s = 1e-6;
 
 timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,

@@ -61,7 +61,7 @@ static void local_columns(const model_node &node, double *out)
     for (int i = 0; i < 9; ++i) out[i] *= static_cast<double>(node.scale[i / 3]);
 }
 
-/* What is applied before a joint's matrix: an inverse bind matrix, or the nodes in between. */
+/* The transform before a joint's matrix: an inverse bind matrix, or the nodes in between. */
 struct attachment {
     uint32_t joint; /* or MODEL_NONE */
     double columns[9];

@@ -15,7 +15,7 @@ typedef struct ending {
     int all_loop;
 } ending;
 
-/* The clip whose end is that of a state: the first of its nodes. */
+/* The clip that ends a state: the first of its nodes. */
 static const graph_node *clip_of(const graph_def *g, const graph_child *state)
 {
     const graph_node *n = &g->nodes[state->node.index];
@@ -38,7 +38,7 @@ static int source_loops(const ending *e, const char *name)
 /* Why a clip never ends, and what to do; NULL: it ends. */
 static const char *why_never(const ending *e, const graph_node *clip)
 {
-    if (clip->paused) return "is paused, so it never ends: take out paused=yes";
+    if (clip->paused) return "is paused, so it never ends: remove paused=yes";
     if (clip->loop == LOOP_OF_CLIP ? source_loops(e, clip->clip) : clip->loop != LOOP_ONCE)
         return "loops, so it never ends: give the clip loop=once";
     return NULL;
@@ -55,8 +55,8 @@ static int warn_transition(const ending *e, const graph_def *g, const graph_tran
         why = why_never(e, clip);
         if (!why) return 0;
     }
-    return why && model_warn(m, "%s:%u: `from %s to %s when ending` never comes true: '%s' %s", path,
-                             (unsigned)t->to.line, t->from.name ? t->from.name : "any", t->to.name, clip->name, why);
+    return why && model_warn(m, "%s:%u: `from %s to %s when ending` is never true: '%s' %s", path, (unsigned)t->to.line,
+                             t->from.name ? t->from.name : "any", t->to.name, clip->name, why);
 }
 
 static int warn_one_shot(const ending *e, const graph_def *g, const graph_node *n, const char *path, model *m)

@@ -44,7 +44,7 @@ graph_word graph_take(graph_reader *r);
 int graph_take_needed(graph_reader *r, const char *what, graph_word *out);
 /* The value of the option, or NULL; each option is taken once. */
 const char *graph_option(graph_reader *r, const char *key);
-/* Nothing is left of the line. `options` are those of the statement, for the message: "speed loop sync". */
+/* Checks that the line ends. `options`: the statement's options, for the message: "speed loop sync". */
 int graph_done(graph_reader *r, const char *options);
 
 int graph_number(graph_reader *r, uint32_t line, const char *text, double *out);

@@ -1,4 +1,4 @@
-/* graph_link.c: resolves the names of a graph, orders its nodes and checks what the runtime would refuse. */
+/* graph_link.c: resolves the names of a graph, orders its nodes and makes the runtime's checks. */
 #include <stdio.h>
 #include <string.h>
 
@@ -62,7 +62,7 @@ static name_table masks_of(const graph_def *g)
 
 static int wants(graph_reader *r, const graph_ref *ref, int suits, const char *what)
 {
-    return suits ? 0 : graph_fail(r, ref->line, "'%.60s' has to be %s here", ref->name, what);
+    return suits ? 0 : graph_fail(r, ref->line, "'%.60s' must be %s here", ref->name, what);
 }
 
 /* A select has a child for each value. */
@@ -108,8 +108,8 @@ static int link_children(graph_reader *r, graph_def *g, uint32_t index)
         if (resolve(r, &nodes, &n->children[i].node)) return 1;
         child = &g->nodes[n->children[i].node.index];
         if (child->parent != NOH_NONE)
-            return graph_fail(r, n->line, "'%.60s' is a child of '%.60s' already: a node has one place; define another",
-                              child->name, g->nodes[child->parent].name);
+            return graph_fail(r, n->line, "'%.60s' is already a child of '%.60s': define another node", child->name,
+                              g->nodes[child->parent].name);
         child->parent = index;
     }
     return 0;
@@ -122,13 +122,14 @@ static int find_root(graph_reader *r, const graph_def *g, uint32_t *root)
     for (uint32_t i = 0; i < g->node_count; ++i) {
         if (g->nodes[i].parent != NOH_NONE) continue;
         if (*root != NOH_NONE)
-            return graph_fail(r, g->nodes[i].line,
-                              "'%.60s' is nobody's child, nor is '%.60s' in line %u: one node alone gives the pose",
-                              g->nodes[i].name, g->nodes[*root].name, g->nodes[*root].line);
+            return graph_fail(
+                r, g->nodes[i].line,
+                "'%.60s' is not a child of a node, and neither is '%.60s' in line %u: only the root may have no parent",
+                g->nodes[i].name, g->nodes[*root].name, g->nodes[*root].line);
         *root = i;
     }
     if (!g->node_count) return graph_fail(r, g->line, "the graph '%.60s' has no nodes", g->name);
-    return *root == NOH_NONE ? graph_fail(r, g->line, "every node is a child: none gives the pose") : 0;
+    return *root == NOH_NONE ? graph_fail(r, g->line, "every node is a child: one node must be the root") : 0;
 }
 
 /* Children first: a walk with a stack of nodes and of the children done. */
@@ -150,7 +151,7 @@ static int order_nodes(graph_reader *r, graph_def *g, uint32_t root)
     }
     for (uint32_t i = 0; i < g->node_count && count < g->node_count; ++i)
         if (!seen[i])
-            return graph_fail(r, g->nodes[i].line, "'%.60s' lies below itself: its children lead back to it",
+            return graph_fail(r, g->nodes[i].line, "'%.60s' is its own descendant: remove the circle",
                               g->nodes[i].name);
     return 0;
 }
@@ -165,7 +166,7 @@ static int check_space(graph_reader *r, const graph_node *n)
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t i = 0; i < n->child_count; ++i) {
         if (n->kind == NOH_PACK_NODE_SPACE_1D && i && !(n->children[i].at[0] > n->children[i - 1].at[0]))
-            return graph_fail(r, n->line, "places in a blend space rise: '%.60s' is not above '%.60s'",
+            return graph_fail(r, n->line, "coordinates in a blend space must increase: '%.60s' is not above '%.60s'",
                               n->children[i].node.name, n->children[i - 1].node.name);
         memcpy(points + 2 * i, n->children[i].at, sizeof n->children[i].at);
     }
@@ -183,7 +184,7 @@ static int check_one_shot(graph_reader *r, graph_def *g, const graph_node *n)
     if (!first->loop) first->loop = LOOP_ONCE;
     return first->loop == LOOP_ONCE
                ? 0
-               : graph_fail(r, n->line, "'%.60s' never ends, so '%.60s' would not either: give the clip loop=once",
+               : graph_fail(r, n->line, "'%.60s' never ends, so '%.60s' would not end either: give the clip loop=once",
                             first->name, n->name);
 }
 
@@ -237,7 +238,7 @@ int graph_link(graph_reader *r, graph_def *g)
         clips += g->nodes[i].kind == NOH_PACK_NODE_CLIP;
     }
     if (clips > NOH_TRACKS_MAX)
-        return graph_fail(r, g->line, "the graph '%.60s' has %u clips: %u is the limit", g->name, clips,
+        return graph_fail(r, g->line, "the graph '%.60s' has %u clips: the limit is %u", g->name, clips,
                           NOH_TRACKS_MAX);
     if (check_sync_groups(r, g) || find_root(r, g, &root) || order_nodes(r, g, root)) return 1;
     for (uint32_t i = 0; i < g->transition_count; ++i)

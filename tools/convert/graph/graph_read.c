@@ -48,7 +48,7 @@ static int new_param(graph_reader *r, uint32_t kind, graph_param **out)
     if (graph_take_needed(r, "a name", &name) || check_plain(r, name)) return 1;
     for (uint32_t i = 0; i < r->g->param_count; ++i)
         if (strcmp(r->g->params[i].name, name.text) == 0)
-            return graph_fail(r, name.line, "there is a parameter '%.60s' already, in line %u", name.text,
+            return graph_fail(r, name.line, "the parameter '%.60s' is given twice; the first is in line %u", name.text,
                               r->g->params[i].line);
     memset(p, 0, sizeof *p);
     p->name = name.text;
@@ -83,7 +83,7 @@ static int read_number(graph_reader *r, uint32_t kind)
     p->initial = fminf(fmaxf((float)initial, p->minimum), p->maximum);
     if (kind == NOH_PARAM_INTEGER &&
         (floorf(p->minimum) != p->minimum || floorf(p->maximum) != p->maximum || floorf(p->initial) != p->initial))
-        return graph_fail(r, p->line, "'%.60s' is an integer: its range and its initial value are whole numbers",
+        return graph_fail(r, p->line, "'%.60s' is an integer: its range and initial value must be whole numbers",
                           p->name);
     return graph_done(r, "initial");
 }
@@ -150,7 +150,7 @@ static int read_mask(graph_reader *r)
         return 1;
     for (uint32_t i = 0; i < r->g->mask_count; ++i)
         if (strcmp(r->g->masks[i].name, name.text) == 0)
-            return graph_fail(r, name.line, "there is a mask '%.60s' already, in line %u", name.text,
+            return graph_fail(r, name.line, "the mask '%.60s' is given twice; the first is in line %u", name.text,
                               r->g->masks[i].line);
     m->name = name.text;
     m->line = name.line;
@@ -168,7 +168,7 @@ static int read_joint(graph_reader *r, uint32_t subtree)
     graph_name *joint = NULL;
     double weight = 1.0;
     if (!r->mask)
-        return graph_fail(r, r->words[0].line, "'%.60s' belongs to a mask: the lines of a mask follow it directly",
+        return graph_fail(r, r->words[0].line, "'%.60s' belongs to a mask: put it directly below the line of its mask",
                           r->words[0].text);
     if (graph_take_needed(r, "a joint", &name) || graph_option_number(r, "weight", 0.0, 1.0, &weight) ||
         new_name(r, name, &joint))
@@ -187,10 +187,11 @@ static int new_node(graph_reader *r, uint32_t kind, graph_node **out)
     graph_word name;
     if (r->g->node_count == NOH_GRAPH_NODES_MAX) return fail_full(r, NOH_GRAPH_NODES_MAX, "nodes");
     if (graph_take_needed(r, "a name", &name)) return 1;
-    if (strcmp(name.text, "any") == 0) return graph_fail(r, name.line, "'any' means every state: it names no node");
+    if (strcmp(name.text, "any") == 0)
+        return graph_fail(r, name.line, "'any' means every state: a node needs another name");
     for (uint32_t i = 0; i < r->g->node_count; ++i)
         if (strcmp(r->g->nodes[i].name, name.text) == 0)
-            return graph_fail(r, name.line, "there is a node '%.60s' already, in line %u", name.text,
+            return graph_fail(r, name.line, "the node '%.60s' is given twice; the first is in line %u", name.text,
                               r->g->nodes[i].line);
     memset(n, 0, sizeof *n);
     n->name = name.text;
@@ -231,8 +232,7 @@ static int take_pair(graph_reader *r, graph_node *n)
 static int take_by(graph_reader *r, graph_node *n, int both)
 {
     char *text = (char *)(uintptr_t)graph_option(r, "by"), *comma; /* of the file's pool, which is ours */
-    if (!text || !*text)
-        return graph_fail(r, n->line, "by=PARAMETER is missing: which parameter decides about '%.60s'", n->name);
+    if (!text || !*text) return graph_fail(r, n->line, "'%.60s' needs by=PARAMETER", n->name);
     comma = both ? strchr(text, ',') : NULL;
     if (comma) {
         *comma = '\0';
@@ -249,7 +249,7 @@ static int take_amount(graph_reader *r, graph_node *n)
     if (take_by(r, n, 0)) return 1;
     if (!strchr("+-.0123456789", n->by[0].name[0])) return 0;
     if (graph_number(r, n->line, n->by[0].name, &value)) return 1;
-    if (!(value >= 0.0 && value <= 1.0)) return graph_fail(r, n->line, "by=%.9g is not possible: it is 0 to 1", value);
+    if (!(value >= 0.0 && value <= 1.0)) return graph_fail(r, n->line, "by must be 0 to 1, not %.9g", value);
     n->value = (float)value;
     n->by[0].name = NULL;
     return 0;
@@ -262,7 +262,7 @@ static int take_change(graph_reader *r, uint32_t *ticks, uint32_t *curve, uint32
     if (graph_option_ticks(r, "fade", ticks) || graph_option_ticks(r, "inertia", &inertia) ||
         graph_option_word(r, "curve", curves, curve) || graph_option_word(r, "enter", entries, &keep))
         return 1;
-    if (inertia && *ticks) return graph_fail(r, r->words[0].line, "a change has a fade or inertia, not both");
+    if (inertia && *ticks) return graph_fail(r, r->words[0].line, "give fade or inertia, not both");
     *ticks = inertia ? inertia : *ticks;
     *flags = (inertia ? FLAG_INERTIAL : 0u) | (keep ? FLAG_KEEP : 0u);
     return 0;
@@ -292,8 +292,7 @@ static int read_pair(graph_reader *r, uint32_t kind)
     const char *mask, *reference;
     if (new_node(r, kind, &n) || take_pair(r, n) || take_amount(r, n)) return 1;
     mask = kind == NOH_PACK_NODE_MASK ? graph_option(r, "mask") : NULL;
-    if (kind == NOH_PACK_NODE_MASK && !mask)
-        return graph_fail(r, n->line, "mask=MASK is missing: where '%.60s' lies over the other", n->name);
+    if (kind == NOH_PACK_NODE_MASK && !mask) return graph_fail(r, n->line, "'%.60s' needs mask=MASK", n->name);
     n->mask = (graph_ref){ mask, NOH_NONE, n->line };
     reference = kind == NOH_PACK_NODE_ADD ? graph_option(r, "reference") : NULL;
     if (reference) {
@@ -333,7 +332,7 @@ static int read_one_shot(graph_reader *r)
     const char *on;
     if (new_node(r, NOH_PACK_NODE_ONE_SHOT, &n) || take_pair(r, n)) return 1;
     on = graph_option(r, "on");
-    if (!on) return graph_fail(r, n->line, "on=TRIGGER is missing: what plays '%.60s'", n->name);
+    if (!on) return graph_fail(r, n->line, "'%.60s' needs on=TRIGGER", n->name);
     n->by[0] = (graph_ref){ on, NOH_NONE, n->line };
     n->mask = (graph_ref){ graph_option(r, "mask"), NOH_NONE, n->line };
     n->value = 0.5f;
@@ -357,10 +356,11 @@ static int take_keyword(graph_reader *r, const char *keyword)
     const graph_word word = graph_take(r);
     return strcmp(word.text, keyword) == 0
                ? 0
-               : graph_fail(r, word.line,
-                            "'%s' is missing: a transition is `from STATE to STATE when PARAM above|below V`, `when "
-                            "TRIGGER` or `when ending`",
-                            keyword);
+               : graph_fail(
+                     r, word.line,
+                     "'%s' is missing: write `from STATE to STATE when PARAM above|below V`, `when TRIGGER` or `when "
+                     "ending`",
+                     keyword);
 }
 
 /* PARAM above V, PARAM below V, TRIGGER, ending */
@@ -388,7 +388,8 @@ static int read_from(graph_reader *r)
     graph_transition *t = &r->g->transitions[r->g->transition_count];
     graph_word from, to;
     if (!r->node)
-        return graph_fail(r, r->words[0].line, "'from' belongs to a machine: its transitions follow it directly");
+        return graph_fail(r, r->words[0].line,
+                          "'from' belongs to a machine: put it directly below the line of its machine");
     if (r->g->transition_count == NOH_GRAPH_TRANSITIONS_MAX)
         return fail_full(r, NOH_GRAPH_TRANSITIONS_MAX, "transitions");
     memset(t, 0, sizeof *t);
@@ -414,7 +415,7 @@ static int read_graph(graph_reader *r)
     if (graph_take_needed(r, "a name", &name)) return 1;
     for (uint32_t i = 0; i < r->file->count; ++i)
         if (strcmp(r->file->graphs[i]->name, name.text) == 0)
-            return graph_fail(r, name.line, "there is a graph '%.60s' already, in line %u", name.text,
+            return graph_fail(r, name.line, "the graph '%.60s' is given twice; the first is in line %u", name.text,
                               r->file->graphs[i]->line);
     r->g = calloc(1, sizeof *r->g);
     if (!r->g) return graph_fail(r, name.line, "there is not enough memory to read this file");
@@ -465,7 +466,7 @@ static int read_line(graph_reader *r)
         return graph_fail(r, r->words[0].line, "no statement begins with '%.60s'%s",
                           keyword.text[0] ? keyword.text : r->words[0].text,
                           graph_hint(keyword.text, statements, count, hint));
-    if (which != 0 && !r->g) return graph_fail(r, keyword.line, "the first statement is: graph NAME");
+    if (which != 0 && !r->g) return graph_fail(r, keyword.line, "the first statement must be: graph NAME");
     if (which != 6 && which != 7) r->mask = NULL;
     if (which != 16) r->node = NULL;
     return read_statement(r, which);

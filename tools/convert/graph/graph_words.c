@@ -130,7 +130,7 @@ int graph_done(graph_reader *r, const char *options)
     const char *candidates[16];
     size_t count = 0;
     if (extra.text[0])
-        return graph_fail(r, extra.line, "'%.60s' is one word too many for '%.60s'", extra.text, r->words[0].text);
+        return graph_fail(r, extra.line, "'%.60s' is one word too many after '%.60s'", extra.text, r->words[0].text);
     for (uint32_t i = 0; i < r->word_count; ++i) {
         if (!r->words[i].value) continue;
         (void)snprintf(list, sizeof list, "%s", options);
@@ -156,9 +156,7 @@ int graph_option_number(graph_reader *r, const char *key, double low, double hig
     const char *text = graph_option(r, key);
     if (!text) return 0;
     if (graph_number(r, line, text, out)) return 1;
-    return *out >= low && *out <= high
-               ? 0
-               : graph_fail(r, line, "%s=%.60s is not possible: it is %.9g to %.9g", key, text, low, high);
+    return *out >= low && *out <= high ? 0 : graph_fail(r, line, "%s=%.60s must be %.9g to %.9g", key, text, low, high);
 }
 
 int graph_option_ticks(graph_reader *r, const char *key, uint32_t *out)
@@ -182,5 +180,5 @@ int graph_option_word(graph_reader *r, const char *key, const char *const *words
             return 0;
         }
     }
-    return graph_fail(r, line, "%s does not know '%.60s'%s", key, text, graph_hint(text, words, count, hint));
+    return graph_fail(r, line, "%s has no value '%.60s'%s", key, text, graph_hint(text, words, count, hint));
 }

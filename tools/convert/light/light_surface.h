@@ -6,16 +6,16 @@
 #include "noh/pack.h"
 #include "ray_tree.h"
 
-/* In the model space of the mesh. Occluders are the triangles of the full mesh and, where the pack's nodes draw others,
- * of those in the bind pose; but not those of materials that blend. */
+/* In the model space of the mesh. Occluders are the triangles of the full mesh, and of the other meshes that the pack's
+ * nodes draw, in the bind pose; blended materials do not occlude. */
 typedef struct light_surface {
     noh_mesh mesh;
     float *position, *normal; /* [vertex_count][3] in the pose; normals are unit */
     float *triangles;         /* [own_count + other_count][9], the mesh's own first */
     uint32_t *corners;        /* [own_count][3] their vertices */
     uint32_t own_count, other_count;
-    /* [vertex_count] Coarse LOD levels may have vertices that no triangle of the full mesh uses and that lie beside its
-     * surface, inside it as well: light reaches the nearest one that it does use, which is itself for most. */
+    /* [vertex_count] Coarse LOD levels may have vertices that no triangle of the full mesh uses, and that lie off its
+     * surface, also inside: these take the light of the nearest used vertex. A used vertex maps to itself. */
     uint32_t *stand_in;
     /* A triangle that is nearer to a vertex than this shades nothing: a twelfth of the mean edge, half a millimetre on
      * a head of 5,000 vertices. Folds that lie on each other, or pass through each other by so little, are no shadow.

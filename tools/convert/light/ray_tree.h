@@ -1,4 +1,4 @@
-/* ray_tree.h: what a ray meets first, or whether it meets anything, among triangles. */
+/* ray_tree.h: the first hit of a ray among triangles, or whether there is any. */
 #ifndef NOH_CONVERT_LIGHT_RAY_TREE_H
 #define NOH_CONVERT_LIGHT_RAY_TREE_H
 
@@ -18,7 +18,7 @@ void ray_tree_free(ray_tree *t);
  * source  Moeller, Trumbore: Fast, minimum storage ray-triangle intersection, 1997 */
 int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least);
 
-/* What a ray meets first. */
+/* The first hit of a ray. */
 typedef struct ray_meeting {
     uint32_t triangle; /* the caller's number */
     float u, v;        /* the point is (1 - u - v) a + u b + v c */

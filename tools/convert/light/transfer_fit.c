@@ -54,7 +54,7 @@ static void unfold_bytes(const uint8_t bytes[2], float out[3])
     }
 }
 
-/* Of the nine pairs of bytes about the folded direction the nearest; `rounded` is what they decode to. */
+/* The nearest of the nine pairs of bytes about the folded direction; `rounded` is its decoded direction. */
 static void fold_axis(const float axis[3], uint8_t bytes[2], float rounded[3])
 {
     const float sum = fabsf(axis[0]) + fabsf(axis[1]) + fabsf(axis[2]);

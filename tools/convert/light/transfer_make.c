@@ -78,7 +78,7 @@ static float integral(const float *transfer)
     return transfer[0] * 3.5449077f; /* sqrt(4 pi) */
 }
 
-/* One reflection, of which `blocked` says where; what reflects is lit as in the bind pose. */
+/* One reflection, at the rays in `blocked`; the reflecting surface is lit as in the bind pose. */
 static void add_bounce(maker *k, uint32_t vertex, float *transfer)
 {
     if (k->settings->bounce) {
@@ -219,7 +219,7 @@ static int moves(const maker *k, uint32_t texel)
     return (words[0] | words[1] | words[2]) != 0;
 }
 
-/* The differences of occlusion to what the records say, in whole steps of a scale of the target's own. */
+/* The differences of occlusion from the records, in whole steps of the target's own scale. */
 static void make_deltas(const maker *k, uint32_t target, float *differences, transfer_data *out)
 {
     const noh_target *t = &k->surface.mesh.targets[target];

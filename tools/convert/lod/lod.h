@@ -95,7 +95,7 @@ typedef struct lod {
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
 void lod_free(lod *l);
 
-/* Cut other levels from the list of collapses: level k is what the first collapse_counts[k] leave (rising). The old
+/* Cut other levels from the list of collapses: level k is the mesh after the first collapse_counts[k] (rising). The old
  * levels are freed. Returns 1 when out of memory. */
 int lod_cut(const model_mesh *mesh, lod *l, const uint32_t *collapse_counts, uint32_t level_count);
 

@@ -74,7 +74,7 @@ int lod_attributes_make(lod_surface *s, const lod_options *o)
     return 0;
 }
 
-/* The point of the new surface that stands for one of the old. */
+/* The point of the new surface in place of one of the old. */
 typedef struct place {
     float squared, weight[3];
     uint32_t vertex[3];
@@ -218,7 +218,7 @@ static float color_error(const lod_surface *s, const rest_move *m, const uint32_
     return worst;
 }
 
-/* UVs are compared in the triangle's own island: one that has vanished says nothing about the others. */
+/* UVs are compared in the triangle's own island: a vanished one does not count for the others. */
 static float uv_error(const lod_surface *s, const rest_move *m, const uint32_t *corners, uint32_t island)
 {
     static const float middle[3] = { 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f };

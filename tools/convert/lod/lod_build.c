@@ -176,7 +176,7 @@ static int record(builder *b, const lod_move *m)
     return lod_quadric_merge(b->quadrics, m->from, m->to);
 }
 
-/* Less than a point's cost by what is cheap to measure. */
+/* A lower bound of a point's cost that is cheap to measure. */
 static double least_cost(builder *b, const lod_fan *fan, const candidate *list, uint32_t count, double bound)
 {
     double least = HUGE_VAL;
@@ -193,9 +193,9 @@ static double least_cost(builder *b, const lod_fan *fan, const candidate *list, 
     return least * importance(b, fan->point, least);
 }
 
-/* A point beside a collapse is judged again when its turn comes, since most change several times before. Until then it
- * stands where it stood, a little to the front: costs seldom fall. Where it may have become cheap it is put there.
- * Returns 1 when out of memory. */
+/* A point next to a collapse is evaluated again only when its turn comes, since most change several times before. Until
+ * then it keeps its place, a little to the front, as costs seldom fall; a point that may have become cheap moves to the
+ * front. Returns 1 when out of memory. */
 static int change_point(builder *b, uint32_t point)
 {
     candidate list[LOD_RING_MAX];

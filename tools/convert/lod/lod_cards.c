@@ -51,7 +51,7 @@ static void join(const lod_surface *s, uint32_t *parent)
     }
 }
 
-/* By root: points, those of them on borders, triangles. */
+/* By root: points, border points, triangles. */
 typedef struct island_count {
     uint32_t points, border, triangles;
 } island_count;
@@ -121,7 +121,7 @@ uint32_t lod_cards_least(const lod_surface *s)
     return s->card_count * CARD_LEAST;
 }
 
-/* The area that a move leaves of the triangles around its point, less what they have. */
+/* The change of area of the triangles around a point by its move. */
 static double area_change(const lod_surface *s, const lod_move *m)
 {
     double change = 0.0;

@@ -22,7 +22,7 @@
 typedef struct sample {
     uint32_t triangle;
     float weight[3];
-    float area; /* that the sample stands for; 0 on edges and corners */
+    float area; /* the sample's area; 0 on edges and corners */
 } sample;
 
 /* One direction: samples on `from`, distances to the tree of `to`. */

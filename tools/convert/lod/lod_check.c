@@ -54,7 +54,8 @@ int lod_check_options(lod_options *o, uint32_t target_count, model_error *error)
         o->level_count = (uint32_t)(sizeof standard_ratios / sizeof *standard_ratios);
     }
     if (!o->level_count || o->level_count > LOD_LEVELS_MAX || (!o->ratios && !o->errors)) {
-        return model_fail(error, "", "%u LOD levels: give 1 to %u ratios or errors", o->level_count, LOD_LEVELS_MAX);
+        return model_fail(error, "", "%u LOD levels: the number of ratios or errors must be 1 to %u", o->level_count,
+                          LOD_LEVELS_MAX);
     }
     for (uint32_t i = 0; i < o->level_count; i++) {
         float value = o->errors ? o->errors[i] : o->ratios[i], last = i == 0      ? value

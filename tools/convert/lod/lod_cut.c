@@ -12,7 +12,7 @@ int lod_level_alloc(lod_level *level, uint32_t submesh_count)
     return !level->indices || !level->submesh_first;
 }
 
-/* The vertex that stands for one: the end of its chain, which is made shorter on the way. */
+/* The vertex in place of a removed one: the end of its chain, which is shortened on the way. */
 static uint32_t end_of(uint32_t *to, uint32_t vertex)
 {
     while (to[vertex] != vertex) {

@@ -14,7 +14,7 @@
 #else
 #define LOD_WIDE
 #endif
-/* What is not inlined into a loop over lanes keeps it from being vectorised. */
+/* A loop over lanes is vectorised only if its calls are inlined. */
 #if defined(__GNUC__)
 #define LOD_INLINE static inline __attribute__((always_inline))
 #else

@@ -279,14 +279,14 @@ static void set_pose(fit_job *j, const float *weights)
     f->full = j->posed;
 }
 
-/* What the pose changed, as the least change of the deltas that gives it. A target moves what it moved before, so that
- * its deltas stay as few as they are. */
+/* The change of the pose, as the smallest change of deltas that gives it. A target only moves vertices that it moved
+ * before, so that its deltas stay few. */
 static void share_out(fit_job *j, const float *weights)
 {
     const model_mesh *mesh = j->mesh;
     for (uint32_t i = 0; i < j->f.used_count; i++) {
         const size_t v = 3u * (size_t)j->f.used[i];
-        float squares = 0.0f; /* at least 1 in the end: what a weak target would have to do is left */
+        float squares = 0.0f; /* at least 1 in the end: the part of a weak target is dropped */
         for (uint32_t t = 0; t < mesh->target_count; t++) {
             squares += is_moved(mesh->targets[t].position + v) ? weights[t] * weights[t] : 0.0f;
         }

@@ -1,7 +1,7 @@
 /* lod_fit.h: vertices of their own for coarse levels.
  *
- * A level whose vertices are a subset of the full mesh's lies inside of whatever is round: corners touch the surface,
- * and everything between them is below it. Vertices that may lie beside the surface halve that distance. They cost
+ * A level whose vertices are a subset of the full mesh's lies inside of round shapes: corners touch the surface, and
+ * everything between them is below it. Vertices that may lie off the surface halve that distance. They cost
  * memory, since no finer level uses them, so only coarse levels have them: a level with a tenth of the triangles adds
  * about a tenth to the mesh's vertices and deltas.
  *

@@ -12,7 +12,7 @@
 #define SHORTENED 0.4
 #define STEP_MAX 0.1f     /* of the largest distance, along each axis */
 #define REACH 1.5f        /* of the largest distance at first */
-#define LEAST_RATIO 0.25f /* of the largest distance: what is below counts by less than 1/4000 and is left out */
+#define LEAST_RATIO 0.25f /* of the largest distance: smaller ones count by less than 1/4000 and are left out */
 #define FIRST_RATIO 0.2f  /* the same in a pose's first round, of the largest at rest */
 #define SQRT_3 1.7320508f
 #define TURNED 0.5f  /* the cosine by which a triangle may turn */
@@ -184,7 +184,7 @@ static float list_rows(fitter *f)
         largest = f->rows[i].distance > largest ? f->rows[i].distance : largest;
     }
     f->reach = f->reach > 0.0f ? f->reach : REACH * largest;
-    /* what is farther is where mixes tear the surface: it does not lead */
+    /* farther places are torn by mixes and do not guide the fit */
     largest = largest < f->reach ? largest : f->reach;
     for (uint32_t i = 0; i < f->row_count; i++) {
         const double ratio = f->rows[i].distance < largest ? f->rows[i].distance / largest : 1.0f,

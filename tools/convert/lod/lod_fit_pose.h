@@ -45,7 +45,7 @@ typedef struct fitter {
     float reach; /* no point goes farther from where it starts, along each axis; 0: the first pose sets it */
     /* the pose */
     const float *full; /* [vertex_count][3] the full mesh */
-    float *start;      /* [vertex_count][3] the level with the full mesh's vertices; those of others are not read */
+    float *start;      /* [vertex_count][3] the level with the full mesh's vertices; other vertices are not read */
     float *at;         /* [vertex_count][3] the level; likewise */
     uint8_t *moves;    /* [vertex_count] whether the pose moves a vertex of the full mesh; rest: all */
     uint32_t *seen;    /* [vertex_count] by point: the list in which its place was compared with the full mesh */

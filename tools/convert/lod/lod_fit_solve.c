@@ -1,7 +1,7 @@
 /* lod_fit_solve.c: weighted least squares for the steps of all slots, by conjugate gradients.
  *
- * A row says that its distance shrinks as its corners move along its direction. Rows hold what they hold only nearby,
- * so steps are damped; across the normal more so, since a vertex that slides takes its texture with it. */
+ * A row states that its distance shrinks as its corners move along its direction. Rows are valid only nearby, so steps
+ * are damped, and more so across the normal, since a vertex that slides drags its texture. */
 #include <string.h>
 
 #include "lod_fit_pose.h"

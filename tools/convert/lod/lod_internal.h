@@ -1,7 +1,7 @@
 /* lod_internal.h (private to lod_*.c): the surface while it is simplified.
  *
- * A point is a place of the surface: the vertices that lie there and move alike (wedges). It goes
- * by the first of them. A corner is 3 x triangle + place. */
+ * A point is a position of the surface: the vertices that lie there and move alike (wedges). The
+ * first of them identifies it. A corner is 3 x triangle + place. */
 #ifndef NOH_CONVERT_LOD_LOD_INTERNAL_H
 #define NOH_CONVERT_LOD_LOD_INTERNAL_H
 
@@ -188,7 +188,7 @@ void lod_distance_triangle(const float *triangle, const float *x, const float *y
 /* The same, and nearest[i] = which where it fell. */
 void lod_distance_nearest(const float *triangle, uint32_t which, const float *x, const float *y, const float *z,
                           uint32_t count, float *squared, uint32_t *nearest);
-/* LOD_LANES triangles beside each other, for one point at a time. */
+/* LOD_LANES triangles side by side, for one point at a time. */
 typedef struct lod_block {
     float edges[3][10][LOD_LANES]; /* lod_edge, number by number */
     float normal[3][LOD_LANES], inverse[LOD_LANES];

@@ -11,9 +11,9 @@
 #define FRAMES_CERTIFIED 28u /* frames that the levels are measured in */
 #define FINEST_ERROR (1.0f / 4000.0f)
 #define ERROR_STEP 4.0f
-#define COARSEST_ERROR (1.0f / 16.0f) /* by shares too: what is off by more shows nothing of the shape */
+#define COARSEST_ERROR (1.0f / 16.0f) /* also for shares: with a larger error, the shape is lost */
 #define LEVELS_BY_ERROR 5u            /* the coarsest is off by 1/62 of the diagonal */
-#define CLIP_LOSS 1.05f               /* what a fit may cost in frames of clips */
+#define CLIP_LOSS 1.05f               /* the largest cost of a fit in frames of clips */
 #define LEAST_SAVED 0.95f             /* of the finer level's triangles: a level with more is left out */
 
 typedef struct pose_list {

@@ -53,14 +53,14 @@ typedef struct mesh_levels {
     float cap_error[LOD_CAPS]; /* lod_frames.h */
 } mesh_levels;
 
-/* Build and certify those of all meshes; out [mesh_count]. By shares, the meshes of an asset have levels of like error:
- * level k of all of them together has its share of all triangles, and each mesh is simplified as far as the others are
- * for one error in world units. So a fringe of hair does not vanish while a smooth body hardly changes.
+/* Build and certify the levels of all meshes; out [mesh_count]. By shares, the meshes of an asset have levels of like
+ * error: level k of all of them together has its share of all triangles, and each mesh is simplified as far as the
+ * others are for one error in world units. So a fringe of hair does not vanish while a smooth body hardly changes.
  * m  vertices that coarse levels have of their own are appended to its meshes, whose triangles stay as they are
  * Returns 1 and *error: out of memory, or as lod_build. Free each in both cases. */
 int model_levels_make(model *m, const lod_settings *settings, mesh_levels *out, model_error *error);
 
-/* Those of one mesh by itself. Levels that would have nearly as many triangles as the finer one are left out.
+/* The levels of one mesh by itself. Levels that would have nearly as many triangles as the finer one are left out.
  * m, mesh  a model that is complete and bound to its skins: clips that move the mesh are sampled for poses
  * Returns 1 and *error: out of memory, or as lod_build. Free in both cases. */
 int mesh_levels_make(model *m, uint32_t mesh, const lod_settings *settings, mesh_levels *out, model_error *error);

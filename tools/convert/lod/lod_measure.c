@@ -1,4 +1,4 @@
-/* lod_measure.c: how far a collapse would take the surface from the samples around it, in every pose.
+/* lod_measure.c: the distance of the surface after a collapse from the samples around it, in every pose.
  *
  * Fine levels are seen from near, mostly at rest; coarse ones must at least keep the expressions. So distances in poses
  * of targets count more as they grow: one of a mean edge's length counts 1 + POSE_GROWTH times. So do those at the rims
@@ -6,7 +6,7 @@
  *
  * Few poses decide. In the first one, the nearest place of every sample is noted; in any other, the distance to the
  * same place is a bound, at the price of one triangle for each sample instead of all. A pose whose bounds are below
- * what is already known is done with that: the cost is the same. */
+ * the known distance needs no more work: the cost is the same. */
 #include <math.h>
 #include <string.h>
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define TURN_COSINE 0.2588190451 /* 75 degrees at rest */
-#define FACET_NORMALS 0.25f      /* of a squared edge: what a difference of normals of 1 counts */
+#define FACET_NORMALS 0.25f      /* of a squared edge: the cost of a difference of normals of 1 */
 #define FACET_REACH 0.5f         /* of the edge: attributes of more belong to another part of the texture */
 #define SLIVER 0.01f             /* the least ratio of a new triangle's height to its longest edge */
 
@@ -30,7 +30,7 @@ static uint32_t find_wedge(const lod_move *m, uint32_t vertex)
     return w;
 }
 
-/* How ill a vertex of `to` would stand for one of `from`: the squared difference of attributes as lengths; then of
+/* The cost of a vertex of `to` in place of one of `from`: the squared difference of attributes as lengths; then of
  * normals, as shares of the edge. */
 static float facet_misfit(const lod_surface *s, uint32_t from, uint32_t to, float edge)
 {

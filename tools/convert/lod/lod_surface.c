@@ -219,7 +219,7 @@ static int by_place(const void *a, const void *b)
     return order ? order : (p->point > q->point) - (p->point < q->point);
 }
 
-/* Lock two borders at one place that targets move apart: what is closed at rest must stay closed. */
+/* Lock two borders at one place that targets move apart: a gap that is closed at rest must stay closed. */
 static int lock_touching_borders(lod_surface *s, const uint8_t *border)
 {
     uint32_t count = 0;

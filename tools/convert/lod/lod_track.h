@@ -1,5 +1,5 @@
 /* lod_track.h (private to lod_track.c and lod_measure.c): samples of the full surface, attached to the
- * triangles that stand for them.
+ * triangles in their place.
  *
  * A sample is a point that was removed, or (vertex_count + t) the centroid of the mesh's triangle t. */
 #ifndef NOH_CONVERT_LOD_LOD_TRACK_H

@@ -5,7 +5,7 @@
 #include "convert/base/triangle_tree.h"
 
 typedef struct lod_tree {
-    triangle_tree boxes;      /* split in the pose of lod_tree_make, fitted to that of the last lod_tree_pose */
+    triangle_tree boxes;      /* split in the pose of lod_tree_make, refitted by the last lod_tree_pose */
     const uint32_t *indices;  /* the caller's, [triangle_count][3] */
     float *triangles;         /* [triangle_count][9] in the pose of the last lod_tree_pose */
     uint32_t *block_of;       /* [nodes] of each leaf */

@@ -35,7 +35,7 @@ static int fill_gaps(const raw_skeleton *skeleton, raw_clip *clip, FILE *report)
     gaps_report r = { 0, 0, 0, 0, 0.0 };
     if (gaps_fill(skeleton, clip, &r)) return 1;
     if (report && (r.filled || r.left)) {
-        fprintf(report, "clean '%s': %u gaps in %u tracks filled, the longest of %.3f s; %u longer than %.0f s left\n",
+        fprintf(report, "clean '%s': filled %u gaps in %u tracks, the longest of %.3f s; left %u longer than %.0f s\n",
                 clip->name, r.filled, r.tracks, r.longest_s, r.left, GAPS_LONGEST_S);
     }
     return 0;
@@ -70,8 +70,8 @@ static int add_keys(const contacts *c, raw_clip *clip, FILE *report)
         fprintf(report, "clean '%s': %u callback keys where %u feet come down\n", clip->name, added, contacts_feet(c));
     } else if (report && !failed) {
         fprintf(report,
-                "warning: clip '%s' has no contact-keys: no foot comes down in it; give keys by --events if it has "
-                "steps\n",
+                "warning: clip '%s' has no contact-keys: no foot comes down in it; if it has steps, give keys with "
+                "--events\n",
                 clip->name);
     }
     return failed;
@@ -87,15 +87,15 @@ static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what,
         if (report) {
             fprintf(report, "%s '%s': no feet: no joints in the lowest tenth of the body%s\n",
                     what & CLEAN_KEYS ? "warning: clip" : "clean", clip->name,
-                    what & CLEAN_KEYS ? ", so it has no contact-keys: give them by --events" : "");
+                    what & CLEAN_KEYS ? ", so it has no contact-keys: give them with --events" : "");
         }
         return 0;
     }
     if ((what & CLEAN_ROOT) && contacts_on_the_spot(c)) {
         const double gone = contacts_move_root(c, skeleton, clip) * skeleton->unit_cm;
-        if (report) fprintf(report, "clean '%s': the root goes %.1f cm as its feet say\n", clip->name, gone);
+        if (report) fprintf(report, "clean '%s': the root moves %.1f cm, derived from the feet\n", clip->name, gone);
     } else if ((what & CLEAN_ROOT) && report) {
-        fprintf(report, "clean '%s': its root moves already: left as it is\n", clip->name);
+        fprintf(report, "clean '%s': its root already moves, and was left unchanged\n", clip->name);
     }
     if ((what & CLEAN_CONTACTS) && !has_markers(clip)) {
         failed = contacts_mark(c, skeleton, clip, &marked);

@@ -6,7 +6,7 @@
 
 #include "convert/clips/raw_clip.h"
 
-/* Bits of what is done. */
+/* Bits of the steps. */
 enum {
     CLEAN_GAPS = 1,     /* gaps.h */
     CLEAN_JITTER = 2,   /* jitter.h */
@@ -18,7 +18,7 @@ enum {
 /* "gaps,jitter", "all", "off". Returns 0, or 1: a word is unknown. */
 int clean_parse(const char *text, unsigned *what);
 
-/* Clean the clips of a set, each by itself. report: a line for each clip that says what was done and how far it moved;
+/* Clean the clips of a set, each by itself. report: a line for each clip with its changes and the distance it moved;
  * NULL: quiet. Returns 1 when out of memory. */
 int clean_set(raw_set *set, unsigned what, FILE *report);
 

@@ -279,7 +279,7 @@ static double spread(const double *values, uint32_t count)
     return most - least;
 }
 
-/* Whether the joints of the last frame are where those of the first are. Roots may go on. */
+/* Whether the joints of the last frame are in the places of the first frame. Roots may differ. */
 static int ends_as_it_began(const contacts *c, const raw_skeleton *skeleton, const raw_clip *clip)
 {
     const size_t last = (size_t)(clip->frame_count - 1u) * clip->joint_count;
@@ -412,8 +412,8 @@ int contacts_mark(const contacts *c, const raw_skeleton *skeleton, raw_clip *cli
     return 0;
 }
 
-/* Whether another foot of its side came down just before, or one of a lower number does now: rigs have several joints to
- * a foot. */
+/* Whether another foot of its side came down just before, or one of a lower number does now: rigs have several joints
+ * to a foot. */
 static int is_told(const contacts *c, uint32_t foot, uint32_t frame)
 {
     const uint32_t span = c->frame_count - 1u, least = (uint32_t)(CONTACT_LEAST_S * c->rate + 0.5);

@@ -1,13 +1,13 @@
-/* contacts.h: when feet stand, and where a body goes that stands on them.
+/* contacts.h: finds when feet stand, and the motion of a body that stands on them.
  *
- * Feet are found by shape: joints of which all that hangs below is in the lowest tenth of the bind pose. A foot stands
+ * Feet are found by shape: joints with all descendants in the lowest tenth of the bind pose. A foot stands
  * while a point of it (a joint, or the end of the last) is low and slow; both have two thresholds, so that a foot at
  * one of them does not flicker. Heights are measured from each point's own floor, the height under which it is in a
- * twentieth of the frames: the ground is taken to be level. Where the last frame is the first again, a foot that stands
- * across that seam comes down once.
+ * twentieth of the frames: the ground is assumed to be level. Where the last frame is the first again, a foot that
+ * stands across that seam comes down once.
  *
  * Mechanical capture (an exoskeleton) knows angles and no place: its root stays where it is, as it does in a walk made
- * on the spot for a game. What the feet do says where it was: at each step the root moves against the points that are
+ * on the spot for a game. The feet give its motion: at each step the root moves against the points that are
  * lowest, and, where it was held at one height, is lifted so that the lowest of them is at the floor. A body so
  * captured cannot jump. */
 #ifndef NOH_CONVERT_MOCAP_CONTACTS_H
@@ -19,7 +19,7 @@
 
 typedef struct contacts contacts;
 
-/* NULL: out of memory, no feet, or no frames; *failed says whether it was memory. */
+/* NULL: out of memory, no feet, or no frames; *failed: it was memory. */
 contacts *contacts_find(const raw_skeleton *skeleton, const raw_clip *clip, int *failed);
 void contacts_free(contacts *c);
 

@@ -8,11 +8,11 @@
 #include "track.h"
 
 #define DEGREE (3.14159265358979323846 / 180.0)
-#define AROUND 4u      /* steps on each side of a run that tell how it moves */
-#define WINDOW 16u     /* steps on each side of a jump that tell what is common */
+#define AROUND 4u      /* steps on each side of a run that give its motion */
+#define WINDOW 16u     /* steps on each side of a jump that give the usual step */
 #define SLOPE_STEPS 3u /* on each side of a gap */
 
-/* What one track's search needs. */
+/* The state of one track's search. */
 typedef struct search {
     mocap_track track;
     double *steps;     /* [frame_count - 1] from each frame to the next */

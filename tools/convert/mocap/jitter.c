@@ -38,7 +38,7 @@ static double noise_by(const filter *f, uint32_t component, uint32_t order, doub
     return mocap_rank(f->scratch, count, count / 2u) / (NORMAL_MEDIAN * growth);
 }
 
-/* Of all components together; 0: what there is, is motion. */
+/* The noise of all components together; 0: all of it is motion. */
 static double noise_of(const filter *f)
 {
     double sixth = 0.0, fourth = 0.0;
@@ -75,7 +75,7 @@ static void butterworth(double *x, uint32_t count, double cutoff, int backward)
     }
 }
 
-/* What lies before the first frame and after the last: the loop, or the motion turned about its end. */
+/* Frames before the first and after the last: the loop, or the motion turned about its end. */
 static double sample(const filter *f, int64_t frame, uint32_t component)
 {
     const int64_t last = (int64_t)f->track.frame_count - 1;
@@ -121,7 +121,7 @@ static double residual(const filter *f, double most)
     return sqrt(sum / f->track.frame_count);
 }
 
-/* The lowest cut-off that takes no more than noise would lose; 0: none. f->out is that of it. */
+/* The lowest cut-off that removes no more than the noise; 0: none. f->out is its output. */
 static double lowest_cutoff(filter *f, double noise)
 {
     double best = 0.0;

@@ -1,13 +1,13 @@
-/* jitter.h: noise of magnetic and other sensors, filtered as far as it is noise and no further.
+/* jitter.h: noise of magnetic and other sensors, filtered without changing the motion.
  *
- * How strong: a motion is smooth, so the sixth differences of its samples are those of the noise, sqrt(924) times as
- * large; their median does not see hits and falls. That they are noise: the fourth differences, sqrt(70) times as
- * large, say the same strength; where they say much more, there is motion in both and the track stays as it is.
+ * How strong: a motion is smooth, so the sixth differences of its samples are the noise's, sqrt(924) times as large;
+ * their median ignores hits and falls. That they are noise: the fourth differences, sqrt(70) times as
+ * large, give the same strength; if they give much more, both contain motion and the track is unchanged.
  *
  * How far: Butterworth's filter of second order, forward and backward (no delay), at the lowest cut-off whose residual
- * is what that noise would leave (Winter, Biomechanics and Motor Control of Human Movement, 2009, section 3.4.4.3,
- * with a measured noise in place of the line drawn by eye). No sample is moved by more than four times the noise: what
- * is more was a hit, and stays. */
+ * equals the noise (Winter, Biomechanics and Motor Control of Human Movement, 2009, section 3.4.4.3,
+ * with a measured noise in place of the line drawn by eye). No sample is moved by more than four times the noise: a
+ * larger change was a hit, and stays. */
 #ifndef NOH_CONVERT_MOCAP_JITTER_H
 #define NOH_CONVERT_MOCAP_JITTER_H
 

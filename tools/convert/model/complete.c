@@ -1,7 +1,7 @@
 /* complete.c: computes the normals and tangents that a file lacks, in the base and in the targets.
  *
- * A missing delta is what our own algorithm gives for the morphed mesh minus what it gives for the base; it is added to
- * the base that the file has. Where no triangle around a vertex changes, both are equal to the bit and the delta is an
+ * A missing delta is the result of our algorithm for the morphed mesh minus its result for the base; it is added to the
+ * file's base. Where no triangle around a vertex changes, both are equal to the bit and the delta is an
  * exact zero. */
 #include "model_build.h"
 

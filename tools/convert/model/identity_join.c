@@ -62,8 +62,8 @@ static int join(model *m, model *other, const char *path, model_error *error)
     }
     return joined ? 0
                   : model_fail(error, path,
-                               "no mesh with targets has the triangles and the rest positions of a mesh of the model: "
-                               "export both with the same order of vertices");
+                               "no mesh with targets has the triangles and rest positions of "
+                               "a mesh of the model: export both with the same vertex order");
 }
 
 int identity_join(model *m, const char *path, model_error *error)

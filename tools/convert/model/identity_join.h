@@ -12,7 +12,7 @@ extern "C" {
 
 /* Read a .gltf or .glb file and append the targets of its meshes to those meshes of `m` that have the same triangles
  * and rest positions. Weights, and animations of weights, grow by zeros.
- * errors  1: the file cannot be read, no mesh fits, or a name is there twice; the error tells the file */
+ * errors  1: the file cannot be read, no mesh fits, or a name occurs twice; the error names the file */
 int identity_join(model *m, const char *path, model_error *error);
 
 #ifdef __cplusplus

@@ -4,7 +4,7 @@
 
 #include "convert/model/model.h"
 
-/* For each vertex the first one of its island: vertices that triangles join, and those of one position, whatever their
+/* For each vertex the first one of its island: vertices that triangles join, or that share a position, whatever their
  * normals and UVs. island, work: [vertex_count] */
 void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work);
 

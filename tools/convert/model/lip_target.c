@@ -31,7 +31,7 @@ typedef struct mouth {
     uint32_t *island; /* [vertex_count] */
     uint32_t *work;   /* [vertex_count] */
     float *moved;     /* [vertex_count] how far the open mouth moves it */
-    float *bite;      /* [vertex_count][3] rest, and what the recipe's FF adds */
+    float *bite;      /* [vertex_count][3] rest, and the deltas of the recipe's FF */
     double most;      /* the farthest of `moved` */
     double size;      /* of the mouth: `most`, or half its width and two fifths, whichever is more */
     uint32_t skin;    /* island */
@@ -84,7 +84,7 @@ static int add_channel(const model_mesh *mesh, const noh_face_link *links, uint3
     return any;
 }
 
-/* What opens the mouth, and what bites as far as the targets do. 0: nothing opens it. */
+/* The targets that open the mouth, and the FF of existing targets. 0: nothing opens it. */
 static int pose(mouth *h)
 {
     const model_mesh *mesh = h->mesh;
@@ -196,7 +196,7 @@ static double aside(const mouth *h, const double at[3])
     return fabs(along) / h->half;
 }
 
-/* Lips that touch in the middle, or those of a mouth that is modelled a little open. 1: found. */
+/* Lips that touch in the middle, or lips of a mouth that is modelled a little open. 1: found. */
 static int find_lips(mouth *h)
 {
     h->size = h->most;
@@ -329,7 +329,7 @@ static void lead(mouth *h)
     h->rim_count = count;
 }
 
-/* What the rim leads a point of the skin by. */
+/* The rim's displacement of a point of the skin. */
 static void follow(const mouth *h, uint32_t v, float out[3])
 {
     const double blur = 0.003 * h->size;
@@ -368,17 +368,17 @@ static int append(model *m, uint32_t index, const mouth *h, model_error *error)
 
 /* ---- all of it ---- */
 
-/* Why a mesh gets no such target; NULL: it has lips and teeth. */
+/* The reason why a mesh gets no such target; NULL: it has lips and teeth. */
 static const char *look(mouth *h)
 {
     for (uint32_t t = 0; t < h->mesh->target_count; t++) {
-        if (strcmp(h->mesh->targets[t].name, LIP_TARGET) == 0) return "it has that target already";
+        if (strcmp(h->mesh->targets[t].name, LIP_TARGET) == 0) return "it already has this target";
     }
-    if (h->mesh->target_count >= NOH_TARGETS_MAX) return "it has as many targets as there may be";
-    if (!pose(h)) return "no target opens its mouth";
-    if (!find_lips(h)) return "its lips are found nowhere, or are too far apart at rest";
+    if (h->mesh->target_count >= NOH_TARGETS_MAX) return "it already has the largest number of targets";
+    if (!pose(h)) return "it has no target that opens the mouth";
+    if (!find_lips(h)) return "its lips were not found, or are too far apart at rest";
     if (find_teeth(h)) return "there is not enough memory";
-    return h->tooth_count ? NULL : "it has no teeth behind the lips that stay where they are while the mouth opens";
+    return h->tooth_count ? NULL : "it has no teeth behind the lips that stay in place while the mouth opens";
 }
 
 static int try_mesh(model *m, uint32_t index, FILE *report, const char **why, model_error *error)
@@ -425,7 +425,7 @@ int lip_target_add(model *m, FILE *report, model_error *error)
         if (try_mesh(m, i, report, &why, error)) return 1;
         if (!why) return 0;
     }
-    return model_warn(m, "--lips: mesh '%s': %s; f and v show what its recipe has", name, why)
+    return model_warn(m, "--lips: mesh '%s': %s; f and v use its recipe", name, why)
                ? model_fail(error, "", "out of memory")
                : 0;
 }

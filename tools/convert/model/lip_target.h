@@ -1,11 +1,11 @@
-/* lip_target.h: a target that brings the lower lip to the upper teeth, for f and v. Few faces have one, and none of
- * those that open, press and spread a mouth does it when they are added up.
+/* lip_target.h: a target that brings the lower lip to the upper teeth, for f and v. Few faces have one, and sums of
+ * targets that open, press and spread a mouth do not do it.
  *
- * Lips, jaw and teeth are found by what the targets of an open mouth (the recipe's aa) move: skin is what hangs
- * together with the point that they move farthest; the lower lip is skin that goes along and touches skin that stays;
- * teeth are other islands near the lips that stay. The lip's rim, as the recipe's FF leaves it, is led to the nearest
- * point of the teeth, in the middle of the mouth all the way and at the corners not at all; the skin around it goes
- * along the less the farther it is. */
+ * Lips, jaw and teeth are found by what the targets of an open mouth (the recipe's aa) move: skin is connected
+ * to the point that they move farthest; the lower lip is skin that moves and touches skin that stays;
+ * teeth are other islands near the lips that stay. The lip's rim, after the recipe's FF, moves to the nearest point
+ * of the teeth, fully in the middle of the mouth and not at all at the corners; the skin around it follows less with
+ * distance. */
 #ifndef NOH_CONVERT_MODEL_LIP_TARGET_H
 #define NOH_CONVERT_MODEL_LIP_TARGET_H
 
@@ -15,8 +15,8 @@
 
 #define LIP_TARGET "lipToTeeth"
 
-/* Add the target to the first mesh that has lips and teeth. Where none has, a warning says why.
- * report  a line on what was found; NULL: none
+/* Add the target to the first mesh that has lips and teeth. If none has, a warning gives the reason.
+ * report  a line on the result; NULL: none
  * errors  1 and *error: out of memory */
 int lip_target_add(model *m, FILE *report, model_error *error);
 

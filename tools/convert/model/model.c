@@ -165,7 +165,7 @@ static double scale_square(const double *w)
     return largest;
 }
 
-/* Of the joints that move a vertex. */
+/* The joints that move a vertex. */
 static double skin_scale_square(const model *m, const model_mesh *mesh, const model_skin *skin)
 {
     double largest = 0.0, *squares = model_zeros(skin->joint_count, sizeof *squares);

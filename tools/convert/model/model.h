@@ -16,7 +16,7 @@ extern "C" {
 
 #define MODEL_NONE 0xffffffffu
 
-/* What the texels are, which decides how mip levels are made and how they are read. */
+/* The kind of texels, which decides how mip levels are made and read. */
 typedef enum model_texture_use {
     MODEL_TEXTURE_COLOR,
     MODEL_TEXTURE_DATA,
@@ -38,7 +38,7 @@ typedef struct model_texture {
     uint8_t etc2;          /* 1: to be compressed */
     uint32_t size_max;     /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     uint32_t cells[2];     /* then divided into columns and rows, 2 to 64 of the same size; 0: not (texture_trim.h) */
-    uint64_t kept[2];      /* of which the i-th stays if bit i is 1; at least one does */
+    uint64_t kept[2];      /* bit i is 1 if the i-th stays; at least one does */
 } model_texture;
 
 typedef enum model_alpha { MODEL_ALPHA_OPAQUE, MODEL_ALPHA_MASK, MODEL_ALPHA_BLEND } model_alpha;
@@ -70,7 +70,7 @@ typedef struct model_material {
     float f90_loss;
 } model_material;
 
-/* What the file lacks for the vertices of one submesh, and model_complete fills in. */
+/* Attributes that the file lacks for a submesh, and that model_complete fills in. */
 #define MODEL_MISSING_NORMAL 1u
 #define MODEL_MISSING_TANGENT 2u
 
@@ -218,15 +218,15 @@ typedef struct model {
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
 
-/* The same of a .glb in memory. `path` names the file that it was made from: images lie beside it, and a clip without a
- * name takes its. */
+/* The same of a .glb in memory. `path` names its source file: images lie in the same folder, and a clip without a
+ * name takes the file's. */
 int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error);
 
 /* World units per unit of a mesh: the largest scale, in the rest pose, of the nodes that draw it or of the joints that
  * move it; 1 if nothing draws it. */
 float model_mesh_scale(const model *m, uint32_t mesh);
 
-/* Fill in what the file left out (NULL arrays and MODEL_MISSING_* bits): normals
+/* Fill in missing attributes (NULL arrays and MODEL_MISSING_* bits): normals
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of
  * targets that lack them (from the morphed mesh). Returns 0, or 1 and *error. */
 int model_complete(model *m, model_error *error);

@@ -75,7 +75,7 @@ static void *joined(void *to, uint32_t *to_count, const void *from, uint32_t *fr
     if (!grown) return NULL;
     if (*from_count) memcpy(grown + *to_count * bytes, from, *from_count * bytes);
     *to_count += *from_count;
-    *from_count = 0; /* what is in them is freed with the model that has them now */
+    *from_count = 0; /* their contents are freed with their new model */
     return grown;
 }
 
@@ -206,23 +206,24 @@ static int hang_on(model *m, uint32_t node, uint32_t joint)
     return 0;
 }
 
-/* What stands at the top of the added nodes and no joint moves. joint_name NULL: the head's, and only of a model that is
- * not skinned. returns 1 on error */
+/* Attach the topmost added nodes that no joint moves. joint_name NULL: the head's, and only of a model that
+ * is not skinned. returns 1 on error */
 static int hang_all(model *m, uint32_t before, int is_skinned, const char *joint_name, const char *path,
                     model_error *error)
 {
     const uint32_t joint = find_joint(m, before, joint_name);
     if (joint_name && joint == MODEL_NONE) {
-        return model_fail(error, "", "the model has no joint '%s' to attach it to: --attach-joint names one",
+        return model_fail(error, "", "the model has no joint '%s' to attach it to: name another with --attach-joint",
                           joint_name);
     }
     for (uint32_t n = before; n < m->node_count; n++) {
         if (m->nodes[n].parent != MODEL_NONE || !has_rigid_mesh(m, n) || (is_skinned && !joint_name)) continue;
         if (joint == MODEL_NONE || hang_on(m, n, joint)) {
-            return model_warn(m,
-                              "%s: nothing moves it: no joint of the model has 'head' in its name; --attach-joint says "
-                              "which one carries it",
-                              path) &&
+            return model_warn(
+                       m,
+                       "%s: no joint moves it, as none of the model's joints has 'head' in its name: name one with "
+                       "--attach-joint",
+                       path) &&
                    fail_memory(error);
         }
     }
@@ -246,11 +247,11 @@ static int tell(model *m, const model *other, const char *path)
     for (uint32_t i = 0; i < other->warning_count; i++) {
         if (model_warn(m, "%s: %s", path, other->warnings[i])) return 1;
     }
-    if (other->clip_count && model_warn(m, "%s: its clips were left out: give the file among the inputs too", path)) {
+    if (other->clip_count && model_warn(m, "%s: its clips were left out: give the file as an input, too", path)) {
         return 1;
     }
     return (other->spring_count || other->spring_lines) &&
-           model_warn(m, "%s: its springs were left out: give them by --springs", path);
+           model_warn(m, "%s: its springs were left out: give them with --springs", path);
 }
 
 int model_attach(model *m, model *other, const char *joint, const char *path, model_error *error)
@@ -267,7 +268,7 @@ int model_attach(model *m, model *other, const char *joint, const char *path, mo
     }
     if (!shares_joint(other, map, before)) {
         free(map);
-        return model_fail(error, "", "none of its joints has the name of a joint of the model that it is attached to");
+        return model_fail(error, "", "none of its joints has the name of a joint of the model to attach it to");
     }
     renumber(m, other, map);
     free(map);

@@ -10,9 +10,9 @@ extern "C" {
 
 /* Move meshes, materials, textures, nodes and skins of `other` to `m`. A node without a mesh whose name `m` has too is
  * that one, namespaces before a colon aside, so that joints of both are the same ones; what lies below it follows it.
- * Other nodes are added. Clips and springs of `other` stay behind, with a warning, and its warnings are told as m's.
- * A model without skins is put below a joint of `m`, where it stands; nodes that no skin moves are, too, where the joint
- * is named.
+ * Other nodes are added. Clips and springs of `other` stay behind, with a warning, and its warnings become m's.
+ * A model without skins is put below a joint of `m`, where it stands; nodes that no skin moves are, too, where the
+ * joint is named.
  * joint   the name of that joint; NULL: the first with 'head' in its name; without one a warning says that nothing
  *         moves it
  * path    of `other`, for messages

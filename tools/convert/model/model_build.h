@@ -1,9 +1,9 @@
-/* model_build.h: what readers and model_complete share while they build a model.
+/* model_build.h: shared by readers and model_complete while they build a model.
  *
  *   model_new      an empty model
- *   model_mesh_clear  what a mesh holds, not the mesh itself
+ *   model_mesh_clear  frees the contents of a mesh, not the mesh itself
  *   model_warn     add a sentence to the model's warnings
- *   weld_vertices  which vertices are one point of the surface
+ *   weld_vertices  finds vertices that are one point of the surface
  *   normals_*      fans of smooth corners, and their normals in any pose
  *   tangents_*     groups of corners that share a tangent, likewise; vertices with several are split */
 #ifndef NOH_CONVERT_MODEL_MODEL_BUILD_H

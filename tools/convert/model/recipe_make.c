@@ -68,7 +68,7 @@ static int read_mesh(recipe_text *extras, model *m, const model_mesh *mesh)
     return 0;
 }
 
-/* Those of targets that the recipe has no row of. */
+/* The correctives of targets without a row in the recipe. */
 static int add_wrinkles(recipe_text *recipe, uint32_t own, const recipe_text *extras)
 {
     int failed = 0;
@@ -140,7 +140,7 @@ typedef struct parts {
     uint32_t count;
 } parts;
 
-/* A target's name with two digits behind it, 10 to 90, is the target at so many hundredths. */
+/* A target's name followed by two digits, 10 to 90, is the target at that many hundredths. */
 static int read_part(const model_mesh *mesh, const char *from, size_t size, part *out)
 {
     if (size == 0 || size >= sizeof out->name - 1u) return 0;

@@ -1,5 +1,5 @@
-/* recipe_make.h: the recipe of a model's face: out of a text, out of the extras of its meshes, and correctives that the
- * names of targets tell. */
+/* recipe_make.h: the recipe of a model's face: from a text, from the extras of its meshes, and correctives by the names
+ * of targets. */
 #ifndef NOH_CONVERT_MODEL_RECIPE_MAKE_H
 #define NOH_CONVERT_MODEL_RECIPE_MAKE_H
 
@@ -10,8 +10,8 @@
  * line that cannot be read is left out with a warning. 0, or 1 when out of memory. */
 int recipe_add_extras(recipe_text *recipe, model *m);
 
-/* FF with LIP_TARGET (lip_target.h), where a mesh has it and the recipe has no row of FF: what the built-in recipes
- * say, and that target. 0, or 1 when out of memory. */
+/* FF with LIP_TARGET (lip_target.h), if a mesh has it and the recipe has no row of FF: the built-in rows and
+ * that target. 0, or 1 when out of memory. */
 int recipe_add_lips(recipe_text *recipe, const model *m);
 
 /* Add correctives by name: jawOpen_smile of jawOpen and smile, jawOpen50 as an in-between of jawOpen, jawOpen50_smile;

@@ -21,15 +21,18 @@ uint32_t surface_kind_named(const char *word)
 /* In small letters, each between spaces. */
 static const char skin_words[] = " skin haut peau piel pelle pele huid skóra skora кожа ";
 static const char eye_words[] =
-    " eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas auge augen augapfel œil oeil yeux "
+    " eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas auge augen augapfel œil oeil "
+    "yeux "
     "ojo ojos olho olhos occhio occhi oog ogen oko oczy глаз глаза ";
 static const char teeth_words[] =
-    " tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive gencives langue diente dientes "
+    " tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive gencives langue diente "
+    "dientes "
     "encía encia lengua dente dentes dientes gengiva língua lingua denti lingue tand tanden tong zęby zeby język jezyk "
     "зуб зубы язык дёсны десны ";
-/* A name with one of these is no eye whatever else it says. */
+/* A name with one of these words is not an eye. */
 static const char around_words[] =
-    " line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid lids eyelid eyelids liner eyeliner eyeline shadow "
+    " line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid lids eyelid eyelids liner eyeliner "
+    "eyeline shadow "
     "eyeshadow occlusion tear tears tearline glass glasses eyeglasses patch mask socket sockets wimper wimpern braue "
     "brauen lid lider cil cils sourcil sourcils pestaña pestañas ceja cejas ciglia sopracciglia ресницы брови ";
 /* Languages that put no spaces between words: a name holds them anywhere. */
@@ -142,7 +145,8 @@ int surface_kind_assign(model *m, const char *assignment, model_error *error)
     const size_t length = equals ? (size_t)(equals - assignment) : 0u;
     int found = 0;
     if (kind == MODEL_NONE) {
-        return model_fail(error, "", "--surface wants MATERIAL=skin, =eye, =teeth or =plain, not '%.80s'", assignment);
+        return model_fail(error, "", "--surface must be MATERIAL=skin, =eye, =teeth, =toon or =plain, not '%.80s'",
+                          assignment);
     }
     for (uint32_t i = 0; i < m->material_count; i++) {
         const char *name = m->materials[i].name;
@@ -152,6 +156,6 @@ int surface_kind_assign(model *m, const char *assignment, model_error *error)
         }
     }
     return found ? 0
-                 : model_fail(error, "", "--surface: no material is named '%.*s'; noh info lists those of a pack",
+                 : model_fail(error, "", "--surface: no material is named '%.*s'; noh info lists a pack's materials",
                               (int)length, assignment);
 }

@@ -1,4 +1,4 @@
-/* surface_kind.h: which materials are skin, eyes, or what a mouth holds. */
+/* surface_kind.h: finds materials of skin, eyes, teeth and tongue. */
 #ifndef NOH_CONVERT_MODEL_SURFACE_KIND_H
 #define NOH_CONVERT_MODEL_SURFACE_KIND_H
 
@@ -13,12 +13,12 @@ uint32_t surface_kind_named(const char *word);
 
 /* By the words of a material's name in English, German, French, Spanish, Portuguese, Italian, Dutch, Polish, Russian,
  * Japanese, Chinese and Korean: "EyeLeft", "head_skin.001", "Haut", "N00_000_Body_00_SKIN". A word ends where letters
- * do, and before a capital behind a small letter. What lies around an eye is not one: lashes, brows, lids, shadows,
- * glasses. name: UTF-8; bytes that are not are words of no language. */
+ * do, and before a capital behind a small letter. The surroundings of an eye are excluded: lashes, brows, lids,
+ * shadows, glasses. name: UTF-8; other bytes match no word. */
 uint32_t surface_kind_of_name(const char *name);
 
-/* Make a material one of them. What is unlit stays plain. A reflectance that is that of any plastic becomes that of
- * the surface: 0.028 for skin, 0.025 for eyes. */
+/* Set a material's kind. Unlit materials stay plain. The default reflectance (0.04) becomes the surface's: 0.028 for
+ * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
 
 /* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface.

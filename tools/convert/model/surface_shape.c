@@ -21,7 +21,7 @@
 #define LID_REACH 0.75 /* radii to the outermost */
 #define LID_ROWS 128   /* from one radius below to one above */
 
-#define MOUTH_DEPTH 0.6f /* of the range of what is teeth: how far behind the foremost no light comes */
+#define MOUTH_DEPTH 0.6f /* share of the teeth's depth beyond which they are dark */
 
 typedef struct eye_ball {
     const model *m;
@@ -112,11 +112,11 @@ static void visit_ball(const eye_ball *b, visit_point *visit, void *user)
 
 /* ---- the iris ---- */
 
-/* What is dark near an axis. */
+/* The dark texels near an axis. */
 typedef struct dark_spot {
     double axis[3], within;      /* cosine */
     double luma, area;           /* sums */
-    double limit, sum[3], found; /* of what is darker than the limit */
+    double limit, sum[3], found; /* of the texels below the limit */
 } dark_spot;
 
 static void add_luma(const double direction[3], double luma, double area, void *user)
@@ -135,7 +135,7 @@ static void add_dark(const double direction[3], double luma, double area, void *
     s->found += area * (s->limit - luma);
 }
 
-/* The middle of what is dark, from +z on; 0: all is of one brightness. */
+/* The middle of the dark area, from +z on; 0: all has one brightness. */
 static int find_axis(eye_ball *b)
 {
     dark_spot s = { { 0.0, 0.0, 1.0 }, 0.5, 0.0, 0.0, 0.0, { 0.0 }, 0.0 };
@@ -210,7 +210,7 @@ static int find_iris(eye_ball *b)
 /* ---- the lids ---- */
 
 typedef struct lid_edges {
-    float low[LID_COLUMNS][LID_ROWS], high[LID_COLUMNS][LID_ROWS]; /* of what is in a row; low above high: nothing */
+    float low[LID_COLUMNS][LID_ROWS], high[LID_COLUMNS][LID_ROWS]; /* the range in a row; low above high: empty */
 } lid_edges;
 
 static void add_lid(const eye_ball *b, const double at[3], lid_edges *lids)
@@ -355,7 +355,7 @@ static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh
             b.sphere.residual > BALL_RESIDUAL_MAX || !find_iris(&b)) {
             continue;
         }
-        /* which side of the nose a vertex is on is told by the sign of its x */
+        /* the sign of a vertex's x is its side of the nose */
         if (fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
         add_eye(&b, mean);
     }
@@ -405,7 +405,7 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
 
 /* ---- teeth ---- */
 
-/* The bounds of what is teeth. */
+/* The bounds of the teeth. */
 static int mouth_bounds(const model *m, float low[3], float high[3])
 {
     int found = 0;

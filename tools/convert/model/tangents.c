@@ -1,6 +1,6 @@
 /* tangents.c: tangents for meshes that have UVs but no tangents.
  *
- * As MikkTSpace has them, for which normal maps are baked: each corner of a triangle adds the direction in which u
+ * As in MikkTSpace, for which normal maps are baked: each corner of a triangle adds the direction in which u
  * grows, projected to the plane of the corner's normal and weighted by the corner's angle in that plane. Corners share
  * the sum of a fan: those round one point (equal position, normal and UV) that are reached from each other over edges,
  * in triangles whose UVs run the same way. A vertex of several fans, as at a mirrored seam, is split.
@@ -70,7 +70,7 @@ static void posed_normal(const pose *p, uint32_t v, double *out)
     (void)vec_normalize(out);
 }
 
-/* What corner k adds to its group: a vector as long as the corner's angle. Returns that angle. */
+/* The contribution of corner k to its group: a vector as long as the corner's angle. Returns that angle. */
 static double corner_tangent(const pose *p, const face_tangent *f, const uint32_t *v, size_t k, double *out)
 {
     double normal[3], to_next[3], to_last[3];
@@ -249,7 +249,7 @@ static void find_fans(fans *f)
 {
     tangent_groups *out = f->out;
     for (uint32_t c = 0; c < f->triangles * 3; ++c) out->corner_group[c] = MODEL_NONE;
-    /* hands that fans give to triangles without one seed no fans: they are those of a corner that was reached */
+    /* hands that fans give to triangles without one seed no fans: they belong to a corner that was reached */
     for (uint32_t c = 0; c < f->triangles * 3; ++c) {
         const pose base = { f->mesh, NULL, NULL, NULL };
         face_tangent face;
@@ -274,7 +274,7 @@ static double corner_weight(const fans *f, uint32_t corner)
     return face.hand ? corner_tangent(&base, &face, v, corner % 3, unused) : 0.0;
 }
 
-/* Each vertex's fan: of several, one whose hand is that of the file's tangent, then the one with the largest weight. */
+/* Each vertex's fan: of several, one whose hand equals the file's tangent, then the one with the largest weight. */
 static int choose_fans(const fans *f)
 {
     const model_mesh *mesh = f->mesh;
@@ -297,7 +297,7 @@ static int choose_fans(const fans *f)
     return 0;
 }
 
-/* Vertices that no fan reached share that of another vertex of their point; if there is none, one without a tangent. */
+/* Vertices that no fan reached share the fan of another vertex of their point, or else get one without a tangent. */
 static int complete_groups(const fans *f)
 {
     tangent_groups *out = f->out;

@@ -5,7 +5,7 @@
 #include "convert/model/model.h"
 
 /* Marks the textures of colours that nothing reads but materials with a cutoff, all the same one of 0.25 to 0.75, whose
- * own alpha and whose vertices' is 1: what is left of them hangs on which texels are above the cutoff, and one bit says
+ * own alpha and whose vertices' is 1: what is drawn depends on which texels are above the cutoff, and one bit holds
  * that. A filtered bit is cut along a line that is off by the cutoff's distance from 0.5, in texels. */
 void texture_cut_mark(model *m);
 

@@ -23,7 +23,7 @@ int tint_assign(model *m, const char *assignment, model_error *error)
     const int on = equals && strcmp(equals, "=on") == 0;
     int found = 0;
     if (!on && !(equals && strcmp(equals, "=off") == 0)) {
-        return model_fail(error, "", "--tint wants MATERIAL=on or MATERIAL=off, not '%.80s'", assignment);
+        return model_fail(error, "", "--tint must be MATERIAL=on or MATERIAL=off, not '%.80s'", assignment);
     }
     for (uint32_t i = 0; i < m->material_count; i++) {
         const char *name = m->materials[i].name;
@@ -33,6 +33,6 @@ int tint_assign(model *m, const char *assignment, model_error *error)
         }
     }
     return found ? 0
-                 : model_fail(error, "", "--tint: no material is named '%.*s'; noh info lists those of a pack",
+                 : model_fail(error, "", "--tint: no material is named '%.*s'; noh info lists a pack's materials",
                               (int)length, assignment);
 }

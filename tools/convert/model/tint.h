@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-/* 1 where an instance's tint colours the material. Unless its author said so, not where its surface or the words of its
- * name are those of skin, eyes or teeth: who wears another robe keeps his face. */
+/* 1 if an instance's tint colours the material. By default it does not colour skin, eyes and teeth, found by surface or
+ * by the words of the name: a change of clothes must not colour the face. */
 int tint_is_taken(const model_material *m);
 
 /* --tint MATERIAL=on|off, for all materials of that name. 1 with the error: no material has the name, or it is neither

@@ -32,9 +32,7 @@ static int check_pair(const model_mesh *a, const model_mesh *b, const char *pair
                           a->vertex_count, b->vertex_count, a->index_count, b->index_count);
     }
     if (!same_triangles(a, b)) {
-        return model_fail(
-            error, pair,
-            "the meshes have different triangles: export both with the same order of vertices, reordered by neither");
+        return model_fail(error, pair, "the meshes have different triangles: export both with the same vertex order");
     }
     return b->target_count ? model_fail(error, pair, "the second mesh has morph targets of its own") : 0;
 }
@@ -113,7 +111,7 @@ int two_stream_join(model *m, const char *pair, model_error *error)
     uint32_t a = equals ? find_mesh(m, pair, (size_t)(equals - pair)) : m->mesh_count;
     uint32_t b = equals ? find_mesh(m, equals + 1, strlen(equals + 1)) : m->mesh_count;
     if (a == m->mesh_count || b == m->mesh_count || a == b) {
-        return model_fail(error, pair, "--two-stream wants the names of two meshes of the file, SOURCE=TARGET");
+        return model_fail(error, pair, "--two-stream must be SOURCE=TARGET, the names of two meshes of the file");
     }
     if (check_pair(&m->meshes[a], &m->meshes[b], pair, error)) {
         return 1;

@@ -111,7 +111,7 @@ static void take_touched(encoder *c, uint32_t vertex)
     c->touched.rows++;
 }
 
-/* Touched vertices first, those of the coarsest level before the others; else in the source's order. */
+/* Touched vertices first, the coarsest level's before the others; else in the source's order. */
 static int compact(encoder *c)
 {
     morph_encoding *e = c->e;
@@ -134,7 +134,7 @@ static int compact(encoder *c)
 
 /* ---- where they lie ---- */
 
-/* The texels that a level adds to those of the coarser one. */
+/* The texels that a level adds to the coarser level. */
 static morph_region block_of(const morph_encoding *e, uint32_t level)
 {
     morph_region r = { e->width_log2, 0, 0 };

@@ -52,12 +52,12 @@ typedef struct morph_part {
  *   two's complement; bits that are left over at the bottom are zero. */
 typedef struct morph_encoding {
     uint32_t vertex_count, target_count; /* with a vertex more for each whose texture coordinates move (uv_texel) */
-    uint32_t touched_count; /* the first touched_count vertices of the new order are in the texture, those of coarse
+    uint32_t touched_count; /* the first touched_count vertices of the new order are in the texture, those in coarse
                                levels first */
     uint32_t *order;        /* [vertex_count] new index -> old index; untouched ones in the source's order. From the
                                mesh's vertex_count on, what stands in for texture coordinates */
     uint32_t *uv_texel;     /* [the mesh's vertex_count] the texel of its texture coordinates, MODEL_NONE: they do not
-                               move; NULL: those of no vertex do */
+                               move; NULL: none move */
     float uv_per_unit;      /* noh_mesh_header.uv_per_unit */
     uint32_t level_count;
     uint32_t *level_touched; /* [level_count] how many of the first accumulation texels a level uses */

@@ -7,9 +7,9 @@
  * A target needs every column that holds one of its vertices, so runs should start and stop where columns do. The line
  * is annealed once more, with that cost: short stretches are reversed and exchanged (2-opt and or-opt moves), and a
  * change is accepted if it costs nothing, else with a probability that falls with its cost and as the temperature
- * falls. The cost is a sum over columns of which targets use them. A change affects only the columns of its stretch, so
- * `used` holds that set for every column: the cost before a change is a count of bits, and after it only the stretch is
- * read again. */
+ * falls. The cost sums, over all columns, the targets that use them. A change affects only the columns of its stretch,
+ * so `used` holds that set for every column: the cost before a change is a count of bits, and after it only the stretch
+ * is read again. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
@@ -37,7 +37,7 @@ typedef struct fold {
     morph_random random;
 } fold;
 
-/* Nearly square: tiled GPUs and software work in square tiles, of which empty rows cost too. */
+/* Nearly square: tiled GPUs and software work in square tiles, whose empty rows cost too. */
 void morph_fold_size(uint32_t touched, uint32_t *width_log2, uint32_t *height)
 {
     uint32_t log2 = WIDTH_LOG2_MIN;

@@ -1,4 +1,4 @@
-/* morph_internal.h: what the parts of the morph encoder share.
+/* morph_internal.h: shared by the parts of the morph encoder.
  *
  * morph_encode.c drives; morph_uv.c makes positions of texture coordinates; morph_quantise.c turns deltas into words
  * and certifies the errors; morph_patterns.c groups vertices by the targets that move them;
@@ -99,8 +99,9 @@ int morph_quantise_pack(const morph_target *q, const model_target *source, uint3
 
 /* ---- texture coordinates ---- */
 /* A mesh with a vertex more for each whose texture coordinates a target moves. That stand-in has, as positions, how far
- * the picture slides over the surface along u and v: so bits, errors, rectangles and the texture of sums are those of
- * positions, and a target's radius is how far anything moves over the screen. Only what the encoder reads is there. */
+ * the picture slides over the surface along u and v: so bits, errors, rectangles and the texture of sums work as for
+ * positions, and a target's radius is how far anything moves over the screen. It has only the fields that the encoder
+ * reads. */
 typedef struct morph_uv {
     model_mesh mesh;
     uint32_t *stand_in; /* [vertices of the mesh it was made from], MODEL_NONE: nothing moves its UV */

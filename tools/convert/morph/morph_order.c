@@ -20,7 +20,7 @@
 #include <string.h>
 
 #define GAP_LIMIT 8u   /* a larger one takes longer and gains nothing */
-#define GAP_MORE 2u    /* beside its cost a rectangle has ragged ends: empty texels in a column */
+#define GAP_MORE 2u    /* in addition to its cost a rectangle has ragged ends: empty texels in a column */
 #define NEIGHBOURS 10u /* nearest patterns of each, the partners tried */
 /* candidates looked at for a nearest pattern: patterns are sorted, so they are the likeliest */
 #define SCAN_MOST 6000u
@@ -117,7 +117,7 @@ static void look_aside(const line *l, uint32_t at, uint32_t step, uint64_t *side
     }
 }
 
-/* The counts of targets in one word whose gap is at most 0, 1, ... gap_max - 1, summed: what the two sides save. */
+/* The counts of targets in one word whose gap is at most 0, 1, ... gap_max - 1, summed: the saving of the two sides. */
 static uint32_t saved_word(const line *l, const uint64_t *left, const uint64_t *right)
 {
     const uint64_t far_left = left[(size_t)(l->gap_max - 1u) * l->words],
@@ -133,7 +133,7 @@ static uint32_t saved_word(const line *l, const uint64_t *left, const uint64_t *
     return sum;
 }
 
-/* What the two sides save by lying together: texels, summed over targets. */
+/* The saving of placing the two sides together: texels, summed over targets. */
 static uint32_t saved(const line *l, const uint64_t *left, const uint64_t *right)
 {
     uint32_t sum = 0;

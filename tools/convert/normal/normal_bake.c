@@ -22,7 +22,7 @@ typedef struct surface {
     uint32_t *indices;                       /* [triangle_count][3] */
 } surface;
 
-/* What of a model is wanted. */
+/* The parts of a model that the bake needs. */
 typedef struct choice {
     const model *m;
     int with_uv;          /* only what has tangents and texture coordinates */

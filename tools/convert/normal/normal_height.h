@@ -14,7 +14,7 @@ void normal_texel(const double v[3], uint8_t rgba[4]);
 /* Slopes by Sobel's operator: differences over two texels, of three rows or columns with the middle one twice.
  * height  [height][width] 0 to 65535, the top row first
  * depth   how far 65535 lies above 0, in texels
- * tiles   1: beyond an edge is the opposite one; 0: the edge goes on
+ * tiles   1: an edge continues at the opposite one; 0: edge values repeat
  * Returns rgba [height][width][4], tangent space, +y up in the picture, to be freed; NULL: out of memory */
 uint8_t *normal_map_of_height(const uint16_t *heights, uint32_t width, uint32_t height, double depth, int tiles);
 

@@ -1,4 +1,4 @@
-/* obj_internal.h: what an OBJ file says, before it is a model.
+/* obj_internal.h: an OBJ file before it is a model.
  *
  *   obj_text.c      the text: positions, normals, UVs, faces
  *   obj_material.c  .mtl files
@@ -45,7 +45,7 @@ void obj_text_free(obj_text *o);
 int obj_materials_read(const char *obj_path, const obj_text *o, model *m);
 
 /* Adds a target for each other .obj file of the folder, in the order of their names. source [vertex_count]: the
- * position of which each vertex of mesh 0 is made. scale: metres per unit. */
+ * position from which each vertex of mesh 0 is made. scale: metres per unit. */
 int obj_targets_read(const char *folder, const char *obj_path, const obj_text *o, const uint32_t *source, double scale,
                      model *m, model_error *error);
 

@@ -10,7 +10,7 @@
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
 
-/* A file of materials while those of the model are filled in. */
+/* A material file while the model's materials are filled in. */
 typedef struct library {
     const char *folder; /* with its slash, or "" */
     text_scan scan;
@@ -57,7 +57,7 @@ static model_material *material_of(model *m, text_word name)
 
 /* ---- textures ---- */
 
-/* What exporters write may be a path on another machine: then the file of that name beside the model is taken. */
+/* Exporters may write a path from another machine: then the file of that name in the model's folder is used. */
 static int read_image(const char *folder, const char *name, image_file *image, model_error *error)
 {
     char path[4096];
@@ -122,7 +122,7 @@ static int read_texture(library *l)
 
 /* ---- lines ---- */
 
-/* Up to three numbers; 0 where a line is not what it should be: such a line is skipped. */
+/* Up to three numbers; 0 for a malformed line, which is skipped. */
 static uint32_t read_numbers(library *l, double out[3])
 {
     uint32_t count = 0;

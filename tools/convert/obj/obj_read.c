@@ -62,7 +62,7 @@ static void forget_slots(vertices *v)
     memset(v->slots, 0xff, v->slot_count * sizeof *v->slots);
 }
 
-/* Indices and submeshes; materials are those of parts with a name, in order. */
+/* Indices and submeshes; materials come from the parts with a name, in order. */
 static int index_parts(const obj_text *o, vertices *v, uint64_t corners, model_mesh *mesh)
 {
     uint32_t material = 0, at = 0;
@@ -107,7 +107,7 @@ static void fill_vertex(const obj_text *o, const obj_corner *c, double scale, ui
     }
 }
 
-/* A submesh with a corner that has no normal gets all of its normals anew. */
+/* A submesh with a corner without a normal has all of its normals computed. */
 static void mark_missing(const vertices *v, model_mesh *mesh)
 {
     for (uint32_t i = 0; i < mesh->submesh_count; i++) {
@@ -168,15 +168,15 @@ static int warn_of_size(const model_mesh *mesh, double unit_cm, model *m)
         size = fmax(size, (double)high - (double)low);
     }
     if (size >= 0.05 && size <= 5.0) return 0;
-    return model_warn(m, "the model is %.3g m large, its unit taken as %g cm; --unit-cm CM says another", size,
+    return model_warn(m, "the model is %.3g m large with a unit of %g cm; to change the unit, use --unit-cm CM", size,
                       unit_cm);
 }
 
 static int warn_of_losses(const obj_text *o, model *m)
 {
     return o->left_out_count &&
-           model_warn(m, "line %u: '%s' was left out, as were %u more lines of points, lines or curves",
-                      o->left_out_line, o->left_out, o->left_out_count - 1u);
+           model_warn(m, "line %u: '%s' was left out, and %u more lines of points, lines or curves", o->left_out_line,
+                      o->left_out, o->left_out_count - 1u);
 }
 
 static int fill_model(const char *path, const obj_text *o, vertices *v, const obj_options *options, model *m,

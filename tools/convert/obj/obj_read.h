@@ -1,9 +1,9 @@
 /* obj_read.h: Wavefront OBJ files as a model, with a folder of others as its morph targets.
  *
  * One mesh: positions, with colours where lines have them, normals, UVs and polygons, a submesh for each material;
- * groups and objects are not told apart. Materials come from the .mtl file beside it: diffuse colour and texture,
- * opacity, specular exponent. Vertices are never split or joined but by their UVs and normals, so that files of the
- * same positions in the same order are one face in different shapes, as sculptors and FaceKit write them. */
+ * groups and objects are not distinguished. Materials come from the .mtl file in its folder: diffuse colour and
+ * texture, opacity, specular exponent. Vertices are never split or joined but by their UVs and normals, so that files
+ * of the same positions in the same order are one face in different shapes, as sculptors and FaceKit write them. */
 #ifndef NOH_CONVERT_OBJ_OBJ_READ_H
 #define NOH_CONVERT_OBJ_OBJ_READ_H
 

@@ -90,8 +90,7 @@ static int read_target(const char *path, const obj_text *base, const uint32_t *s
     obj_text moved;
     int failed = obj_text_read(path, 1, &moved, error);
     if (!failed && obj_position_count(&moved) != obj_position_count(base)) {
-        failed = model_fail(error, "",
-                            "it has %u positions, and the model has %u: a target has those of the model, moved",
+        failed = model_fail(error, "", "it has %u positions, and the model has %u: a target needs the same number",
                             obj_position_count(&moved), obj_position_count(base));
     }
     if (!failed) {
@@ -103,7 +102,7 @@ static int read_target(const char *path, const obj_text *base, const uint32_t *s
     return failed;
 }
 
-/* An error of a target says of which: the file that the caller names is the model's. */
+/* An error names the target, as the caller names only the model's file. */
 static int name_target(const char *file, model_error *error)
 {
     const model_error inner = *error;

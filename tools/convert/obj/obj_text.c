@@ -60,7 +60,7 @@ static int read_values(reader *r, uint32_t count, double *out)
     for (uint32_t i = 0; i < count; i++) {
         const text_word word = text_next_on_line(&r->scan);
         if (word.size == 0) {
-            return text_fail(&r->scan, word.line, "%u numbers are wanted here, and there are %u", count, i);
+            return text_fail(&r->scan, word.line, "%u numbers are needed here, and there are %u", count, i);
         }
         if (text_number(&r->scan, word, &out[i])) return 1;
         if (!(out[i] > -1e9 && out[i] < 1e9)) {
@@ -175,7 +175,7 @@ static int find_part(reader *r)
         }
     }
     if (obj_part_count(r->out) >= 4096u) {
-        return text_fail(&r->scan, r->scan.line, "more than 4096 materials are not possible");
+        return text_fail(&r->scan, r->scan.line, "the file has more than 4096 materials, which is the limit");
     }
     r->part = buffer_append(&r->out->parts, &empty, sizeof empty);
     if (!r->part) return out_of_memory(r);
@@ -194,8 +194,7 @@ static int add_triangles(reader *r, uint32_t count, uint32_t line)
     failed = obj_polygon_cut((const float *)(const void *)r->points.bytes, count,
                              (uint32_t *)(void *)r->triangles.bytes);
     if (failed == 2) {
-        return text_fail(&r->scan, line,
-                         "a face that is not convex has %u corners, and %u are possible: triangulate it", count,
+        return text_fail(&r->scan, line, "a concave face has %u corners, and the limit is %u: triangulate it", count,
                          OBJ_CONCAVE_MAX);
     }
     place = (const uint32_t *)(const void *)r->triangles.bytes;
@@ -222,7 +221,7 @@ static int read_face(reader *r)
         }
     }
     return count >= 3 ? add_triangles(r, count, line)
-                      : text_fail(&r->scan, line, "a face wants three corners, and this one has %u", count);
+                      : text_fail(&r->scan, line, "a face needs at least three corners, and this one has %u", count);
 }
 
 /* ---- lines ---- */
@@ -246,7 +245,7 @@ static int is_ignored(text_word keyword)
     return 0;
 }
 
-/* Points, lines, curves: told once, with the first line. */
+/* Points, lines, curves: one warning, with the first line. */
 static int leave_out(reader *r, text_word keyword)
 {
     static const char *const known[] = { "p",     "l",        "cstype",   "deg",   "bmat",  "step", "curv", "curv2",
@@ -262,7 +261,7 @@ static int leave_out(reader *r, text_word keyword)
         r->out->left_out_count++;
         return 0;
     }
-    return text_fail(&r->scan, keyword.line, "'%s' begins no line of an OBJ file", text_show(keyword, shown));
+    return text_fail(&r->scan, keyword.line, "an OBJ file has no line '%s'", text_show(keyword, shown));
 }
 
 static int read_line(reader *r, text_word keyword)
@@ -316,10 +315,10 @@ int obj_text_read(const char *path, int positions_only, obj_text *out, model_err
     text_start(&r.scan, text, bytes, error);
     failed = read_lines(&r);
     if (!failed && obj_position_count(out) == 0) {
-        failed = model_fail(error, "", "there is no position ('v X Y Z') in it: is it an OBJ file?");
+        failed = model_fail(error, "", "it has no position ('v X Y Z'), and may not be an OBJ file");
     }
     if (!failed && !positions_only && obj_part_count(out) == 0) {
-        failed = model_fail(error, "", "there is no face ('f A B C') in it: there is nothing to convert");
+        failed = model_fail(error, "", "it has no face ('f A B C'), and so nothing to convert");
     }
     free(r.material);
     buffer_free(&r.face);

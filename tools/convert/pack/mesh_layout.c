@@ -142,8 +142,8 @@ static void optimize(const layout_job *j, uint32_t *indices, uint32_t count)
     meshopt_optimizeOverdraw(indices, indices, count, j->positions, j->out->vertex_count, 12, OVERDRAW_LOSS);
 }
 
-/* The triangles of one submesh that use one palette. Those of blended materials keep the artist's order, in which they
- * are drawn over each other. */
+/* The triangles of one submesh that use one palette. Triangles of blended materials keep the artist's order, in which
+ * they are drawn over each other. */
 static void add_part(layout_job *j, uint32_t level, uint32_t s, uint32_t palette)
 {
     const part from = part_of(j, level, s);
@@ -178,7 +178,7 @@ static int add_parts(layout_job *j, uint32_t level, model_error *error)
         for (uint32_t p = 0; p == 0 || p < j->deal.palette_count; p++) {
             if (j->out->submesh_count - l->first_submesh == j->submesh_capacity) {
                 return model_fail(error, j->mesh->name,
-                                  "palettes of %u joints cut it into more than %u draws: give --palette more",
+                                  "palettes of %u joints cut it into more than %u draws: raise --palette",
                                   j->deal.limit, j->submesh_capacity);
             }
             add_part(j, level, s, p);
@@ -209,7 +209,7 @@ static void move_words(uint32_t *words, const uint32_t *to, uint32_t count, uint
     memcpy(words, scratch, (size_t)count * sizeof *words);
 }
 
-/* With levels, or texels of texture coordinates, a texel reference is the texel, or says that there is none. */
+/* With levels, or texels of texture coordinates, a texel reference is the texel or none. */
 static void set_texels(mesh_layout *l, uint32_t touched)
 {
     for (uint32_t v = 0; v < l->vertex_count; v++) {
@@ -361,7 +361,8 @@ int mesh_layout_make(const model_mesh *mesh, const mesh_levels *levels, const mo
     job.out = out;
     failed = make(&job, error);
     if (!failed && out->vertex_count > NOH_VERTICES_MAX) {
-        failed = model_fail(error, mesh->name, "%u vertices after the split into palettes: a mesh holds up to %u",
+        failed = model_fail(error, mesh->name,
+                            "%u vertices after the split into palettes, more than the limit of %u: raise --palette",
                             out->vertex_count, NOH_VERTICES_MAX);
     }
     palette_deal_free(&job.deal);

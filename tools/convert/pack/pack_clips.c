@@ -99,12 +99,12 @@ static int check_markers(const raw_clip *clip, model_error *error)
             continue;
         }
         if (event_tick(clip, event) >= duration_ticks(clip)) {
-            return fail_marker(
-                clip, event,
-                "lies at the end of its clip, where a loop has begun again: put it at 0, or before the end", error);
+            return fail_marker(clip, event,
+                               "lies at the end of its clip, where a loop begins again: put it at 0, or before the end",
+                               error);
         }
         if (before && event_tick(clip, before) == event_tick(clip, event)) {
-            return fail_marker(clip, event, "lies where another marker does", error);
+            return fail_marker(clip, event, "has the time of another marker", error);
         }
         before = event;
     }

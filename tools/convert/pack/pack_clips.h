@@ -23,7 +23,7 @@ typedef struct encoded_clip {
     clip_errors errors;
 } encoded_clip;
 
-/* What texts and pictures beside the model give a pack; NULL: none. */
+/* The contents of a pack from texts and pictures other than the model; NULL: none. */
 typedef struct pack_extras {
     const graph_file *graphs;
     const recipe_text *recipe;
@@ -46,7 +46,7 @@ typedef struct clips_settings {
     int check_loops;    /* mark every clip as a loop, and report the gap between its ends */
     int skeletons_only; /* no clips, for a pack of meshes */
     clip_options clip;
-    named_errors clip_errors, joint_errors; /* they take precedence over those of `clip` */
+    named_errors clip_errors, joint_errors; /* they override the bounds of `clip` */
     const model *m;          /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are
                                 measured; NULL: on the shell */
     FILE *report, *progress; /* or NULL */

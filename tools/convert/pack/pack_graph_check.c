@@ -8,7 +8,7 @@
 #include "noh/pack.h"
 #include "pack_graph.h"
 
-/* What of a graph is wrong. */
+/* Reports the error of a graph. */
 static int refuse(const noh_pack_graph *g, const noh_error *why, model_error *error)
 {
     const char *node = why->result == NOH_ERR_DATA && why->where < g->header->node_count
@@ -53,7 +53,8 @@ int pack_check_graphs(const noh_pack *pack, model_error *error)
         noh_pack_graph g;
         int failed = 1;
         if (noh_pack_graph_at(pack, i, &g, &why)) {
-            return model_fail(error, "", "the graph that was built does not open: %s (byte %llu); this is a bug of noh",
+            return model_fail(error, "",
+                              "the built graph does not open: %s (byte %llu); this is a bug in noh: please report it",
                               why.what, (unsigned long long)why.where);
         }
         for (uint32_t s = 0; s < (pack->skeleton_count ? pack->skeleton_count : 1u) && failed; s++) {

@@ -6,7 +6,7 @@
 #include "convert/lod/lod_levels.h"
 #include "convert/morph/morph_encode.h"
 
-/* What comes of a mesh beside its chunk. */
+/* Results of a mesh in addition to its chunk. */
 typedef struct mesh_extra {
     uint32_t index;         /* the n-th mesh chunk */
     byte_buffer influences; /* the chunk of its influence list; empty: none. To be freed */

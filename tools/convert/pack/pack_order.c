@@ -1,4 +1,4 @@
-/* pack_order.c: walks over the triangles as the wire form's filter does, and renames what it meets.
+/* pack_order.c: walks over the triangles as the wire form's filter does, and renumbers vertices as it meets them.
  *
  * Vertices may only change places with those that lie in rectangles of the same targets and levels: then every
  * rectangle still has all its vertices, at another of its texels. In a mesh without texel references a vertex's number
@@ -255,7 +255,7 @@ static void make_vertex_runs(orderer *o, uint32_t *owners)
 
 /* ---- new numbers ---- */
 
-/* Numbers within runs as they are met; what is never met comes behind. `next` [runs]: the first free number. */
+/* Numbers within runs in the order of meeting, then the rest. `next` [runs]: the first free number. */
 static void number(uint32_t *to, const uint32_t *run, uint32_t *next, uint32_t at)
 {
     if (to[at] == NOH_NONE) to[at] = next[run[at]]++;
@@ -337,7 +337,7 @@ static void rename_texel_words(orderer *o)
     }
 }
 
-/* A target's delta texels: that of each accumulation texel goes to where its new number lies in the rectangles. */
+/* A target's delta texels: each moves to the place of its accumulation texel's new number in the rectangles. */
 static void move_texels(orderer *o, uint32_t target, uint32_t *slots, uint32_t *copy)
 {
     const noh_mesh_header *h = o->mesh.header;

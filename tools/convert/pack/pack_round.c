@@ -2,8 +2,8 @@
  *
  * Positions go to the nearest point of a grid, so that no vertex moves farther than the bound, and vertices at one
  * place stay together. Normals and texture coordinates become fractions of fewer steps, differences of normals
- * multiples of a coarser step, the weights of joints after the first are rounded down: what is left over is the first
- * one's. Errors that the pack states grow by as much. */
+ * multiples of a coarser step, the weights of joints after the first are rounded down, and the rest goes to the first
+ * one. The pack's stated errors grow by the rounding. */
 #include "pack_round.h"
 
 #include <math.h>
@@ -265,7 +265,7 @@ static uint32_t count_pairs(const uint8_t *texels, const noh_target *t)
     return pairs;
 }
 
-/* Targets of all levels come before the texels, and say what is in them: room is left, and filled afterwards. */
+/* Targets of all levels come before the texels that they describe: their room is filled afterwards. */
 static void append_deltas(rounder *r)
 {
     const noh_mesh *m = &r->from;

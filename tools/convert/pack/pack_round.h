@@ -17,7 +17,7 @@ typedef struct round_desc {
     int keep_tangents; /* also where no material uses them */
 } round_desc;
 
-/* What was done to a mesh. */
+/* The changes to a mesh. */
 typedef struct round_mesh {
     int had_tangents, dropped_tangents;
     double moved_m;   /* farthest from where it was, at rest, metres */

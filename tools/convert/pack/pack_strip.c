@@ -2,8 +2,8 @@
  *
  * Levels are prefixes of one another: vertices, accumulation texels, and for each target its rectangles and delta
  * texels. So the arrays are cut at the counts of the finest level that stays. Rectangles and delta texels of all
- * targets lie in one array each, in target order: they move together, and every level's targets are told where. A
- * mesh's transfer and influence list are cut likewise. */
+ * targets lie in one array each, in target order: they move together, and the targets of every level get the new
+ * offsets. A mesh's transfer and influence list are cut likewise. */
 #include "pack_strip.h"
 
 #include <string.h>
@@ -44,8 +44,8 @@ int strip_levels_of(const strip_levels *levels, const noh_pack *pack, uint32_t *
         size_t name_bytes;
         uint32_t level, found = 0;
         if (strip_level_parse(levels->items[i], &name_bytes, &level)) {
-            return model_fail(error, "", "'%.100s' is no level: K or MESH=K, K from 0 to %u", levels->items[i],
-                              NOH_LOD_LEVELS_MAX - 1u);
+            return model_fail(error, "", "'%.100s' is not a level: it must be K or MESH=K, K from 0 to %u",
+                              levels->items[i], NOH_LOD_LEVELS_MAX - 1u);
         }
         for (uint32_t m = 0; m < pack->mesh_count; m++) {
             if (is_for(levels->items[i], name_bytes, noh_pack_chunk_name(pack, pack->first_mesh + m))) {
@@ -162,7 +162,7 @@ static void append_skin(stripper *s)
     s->h->joint_boxes_offset = append(s, s->from.joint_boxes, joints * 24u);
 }
 
-/* What all levels share is the finest one's. */
+/* Data shared by all levels is in the finest one. */
 static void share_offsets(stripper *s)
 {
     for (uint32_t k = 0; k < s->level_count; k++) {

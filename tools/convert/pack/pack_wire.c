@@ -1,7 +1,8 @@
-/* pack_wire.c: runs the filters of runtime/core/wire/ over a finished pack, records what they code, and writes it in blocks.
+/* pack_wire.c: runs the filters of runtime/core/wire/ over a finished pack, records what they code, and writes it in
+ * blocks.
  *
- * The coder of runtime/core/wire/ decodes last what was coded first, so the symbols of a block are kept and coded backwards.
- * Where a filter has modes, each is tried and the shortest kept. */
+ * The coder of runtime/core/wire/ decodes last what was coded first, so the symbols of a block are kept and coded
+ * backwards. Where a filter has modes, each is tried and the shortest kept. */
 #include "pack_wire.h"
 
 #include <math.h>
@@ -259,7 +260,7 @@ static int write_deltas(writer *w, const noh_mesh *mesh, uint32_t chunk)
     return 0;
 }
 
-/* A mesh's chunk: what the filters know, and between it bytes. */
+/* A mesh's chunk: filtered arrays, and plain bytes between them. */
 static int write_mesh(writer *w, const noh_pack *pack, uint32_t index, const wire_grid *grid)
 {
     const noh_pack_chunk *c = &pack->chunks[pack->first_mesh + index];

@@ -11,7 +11,7 @@ typedef struct wire_grid {
     float origin[3], step; /* step 0: none */
 } wire_grid;
 
-/* What a pack's values are multiples of, where they were rounded. */
+/* The steps of a pack's rounded values. */
 typedef struct wire_steps {
     const wire_grid *grids; /* [mesh_count], or NULL */
     uint32_t normal_steps;  /* of a half; 32767 where they were not rounded */
@@ -19,13 +19,13 @@ typedef struct wire_steps {
     uint32_t weight_shift;  /* bits of weights that are 0 */
 } wire_steps;
 
-/* Bytes of the wire form by what they are of, for reports. */
+/* Bytes of the wire form by kind of data, for reports. */
 typedef struct wire_report {
     uint64_t triangles, positions, attributes, influences, deltas, textures, rest;
 } wire_report;
 
-/* The packs, the coarse one first, each of which opens once it is there; the last is the whole one.
- * returns  0, or 1: `error` says why, and `out` is empty */
+/* The packs, the coarse one first; each opens once it is complete, and the last is the whole pack.
+ * returns  0, or 1: with *error, and `out` empty */
 int pack_wire(const noh_pack *packs, uint32_t pack_count, const wire_steps *steps, byte_buffer *out,
               wire_report *report, model_error *error);
 

@@ -26,7 +26,7 @@ typedef struct writer {
     uint32_t *skin_chunks; /* [skin_count] the n-th skin chunk, or NOH_NONE where no mesh is bound to it */
     mesh_extra *extras;    /* [mesh_count] */
     model_error *error;
-    int refused; /* a mesh cannot be packed: the error says why */
+    int refused; /* a mesh cannot be packed; the error has the reason */
 } writer;
 
 static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
@@ -519,7 +519,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     }
     if (chunk_capacity(m, made) > NOH_PACK_CHUNKS_MAX) {
         snprintf(error->what, sizeof error->what,
-                 "more than %u meshes, textures, skeletons, clips and graphs: build them into several packs",
+                 "more than %u meshes, textures, skeletons, clips and graphs: split them into several packs",
                  NOH_PACK_CHUNKS_MAX);
         error->where[0] = 0;
         return 1;

@@ -49,7 +49,7 @@ static double rounded(double x)
     return fmax(floor(x / unit + 0.5), 1.0) * unit;
 }
 
-/* What a usual size it would be in another unit: the factor, or 0. */
+/* The factor of a unit in which the size would be usual, or 0. */
 static double unit_slip(double size)
 {
     static const double factors[] = { 100.0, 0.01, 1000.0, 0.001, 39.37, 1.0 / 39.37 };
@@ -66,15 +66,16 @@ static int warn(model *m, const raw_set *set, double size, double error_cm)
     const double slip = unit_slip(size);
     char unit[160] = "";
     if (slip > 0.0) {
-        (void)snprintf(unit, sizeof unit, "; or is it %.3g cm large? Then its unit is wrong: export it scaled by %.3g",
-                       size * slip, slip);
+        (void)snprintf(unit, sizeof unit,
+                       "; if it should be %.3g cm large, its unit is wrong: export it scaled by %.3g", size * slip,
+                       slip);
     }
-    return model_warn(m,
-                      "skeleton '%.60s' and what it moves are %.3g cm large, for which --error-cm %g is %s: "
-                      "--error-cm %g --shell-cm %g go with that size%s",
-                      set->skeleton.name ? set->skeleton.name : "", size, error_cm,
-                      error_cm > size * SHARE_MOST ? "so coarse that it shows" : "finer than anyone sees", error, shell,
-                      unit);
+    return model_warn(
+        m,
+        "skeleton '%.60s' and what it moves are %.3g cm large, for which --error-cm %g is %s: --error-cm %g "
+        "--shell-cm %g fit this size%s",
+        set->skeleton.name ? set->skeleton.name : "", size, error_cm,
+        error_cm > size * SHARE_MOST ? "visibly coarse" : "finer than visible", error, shell, unit);
 }
 
 int size_warn(model *m, raw_set *const *sets, uint32_t set_count, double error_cm)

@@ -139,7 +139,7 @@ static void halve_texel(const image *from, const cover *x, const cover *y, int w
     out[3] = mean(plain[3], weight);
 }
 
-/* One of the texels that a texel of the next level covers: bytes that stand for something have no mean. */
+/* One of the texels that a texel of the next level covers: codes have no mean. */
 static void pick_texel(const image *from, const cover *x, const cover *y, int32_t *out)
 {
     const uint32_t column = x->first + x->count / 2u, row = y->first + y->count / 2u;
@@ -168,7 +168,7 @@ static int halve(const model_texture *t, image *level)
     return 0;
 }
 
-/* ---- what a cut leaves ---- */
+/* ---- cutoffs ---- */
 
 static uint64_t covered(const uint8_t *bytes, uint64_t count, uint32_t cutoff)
 {
@@ -251,9 +251,9 @@ static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, 
     return 2;
 }
 
-/* The first level, in the smallest format that is good enough: a normal map's blocks of colours keep less than those of
- * two channels, alphas of one bit are near enough only where there is little between, and small textures stay as they
- * are where blocks lose too much. */
+/* The first level, in the smallest format that is good enough: a normal map's colour blocks keep less than blocks
+ * of two channels, one-bit alphas are good enough only with few values between, and small textures stay exact where
+ * blocks lose too much. */
 static int append_first(const model_texture *t, noh_texture_header *h, const texture_image *pixels, byte_buffer *out)
 {
     const size_t at = out->count;

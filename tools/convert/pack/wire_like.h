@@ -4,8 +4,8 @@
 
 #include "core/wire/wire_internal.h"
 
-/* The order in which targets are written, and the one that each is told as a difference from: rows of a filter's plan,
- * for the mesh that the filter is about. Returns 1 when there is no memory. */
+/* The order in which targets are written, and the target from which each is stored as a difference: rows of a filter's
+ * plan, for the filter's mesh. Returns 1 when out of memory. */
 int wire_plan_targets(const noh_wire_filter *filter, uint32_t *plan);
 
 /* For each place in the order of vertices 1 + the first place with the same position, or 0: the plan of positions.

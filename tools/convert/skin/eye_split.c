@@ -20,7 +20,7 @@ typedef struct candidate {
 typedef struct split {
     const model_mesh *mesh;
     uint32_t *island;   /* [vertex_count] the first vertex of each vertex's island */
-    uint32_t *vertices; /* [vertex_count] room for those of one */
+    uint32_t *vertices; /* [vertex_count] room for one eye's */
     double size;        /* the diagonal of the mesh's bounds */
     candidate found[CANDIDATES_MAX];
     uint32_t count;
@@ -152,7 +152,7 @@ static double apart(const eye_sphere *a, const eye_sphere *b)
     return sqrt(square);
 }
 
-/* Of one size, beside each other at one height and depth, with room for a nose between. */
+/* Equal in size, side by side at one height and depth, with room for a nose between. */
 static int are_eyes(const eye_sphere *a, const eye_sphere *b)
 {
     const double way = apart(a, b);
@@ -323,8 +323,7 @@ static int bind_eyes(model *m, model_mesh *mesh, model_skin *skin, const candida
     uint32_t places[2];
     float bind[16];
     if (mover == MODEL_NONE || mover >= skin->joint_count) {
-        return model_fail(error, mesh->name,
-                          "--eyes: the eyes are not moved by one joint alone: weigh them to the head");
+        return model_fail(error, mesh->name, "--eyes: more than one joint moves the eyes: bind them to the head alone");
     }
     memcpy(bind, skin->inverse_bind + 16 * (size_t)mover, sizeof bind);
     for (uint32_t e = 0; e < 2; e++) {
@@ -352,7 +351,7 @@ static int split_mesh(model *m, uint32_t index, const candidate *const pair[2], 
     for (uint32_t n = 0; n < m->node_count; n++) {
         if (m->nodes[n].name &&
             (strcmp(m->nodes[n].name, "LeftEye") == 0 || strcmp(m->nodes[n].name, "RightEye") == 0)) {
-            return model_fail(error, mesh->name, "--eyes: there is a node '%s' already", m->nodes[n].name);
+            return model_fail(error, mesh->name, "--eyes: a node '%s' already exists", m->nodes[n].name);
         }
     }
     if (m->nodes[node].skin == MODEL_NONE) {
@@ -372,7 +371,7 @@ static void report_eyes(FILE *report, const model_mesh *mesh, const candidate *c
     for (uint32_t e = 0; e < 2 && report; e++) {
         const eye_sphere *s = &pair[e]->sphere;
         fprintf(
-            report, "mesh '%s': %s eye, a ball of radius %.4f at %.4f %.4f %.4f; vertices are off by %.1f %% of it\n",
+            report, "mesh '%s': %s eye, a sphere of radius %.4f at %.4f %.4f %.4f; vertices are off by %.1f %% of it\n",
             mesh->name, e ? "right" : "left", s->radius, s->centre[0], s->centre[1], s->centre[2], 100.0 * s->residual);
     }
 }
@@ -390,7 +389,7 @@ static int try_mesh(model *m, uint32_t index, split *s, FILE *report, model_erro
     pairs = find_pair(s, pair);
     if (!pairs) return 0;
     if (pairs > 1) {
-        (void)model_fail(error, s->mesh->name, "--eyes: more than two balls could be eyes");
+        (void)model_fail(error, s->mesh->name, "--eyes: more than two spheres could be eyes");
         return -1;
     }
     eye = model_zeros(s->mesh->vertex_count, 1);
@@ -418,7 +417,7 @@ int eyes_split(model *m, FILE *report, model_error *error)
     free(s);
     if (!done) {
         return model_fail(error, "",
-                          "--eyes: no mesh has two balls side by side, each in one piece and apart from all else");
+                          "--eyes: no mesh has two spheres side by side, each in one piece and separate from the rest");
     }
     return done < 0;
 }

@@ -25,7 +25,7 @@ int eye_sphere_fit(const float *positions, const uint32_t *vertices, uint32_t co
 /* Find the eyes of the first mesh that has any, and add the joints LeftEye and RightEye at their centres: below the
  * joint that moves them, or, in a mesh without a skin, below a new joint Face that moves all else. x is to the left, as
  * in glTF. Call it before clips and skins are made of the model. report: centres and residuals; NULL: quiet.
- * errors  1: there are no eyes, or more than two, or what moves them cannot be told */
+ * errors  1: there are no eyes, or more than two, or the joint that moves them is ambiguous */
 int eyes_split(model *m, FILE *report, model_error *error);
 
 #ifdef __cplusplus

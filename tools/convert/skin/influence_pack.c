@@ -14,7 +14,7 @@ uint32_t influence_count(const model_mesh *mesh, uint32_t vertex)
     return count;
 }
 
-/* What the strongest sum to; 1 where there are no others, whatever rounding makes of it. */
+/* The sum of the strongest weights; exactly 1 if there are no others. */
 static double strongest_sum(const model_mesh *mesh, uint32_t vertex)
 {
     const float *weights = mesh->joint_weights + (size_t)vertex * MODEL_INFLUENCES_MAX;

@@ -98,7 +98,7 @@ static void join_vertex(const mesh_part *part, size_t v, const turn *t, model_me
     join_influences(part, v, out, to);
 }
 
-/* Deltas are transformed like what they are added to; a normal's delta is also scaled by what made the normal unit. */
+/* Deltas are transformed like the values they are added to; a normal's delta is also scaled like its normal. */
 static void join_target(const model_mesh *from, const model_target *target, size_t v, const turn *t, model_target *out,
                         size_t to)
 {

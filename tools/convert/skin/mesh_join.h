@@ -6,7 +6,7 @@
 
 typedef struct mesh_part {
     const model_mesh *mesh;
-    double place[16];       /* from its space to that of the joined mesh; a mirroring one reverses the winding of its
+    double place[16];       /* from its space to the joined mesh's; a mirroring one reverses the winding of its
                                triangles */
     const uint32_t *places; /* [joints of its own skin] places in the joined mesh's skin; NULL: it is rigid */
     uint32_t place_rigid;   /* the joint that a rigid part follows */

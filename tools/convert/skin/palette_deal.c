@@ -83,11 +83,11 @@ int palette_deal_triangle(palette_deal *deal, const model_mesh *mesh, const uint
         snprintf(where, sizeof where, "mesh '%.40s'", mesh->name);
         if (count > deal->limit) {
             return model_fail(error, where,
-                              "a triangle follows %u joints, but a palette may hold %u: give --palette at least %u",
+                              "a triangle follows %u joints, but a palette holds %u: raise --palette to at least %u",
                               count, deal->limit, count);
         }
         if (deal->palette_count == NOH_SUBMESHES_MAX) {
-            return model_fail(error, where, "palettes of %u joints cut it into more than %u parts: give --palette more",
+            return model_fail(error, where, "palettes of %u joints cut it into more than %u parts: raise --palette",
                               deal->limit, NOH_SUBMESHES_MAX);
         }
         best = deal->palette_count++;

@@ -235,14 +235,14 @@ add_words(words *w, const char *format, ...)
     if (w->used >= sizeof w->text) w->used = sizeof w->text - 1u;
 }
 
-/* What is wrong with a seam, in words: "text, text". */
+/* The faults of a seam, in words: "text, text". */
 static words describe(const model *m, const seam_findings *f)
 {
     const double same = SAME_PLACE * f->size;
     words w = { "", 0 };
     if (f->gap > same) {
-        add_words(&w, "places are up to %.3g mm apart (at %.3f %.3f %.3f)", 1000.0 * f->gap, f->where[0], f->where[1],
-                  f->where[2]);
+        add_words(&w, "positions are up to %.3g mm apart (at %.3f %.3f %.3f)", 1000.0 * f->gap, f->where[0],
+                  f->where[1], f->where[2]);
     }
     if (f->normal_degrees > SAME_DEGREES) add_words(&w, "normals differ by up to %.0f degrees", f->normal_degrees);
     if (f->weight > SAME_WEIGHT) {
@@ -273,7 +273,7 @@ static void report_mended(FILE *report, const model *m, const seam_findings *f)
     const words w = describe(m, f);
     fprintf(report, "seam of '%s' and '%s' closed: %u pairs of vertices", m->meshes[f->mesh_a].name,
             m->meshes[f->mesh_b].name, f->pair_count);
-    if (f->lone_count) fprintf(report, ", %u vertices laid on edges", f->lone_count);
+    if (f->lone_count) fprintf(report, ", %u vertices moved onto edges", f->lone_count);
     fprintf(report, "; before, %s\n", w.text);
 }
 
@@ -312,7 +312,7 @@ int seams_close(model *m, seam_mode mode, FILE *report, model_error *error)
         failed = model_warn(m,
                             "--seam mend: no two skinned meshes have borders that lie along each other within a "
                             "tenth of their size: no seam was closed%s",
-                            gave_up ? "; not all borders were compared, there are too many" : "");
+                            gave_up ? "; there are too many borders to compare all of them" : "");
     }
     free(all);
     return failed ? model_fail(error, "", "out of memory") : 0;

@@ -1,13 +1,13 @@
-/* seam.h: where one skinned mesh goes on as another one: a head on a body.
+/* seam.h: seams between skinned meshes, such as a head on a body.
  *
  * Such a seam shows nothing in any pose if the vertices on both sides have the same places, normals and weights, and no
  * target moves one side alone. An artist with a file for each part gets that only by luck.
  *
- * A seam is found by its shape, whatever things are called: an open border of each mesh, each of which lies along the
- * whole of the other within a tenth of its size at rest, and whose surfaces go on in opposite directions: a neck in a
- * collar is none. Of several the nearest is taken. A neck that ends inside of the head has no such border, and needs
- * none.
- * LOD levels coarsen each mesh for itself: there a seam that is closed opens by as much as the level is off.
+ * A seam is found by its shape, not by names: an open border of each mesh; each border lies along the
+ * whole of the other within a tenth of its size at rest, and the surfaces continue in opposite directions, which a neck
+ * in a collar does not. Of several the nearest is taken. A neck that ends inside of the head has no such border, and
+ * needs none.
+ * LOD levels coarsen each mesh for itself: there a closed seam opens by the error of the level.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 16, which gives a head the body's bones and
  * leaves the seam to the modeller */
 #ifndef NOH_CONVERT_SKIN_SEAM_H

@@ -132,7 +132,7 @@ static int is_border(const edge_slot *slot)
     return slot->a != slot->b && slot->count == 1;
 }
 
-/* Count the edges of each border, and make room for those of three or more. */
+/* Count the edges of each border, and make room for borders of three or more. */
 static int make_room(finder *f, border_list *out)
 {
     for (size_t i = 0; i <= f->table.mask; i++) {

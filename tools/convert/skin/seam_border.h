@@ -1,7 +1,7 @@
 /* seam_border.h: the open borders of skinned meshes, as they lie at rest in the world.
  *
- * A border is a chain of edges that hangs together and of which each has a triangle on one side alone. Its points are
- * those of the surface: vertices that a file splits for their UVs or normals are one point (weld_vertices). */
+ * A border is a connected chain of edges, each with a triangle on one side only. Its points are points of the surface:
+ * vertices that a file splits for their UVs or normals are one point (weld_vertices). */
 #ifndef NOH_CONVERT_SKIN_SEAM_BORDER_H
 #define NOH_CONVERT_SKIN_SEAM_BORDER_H
 
@@ -34,8 +34,8 @@ typedef struct border_list {
     uint32_t **weld; /* [mesh_count] of skinned meshes, as weld_vertices gives it; else NULL */
 } border_list;
 
-/* Those of all meshes that a node draws with a skin, of three points or more. 1 when out of memory; free in any case.
- */
+/* The borders, of three points or more, of all meshes that a node draws with a skin. 1 when out of memory; free in any
+ * case. */
 int borders_find(const model *m, border_list *out);
 void borders_free(border_list *list);
 

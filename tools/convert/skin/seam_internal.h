@@ -5,7 +5,7 @@
 #include "seam.h"
 #include "seam_pair.h"
 
-/* What moves a vertex, by node: so that skins can be compared. */
+/* The joints that move a vertex, by node, so that skins can be compared. */
 typedef struct node_weight {
     uint32_t node;
     double weight;
@@ -24,7 +24,7 @@ uint32_t seam_namesake(const model_mesh *of, const char *name);
 /* A delta of a vertex, in the world. */
 void seam_delta(const model *m, const border *b, uint32_t vertex, const float *delta, double out[3]);
 
-/* Give both sides of a seam the same of everything. The weld is that of both sides' meshes. 1 when out of memory. */
+/* Make both sides of a seam equal in everything. The weld covers both sides' meshes. 1 when out of memory. */
 int seam_mend(model *m, const seam_pair *seam, uint32_t *const weld[2]);
 
 #endif

@@ -14,7 +14,7 @@ typedef struct part {
     double share;
 } part;
 
-/* What several parts come to, in the world. */
+/* The sum of several parts, in the world. */
 typedef struct blend {
     double position[3], normal[3];
     int is_crease; /* 1: each keeps its own normal */

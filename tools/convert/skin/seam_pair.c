@@ -7,7 +7,7 @@
 #include "convert/model/model_build.h"
 
 #define REACH 0.1           /* of a border's size: so far apart may the sides be */
-#define SIZES 1.5           /* the larger border is at most so many times the smaller one */
+#define SIZES 1.5           /* largest ratio of the two borders' sizes */
 #define OPPOSITE 0.3        /* how clearly the surfaces must go on in opposite directions: the mean cosine */
 #define CREASE 0.5          /* cosine of 60 degrees, as normals of a mesh have it */
 #define BORDERS_MAX 1024u   /* the largest ones are compared */

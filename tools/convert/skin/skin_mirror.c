@@ -5,7 +5,7 @@
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 
-/* A scale of 0 counts as positive: the sign is then that of the other axes, and of the pose once the scale grows. */
+/* A scale of 0 counts as positive: the sign then comes from the other axes, as in the pose once the scale grows. */
 static int node_side(const model *m, uint32_t node)
 {
     int side = 1;
@@ -83,10 +83,11 @@ static int wind_mesh(model *m, model_mesh *mesh, const signed char *sides)
         if (corners > 1) turn_over(mesh->indices + i);
     }
     return mirrored && mirrored < mesh->vertex_count &&
-           model_warn(m,
-                      "mesh '%.40s': its joints mirror %u of its %u vertices; triangles face as most of their corners "
-                      "do (apply negative scales before the file is written)",
-                      mesh->name, mirrored, mesh->vertex_count);
+           model_warn(
+               m,
+               "mesh '%.40s': its joints mirror %u of its %u vertices; triangles face as most of their corners do "
+               "(apply negative scales before export)",
+               mesh->name, mirrored, mesh->vertex_count);
 }
 
 static int wind_meshes(model *m, uint32_t index, const signed char *sides)

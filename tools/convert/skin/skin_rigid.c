@@ -144,7 +144,7 @@ static uint32_t add_joint(join_job *j, uint32_t joint, const double bind[16])
     return i;
 }
 
-/* From the space of a node to that of the joint at or above it, by the rest transforms between. */
+/* From the space of a node to the joint at or above it, by the rest transforms between. */
 static void matrix_below(const model *m, uint32_t node, uint32_t joint_node, double out[16])
 {
     affine_identity(out);
@@ -221,7 +221,7 @@ static int add_skinned(join_job *j, uint32_t node)
 
 /* ---- the joined mesh ---- */
 
-/* The first node with targets: its weights, and those of its clips, become the joined mesh's. */
+/* The first node with targets: its weights, and its clips' weights, become the joined mesh's. */
 static uint32_t drawing_node(const join_job *j)
 {
     uint32_t owner = find_owner(j);
@@ -360,7 +360,7 @@ static void list_drawn(const model *m, uint8_t *drawn)
     }
 }
 
-/* Nodes whose mesh was joined to another node's have no weights to animate; those of the other node are the same. */
+/* Nodes whose mesh was joined to another node's have no weights to animate; the other node's are the same. */
 static void drop_channels(const join_job *j, model_clip *clip)
 {
     uint32_t kept = 0;

@@ -188,16 +188,16 @@ static int bind_collider(binding *b, const springs_collider *c, uint32_t *found)
 
 /* ---- a text ---- */
 
-/* What a line has met in all skeletons. */
+/* The matches of a line in all skeletons. */
 typedef struct outcome {
     uint32_t found, left_out, twice; /* twice: a joint, MODEL_NONE: none */
 } outcome;
 
 static const char *trouble(const outcome *o, int is_chain)
 {
-    if (o->twice != MODEL_NONE) return "this joint swings already";
+    if (o->twice != MODEL_NONE) return "this joint is already in a chain";
     if (!o->found) {
-        return is_chain ? "no skeleton has this joint, or the one behind `to` below it"
+        return is_chain ? "no skeleton has this joint with the joint after `to` below it"
                         : "no skeleton has this joint, or there are more than 32 colliders";
     }
     return o->left_out ? "a joint has no parent, or no bone with a length: it cannot swing" : NULL;
@@ -324,7 +324,7 @@ int springs_bind_nodes(model *m, raw_set *const *sets, uint32_t set_count, set_s
         lost += m->springs[s].joint_count > bound ? m->springs[s].joint_count - bound : 0;
     }
     if (!failed && lost) {
-        failed = model_warn(m, "springs: %u of their nodes are no joints of a skeleton and do not swing", lost);
+        failed = model_warn(m, "springs: %u of their nodes are not joints of a skeleton and do not swing", lost);
     }
     if (!failed && left_out) {
         failed = model_warn(m, "springs: %u joints have no parent, or no bone with a length, and do not swing",

@@ -14,16 +14,16 @@ typedef struct set_springs {
     uint32_t row_count, chain_count, collider_count;
 } set_springs;
 
-/* Of a text: each chain and collider in each skeleton that has its joints. *line and *error where none has, or where a
- * joint would swing twice. With `model_lines` a line that cannot be bound is a warning of the model instead.
+/* Bind a text: each chain and collider in each skeleton that has its joints. *line and *error where none has, or where
+ * a joint would swing twice. With `model_lines` a line that cannot be bound is a warning of the model instead.
  * shapes  out[set_count], zeros before; free in any case. To be called when joints are in their last order */
 int springs_bind_text(const springs_text *text, model *m, raw_set *const *sets, uint32_t set_count, int model_lines,
                       set_springs *out, uint32_t *line, model_error *error);
 
-/* Of the model's extension. 0, or 1 when out of memory. */
+/* Bind the model's extension. 0, or 1 when out of memory. */
 int springs_bind_nodes(model *m, raw_set *const *sets, uint32_t set_count, set_springs *out);
 
-/* Chains in the order in which they hang on each other. 0, or 1 when out of memory. */
+/* Sort chains so that each follows the chain it is attached to. 0, or 1 when out of memory. */
 int springs_sort(set_springs *springs, uint32_t set_count);
 
 void springs_free(set_springs *springs, uint32_t set_count);

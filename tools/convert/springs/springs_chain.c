@@ -140,7 +140,7 @@ static int sort(set_springs *s)
     return failed;
 }
 
-/* Joints come after their parents, so chains by their first joints come after those that they hang on. */
+/* Joints come after their parents, so chains sorted by their first joints follow the chains they are attached to. */
 int springs_sort(set_springs *springs, uint32_t set_count)
 {
     for (uint32_t i = 0; i < set_count; i++) {

@@ -16,9 +16,9 @@ typedef struct springs_path {
 /* Where a joint lies in the space of one above it, at rest. */
 void springs_place(const raw_skeleton *skeleton, uint32_t joint, uint32_t above, float out[3]);
 
-/* Add what of a path can swing: a chain for each run of joints that are parent and child, have a parent and bones with
- * lengths, and swing in no other chain. *left_out: joints that do not swing for another reason than being in one.
- * 0, or 1 when out of memory. */
+/* Add the parts of a path that can swing: a chain for each run of joints that are parent and child, have a parent and
+ * bones with lengths, and are in no other chain. *left_out: joints that do not swing for another reason than being in
+ * one. 0, or 1 when out of memory. */
 int springs_add_path(set_springs *out, const springs_path *path, uint32_t *left_out);
 
 int springs_swings(const set_springs *springs, uint32_t joint);

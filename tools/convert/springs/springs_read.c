@@ -31,7 +31,7 @@ static int take_number(text_scan *s, const char *what, double least, double most
     if (!word.size) return text_fail(s, word.line, "the number of %s is missing", what);
     if (text_number(s, word, &value)) return 1;
     if (!(value >= least && value <= most)) {
-        return text_fail(s, word.line, "%s is %g, and has to be %g to %g", what, value, least, most);
+        return text_fail(s, word.line, "%s is %g: it must be %g to %g", what, value, least, most);
     }
     *out = (float)value;
     return 0;
@@ -62,7 +62,10 @@ static int take_hits(text_scan *s, springs_chain *c)
         grown[used + word.size] = grown[used + word.size + 1u] = '\0';
         used += word.size + 1u;
     } while (word.size);
-    return used > 1u ? 0 : text_fail(s, c->line, "`hits` names no joint of a collider; without it all count");
+    return used > 1u
+               ? 0
+               : text_fail(s, c->line,
+                           "`hits` needs the name of a joint with a collider; without `hits`, all colliders count");
 }
 
 static int take_option(text_scan *s, text_word word, springs_chain *c)
@@ -80,7 +83,7 @@ static int take_option(text_scan *s, text_word word, springs_chain *c)
     }
     if (text_is(word, "to")) {
         if (text_take_on_line(s, &name)) return 1;
-        return name.size ? name_copy(s, name, &c->to) : text_fail(s, word.line, "`to` names no joint");
+        return name.size ? name_copy(s, name, &c->to) : text_fail(s, word.line, "`to` needs the name of a joint");
     }
     return text_fail(s, word.line, "'%s' is not understood: " WORDS, text_show(word, shown));
 }
@@ -150,7 +153,7 @@ springs_text *springs_text_new(void)
     return calloc(1, sizeof(springs_text));
 }
 
-/* What a line that could not be read has left behind. */
+/* Frees the rest of a line that could not be read. */
 static void drop(springs_text *t, uint32_t chains, uint32_t colliders)
 {
     for (; t->chain_count > chains; t->chain_count--) {
@@ -197,9 +200,9 @@ int springs_text_read(springs_text *springs, const char *path, uint32_t *line, m
         text_scan s;
         *line = 1;
         text_start(&s, text, size, error);
-        failed = text_fail(&s, 1, "no line has a chain: " WORDS);
+        failed = text_fail(&s, 1, "the file has no chain: " WORDS);
     }
-    if (failed) error->where[0] = 0; /* *line says it */
+    if (failed) error->where[0] = 0; /* *line has the line */
     free(text);
     return failed;
 }

@@ -39,7 +39,7 @@ void springs_text_free(springs_text *text);
 /* Add the lines of a text. 0, or 1 with *line and *error; what was read before stays. */
 int springs_text_add(springs_text *springs, const char *text, size_t size, uint32_t *line, model_error *error);
 
-/* Add those of a file, which must have a chain. 0, or 1 with *line and *error. */
+/* Add the lines of a file, which must have a chain. 0, or 1 with *line and *error. */
 int springs_text_read(springs_text *springs, const char *path, uint32_t *line, model_error *error);
 
 #endif

@@ -18,8 +18,8 @@ static int has_ending(const char *path, const char *ending)
 static int check_sides(uint32_t width, uint32_t depth, model_error *error)
 {
     if (width >= 2u && depth >= 2u && width <= NOH_TERRAIN_SIZE_MAX && depth <= NOH_TERRAIN_SIZE_MAX) return 0;
-    return model_fail(error, "", "a terrain has 2 to %u heights along a side, not %u x %u", NOH_TERRAIN_SIZE_MAX, width,
-                      depth);
+    return model_fail(error, "", "a terrain must have 2 to %u heights along a side, not %u x %u", NOH_TERRAIN_SIZE_MAX,
+                      width, depth);
 }
 
 static void find_range(terrain *t)
@@ -86,7 +86,7 @@ static int surface_of(const model *m, surface *s, model_error *error)
 {
     size_t corner = 0;
     s->count = count_triangles(m);
-    if (!s->count) return model_fail(error, "", "there is no mesh to make a terrain of");
+    if (!s->count) return model_fail(error, "", "the model has no mesh to make a terrain from");
     s->corners = model_zeros(9u * s->count, sizeof *s->corners);
     if (!s->corners) return model_fail(error, "", "out of memory");
     for (uint32_t i = 0; i < m->node_count; i++) {
@@ -108,7 +108,7 @@ static int grid_of(const surface *s, const terrain_options *o, double factor, te
     const uint32_t points = o->points ? o->points : POINTS;
     const double spacing = fmax(wide, deep) / (points - 1u);
     if (!(spacing >= 1e-4 && spacing <= 1e4)) {
-        return model_fail(error, "", "a terrain of %g x %g m has no area, or too much", wide, deep);
+        return model_fail(error, "", "the terrain's size of %g x %g m is too small or too large", wide, deep);
     }
     t->width = (uint32_t)ceil(wide / spacing - 1e-6) + 1u;
     t->depth = (uint32_t)ceil(deep / spacing - 1e-6) + 1u;
@@ -159,7 +159,7 @@ static void raise_to(const terrain *t, const double *c, double *heights)
     }
 }
 
-/* What lies past the last edge, by less than a cell, continues the row or column before it. */
+/* Less than a cell past the last edge, the row or column before it continues. */
 static void continue_edges(const terrain *t, double *heights)
 {
     for (size_t row = 0; row < t->depth; row++) {
@@ -182,7 +182,7 @@ static int quantise(terrain *t, const double *heights, model_error *error)
         low = fmin(low, heights[i]);
         high = fmax(high, heights[i]);
     }
-    if (!(low <= high)) return model_fail(error, "", "no surface of the model is seen from above");
+    if (!(low <= high)) return model_fail(error, "", "the model has no surface that is visible from above");
     t->heights = model_zeros(count, sizeof *t->heights);
     if (!t->heights) return model_fail(error, "", "out of memory");
     const double step = (high - low) / 65535.0;
@@ -238,7 +238,7 @@ int terrain_read(const char *path, const terrain_options *options, terrain *out,
     } else if (has_ending(path, ".glb") || has_ending(path, ".gltf")) {
         failed = read_model(path, options, out, error);
     } else {
-        failed = model_fail(error, "", "a terrain is read from a .png, .glb or .gltf file");
+        failed = model_fail(error, "", "a terrain must be a .png, .glb or .gltf file");
     }
     if (failed) {
         terrain_free(out);

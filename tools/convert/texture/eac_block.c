@@ -28,7 +28,7 @@ static int32_t step_of(int32_t times, int eleven)
     return eleven ? (times ? times * 8 : 1) : times;
 }
 
-/* Choose the index of each texel; *left is the sum of what they leave. */
+/* Choose the index of each texel; *left is the sum of the errors. */
 static void select_all(const int32_t values[16], int eleven, fit *f, int32_t *left)
 {
     const int32_t most = eleven ? 2047 : 255, base = eleven ? f->base * 8 + 4 : f->base;
@@ -70,7 +70,7 @@ static void try_table(const int32_t values[16], int eleven, int32_t table, int32
     }
 }
 
-/* What a block beside loses here. */
+/* The error of a neighbouring block here. */
 static uint64_t error_of(const int32_t values[16], int eleven, const uint8_t block[8])
 {
     uint16_t got[16];
@@ -83,7 +83,7 @@ static uint64_t error_of(const int32_t values[16], int eleven, const uint8_t blo
     return error;
 }
 
-/* Bits of a block that is none of those beside it, when it is sent. */
+/* Bits of a block that differs from its neighbours, when it is sent. */
 #define BITS_OF_ITS_OWN 40u
 
 void eac_encode(const int32_t values[16], int eleven, uint32_t bit_worth, const uint8_t *const beside[2],

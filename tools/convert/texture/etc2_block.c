@@ -23,7 +23,7 @@ uint32_t etc2_bits_of_selectors(uint64_t block)
     return 4u + changes;
 }
 
-/* What a block beside loses here; with other holes it cannot be taken. */
+/* The error of a neighbouring block here; with other holes it cannot be used. */
 static void try_beside(const etc2_texels *t, const uint8_t *beside, etc2_best *best)
 {
     uint8_t texels[16][4];

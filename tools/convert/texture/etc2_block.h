@@ -10,7 +10,7 @@
  * Texel x, y has the number 4 x + y, as in the blocks. The search starts with the mean colour of each half, chooses
  * table and selectors, sets the colour to the mean of what these leave, and again while that helps; then it moves each
  * channel of the best by a step. Stroem and Pettersson, "ETC2: Texture Compression using Invalid Combinations"
- * (Graphics Hardware 2007), has the modes; the bits are those of OpenGL ES 3.0.6, appendix C.1. */
+ * (Graphics Hardware 2007), has the modes; the bits are in OpenGL ES 3.0.6, appendix C.1. */
 #ifndef NOH_CONVERT_TEXTURE_ETC2_BLOCK_H
 #define NOH_CONVERT_TEXTURE_ETC2_BLOCK_H
 
@@ -31,7 +31,7 @@ typedef struct etc2_best {
     uint32_t bits; /* that it takes when it is sent (wire_etc2.c), roughly */
 } etc2_best;
 
-/* A block of so many bits more has to be nearer by so much. */
+/* The gain in error that a block must give for each additional bit. */
 static inline int etc2_is_better(const etc2_texels *t, uint32_t error, uint32_t bits, const etc2_best *best)
 {
     return (uint64_t)error + (uint64_t)t->bit_worth * bits <
@@ -46,7 +46,7 @@ static inline uint32_t etc2_bits_of(int32_t difference)
     return bits;
 }
 
-/* Bits of a block's selectors: each that is not as the ones beside it costs one more. */
+/* Bits of a block's selectors: each that differs from its neighbours costs one more. */
 uint32_t etc2_bits_of_selectors(uint64_t block);
 
 static inline int32_t etc2_clamp(int32_t value, int32_t most)

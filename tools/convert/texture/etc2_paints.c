@@ -14,7 +14,7 @@ typedef struct fit {
     uint32_t error;
 } fit;
 
-/* What a paint adds to which of the two colours. */
+/* The amount that a paint adds, and the colour it is added to. */
 static int32_t shift_of(int is_h, int paint, int32_t distance, int *color)
 {
     static const int8_t t_signs[4] = { 0, 1, 0, -1 };
@@ -145,8 +145,8 @@ static uint64_t selectors_of(const fit *f)
     return block;
 }
 
-/* A channel of five bits and a difference of three, of which the bits of `mask` are free: those that put the sum of the
- * two outside 0..31, or inside. */
+/* A channel of five bits and a difference of three, with the bits of `mask` free: they are set so that the sum of the
+ * two is outside 0..31, or inside. */
 static uint64_t fill(uint64_t block, int at, uint64_t mask, int outside)
 {
     uint64_t bits = 0;

@@ -83,7 +83,7 @@ static void encode_color(const texture_image *level, uint32_t x, uint32_t y, uin
     etc2_encode_rgb(&t, beside, block);
 }
 
-/* Whether the texels of the block are those of the block to the left of it. */
+/* Whether the block's texels equal the block to the left. */
 static int is_repeated(const texture_image *level, uint32_t x, uint32_t y)
 {
     if (!x || x + 4u > level->width) return 0;

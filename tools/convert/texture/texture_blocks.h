@@ -1,11 +1,11 @@
-/* texture_blocks.h: levels of a texture as blocks of ETC2 and EAC, and how far these are off.
+/* texture_blocks.h: levels of a texture as blocks of ETC2 and EAC, and their errors.
  *
  *   texture_blocks_append   encode a level
- *   texture_blocks_error    the mean square of what a level lost
+ *   texture_blocks_error    the mean square error of a level
  *   texture_quality_db      the same of a texture in a pack, as its peak signal to noise ratio
  *   texture_format_name     "ETC2 RGB" and so on
  *
- * Vectors of normal maps are made unit first: EAC_RG keeps x and y, and z is what they leave of 1. */
+ * Vectors of normal maps are made unit first: EAC_RG keeps x and y, from which z follows. */
 #ifndef NOH_CONVERT_TEXTURE_TEXTURE_BLOCKS_H
 #define NOH_CONVERT_TEXTURE_TEXTURE_BLOCKS_H
 

@@ -24,11 +24,11 @@ typedef struct trim_group {
 typedef struct trim {
     model *m;
     const mesh_levels *levels;
-    uint32_t *group_of; /* [material_count + texture_count] towards the one that stands for the group */
+    uint32_t *group_of; /* [material_count + texture_count] links to the representative of the group */
     trim_group *groups; /* likewise */
 } trim;
 
-/* ---- who goes with whom ---- */
+/* ---- textures that are trimmed together ---- */
 
 static uint32_t find(const trim *t, uint32_t i)
 {
@@ -182,7 +182,7 @@ static void measure_groups(trim *t)
     }
 }
 
-/* What a triangle reads on one axis, from `low` to `high`. Beyond 0..1 it comes in again on the other side. */
+/* The range that a triangle reads on one axis, from `low` to `high`. Beyond 0..1 it wraps around. */
 static void use(trim_group *g, int axis, double low, double high)
 {
     const double cells = g->cells[axis], texels = MARGIN_TEXELS / g->side[axis];
@@ -254,7 +254,7 @@ static uint64_t all_of(uint32_t cells)
     return cells < 64u ? ((uint64_t)1 << cells) - 1u : UINT64_MAX;
 }
 
-/* What is worth it. */
+/* The smallest gain. */
 static void settle(trim_group *g)
 {
     uint32_t kept = 1, whole = 1;

@@ -38,7 +38,7 @@ static int neighbours(const region_mask *m, uint32_t x, uint32_t y, uint32_t c, 
     return 1;
 }
 
-/* Whether a texel is what a filter leaves between two regions; *pair then has the two that are farthest apart. */
+/* Whether a texel is a filter's value between two regions; *pair then has the two that are farthest apart. */
 static int is_seam(const region_mask *m, uint32_t x, uint32_t y, uint32_t c, uint8_t pair[2])
 {
     const uint8_t code = code_at(m, x, y, c);
@@ -138,8 +138,8 @@ typedef struct curve {
 } curve;
 
 static const curve curves[] = {
-    { "linear taken for sRGB (made brighter)", 0.0 },
-    { "sRGB taken for linear (made darker)", -1.0 },
+    { "linear data read as sRGB (brighter)", 0.0 },
+    { "sRGB data read as linear (darker)", -1.0 },
     { "a power of 1/2.2", 1.0 / 2.2 },
     { "a power of 2.2", 2.2 },
     { "a power of 1/1.8", 1.0 / 1.8 },
@@ -177,7 +177,7 @@ static void undo_table(const curve *by, uint8_t codes[256], double off[256])
     codes[0] = 0;
 }
 
-/* What is wrong with a mask once a curve is undone: texels that no legal code explains, and even ones without full
+/* The faults of a mask once a curve is undone: texels that no legal code explains, and even ones without full
  * weight, of those that are not empty. by NULL: as it is. */
 static double wrong_share(const mask_findings *f, uint32_t even[4][256], const curve *by)
 {
@@ -266,7 +266,7 @@ static int fits(const uint8_t *values, int count, int low, int high)
     return 1;
 }
 
-/* Whether two end points of so many bits, and thirds between them, give these values. */
+/* Whether two end points of `bits` bits, and thirds between them, give these values. */
 static int is_stored(const uint8_t *values, int count, int bits)
 {
     for (int a = 0; a < 1 << bits && count <= 4; a++) {
@@ -280,7 +280,7 @@ static int is_stored(const uint8_t *values, int count, int bits)
     return 0;
 }
 
-/* A block tells where a channel has three values or more: any two are stored by good compressors. */
+/* A block counts if a channel has three values or more: good compressors store any two. */
 static void count_blocks(const region_mask *m, mask_findings *f)
 {
     for (uint32_t y = 0; y + 4 <= m->height; y += 4) {
@@ -394,8 +394,8 @@ static void snap_all(region_mask *m, uint32_t reach)
     }
 }
 
-/* What a filter made of two codes, as the painter meant it: a region's edge against nothing is so much of the region,
- * one against another region belongs to the nearer. */
+/* What a filter made of two codes, as the painter meant it: an edge between a region and none keeps its
+ * share of the region; an edge between two regions goes to the nearer one. */
 static uint8_t unmixed(uint8_t code, const uint8_t pair[2])
 {
     const uint32_t high = snap(pair[1], 255), region = high / REGION_STEP, offset = high % REGION_STEP;
@@ -427,7 +427,7 @@ static uint32_t count_changes(const region_mask *a, const region_mask *b)
     return count;
 }
 
-#define PASSES 3 /* a filter's seam is at most so many texels wide on each side */
+#define PASSES 3 /* the widest seam of a filter on each side, texels */
 
 uint32_t mask_repair(region_mask *mask, const mask_findings *findings)
 {

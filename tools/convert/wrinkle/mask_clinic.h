@@ -1,8 +1,8 @@
-/* mask_clinic.h: what a painted region mask suffered on its way, and its repair.
+/* mask_clinic.h: the damage of a painted region mask, and its repair.
  *
- * Codes (region_mask.h) survive neither filtering nor changes of colours, so whatever an editor or a texture compressor
- * does to them shows: as codes in the guard bands, as thin seams of a wrong region between two others, as whole areas
- * beside the codes of full weight. The causes leave different traces:
+ * Codes (region_mask.h) survive neither filtering nor changes of colours, so changes by an editor or a texture
+ * compressor are visible: as codes in the guard bands, as thin seams of a wrong region between two others, or as whole
+ * areas off the codes of full weight. The causes leave different traces:
  *
  *   smoothing    values that lie strictly between two opposite neighbours of other regions: anti-aliasing, resizing
  *   gamma        codes are illegal and even areas lack full weight, but neither once one common curve is undone
@@ -35,16 +35,16 @@ typedef struct mask_findings {
     uint32_t seams[4];          /* texels strictly between two opposite neighbours of other regions, once the curve is
                                  * undone */
     uint32_t edges[4];          /* texels beside one of another region, likewise */
-    uint32_t even[4], even_full[4]; /* texels inside even areas, and those of them with full weight */
+    uint32_t even[4], even_full[4]; /* texels inside even areas, and how many have full weight */
     const char *gamma;              /* the curve, for MASK_GAMMA; else NULL */
-    uint32_t blocks, blocks_stored; /* squares whose colours tell, and those of them that BC1 to BC3 can store */
+    uint32_t blocks, blocks_stored; /* squares with telling colours, and how many BC1 to BC3 can store */
     mask_region regions[REGION_COUNT];
 } mask_findings;
 
 /* Look a mask over. Returns 0, or 1: out of memory. */
 int mask_examine(const region_mask *mask, mask_findings *findings);
 
-/* Undo what was found, in place: the curve, then seams, then what is left in guard bands. No code of the result is in a
+/* Undo the damage, in place: the curve, then seams, then values left in guard bands. No code of the result is in a
  * guard band. Returns the number of texels changed, or UINT32_MAX: out of memory, nothing changed. */
 uint32_t mask_repair(region_mask *mask, const mask_findings *findings);
 

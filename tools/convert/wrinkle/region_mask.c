@@ -55,7 +55,7 @@ int region_maps_make(const region_mask *mask, uint8_t *maps[REGION_MAP_COUNT])
     return 1;
 }
 
-/* 0 has one code in each channel, that of no region. */
+/* 0 has one code in each channel, which means no region. */
 static uint8_t code_of(uint32_t map, uint8_t weight)
 {
     const uint32_t offset = weight == 255u ? REGION_LAST : (uint32_t)((float)weight / (255.0f * WEIGHT_STEP) + 0.5f);
@@ -100,8 +100,7 @@ int region_mask_read(const char *path, region_mask *mask, model_error *error)
     }
     if (image.bits != 8) {
         free(image.rgba);
-        return model_fail(error, "", "a region mask has 8 bits a channel, this file has %u: save it with 8",
-                          image.bits);
+        return model_fail(error, "", "the region mask has %u bits a channel: save it with 8", image.bits);
     }
     *mask = (region_mask){ image.width, image.height, image.rgba };
     if (image.channels == 1 || image.channels == 3) {

@@ -15,7 +15,7 @@
 #define ROUNDS 8          /* of the filter */
 #define REACH 0.8         /* of the filter, in distances from crease to crease */
 #define LEAN 10.0         /* degrees from the axis of its triangle alone that a slope may be off */
-#define GAIN 4.0          /* what is left of noise grows, what has grown stays */
+#define GAIN 4.0          /* remaining noise grows into creases, which stay */
 #define FOLD_FROM 0.05    /* compression that skin takes up almost as it is, */
 #define FOLD_ALL 0.3      /* and from which on all of it folds */
 #define FOLD_LEAST 0.25
@@ -256,7 +256,7 @@ static double height_at(const canvas *c, size_t at)
     return c->creases[at].reach ? -(double)c->creases[at].depth * below * below : 0.0;
 }
 
-/* The difference of heights to the next texel, from both sides; 0 across the border of what is compressed. */
+/* The difference of heights to the next texel, from both sides; 0 across the border of the compressed area. */
 static double height_step(const canvas *c, uint32_t x, uint32_t y, int down)
 {
     const uint32_t width = c->raster->width;

@@ -44,7 +44,7 @@ static int out_of_memory(model_error *error)
 
 /* ---- which surface ---- */
 
-/* Cards of hair and lashes, and what is not lit, have no creases. */
+/* Cards of hair and lashes, and unlit materials, have no creases. */
 static int can_wrinkle(const model *m, uint32_t material)
 {
     return material != MODEL_NONE && m->materials[material].alpha == MODEL_ALPHA_OPAQUE &&
@@ -98,7 +98,7 @@ static const char *objection(const model_mesh *mesh, const wrinkle_field *f)
     if (!mesh->target_count) return "it has no morph targets";
     if (!mesh->uv) return "it has no texture coordinates: unwrap it first";
     if (!mesh->tangent) return "it has no tangents";
-    if (!f->triangle_count) return "no target compresses an opaque, lit material of it";
+    if (!f->triangle_count) return "no target compresses one of its opaque, lit materials";
     return NULL;
 }
 
@@ -256,11 +256,12 @@ static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
         if (i == texels || is_tied(mesh, w->matrix, r)) continue;
         at += (size_t)snprintf(list + at, sizeof list - at, count++ ? ", %u" : "%u", r);
     }
-    return count && model_warn(m,
-                               "mesh '%s': no target compresses the skin by 1 %% in region%s %s of the mask, "
-                               "which never show%s: paint it where targets do, or give it rows `wrinkle TARGET REGION` "
-                               "in a recipe (--recipe)",
-                               mesh->name, count == 1 ? "" : "s", list, count == 1 ? "s" : "");
+    return count &&
+           model_warn(
+               m,
+               "mesh '%s': no target compresses the skin by 1 %% in region%s %s of the mask, which never show%s: "
+               "paint it where targets compress the skin, or add rows `wrinkle TARGET REGION` to a recipe (--recipe)",
+               mesh->name, count == 1 ? "" : "s", list, count == 1 ? "s" : "");
 }
 
 /* ---- into the model ---- */
@@ -357,8 +358,7 @@ static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, cons
     m->materials[own].wrinkle_models = settings->models;
     if (by_pixel && !has_room(&m->materials[own])) {
         by_pixel = 0;
-        if (model_warn(m,
-                       "material '%s': its wrinkle regions are read at vertices, since a pixel reads %u maps at most",
+        if (model_warn(m, "material '%s': its wrinkle regions are read per vertex, as a pixel reads at most %u maps",
                        m->materials[own].name, NOH_MATERIAL_MAPS_MAX))
             return 1;
     }
@@ -406,8 +406,8 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     if (!failed && !why) {
         failed = (wrinkle_uv_settle(m, mesh, &f) || choose_size(&f, settings->size, &r)) && out_of_memory(error);
         if (!failed && overlaps(&r) && !(settings->map && settings->mask)) { /* painted ones are meant for it */
-            why =
-                "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
+            why = "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one "
+                  "place";
         }
     }
     if (!failed && why) {
@@ -432,8 +432,9 @@ int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error
     uint32_t made = 0;
     if (!settings->automatic && !settings->map && !settings->mask) {
         return settings->recipe && settings->recipe->wrinkle_count &&
-               model_warn(m, "the recipe's rows of wrinkles show nothing: there are none without --wrinkles auto, "
-                             "--wrinkle-map or --region-mask") &&
+               model_warn(
+                   m,
+                   "the recipe's wrinkle rows have no effect without --wrinkles auto, --wrinkle-map or --region-mask") &&
                out_of_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {

@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 typedef struct wrinkle_settings {
-    int automatic;      /* generate what is not painted */
+    int automatic;      /* generate maps that are not painted */
     const char *map;    /* a painted normal map, tangent space, +y up; NULL: generated */
     const char *mask;   /* a painted region mask (region_mask.h); NULL: generated */
     uint32_t models;    /* NOH_WRINKLE_BY_* of format.h: what shows them, at least one */
@@ -22,13 +22,13 @@ typedef struct wrinkle_settings {
     uint32_t size;      /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
     uint32_t mask_size; /* side of a generated mask; 0: as it is read */
     region_mask *kept;  /* of no texels; takes the mask of the first mesh that gets wrinkles. NULL: nowhere */
-    const recipe_text *recipe; /* its rows of wrinkles go before what is measured; NULL: none */
+    const recipe_text *recipe; /* its wrinkle rows override the measurement; NULL: none */
     FILE *report;              /* NULL: quiet */
 } wrinkle_settings;
 
-/* Add wrinkles to one material of each mesh that targets compress: that with most of it. Meshes that can have none are
- * told about in the model's warnings; that none can have any is an error. Does nothing where the settings ask for
- * nothing. Returns 0, or 1 and *error. */
+/* Add wrinkles to the material of each mesh that targets compress the most. Meshes without possible wrinkles give a
+ * warning of the model; if no mesh can have wrinkles, that is an error. Does nothing if the settings request none.
+ * Returns 0, or 1 and *error. */
 int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error);
 
 #ifdef __cplusplus

@@ -4,15 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GROUPS 96        /* of points at first: the two most alike are joined until as many are left as regions */
-#define ROUNDS 12        /* of assigning points to groups and moving the groups */
-#define SMOOTHINGS 3     /* rounds in which borders grow soft, one edge a round */
-#define FADE_FIRST 0.01f /* compression at which a crease begins to show, */
-#define FADE_LAST 0.035f /* and at which it shows in full */
-#define MATRIX_LEAST \
-    0.04                 /* a target that does less than this to a region, over what the strongest does, leaves it be */
-#define SAMPLES_MAX 64u  /* of a mask, along a side of a triangle */
-#define SHOWN_LEAST 0.05 /* of a region's area, where a target that is tied to it compresses by FADE_FIRST */
+#define GROUPS 96         /* of points at first: the two most alike are joined until as many are left as regions */
+#define ROUNDS 12         /* of assigning points to groups and moving the groups */
+#define SMOOTHINGS 3      /* rounds in which borders grow soft, one edge a round */
+#define FADE_FIRST 0.01f  /* compression at which a crease begins to show, */
+#define FADE_LAST 0.035f  /* and at which it shows in full */
+#define MATRIX_LEAST 0.04 /* a target with less than this share of the strongest in a region has no effect on it */
+#define SAMPLES_MAX 64u   /* of a mask, along a side of a triangle */
+#define SHOWN_LEAST 0.05  /* of a region's area, where a target that is tied to it compresses by FADE_FIRST */
 
 /* Groups as directions: how much each target compresses their points, unit length. */
 typedef struct clusters {
@@ -47,8 +46,8 @@ static double project(const clusters *c, uint32_t vertex, uint32_t region)
     return sum;
 }
 
-/* What of a point's compression no region so far explains: as a share, so that a slight crease of the brow counts
- * beside the deep folds of a mouth, by its area. */
+/* The part of a point's compression that no region explains so far: as a share, so that a slight crease of the brow
+ * counts next to the deep folds of a mouth, by its area. */
 static double unexplained(const clusters *c, uint32_t vertex, uint32_t regions)
 {
     const uint32_t targets = c->field->mesh->target_count;
@@ -128,7 +127,7 @@ static double point_share(const clusters *c, uint32_t vertex, uint32_t region)
     return all > 0.0 ? project(c, vertex, region) * point_weight(c->field, vertex) / all : 0.0;
 }
 
-/* Each group's direction becomes that of its points: one step of the power method. */
+/* Set each group's direction from its points: one step of the power method. */
 static void move(clusters *c)
 {
     const wrinkle_field *f = c->field;
@@ -155,7 +154,7 @@ static void settle(clusters *c)
     }
 }
 
-/* What one direction in place of two still explains: the larger eigenvalue of the sum of their squares. */
+/* The part that one direction in place of two explains: the larger eigenvalue of the sum of their squares. */
 static double together(const clusters *c, uint32_t a, uint32_t b, double *cosine)
 {
     const double p = c->weight[a], q = c->weight[b], half = 0.5 * (p - q);
@@ -268,7 +267,7 @@ static double meeting(const wrinkle_field *f, region_weights *weights, uint32_t 
     return sum;
 }
 
-/* What region `of` loses in the channel of place `place`, beside those that are there but for place `but`. */
+/* The loss of region `of` in the channel of place `place`, next to the regions there except at place `but`. */
 static double loss_at(double (*meets)[REGION_COUNT], const uint32_t *at, uint32_t of, uint32_t place, uint32_t but)
 {
     double sum = 0.0;
@@ -304,7 +303,7 @@ static void part_neighbours(double (*meets)[REGION_COUNT], uint32_t *at)
     }
 }
 
-/* Number the regions so that those that meet are in different channels: a mask holds one of each channel's at a texel. */
+/* Number the regions so that regions that meet are in different channels: a mask holds one per channel at a texel. */
 static void order(const wrinkle_field *f, region_weights *weights)
 {
     double meets[REGION_COUNT][REGION_COUNT] = { { 0.0 } };
@@ -354,7 +353,7 @@ region_weights *wrinkle_regions_make(const wrinkle_field *field)
 
 /* ---- the matrix ---- */
 
-/* What targets do to regions. */
+/* The effects of targets on regions. */
 typedef struct deeds {
     double (*sum)[REGION_COUNT];   /* [target_count] of compression times area */
     double (*shown)[REGION_COUNT]; /* [target_count] area that a target compresses so that creases show */
@@ -390,8 +389,8 @@ static int is_tied(const deeds *d, uint32_t target, uint32_t region)
     return d->shown[target][region] > 0.0 && d->shown[target][region] >= SHOWN_LEAST * d->area[region];
 }
 
-/* The target that does most to a region gets 255. A target that shows creases next to nowhere in a region is not tied to
- * it, however little the others do. */
+/* The target that does most to a region gets 255. A target that shows creases next to nowhere in a region is not tied
+ * to it, however little the others do. */
 static uint8_t *matrix_of(uint32_t targets, const deeds *d)
 {
     uint8_t *matrix = model_zeros(targets, REGION_COUNT);

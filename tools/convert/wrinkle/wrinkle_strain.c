@@ -178,7 +178,7 @@ static void divide_point(wrinkle_field *f, uint32_t point)
     }
 }
 
-/* The others at the same place have what the first one has. */
+/* Vertices at the same place get the first one's value. */
 static void copy_point(wrinkle_field *f, uint32_t vertex)
 {
     const uint32_t point = f->point[vertex], targets = f->mesh->target_count;

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #define REPEAT 10497u
-#define BEYOND 1e-4 /* of a tile: rounding by whoever wrote the coordinates */
+#define BEYOND 1e-4 /* of a tile: rounding by the exporter */
 
-/* Vertices that triangles join, with what they span. */
+/* Vertices that triangles join, with their range. */
 typedef struct part {
     double low[2], high[2];
     uint8_t wrinkles; /* 1: has triangles of the field */

@@ -53,8 +53,7 @@ static void report(const bake_args *a, uint32_t width, uint32_t height, const no
     if (map) {
         fprintf(
             out,
-            ", %u covered, %u overlaps, %u without a fine surface within %.3g mm; normals lean by %.2f degrees "
-            "in the mean",
+            ", %u covered, %u overlaps, %u without a fine surface within %.3g mm; mean tilt of normals %.2f degrees",
             map->covered, map->overlapped, map->missed, 1000.0 * map->reach, map->lean);
     }
     fprintf(out, "\n");
@@ -99,7 +98,7 @@ static int bake_model(const bake_args *a)
     if (!status && normal_map_bake(coarse, fine, &settings, &map, &error))
         status = tool_fail(a->file, "%s", error.what);
     if (!status && map.missed == map.covered) {
-        status = tool_fail(a->from, "it lies nowhere within %.3g mm of %s: --reach-mm says how far it may be off",
+        status = tool_fail(a->from, "no part of it lies within %.3g mm of %s: raise --reach-mm, or align the models",
                            1000.0 * map.reach, a->file);
     }
     if (!status) status = tool_write_png(a->output, map.size, map.size, map.rgba);
@@ -115,18 +114,18 @@ static int run(void *args)
     const bake_args *a = args;
     if (a->as_json && report_stream(a->output) != stdout) return tool_usage("--json and -o both write to stdout");
     if (has_ending(a->file, ".png") == (a->from != NULL)) {
-        return tool_usage("bake wants a height map (.png), or a model and --from, the fine one");
+        return tool_usage("noh bake needs a height map (.png), or a model with --from FINE");
     }
     if (!a->from) {
         if (!(fabs(a->depth) <= 1e6) || a->depth == 0.0) {
-            return tool_usage("--depth wants texels from -1000000 to 1000000, not 0");
+            return tool_usage("--depth must be -1000000 to 1000000 texels, and not 0");
         }
         return bake_height(a);
     }
     if (!(a->size >= 16.0 && a->size <= SIZE_MAX_TEXELS) || a->size != floor(a->size)) {
-        return tool_usage("--size wants a whole number of texels from 16 to 8192");
+        return tool_usage("--size must be a whole number of texels from 16 to 8192");
     }
-    if (!(a->reach_mm >= 0.0 && a->reach_mm <= 1e6)) return tool_usage("--reach-mm wants 0 to 1000000");
+    if (!(a->reach_mm >= 0.0 && a->reach_mm <= 1e6)) return tool_usage("--reach-mm must be 0 to 1000000");
     return bake_model(a);
 }
 
@@ -145,19 +144,19 @@ static const option options[] = {
       .at = offsetof(bake_args, depth),
       .value = "TEXELS",
       .initial = "8",
-      .what = "of a height map: how far white lies above black, in texels; negative: below",
+      .what = "height map: height of white above black, in texels; negative: below",
       .example = "20",
       .excludes = "--from" },
     { .name = "--tiles",
       .kind = OPTION_FLAG,
       .at = offsetof(bake_args, tiles),
-      .what = "of a height map: it repeats, so beyond an edge is the opposite one",
+      .what = "height map: it repeats, so each edge continues at the opposite edge",
       .excludes = "--from" },
     { .name = "--from",
       .kind = OPTION_INPUT,
       .at = offsetof(bake_args, from),
       .value = "FINE",
-      .what = "a model (.glb, .gltf, .obj) of more triangles that lies on FILE's, as both stand at rest",
+      .what = "a finer model (.glb, .gltf, .obj) of the same shape as FILE, both in their bind pose",
       .example = "sculpt.glb" },
     { .name = "--size",
       .kind = OPTION_NUMBER,
@@ -172,14 +171,15 @@ static const option options[] = {
       .at = offsetof(bake_args, reach_mm),
       .value = "MM",
       .initial = "0",
-      .what = "how far the fine surface may be off along the normal; 0: 2 % of the diagonal of FILE's box",
+      .what =
+          "largest distance to the fine surface along the normal, millimetres; 0: 2 % of the diagonal of FILE's bounding box",
       .example = "4",
       .needs = "--from" },
     { .name = "--material",
       .kind = OPTION_TEXT,
       .at = offsetof(bake_args, material),
       .value = "NAME",
-      .what = "only the triangles of FILE with this material, where several share the texture's square",
+      .what = "bake only the triangles of FILE with this material, where several share the texture coordinates",
       .example = "skin",
       .needs = "--from" },
     { .name = "--quiet",
@@ -193,9 +193,9 @@ static const option options[] = {
 const verb verb_bake = {
     .name = "bake",
     .files = "FILE",
-    .what = "make a normal map, out of a height map or of a finer model",
+    .what = "make a normal map from a height map or from a finer model",
     .more =
-        "A map is for the texture coordinates, normals and tangents that FILE has, or that noh makes where it has none; a model's material names it as its normalTexture.",
+        "The map fits the texture coordinates, normals and tangents of FILE, or those noh generates where FILE has none. Set it as the normalTexture of the model's material.",
     .example = "heights.png -o normal.png --depth 12\nhead.glb --from sculpt.glb -o normal.png --size 1024",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

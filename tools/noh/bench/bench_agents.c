@@ -1,4 +1,4 @@
-/* bench_agents.c: rows crowd/agents: a step of agents who cross a square at 0.25 a square metre, against optimal
+/* bench_agents.c: rows crowd/agents: a step of agents that cross a square at 0.25 a square metre, against optimal
  * reciprocal collision avoidance (ORCA) among the same neighbours of the same grid; and how the cost of an agent grows
  * with their number. Needs no pack's data. */
 #include <stdio.h>

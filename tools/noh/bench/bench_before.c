@@ -1,7 +1,7 @@
-/* bench_before.c: the path cpu against what it was in version 0.1, before its kernel was compiled once for each caller
+/* bench_before.c: the path cpu against its form in version 0.1, before its kernel was compiled once for each caller
  * and vertices were finished: SSE2 or NEON behind a pointer that is called for each row of a rectangle, vectors that
- * begin where a row does, and sums in a texture. Many short samples of four cells, of which the low tenth counts. What
- * came before the tables of mrt, per-layer and gather is not kept here: those were tables and shaders of their own. */
+ * begin where a row does, and sums in a texture. The result is the lowest tenth of many short samples of four cells.
+ * The predecessors of mrt, per-layer and gather are not kept: they had tables and shaders of their own. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,7 +176,7 @@ static void run_frame(void *self, uint32_t frame)
     }
 }
 
-/* Passes above what the mesh costs that is not morphed; whole frames as they are, against it, too. */
+/* Passes as cost above the unmorphed mesh; whole frames are also compared with it directly. */
 static void add_rows(before_job *j, const bench_cells *cells, const char *prefix, int passes)
 {
     const double floor = passes ? bench_low_tenth(cells, FLOOR) : 0.0;

@@ -1,9 +1,9 @@
-/* bench_cast.c: rows stage/: what a frame of a stage (runtime/stage/cast) costs the CPU, on a GL that does nothing.
+/* bench_cast.c: rows stage/: the CPU cost of a frame of a stage (runtime/stage/cast), on a GL that does nothing.
  *
- * stage/cpu/N-actors  against the same work joined by hand: a loop that does for one actor after another what the
- *                     library's parts do for it. The hand works on the parts of a second stage, from the state and with
- *                     the slots that this stage had after some frames. Both then come to the same palettes and weights,
- *                     bit for bit; if they do not, nothing is printed.
+ * stage/cpu/N-actors  against the same work joined by hand: a loop that calls the library's parts for one
+ *                      actor after another. It works on a second stage, from the state and with the slots of this stage
+ *                      after some frames. Both must give the same palettes and weights, bit for bit; otherwise nothing
+ *                      is printed.
  * stage/lod/N-actors  at one pixel of allowed error, against the same stage with actors that allow a millionth of a
  *                     pixel: all joints, all targets, every frame. Meshes stay as fine as the slots of the plan allow.
  *
@@ -55,7 +55,7 @@ static uint32_t clip_count(const noh_stage *s)
     return n;
 }
 
-/* -1: no row, where so many actors fit no GPU, or no clip moves them. */
+/* -1: no row, as the actors do not fit the GPU, or no clip moves them. */
 static int open_stage(cast *c, gpu *g, const noh_pack *pack, uint32_t actors)
 {
     static char log[4096];
@@ -289,7 +289,7 @@ static int check(cast *c, by_hand *h)
         if (!equal_skins(c->stage, h->of->stage) ||
             memcmp(k->weights, h->kind->weights, (size_t)k->desc->actor_count * k->weight_count * sizeof *k->weights) !=
                 0)
-            return tool_fail("bench", "stage: frame %u differs from that joined by hand", f);
+            return tool_fail("bench", "stage: frame %u differs from the frame joined by hand", f);
     }
     return 0;
 }

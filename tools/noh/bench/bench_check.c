@@ -94,15 +94,15 @@ static int check_pose(check *c, const char *pose, int with_normals, const char *
     position_limit = 1e-4 * length3(size) + c->method->slack;
     normal_limit = 1e-3 + c->method->normal_slack;
     if (capture(c)) {
-        return tool_fail(subject, "%s: the driver gives no vertices back", c->method->name);
+        return tool_fail(subject, "%s: the driver cannot read vertices back", c->method->name);
     }
     measure(c, &position_error, &normal_error);
     if (!(position_error <= position_limit)) {
-        return tool_fail(subject, "%s draws something else: %s, a vertex is off by %g (allowed: %g)", c->method->name,
+        return tool_fail(subject, "%s draws another result: %s, a vertex is off by %g (allowed: %g)", c->method->name,
                          pose, position_error, position_limit);
     }
     if (with_normals && !(normal_error <= normal_limit)) {
-        return tool_fail(subject, "%s draws something else: %s, a normal is off by %g (allowed: %g)", c->method->name,
+        return tool_fail(subject, "%s draws another result: %s, a normal is off by %g (allowed: %g)", c->method->name,
                          pose, normal_error, normal_limit);
     }
     return 0;

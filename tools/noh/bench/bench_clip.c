@@ -23,7 +23,7 @@
 typedef struct clip_bench {
     const bench_clip_set *set;
     bench_clip_set halved;       /* the longest clip, if it has frames to spare */
-    bench_cache all, alone, two; /* all segments of all clips; what a player needs; the least that works */
+    bench_cache all, alone, two; /* all segments of all clips; a player's needs; the minimum */
     bench_cache alone_halved;
     noh_transform *poses, *other; /* [BENCH_INSTANCES][joints_max] */
     uint32_t clip_of[BENCH_INSTANCES];
@@ -85,7 +85,7 @@ static void run_alone_halved(void *self, uint32_t frame)
 }
 
 /* Times that are independent of one another (murmur3's finaliser): which two segments a cache keeps then makes no
- * difference, where an even sequence would favour one that never lets go of its first. */
+ * difference, where an even sequence would favour a cache that never evicts its first segment. */
 static int64_t seek_time(const bench_clip *c, uint32_t frame)
 {
     uint32_t h = frame + 1u;
@@ -190,7 +190,8 @@ static int check_caches(clip_bench *b)
             noh_clip_sample(b->all.cache, k, ticks, joints, b->poses, NULL);
             bench_sample_keys(c, ticks, b->other);
             if (!same_pose(b->poses, b->other, joints)) {
-                return tool_fail("bench", "clip '%s' is not its raw keys at %.4f s", c->name, (double)ticks / 48000.0);
+                return tool_fail("bench", "clip '%s' differs from its raw keys at %.4f s", c->name,
+                                 (double)ticks / 48000.0);
             }
             if (k == 0 && f < CHECK_TIMES) {
                 const int64_t there = seek_time(c, f);

@@ -1,4 +1,4 @@
-/* bench_clip.h (private to `noh bench`): what the clip rows share.
+/* bench_clip.h (private to `noh bench`): shared by the clip rows.
  *
  *   bench_clip_set.c     the clips of the packs, their raw keys, caches
  *   bench_clip.c         rows clip/warm, clip/alone, clip/shared, clip/seek

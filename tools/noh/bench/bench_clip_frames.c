@@ -11,7 +11,7 @@
 #define MINUTE 3600u
 #define STAGGER_TICKS 4800u
 #define SPARE_SLOTS 3u   /* of a clip: decoded ahead, and a sample between two segments */
-#define BUDGET_PART 1.25 /* of what is decoded on average: room to catch up */
+#define BUDGET_PART 1.25 /* times the average decoding, as room to catch up */
 #define EVERYTHING 0xffffffffu
 
 typedef struct minute {
@@ -94,7 +94,7 @@ static void play_frame(minute *m, uint32_t frame)
     }
 }
 
-/* One pass, from a cache that holds what the first frame needs. */
+/* One pass, from a cache with the first frame's segments. */
 static void play_minute(minute *m, int first)
 {
     noh_clip_cache_init(m->cache.memory, m->cache.bytes, &m->cache.desc, &m->cache.cache, NULL);

@@ -149,8 +149,7 @@ static int cpu_check(cpu_bench *b, const cpu_work *kernel_work, const char *name
             largest = size > largest ? size : largest;
         }
     }
-    return worst > 1e-5f * largest ? tool_fail("bench", "morph/cpu/%s sums to other values than dense-scalar", name)
-                                   : 0;
+    return worst > 1e-5f * largest ? tool_fail("bench", "morph/cpu/%s and dense-scalar give different sums", name) : 0;
 }
 
 /* ---- rows ---- */

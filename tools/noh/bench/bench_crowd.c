@@ -119,7 +119,7 @@ static int measure(crowd *c)
     return status;
 }
 
-/* One head and a hundred with so many targets active. */
+/* One head and a hundred heads with this many active targets. */
 static int measure_few(crowd *c, uint32_t active)
 {
     bench_weights weights;

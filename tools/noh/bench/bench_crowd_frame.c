@@ -1,6 +1,6 @@
-/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m (tools/noh/crowd/crowd_bodies.h), at
- * several allowed errors in pixels, against the same stage without detail. None where a pack has no skinned mesh with
- * levels, or no clips.
+/* bench_crowd_frame.c: rows crowd/cpu and crowd/gpu: a frame of 1,000 bodies over 100 m
+ * (tools/noh/crowd/crowd_bodies.h), at several allowed errors in pixels, against the same stage without detail. None
+ * where a pack has no skinned mesh with levels, or no clips.
  *
  * The CPU's part is a frame on a GL that does nothing. The GPU's is accumulation, upload and draws up to glFinish, into
  * 1280 x 720 pixels of four samples. On a software rasteriser the GPU's part is a whole frame less the CPU's part, in
@@ -42,7 +42,7 @@ typedef struct fair_work {
     noh_stage_view camera;
 } fair_work;
 
-/* ---- what is timed ---- */
+/* ---- timed code ---- */
 
 static void run_frame(void *self, uint32_t frame)
 {
@@ -71,7 +71,7 @@ static int open_crowd(fair *f, gpu *g, uint32_t i)
     status = crowd_open(c, g, &f->job->files[0], &o);
     f->open_count += !status;
     if (!status && noh_gl_ledger_bytes(&c->ledger) != c->plan.gpu_bytes) {
-        status = tool_fail("bench", "a crowd takes another number of bytes than planned");
+        status = tool_fail("bench", "a crowd takes a different number of bytes than planned");
     }
     return status;
 }

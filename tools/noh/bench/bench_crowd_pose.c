@@ -47,7 +47,7 @@ static noh_character *character_of(const crowd *c, uint32_t i)
     return (noh_character *)(void *)(c->characters + i * c->bytes);
 }
 
-/* ---- what is timed ---- */
+/* ---- timed code ---- */
 
 /* Step and pose all in every frame. */
 static void run_full(void *self, uint32_t frame)
@@ -284,7 +284,7 @@ static int check(crowd_work *w)
         noh_character_look(ch, &w->table, &w->settings, 1e9f);
         noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
         if (memcmp(noh_character_palette(ch, c->palette, c->skeleton.joint_count), c->expected, bytes) != 0) {
-            return tool_fail("bench", "crowd/pose gives other poses than full-rate");
+            return tool_fail("bench", "crowd/pose and full-rate give different poses");
         }
     }
     return 0;

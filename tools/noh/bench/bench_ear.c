@@ -60,7 +60,7 @@ static int open_path(ear_bench *b)
     for (size_t p = 0; p < sizeof paths / sizeof paths[0] && status < 0; p++) {
         status = bench_open_path(&b->method, &b->stage, paths[p], NOH_ACCUMULATE_F32, paths[p] == NOH_MORPH_CPU);
     }
-    return status < 0 ? tool_fail("bench", "this GL has no path to draw the mesh by") : status;
+    return status < 0 ? tool_fail("bench", "this GL supports no path that can draw the mesh") : status;
 }
 
 static int measure(bench_job *job, ear_bench *b)

@@ -1,5 +1,5 @@
-/* bench_face.c: rows face/: a thousand living faces, from the clock to weights of a mesh's targets, beside a thousand
- * controllers of two tracks that step and do nothing else. */
+/* bench_face.c: rows face/: a thousand living faces, from the clock to weights of a mesh's targets, against a
+ * thousand controllers of two tracks that only step. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,7 +33,7 @@ typedef struct face_bench {
     const void *volatile seen;
 } face_bench;
 
-/* ---- what is timed ---- */
+/* ---- timed code ---- */
 
 static void run_controllers(void *self, uint32_t frame)
 {

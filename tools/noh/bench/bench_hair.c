@@ -1,5 +1,5 @@
 /* bench_hair.c: rows sim/hair: a step of 48 control hairs of 12 points round four spheres, by each set of instructions,
- * against as many two-bone solves; and rows sim/hair_points: what is shown between two steps. */
+ * against as many two-bone solves; and rows sim/hair_points: the points shown between two steps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

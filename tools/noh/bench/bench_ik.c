@@ -69,7 +69,7 @@ static void turned(const float q[4], const float v[3], float out[3])
     for (int i = 0; i < 3; i++) out[i] = v[i] + 2.0f * d[i];
 }
 
-/* What of v is across an axis. */
+/* The part of v that is perpendicular to an axis. */
 static void across(const float v[3], const float axis[3], float out[3])
 {
     const float along = dot(v, axis) / dot(axis, axis);

@@ -1,11 +1,11 @@
-/* bench_job.h (private to `noh bench`): what its files share.
+/* bench_job.h (private to `noh bench`): shared by its files.
  *
  *   bench_timing.c      cells timed in interleaved rounds; medians
- *   bench_weights.c     weights that change every frame, and what targets move
+ *   bench_weights.c     weights that change every frame, and the vertices that targets move
  *   bench_stage.c       where meshes are drawn: targets, camera, programs
  *   bench_check.c       every method against the CPU reference, before it is timed
  *   bench_paths.c       our five paths, and the unmorphed mesh
- *   bench_before.c      rows morph-before: the path cpu against what it was in version 0.1
+ *   bench_before.c      rows morph-before: the path cpu against its form in version 0.1
  *   bench_loops.c       baselines that loop over targets in the vertex shader
  *   bench_quads.c       baseline: one quad per target through a geometry shader
  *   bench_morph.c       rows morph/one-pass, morph/three-pass and frame
@@ -16,7 +16,7 @@
  *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies on a stage, with and without LOD
  *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
  *   bench_look.c        rows look/: frames with one part of a look, against the plain frame
- *   bench_face.c        rows face/: a thousand living faces, beside noh_controller_step
+ *   bench_face.c        rows face/: a thousand living faces, against noh_controller_step
  *   bench_ear.c         row face/ear: live sound heard, against a frame drawn
  *   bench_skin_gpu.c    rows skin/gpu: a crowd in one draw, joints per vertex
  *   bench_skin_cpu.c    rows skin/cpu
@@ -25,9 +25,9 @@
  *   bench_ik.c          rows sim/two-bone, sim/feet: a leg, and both feet on a slope
  *   bench_hair.c        rows sim/hair, sim/hair_points: control hairs of a head that shakes
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
- *   bench_people.c      rows crowd/people: of a frame of a thousand who walk, what agents and walkers take
+ *   bench_people.c      rows crowd/people: the share of agents and walkers in a frame of a thousand bodies
  *   bench_wire.c        rows wire/: the wire form unpacked, against memcpy and zstd
- *   bench_report.c      rows, storage, and how they are printed
+ *   bench_report.c      prints rows and storage
  *
  * A method is one way to morph a mesh: one of ours, a baseline, or none at all.
  * All of them draw the same triangles with the same fragment shader and give it
@@ -111,12 +111,12 @@ typedef struct bench_cells {
 
 /* Add a cell; its index, to ask for its samples later. */
 uint32_t bench_add_cell(bench_cells *cells, void (*work)(void *self, uint32_t frame), void *self);
-/* Calibrate each cell to at least sample_ns, then time all of them, round after round: as many as asked,
- * or fewer where that would take long; cells->rounds says. `what` for progress. */
+/* Calibrate each cell to at least sample_ns, then time all of them, round after round, up to the requested
+ * number, or fewer if that would take long; cells->rounds has the number. `what` for progress. */
 int bench_run_cells(bench_cells *cells, bench_clock *clock, uint32_t rounds, double sample_ns, const char *what);
 void bench_free_cells(bench_cells *cells);
 double bench_median(const bench_cells *cells, uint32_t cell);
-/* The tenth part of the samples is faster: says more than the median where others use the machine, too. */
+/* A tenth of the samples is faster than this: more reliable than the median on a shared machine. */
 double bench_low_tenth(const bench_cells *cells, uint32_t cell);
 /* The median over rounds of cell minus floor: both were timed in the same round. */
 double bench_median_above(const bench_cells *cells, uint32_t cell, uint32_t floor);
@@ -143,7 +143,7 @@ void bench_stage_close(bench_stage *s);
 typedef struct bench_method {
     char name[32];
     GLuint programs[BENCH_PASS_COUNT];
-    const noh_gl_mesh *mesh; /* what is drawn: the same triangles for all */
+    const noh_gl_mesh *mesh; /* the drawn mesh: the same triangles for all */
     const uint32_t *order;   /* [vertex_count] drawn vertex -> pack vertex, or NULL where they are the same */
     int is_baseline;
     double slack; /* error allowed to this method on top of the common one, model units */
@@ -157,7 +157,7 @@ typedef struct bench_method {
     void (*close)(void *self);                 /* NULL: nothing to delete */
 } bench_method;
 
-/* Compile bench_mesh.vert for a method's three passes: `defines` says how it morphs. */
+/* Compile bench_mesh.vert for a method's three passes: `defines` selects how it morphs. */
 int bench_programs(bench_stage *s, bench_method *m, const char *defines);
 void bench_method_close(bench_stage *s, bench_method *m);
 
@@ -241,7 +241,7 @@ int bench_springs(bench_job *job);
 int bench_hair(bench_job *job);
 int bench_ik(bench_job *job);
 
-/* A cell of so many two-bone solves (body.h): what springs and hair are measured against. self: unused */
+/* A cell of `count` two-bone solves (body.h), the baseline of springs and hair. self: unused */
 #define BENCH_TWO_BONE_SOLVES 1000u
 void bench_two_bone(void *self, uint32_t frame);
 int bench_agents(bench_job *job);

@@ -11,7 +11,7 @@
 #define SAMPLE_NS 3e7
 #define EXPRESSION 0.1 /* weight of all targets: something is wrinkled */
 
-/* What materials keep. */
+/* The materials' original state. */
 enum {
     KEEP_NORMAL = 1,
     KEEP_SURFACE = 2,
@@ -34,7 +34,7 @@ typedef struct look {
 } look;
 
 static const look plain = { "plain", 0, NULL, NULL, NULL, NULL };
-/* Each is compared with `plain`: those with light in an environment, of which the first row is the cost. */
+/* Each is compared with `plain`, drawn with light in an environment, whose cost is the first row. */
 static const look looks[] = {
     { "normal-map", KEEP_NORMAL, NULL, NULL, NULL, NULL },
     { "surface-map", KEEP_SURFACE, NULL, NULL, NULL, NULL },

@@ -1,5 +1,5 @@
 /* bench_loops.c: the baselines that sum all targets in the vertex shader, again in every
- * pass. The layouts are those of the peers' own sources, written anew:
+ * pass. The layouts follow the peers' sources:
  *
  *   dense-vertex-loop   three.js: one RGBA32F array texture, a layer for each target, position
  *                       and normal texels of every vertex side by side, weights in a uniform array;
@@ -19,7 +19,7 @@
 
 #define FILAMENT_WIDTH 2048u
 #define FILAMENT_TARGETS 256u
-#define UNIFORM_FLOATS 256u /* fits every ES 3.0 beside the other uniforms, even badly packed */
+#define UNIFORM_FLOATS 256u /* fits every ES 3.0 along with the other uniforms, even badly packed */
 
 typedef struct loop_method {
     bench_stage *stage;

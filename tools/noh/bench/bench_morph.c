@@ -123,7 +123,7 @@ static void add_rows(morph_job *j, const measured *m, const char *prefix, int wi
     }
 }
 
-/* What the rows of a number of active targets are called; NULL: there are none of this kind. */
+/* The names of the rows for a number of active targets; NULL: none of this kind. */
 typedef struct row_names {
     const char *of[3]; /* by work_kind */
 } row_names;

@@ -1,9 +1,9 @@
-/* bench_people.c: rows crowd/people: of the CPU's part of a frame with a thousand bodies who walk among each other,
- * what their agents take, and what their walkers do. None where no pack has a body that walks.
+/* bench_people.c: rows crowd/people: the shares of agents and of walkers in the CPU time of a frame with a
+ * thousand bodies that walk among each other. No rows if no pack has a body that walks.
  *
  * The CPU's part is a step of the agents, their walkers, a step of the stage, its frame and its draw, on a GL that does
- * nothing. There are 60 frames a second, so that every other one has a step of the agents: shares are those of two
- * frames. The agents are those of dense1000, at one on each square metre, and of open10000, at one on four. */
+ * nothing. There are 60 frames a second, so that every other frame has a step of the agents: shares are of two
+ * frames. The agents are dense1000, one on each square metre, and open10000, one on four. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>

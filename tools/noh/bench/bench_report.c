@@ -88,12 +88,12 @@ static void print_head(const bench_job *job)
     printf("%s, mesh '%s': %u vertices, %u targets, %u pairs in %u texels of %u rectangles\n", job->files[0].path,
            job->mesh.name, h->vertex_count, h->target_count, h->pair_count, h->texel_count, h->rect_count);
     printf("%s: %s; LP_NUM_THREADS=%s\n", job->g.caps.renderer, job->g.caps.version_text, getenv("LP_NUM_THREADS"));
-    printf(
-        "%s, medians of at most %u interleaved rounds; morph/ rows are costs above the unmorphed mesh with rasterisation discarded\n",
-        job->gl_clock.what, job->rounds);
+    printf("%s, medians of at most %u interleaved rounds; morph/ rows are costs above the unmorphed mesh with "
+           "rasterisation discarded\n",
+           job->gl_clock.what, job->rounds);
     printf("quad-per-target: rectangles in %s\n\n",
            job->artist ? "the asset's own vertex order"
-                       : "the pack's vertex order, which favours it (--source ASSET: the asset's own)");
+                       : "the pack's vertex order, which favours it (for the asset's order: --source ASSET)");
 }
 
 /* So that small ratios say something too. */
@@ -111,7 +111,8 @@ static void print_rows(const bench_rows *rows)
         if (same) {
             printf("%-40s %10s %-8s %10.*f  %s\n", "", "", "", places(r->ratio), r->ratio, r->baseline);
         } else {
-            printf("%-40s %10.4g %-8s %10.*f  %s\n", r->name, r->value, r->unit, places(r->ratio), r->ratio, r->baseline);
+            printf("%-40s %10.4g %-8s %10.*f  %s\n", r->name, r->value, r->unit, places(r->ratio), r->ratio,
+                   r->baseline);
         }
     }
 }

@@ -1,5 +1,5 @@
 /* bench_skin_cpu.c: rows skin/cpu: the kernels against straightforward scalar C, which reads the same pack
- * (plain-scalar) or floats that were unpacked before (plain-floats), and against memcpy of what they write. */
+ * (plain-scalar) or floats that were unpacked before (plain-floats), and against memcpy of the same bytes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -185,7 +185,8 @@ static int skin_check(skin_bench *b, skin_work *kernel, const char *name)
         worst = fmaxf(worst, fabsf(b->out[i] - b->copy[i]));
         largest = fmaxf(largest, fabsf(b->copy[i]));
     }
-    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s gives other vertices than plain-scalar", name) : 0;
+    return worst > 1e-5f * largest ? tool_fail("bench", "skin/cpu/%s and plain-scalar give different vertices", name)
+                                   : 0;
 }
 
 /* ---- rows ---- */

@@ -44,7 +44,7 @@ static void load_zstd(zstd *z)
     z->library = NULL;
 }
 
-/* ---- what is timed ---- */
+/* ---- timed code ---- */
 
 static void run_unpack(void *self, uint32_t frame)
 {
@@ -92,7 +92,7 @@ static int make_zstd(wire_bench *b, const char *subject)
     if (!b->packed) return tool_fail(subject, "out of memory");
     b->packed_bytes = b->z.compress(b->packed, b->z.bound(b->pack->byte_count), b->pack->bytes, b->pack->byte_count,
                                     ZSTD_LEVEL);
-    return b->z.is_error(b->packed_bytes) ? tool_fail(subject, "zstd refuses the pack") : 0;
+    return b->z.is_error(b->packed_bytes) ? tool_fail(subject, "zstd cannot compress the pack") : 0;
 }
 
 static int measure(bench_job *job, wire_bench *b)

@@ -17,8 +17,8 @@ typedef struct bench_args {
     int as_json, quick;
 } bench_args;
 
-/* The mesh with the most pairs is measured, but none whose targets move texture coordinates, which the loops of others
- * that are measured beside it do not. */
+/* Measures the mesh with the most pairs whose targets do not move texture coordinates, as the loops of the baselines
+ * do not move them. */
 static void choose_mesh(bench_job *job)
 {
     uint32_t most = 0;
@@ -39,7 +39,7 @@ static void choose_mesh(bench_job *job)
 static const struct group {
     const char *name;
     int (*run)(bench_job *job);
-    int draws; /* wants a mesh with targets */
+    int draws; /* needs a mesh with targets */
 } groups[] = {
     { "morph", bench_morph, 1 },       { "morph-cpu", bench_cpu, 1 },       { "skin-cpu", bench_skin_cpu, 1 },
     { "skin-gpu", bench_skin_gpu, 1 }, { "heads", bench_crowd, 1 },         { "clip", bench_clip_rows, 0 },
@@ -60,14 +60,14 @@ static int check_only(const char *only)
         }
     }
     near = nearest_name(only, names, GROUPS);
-    return tool_usage("--only wants a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "",
+    return tool_usage("--only must be a group of rows, not '%s'%s%s%s", only, near ? " (did you mean '" : "",
                       near ? near : "", near ? "'?)" : "");
 }
 
 static int check_args(const bench_args *a)
 {
     if (a->rounds < 1.0 || a->rounds > 1000.0 || a->rounds != (double)(uint32_t)a->rounds) {
-        return tool_usage("--rounds wants a whole number from 1 to 1000");
+        return tool_usage("--rounds must be a whole number from 1 to 1000");
     }
     return check_only(a->only);
 }
@@ -95,10 +95,9 @@ static int bench_all(bench_job *job, const bench_args *a)
         status = tool_fail(a->packs[0], "out of memory");
     }
     if (!status && !job->rows.count) {
-        status = tool_fail(
-            a->packs[0],
-            a->only ? "the pack has no data for these rows"
-                    : "no target of any mesh moves anything, and there are no clips: there is nothing to measure");
+        status = tool_fail(a->packs[0],
+                           a->only ? "the pack has no data for these rows"
+                                   : "there is nothing to measure: no target moves a vertex, and there are no clips");
     }
     if (!status) {
         status = a->as_json ? bench_print_json(job) : (bench_print(job), 0);
@@ -126,7 +125,7 @@ static int bench_packs(bench_job *job, const bench_args *a)
         return bench_all(job, a);
     }
     setenv("LP_NUM_THREADS", "0",
-           0); /* llvmpipe draws on this thread, so that work is timed and not the waking of others */
+           0); /* llvmpipe draws on this thread, which times the work and not the waking of other threads */
     status = gpu_open_drawing(&job->g, a->driver);
     if (!status) {
         bench_clock_open(&job->gl_clock, &job->g);
@@ -169,7 +168,7 @@ static const option options[] = {
       .at = offsetof(bench_args, only),
       .value = "GROUP",
       .what =
-          "measure these rows: morph, morph-before, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear, "
+          "measure only these rows: morph, morph-before, morph-cpu, skin-cpu, skin-gpu, heads, clip, pose, crowd, stage, look, face, ear, "
           "sim, agents, people or wire; default: all for which the packs have data",
       .example = "look" },
     { .name = "--source",
@@ -189,7 +188,7 @@ static const option options[] = {
     { .name = "--quick",
       .kind = OPTION_FLAG,
       .at = offsetof(bench_args, quick),
-      .what = "one short round, to see that it works" },
+      .what = "one short round, as a smoke test" },
     OPTION_DRIVER(bench_args, driver, .initial = "egl"),
     OPTION_JSON(bench_args, as_json),
 };
@@ -197,7 +196,7 @@ static const option options[] = {
 const verb verb_bench = {
     .name = "bench",
     .files = "PACK...",
-    .what = "measure costs as ratios to named baselines of the same run",
+    .what = "measure costs as ratios to named baselines from the same run",
     .example = "head.noh --source head.glb\nwalk.noh run.noh --only clip --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

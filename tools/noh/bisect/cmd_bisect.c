@@ -1,4 +1,4 @@
-/* cmd_bisect.c: where two sessions differ first: in what was done, and in what came of it. */
+/* cmd_bisect.c: the first difference between two sessions: in their inputs, and in their hashes. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,10 +14,10 @@ typedef struct bisect_args {
 } bisect_args;
 
 typedef struct difference {
-    uint32_t frames;      /* that both have */
-    uint32_t input_frame; /* of the first input that differs; NOH_NONE: none does */
-    uint32_t frame;       /* first whose hashes differ; NOH_NONE */
-    uint32_t parts;       /* a bit for each */
+    uint32_t frames;      /* in both sessions */
+    uint32_t input_frame; /* frame of the first input that differs; NOH_NONE: all are equal */
+    uint32_t frame;       /* first frame with different hashes; NOH_NONE: all are equal */
+    uint32_t parts;       /* one bit per part */
 } difference;
 
 static int same_input(const session_input *a, const session_input *b)
@@ -79,7 +79,7 @@ static void print_text(const difference *d)
         printf("every part of %u frames is equal\n", d->frames);
         return;
     }
-    printf("frame %u is the first that differs; %u before it are equal\n", d->frame, d->frame);
+    printf("frame %u is the first that differs; the %u before it are equal\n", d->frame, d->frame);
     for (uint32_t p = 0; p < SESSION_PARTS; p++) {
         printf("  %-8s %s\n", session_part_name((session_part)p), d->parts >> p & 1u ? "differs" : "equal");
     }
@@ -100,8 +100,9 @@ static int read(const char *path, session *s)
 {
     model_error error = { "", "" };
     if (session_read(s, path, &error)) return tool_fail(path, "%s (%s)", error.what, error.where);
-    return s->hashes ? 0
-                     : tool_fail(path, "the session has no hashes: noh lab replay PACK --play %s -o OUT makes them", path);
+    return s->hashes
+               ? 0
+               : tool_fail(path, "the session has no hashes: add them with noh lab replay PACK --play %s -o OUT", path);
 }
 
 static int run(void *args)
@@ -109,11 +110,14 @@ static int run(void *args)
     const bisect_args *a = args;
     session s[2] = { { 0 }, { 0 } };
     int status;
-    if (a->file_count != 2) return tool_usage("noh lab bisect wants two sessions");
+    if (a->file_count != 2) return tool_usage("noh lab bisect needs two sessions");
     status = read(a->files[0], &s[0]);
     if (!status) status = read(a->files[1], &s[1]);
     if (!status && (s[0].pack_crc != s[1].pack_crc || s[0].actor_count != s[1].actor_count)) {
-        status = tool_fail(a->files[1], "it is of another pack, or of another number of actors, than %s", a->files[0]);
+        status = tool_fail(
+            a->files[1],
+            "its pack or its number of actors differs from %s: both sessions must be of the same pack and actors",
+            a->files[0]);
     }
     if (!status) status = report_all(a, s);
     session_free(&s[0]);
@@ -128,9 +132,9 @@ static const option options[] = { OPTION_JSON(bisect_args, as_json) };
 const verb verb_bisect = {
     .name = "lab bisect",
     .files = "SESSION SESSION",
-    .what = "the first frame and the parts in which two sessions of noh lab replay differ",
+    .what = "find the first frame and the parts in which two sessions of noh lab replay differ",
     .more =
-        "Of two machines, compilers or versions: `noh lab replay PACK -o a.session` on the one, `noh lab replay PACK --play a.session -o b.session` on the other. The exit code is 1 if anything differs.",
+        "To compare two machines, compilers or versions, run `noh lab replay PACK -o a.session` on one and `noh lab replay PACK --play a.session -o b.session` on the other. The exit code is 1 if anything differs.",
     .example = "a.session b.session\na.session b.session --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

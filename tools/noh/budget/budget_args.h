@@ -1,4 +1,4 @@
-/* budget_args.h: the options of `noh budget`, and what it does of a stage. */
+/* budget_args.h: the options of `noh budget`, and its functions for stages. */
 #ifndef NOH_NOH_BUDGET_BUDGET_ARGS_H
 #define NOH_NOH_BUDGET_BUDGET_ARGS_H
 

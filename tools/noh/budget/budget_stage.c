@@ -1,4 +1,4 @@
-/* budget_stage.c: a stage out of the options of `noh budget`. */
+/* budget_stage.c: makes a stage from the options of `noh budget`. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ static int check_counts(budget_args *a)
         if (!a->texts[i]) continue;
         if (tool_number(a->texts[i], &value) || !(value >= rows[i].least && value <= rows[i].most) ||
             value > (double)(uint64_t)value) {
-            return tool_usage("%s wants a whole number from %.0f to %.0f, not '%s'", rows[i].name, rows[i].least,
+            return tool_usage("%s must be a whole number from %.0f to %.0f, not '%s'", rows[i].name, rows[i].least,
                               rows[i].most, a->texts[i]);
         }
         a->counts[i] = (uint64_t)value;
@@ -46,7 +46,7 @@ static int check_counts(budget_args *a)
 static int check_pixels(budget_args *a)
 {
     if (a->pixels_text && (tool_number(a->pixels_text, &a->pixels) || !(a->pixels > 0.0 && a->pixels <= 1e6))) {
-        return tool_usage("--pixels wants a number above 0 and at most 1000000, not '%s'", a->pixels_text);
+        return tool_usage("--pixels must be a number above 0 and at most 1000000, not '%s'", a->pixels_text);
     }
     return 0;
 }
@@ -57,7 +57,7 @@ int stage_args_check(budget_args *a)
     return status ? status : check_pixels(a);
 }
 
-/* What the options say, over what a text says. */
+/* Options override the text. */
 static void apply_options(const budget_args *a, noh_stage_desc *desc)
 {
     const uint64_t *counts = a->counts;
@@ -72,7 +72,7 @@ static void apply_options(const budget_args *a, noh_stage_desc *desc)
     desc->morph_path = (uint32_t)a->figure.path;
 }
 
-/* What lives in a place beside its stage: agents, where they are led, what they use, and who follows them. */
+/* The parts of a place in addition to its stage: agents, flow fields, smart objects and walkers. */
 static int add_place(stage_budget *b, const place_file *place, const place_people *people)
 {
     noh_crowd_desc crowd;
@@ -119,7 +119,7 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     if (!status && !a->as_json) stage_budget_print(&b);
     if (!status && a->strict && b.plan.concession_count) {
         status = tool_fail(subject,
-                           "the stage keeps its bytes by giving up %u thing%s; allow more bytes, or ask for less",
+                           "the stage meets its limit only by giving up %u feature%s: raise the limit, or ask for less",
                            b.plan.concession_count, b.plan.concession_count == 1u ? "" : "s");
     }
     stage_budget_free(&b);
@@ -137,7 +137,7 @@ int budget_of_desc(const budget_args *a)
     return status;
 }
 
-/* One kind: the pack's characters, who live in a place where there is one. */
+/* One kind: the pack's characters, in a place if there is one. */
 static int budget_of_kind(const budget_args *a, const pack_file *file, const noh_pack *const *clips)
 {
     static place_people people;
@@ -181,7 +181,7 @@ int budget_of_actors(const budget_args *a)
     pack_file file, clips[STAGE_DESC_CLIPS_MAX];
     int open = 0, status;
     if (a->clips.count > (int)STAGE_DESC_CLIPS_MAX) {
-        return tool_usage("more than %u times --clips", STAGE_DESC_CLIPS_MAX);
+        return tool_usage("--clips may be given at most %u times", STAGE_DESC_CLIPS_MAX);
     }
     status = pack_file_open(&file, a->pack);
     for (; open < a->clips.count && !status; open++) {

@@ -7,7 +7,7 @@ void budget_why_print(const noh_gl_morph_plan *plan)
 {
     const noh_gl_morph_costs *c = &plan->costs;
     printf("why: %s\n", plan->reason);
-    puts("one update of one instance of the first mesh with targets, half of them active:");
+    puts("one update of one instance of the first mesh with targets, with half of the targets active:");
     printf("  %.0f delta texels in %.0f strips, %.0f blocks of 4 x 4, %.0f pairs; targets move %.0f vertices\n",
            (double)c->texels, (double)c->quads, (double)c->blocks, (double)c->pairs, (double)c->touched);
     printf("  gather sends %.0f bytes; a texel takes %u bytes in all layers; tile memory: ", (double)c->upload_bytes,

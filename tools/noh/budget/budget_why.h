@@ -1,4 +1,4 @@
-/* budget_why.h: what `auto` weighs when it chooses a morph path (gl_morph_cost.c), term by term. */
+/* budget_why.h: the terms by which `auto` chooses a morph path (gl_morph_cost.c). */
 #ifndef NOH_NOH_BUDGET_BUDGET_WHY_H
 #define NOH_NOH_BUDGET_BUDGET_WHY_H
 

@@ -1,5 +1,5 @@
-/* cmd_budget.c: the bytes that a pack will take on the stage that the other verbs make of it, by its plan; `noh verify`
- * compares the two. With --actors or --desc those of a game's own stage. */
+/* cmd_budget.c: the bytes of a pack on the stage that the other verbs make of it, by its plan; `noh verify` compares
+ * the two. With --actors or --desc, the bytes of a game's own stage. */
 #include <stdio.h>
 #include <string.h>
 
@@ -63,8 +63,8 @@ static void print_parts(const pack_budget *b)
                (unsigned long long)b->parts[i].gpu_bytes);
     }
     printf("  %-30s %12llu %12llu\n", "sum", (unsigned long long)b->cpu_bytes, (unsigned long long)b->gpu_bytes);
-    printf("  %-30s %12llu %12s  read where it lies\n", "the pack itself", (unsigned long long)plan->pack_bytes, "");
-    if (terrain_bytes(b)) printf("  %-30s %12llu\n", "  of it the terrain", (unsigned long long)terrain_bytes(b));
+    printf("  %-30s %12llu %12s  read in place\n", "the pack itself", (unsigned long long)plan->pack_bytes, "");
+    if (terrain_bytes(b)) printf("  %-30s %12llu\n", "  the terrain in it", (unsigned long long)terrain_bytes(b));
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
 }
 
@@ -144,7 +144,7 @@ static int check_clips_alone(const budget_args *a)
     const char *given = a->figure.path != NOH_MORPH_AUTO              ? "--path"
                         : a->figure.accumulate != NOH_ACCUMULATE_AUTO ? "--accumulate"
                                                                       : NULL;
-    return given ? tool_usage("%s has no effect with a pack of clips alone", given) : 0;
+    return given ? tool_usage("%s has no effect with a pack that holds only clips", given) : 0;
 }
 
 static int budget_of(const budget_args *a, const figure_desc *desc)
@@ -233,60 +233,59 @@ static const option options[] = {
     { .name = "--why",
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, why),
-      .what = "also what the choice of the morph path weighs, term by term",
+      .what = "also list the terms by which the morph path is chosen",
       .excludes = OF_STAGE },
     COUNT_OPTION("--actors", ACTORS, "N", .example = "20", .excludes = "--desc",
-                 .what = "a stage with this many characters of the pack at one time, 1 to 65535"),
-    COUNT_OPTION(
-        "--near", NEAR, "N", .needs = "--actors", .example = "4",
-        .what = "of these at the finest level at once; without --near and --middle by an even spread over 100 m"),
-    COUNT_OPTION("--middle", MIDDLE, "N", .needs = "--actors", .example = "8", .what = "and at the next level"),
+                 .what = "plan a stage with this many characters of the pack at one time, 1 to 65535"),
+    COUNT_OPTION("--near", NEAR, "N", .needs = "--actors", .example = "4",
+                 .what = "most of them at the finest level at once; default, with --middle: an even spread over 100 m"),
+    COUNT_OPTION("--middle", MIDDLE, "N", .needs = "--actors", .example = "8", .what = "most at the next level"),
     COUNT_OPTION("--finest", FINEST, "K", .needs = "--actors", .example = "1",
                  .what = "the finest level that may be used, 0 to 7; 0: all"),
     { .name = "--clips",
       .kind = OPTION_LIST,
       .at = offsetof(budget_args, clips),
       .value = "PACK",
-      .what =
-          "take the clips from this pack; repeat it for several, of which a later one's clip replaces one of the same "
-          "name",
+      .what = "take the clips from this pack; may repeat: a clip of a later pack replaces one of the same name",
       .example = "body_anim.noh",
       .needs = "--actors" },
     { .name = "--desc",
       .kind = OPTION_INPUT,
       .at = offsetof(budget_args, desc),
       .value = "FILE",
-      .what = "a stage of several kinds, as a text (noh help FORMATS); stands in place of PACK",
+      .what = "plan a stage of several kinds, a text file (noh help FORMATS), in place of PACK",
       .example = "cast.txt" },
     COUNT_OPTION("--bytes", BYTES, "N", .needs = OF_STAGE, .example = "2097152",
-                 .what = "the stage may take this many bytes, CPU and GPU together; what is given up for it is listed"),
-    COUNT_OPTION("--cpu-bytes", CPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576", .what = "and on the CPU"),
-    COUNT_OPTION("--gpu-bytes", GPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576", .what = "and on the GPU"),
+                 .what = "limit of the stage's bytes, CPU and GPU together; lists what it gives up to meet the limit"),
+    COUNT_OPTION("--cpu-bytes", CPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576",
+                 .what = "limit of its CPU bytes"),
+    COUNT_OPTION("--gpu-bytes", GPU_BYTES, "N", .needs = OF_STAGE, .example = "1048576",
+                 .what = "limit of its GPU bytes"),
     { .name = "--pixels",
       .kind = OPTION_TEXT,
       .at = offsetof(budget_args, pixels_text),
       .value = "F",
-      .what = "largest error that LOD may show, in pixels, above 0; without it 1, or what --desc says",
+      .what = "largest error that LOD may show, in pixels, above 0; default: 1, or the value of --desc",
       .example = "0.5",
       .needs = OF_STAGE },
     COUNT_OPTION("--height", HEIGHT, "N", .needs = OF_STAGE, .example = "720",
-                 .what = "lines of the picture, 1 to 65536; without it 1080, or what --desc says"),
-    COUNT_OPTION("--jobs", JOBS, "N", .needs = OF_STAGE, .example = "4", .what = "parallel jobs of a frame, 1 to 64"),
+                 .what = "picture height in lines, 1 to 65536; default: 1080, or the value of --desc"),
+    COUNT_OPTION("--jobs", JOBS, "N", .needs = OF_STAGE, .example = "4", .what = "parallel jobs per frame, 1 to 64"),
     COUNT_OPTION("--ragdolls", RAGDOLLS, "N", .needs = "--actors", .example = "16",
-                 .what = "of the characters may fall at once, 1 to 1024"),
+                 .what = "characters that may be ragdolls at once, 1 to 1024"),
     { .name = "--place",
       .kind = OPTION_INPUT,
       .at = offsetof(budget_args, place),
       .value = "FILE",
-      .what = "the characters live in a place (noh help FORMATS): with their agents, flow fields, smart objects and "
-              "walkers, as noh crowd --place makes them",
+      .what =
+          "add a place (noh help FORMATS) with its agents, flow fields, smart objects and walkers, as in noh crowd --place",
       .example = "festival.place",
       .needs = "--actors" },
     { .name = "--ground",
       .kind = OPTION_INPUT,
       .at = offsetof(budget_args, ground),
       .value = "FILE",
-      .what = "on a height field, as noh crowd --ground takes and draws it",
+      .what = "put the place on a height field, as in noh crowd --ground",
       .example = "hill.noh",
       .needs = "--place" },
     { .name = "--f16",
@@ -298,12 +297,12 @@ static const option options[] = {
     { .name = "--no-gpu",
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, without_gpu),
-      .what = "a stage that steps and poses, and draws nothing",
+      .what = "plan a stage that steps and poses without drawing",
       .needs = OF_STAGE },
     { .name = "--strict",
       .kind = OPTION_FLAG,
       .at = offsetof(budget_args, strict),
-      .what = "exit 1 where the stage keeps its bytes by giving something up",
+      .what = "exit with 1 if the stage gives something up to meet a limit",
       .needs = OF_STAGE },
     OPTION_JSON(budget_args, as_json),
 };
@@ -311,10 +310,9 @@ static const option options[] = {
 const verb verb_budget = {
     .name = "budget",
     .files = "PACK",
-    .what = "the bytes that a load, or a stage, will take, CPU and GPU, by part",
+    .what = "show the bytes that a load or a stage will take, CPU and GPU, by part",
     .more =
-        "With --actors, or with --desc in place of PACK, it plans a stage: its parts, each kind's levels, and what is "
-        "given up where the stage has to keep a bound.",
+        "With --actors, or with --desc in place of PACK, it plans a stage: its parts, the levels of each kind, and what it gives up to meet a limit.",
     .example = "face.noh\nface.noh --instances 100 --path mrt --nominal --json\n"
                "face.noh --why --nominal\nbody.noh --actors 20 --near 4 --bytes 2097152\n--desc cast.txt --nominal",
     .options = options,

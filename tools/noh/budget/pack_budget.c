@@ -6,7 +6,7 @@
 
 #include "cli/message.h"
 
-/* Those of the stage; behind them the hair, where there is some. */
+/* The parts of the stage, followed by the hair, if any. */
 static int list_parts(pack_budget *b, const noh_gl_caps *caps)
 {
     const figure *f = &b->planned;
@@ -79,7 +79,7 @@ int pack_budget_make(pack_budget *b, const figure_desc *desc, const noh_gl_caps 
     if (status) {
         return status;
     }
-    b->morph.reason = "only clips: for the whole sum give this pack as --anim of the one that it moves";
+    b->morph.reason = "only clips: for the total, give this pack as --anim of the pack with the mesh";
     if (caps && noh_stage_morph_plan(&f->stage_desc, caps, &f->plan, &b->morph, &error)) {
         status = tool_fail_error(desc->file->path, &error);
     }

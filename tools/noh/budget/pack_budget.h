@@ -1,4 +1,4 @@
-/* pack_budget.h: what a pack takes on a stage as the verbs make it (draw/figure.h), by part and by LOD level. */
+/* pack_budget.h: the bytes of a pack on a stage as the verbs make it (draw/figure.h), by part and by LOD level. */
 #ifndef NOH_NOH_BUDGET_PACK_BUDGET_H
 #define NOH_NOH_BUDGET_PACK_BUDGET_H
 

@@ -11,7 +11,7 @@
 
 /* ---- planning ---- */
 
-/* What a stage would need that gives up all that it can, next to the bounds that it should keep. */
+/* The needs of a stage that gives up all it can, and the limits it should meet. */
 static int fail_too_small(const stage_budget *b, const noh_error *error)
 {
     noh_stage_desc desc = *b->desc;
@@ -97,9 +97,9 @@ static void print_parts(const stage_budget *b)
     }
     printf("  %-26s %-16s %12llu %12llu\n", "sum", "", (unsigned long long)b->cpu_bytes,
            (unsigned long long)b->gpu_bytes);
-    printf("  %-26s %-16s %12llu %12s  of the sum: a saved state\n", "state", "",
+    printf("  %-26s %-16s %12llu %12s  of the total: a saved state\n", "state", "",
            (unsigned long long)b->plan.state_bytes, "");
-    printf("  %-26s %-16s %12llu %12s  read where they lie\n", "the packs themselves", "",
+    printf("  %-26s %-16s %12llu %12s  read in place\n", "the packs themselves", "",
            (unsigned long long)b->plan.pack_bytes, "");
     printf("  %-26s %-16s %12u %12s  at most, for any call\n", "stack", "", NOH_STACK_BYTES, "");
 }

@@ -1,4 +1,4 @@
-/* stage_budget.h: what a stage will use, by its plan. */
+/* stage_budget.h: the bytes of a stage, by its plan. */
 #ifndef NOH_NOH_BUDGET_STAGE_BUDGET_H
 #define NOH_NOH_BUDGET_STAGE_BUDGET_H
 
@@ -17,7 +17,7 @@ typedef struct stage_budget {
 
 /* Plan the stage. Prints an error and returns an exit code; 0 on success, and the budget is then to be freed. */
 int stage_budget_make(stage_budget *b, const char *subject, const noh_stage_desc *desc, const noh_gl_caps *caps);
-/* One part more, beside the stage. Returns an exit code. */
+/* Adds a part outside the stage. Returns an exit code. */
 int stage_budget_add(stage_budget *b, const char *what, uint64_t cpu_bytes, uint64_t gpu_bytes);
 void stage_budget_free(stage_budget *b);
 

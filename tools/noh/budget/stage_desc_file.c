@@ -16,7 +16,7 @@
 
 #define WORDS_MAX 64u
 
-/* KEY=VALUE has a value; a word of which any part is in quotes is taken as it is up to the first sign outside them. */
+/* KEY=VALUE has a value; in a word with quotes, only an equals sign outside them counts. */
 typedef struct word {
     char *text, *value; /* value NULL: none */
 } word;
@@ -46,7 +46,7 @@ MESSAGE_FORMAT(3, 4) static int fail_at(const reader *r, uint32_t line, const ch
 
 static int out_of_memory(const char *path)
 {
-    return tool_fail(path, "there is not enough memory to read this file");
+    return tool_fail(path, "out of memory while reading this file");
 }
 
 /* "; did you mean 'bytes_max'?", or nothing. */
@@ -123,10 +123,10 @@ static int whole_number(const reader *r, const char *key, const char *text, uint
     errno = 0;
     value = strtoull(text, &end, 10);
     if (text[0] < '0' || text[0] > '9' || *end) {
-        return fail_at(r, r->line, "%s wants a whole number, not '%.60s'", key, text);
+        return fail_at(r, r->line, "%s must be a whole number, not '%.60s'", key, text);
     }
     if (errno || value < least || value > most) {
-        return fail_at(r, r->line, "%s is %.60s: it is %llu to %llu", key, text, (unsigned long long)least,
+        return fail_at(r, r->line, "%s is %.60s: it must be %llu to %llu", key, text, (unsigned long long)least,
                        (unsigned long long)most);
     }
     *out = value;
@@ -141,7 +141,7 @@ static int one_of(const reader *r, const char *key, const char *text, const char
             return 0;
         }
     }
-    return fail_at(r, r->line, "%s does not know '%.60s'%s", key, text, hint_of(text, names, count).text);
+    return fail_at(r, r->line, "%s has no value '%.60s'%s", key, text, hint_of(text, names, count).text);
 }
 
 /* "ground", or axes and "heading" separated by commas. */
@@ -228,7 +228,7 @@ static int layer_option(const reader *r, const word *w, noh_layer_desc *layer)
     const char **text = strcmp(w->text, "joints") == 0 ? &layer->joints : &layer->floats;
     uint64_t count;
     if (strcmp(w->text, "tracks") == 0) {
-        if (layer->track_count) return fail_at(r, r->line, "a layer has tracks= once");
+        if (layer->track_count) return fail_at(r, r->line, "tracks= is given twice for this layer");
         if (whole_number(r, "tracks", w->value, 1, NOH_LAYER_TRACKS_MAX, &count)) return EXIT_FAILED;
         layer->track_count = (uint32_t)count;
         return 0;
@@ -236,7 +236,7 @@ static int layer_option(const reader *r, const word *w, noh_layer_desc *layer)
     if (strcmp(w->text, "joints") != 0 && strcmp(w->text, "floats") != 0) {
         return fail_at(r, r->line, "a layer has no option '%.60s'%s", w->text, hint_of(w->text, names, 3).text);
     }
-    if (*text) return fail_at(r, r->line, "a layer has %s= once", w->text);
+    if (*text) return fail_at(r, r->line, "%s= is given twice for this layer", w->text);
     *text = w->value;
     return 0;
 }
@@ -253,7 +253,7 @@ static int layer_words(const reader *r, noh_layer_desc *layer)
             if (layer_option(r, w, layer)) return EXIT_FAILED;
             continue;
         }
-        if (has_mode++) return fail_at(r, r->line, "'%.60s' is one word too many for a layer", w->text);
+        if (has_mode++) return fail_at(r, r->line, "a layer takes no further word '%.60s'", w->text);
         if (one_of(r, "a layer", w->text, modes, 3, &mode)) return EXIT_FAILED;
         layer->mode = (noh_layer_mode)mode;
     }
@@ -269,7 +269,7 @@ static int add_layer(reader *r)
     }
     for (uint32_t i = 0; i < k->layer_count; i++) {
         if (strcmp(layers[i].name, r->words[1].text) == 0) {
-            return fail_at(r, r->line, "there is a layer '%.60s' already", layers[i].name);
+            return fail_at(r, r->line, "the layer '%.60s' is given twice", layers[i].name);
         }
     }
     layers[k->layer_count].name = r->words[1].text;
@@ -334,7 +334,7 @@ static int set_pixels(reader *r, const char *text)
 {
     double value;
     if (tool_number(text, &value) || !(value > 0.0 && value <= 1e6)) {
-        return fail_at(r, r->line, "pixels wants a number above 0 and at most 1000000, not '%.60s'", text);
+        return fail_at(r, r->line, "pixels must be a number above 0 and at most 1000000, not '%.60s'", text);
     }
     r->file->desc.lod.pixels = (float)value;
     return 0;
@@ -371,7 +371,7 @@ static int set_face(reader *r)
     for (uint32_t i = 0; i < 6; i++) {
         double value = 0.0;
         if (r->word_count != 7 || tool_number(r->words[1 + i].text, &value) || !(value >= -1e6 && value <= 1e6)) {
-            return fail_at(r, r->line, "face wants 'joints', or x y z of the left eye and x y z of the right one");
+            return fail_at(r, r->line, "face must be 'joints', or x y z of the left eye and x y z of the right eye");
         }
         face->face.eyes[i / 3][i % 3] = (float)value;
     }
@@ -398,27 +398,27 @@ static int set(reader *r, const setting *s)
 static int check_words(const reader *r, const char *key, int any)
 {
     if (r->word_count < 2 || !r->words[1].text[0]) {
-        return fail_at(r, r->line, "%s wants a value", key);
+        return fail_at(r, r->line, "%s needs a value", key);
     }
     if (r->words[0].value || r->words[1].value) {
-        return fail_at(r, r->line, "%s is followed by its value, without an equals sign (or with quotes around all)",
-                       key);
+        return fail_at(r, r->line, "write '%s VALUE' without an equals sign, or put quotes around the value", key);
     }
-    return r->word_count > 2 && !any ? fail_at(r, r->line, "'%.60s' is one word too many for %s", r->words[2].text, key)
-                                     : 0;
+    return r->word_count > 2 && !any
+               ? fail_at(r, r->line, "'%.60s' is one word too many after %s", r->words[2].text, key)
+               : 0;
 }
 
 static int read_setting(reader *r, const setting *s)
 {
     uint32_t *line = &r->given[s - settings];
     if (s->of_kind && !r->kind) {
-        return fail_at(r, r->line, "'%s' is of a kind: 'kind NAME' stands before it", s->name);
+        return fail_at(r, r->line, "'%s' belongs to a kind: write 'kind NAME' before it", s->name);
     }
     if (!s->of_kind && r->kind) {
-        return fail_at(r, r->line, "'%s' is of the whole stage: it stands before the first kind", s->name);
+        return fail_at(r, r->line, "'%s' belongs to the whole stage: move it before the first kind", s->name);
     }
     if (*line && !s->repeats) {
-        return fail_at(r, r->line, "there is '%s' already, in line %u", s->name, *line);
+        return fail_at(r, r->line, "'%s' is given twice; the first is in line %u", s->name, *line);
     }
     *line = r->line;
     return check_words(r, s->name, s->kind == SET_LAYER || s->kind == SET_FACE) || set(r, s) ? EXIT_FAILED : 0;
@@ -442,8 +442,9 @@ static int end_kind(reader *r)
     if (!k) {
         return 0;
     }
-    if (!k->mesh) return fail_at(r, r->kind_line, "kind '%.60s' has no mesh", k->name);
-    if (!k->actor_count) return fail_at(r, r->kind_line, "kind '%.60s' has no actor_count", k->name);
+    if (!k->mesh) return fail_at(r, r->kind_line, "kind '%.60s' has no mesh: add a line 'mesh PATH'", k->name);
+    if (!k->actor_count)
+        return fail_at(r, r->kind_line, "kind '%.60s' has no actor_count: add a line 'actor_count N'", k->name);
     return 0;
 }
 
@@ -458,7 +459,7 @@ static int begin_kind(reader *r)
     }
     for (uint32_t i = 0; i < d->kind_count; i++) {
         if (strcmp(r->file->kinds[i].name, r->words[1].text) == 0) {
-            return fail_at(r, r->line, "there is a kind '%.60s' already", r->words[1].text);
+            return fail_at(r, r->line, "the kind '%.60s' is given twice", r->words[1].text);
         }
     }
     memset(r->given, 0, sizeof r->given);
@@ -501,14 +502,14 @@ static int read_all(reader *r)
         return tool_fail(r->path, "%s", error.what);
     }
     if (memchr(f->text, 0, bytes)) {
-        return tool_fail(r->path, "this is not a text: it holds a byte that is 0");
+        return tool_fail(r->path, "this is not a text file: it contains a zero byte");
     }
     r->at = f->text + (strncmp(f->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0); /* a byte order mark */
     while (r->at && !status) {
         status = read_line(r);
     }
     if (!status) status = end_kind(r);
-    if (!status && !f->desc.kind_count) status = tool_fail(r->path, "there is no kind in this file: 'kind NAME'");
+    if (!status && !f->desc.kind_count) status = tool_fail(r->path, "the file has no kind: add a line 'kind NAME'");
     f->desc.kinds = f->kinds;
     return status;
 }

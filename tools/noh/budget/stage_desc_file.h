@@ -1,4 +1,4 @@
-/* stage_desc_file.h: what a game asks of a stage, as a text (noh help FORMATS). */
+/* stage_desc_file.h: reads a noh_stage_desc from a text (noh help FORMATS). */
 #ifndef NOH_NOH_BUDGET_STAGE_DESC_FILE_H
 #define NOH_NOH_BUDGET_STAGE_DESC_FILE_H
 

@@ -104,7 +104,7 @@ static int check_errors(const char *name, const option_list *list)
         const char *equals = strrchr(list->items[i], '=');
         double value;
         if (!equals || equals == list->items[i] || tool_number(equals + 1, &value) || value <= 0.0) {
-            return tool_usage("%s wants NAME=CM, a number over 0, not '%s'", name, list->items[i]);
+            return tool_usage("%s must be NAME=CM with CM above 0, not '%s'", name, list->items[i]);
         }
     }
     return 0;
@@ -113,40 +113,42 @@ static int check_errors(const char *name, const option_list *list)
 static int set_clip(const build_args *a, convert_options *o)
 {
     if (a->clips.rate < 0.0 || a->clips.rate > 1000.0 || a->clips.error_cm <= 0.0 || a->clips.shell_cm <= 0.0) {
-        return tool_usage("--rate wants up to 1000 Hz; --error-cm and --shell-cm want numbers over 0");
+        return tool_usage("--rate must be 0 to 1000 Hz, and --error-cm and --shell-cm above 0");
     }
     if (a->clips.effort != 1.0 && a->clips.effort != 2.0 && a->clips.effort != 3.0) {
-        return tool_usage("--effort wants 1, 2 or 3, not %g", a->clips.effort);
+        return tool_usage("--effort must be 1, 2 or 3, not %g", a->clips.effort);
     }
     if (strcmp(a->clips.unit_cm, "auto") != 0 &&
         (tool_number(a->clips.unit_cm, &o->source.unit_cm) || !(o->source.unit_cm > 0.0) || o->source.unit_cm > 1e9)) {
-        return tool_usage("--unit-cm wants auto or a number over 0, at most 1e9, not '%s'", a->clips.unit_cm);
+        return tool_usage("--unit-cm must be auto or a number over 0, at most 1e9, not '%s'", a->clips.unit_cm);
     }
     if (strcmp(a->clips.rest, "bind") != 0 && strcmp(a->clips.rest, "first-frame") != 0) {
-        return tool_usage("--rest wants bind or first-frame, not '%s'", a->clips.rest);
+        return tool_usage("--rest must be bind or first-frame, not '%s'", a->clips.rest);
     }
     o->source.turn.rest_first_frame = a->clips.rest[0] == 'f';
     o->source.turn.faces_ahead = strcmp(a->clips.facing, "auto") == 0;
     if (!o->source.turn.faces_ahead && strcmp(a->clips.facing, "keep") != 0 &&
         (tool_number(a->clips.facing, &o->source.turn.degrees) || !(fabs(o->source.turn.degrees) <= 360.0))) {
-        return tool_usage("--facing wants keep, auto or -360 to 360 degrees, not '%s'", a->clips.facing);
+        return tool_usage("--facing must be keep, auto or -360 to 360 degrees, not '%s'", a->clips.facing);
     }
     if (clean_parse(a->clips.clean, &o->source.clean)) {
-        return tool_usage("--clean wants off, all or a list of gaps, jitter, root, contacts and contact-keys, not '%s'",
-                          a->clips.clean);
+        return tool_usage(
+            "--clean must be off, all or a list of gaps, jitter, root, contacts and contact-keys, not '%s'",
+            a->clips.clean);
     }
     if (a->only && strcmp(a->only, "mesh") != 0 && strcmp(a->only, "anim") != 0) {
-        return tool_usage("--only wants mesh or anim, not '%s'", a->only);
+        return tool_usage("--only must be mesh or anim, not '%s'", a->only);
     }
     if (strcmp(a->clips.bound, "sphere") != 0 && strcmp(a->clips.bound, "axes") != 0) {
-        return tool_usage("--bound wants sphere or axes, not '%s'", a->clips.bound);
+        return tool_usage("--bound must be sphere or axes, not '%s'", a->clips.bound);
     }
     if (a->clips.segment_frames != 0.0 && (a->clips.segment_frames < 8.0 || a->clips.segment_frames > 40.0 ||
                                            a->clips.segment_frames != (double)(uint32_t)a->clips.segment_frames)) {
-        return tool_usage("--segment-frames wants a whole number from 8 to 40, or 0, not %g", a->clips.segment_frames);
+        return tool_usage("--segment-frames must be a whole number from 8 to 40, or 0, not %g",
+                          a->clips.segment_frames);
     }
     if (!(a->clips.split_hz >= 0.0))
-        return tool_usage("--split-hz wants 0 or more frames a second, not %g", a->clips.split_hz);
+        return tool_usage("--split-hz must be 0 or more frames a second, not %g", a->clips.split_hz);
     o->source.sample_rate_hz = a->clips.rate;
     o->clip.check_loops = a->clips.loop;
     o->clip.clip.error_cm = a->clips.error_cm;
@@ -168,11 +170,11 @@ static int set_skin(const build_args *a, convert_options *o)
 {
     if (a->skin.influences < 1 || a->skin.influences > MODEL_INFLUENCES_MAX ||
         a->skin.influences != (double)(uint32_t)a->skin.influences) {
-        return tool_usage("--influences wants a whole number from 1 to %u", MODEL_INFLUENCES_MAX);
+        return tool_usage("--influences must be a whole number from 1 to %u", MODEL_INFLUENCES_MAX);
     }
     if (a->skin.palette < 4 || a->skin.palette > NOH_PALETTE_JOINTS_MAX ||
         a->skin.palette != (double)(uint32_t)a->skin.palette) {
-        return tool_usage("--palette wants a whole number of joints from 4 to %u", NOH_PALETTE_JOINTS_MAX);
+        return tool_usage("--palette must be a whole number of joints from 4 to %u", NOH_PALETTE_JOINTS_MAX);
     }
     o->source.skin.influences = (uint32_t)a->skin.influences;
     o->source.skin.palette = (uint32_t)a->skin.palette;
@@ -181,7 +183,7 @@ static int set_skin(const build_args *a, convert_options *o)
                      : strcmp(a->skin.seam, "off") == 0 ? SEAM_OFF
                                                         : SEAM_CHECK;
     if (o->source.seam == SEAM_CHECK && strcmp(a->skin.seam, "check") != 0) {
-        return tool_usage("--seam wants check, mend or off, not '%s'", a->skin.seam);
+        return tool_usage("--seam must be check, mend or off, not '%s'", a->skin.seam);
     }
     o->source.attached = a->attach.files.items;
     o->source.attached_count = (uint32_t)a->attach.files.count;
@@ -205,17 +207,17 @@ static int set_lod(const build_args *a, convert_options *o)
     size_t name_bytes;
     for (int i = 0; i < a->lod.from.count; i++) {
         if (strip_level_parse(a->lod.from.items[i], &name_bytes, &level)) {
-            return tool_usage("--lod-from wants K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
+            return tool_usage("--lod-from must be K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
                               a->lod.from.items[i]);
         }
     }
     o->lod_from = (strip_levels){ a->lod.from.items, (uint32_t)a->lod.from.count };
     if (!(a->lod.color_edges > 0.0 && a->lod.color_edges <= 100.0)) {
-        return tool_usage("--lod-color wants a number over 0, up to 100");
+        return tool_usage("--lod-color must be a number over 0, up to 100");
     }
     o->lod.color_edges = (float)a->lod.color_edges;
     if (!(a->lod.own_share >= 0.0 && a->lod.own_share <= 1.0)) {
-        return tool_usage("--lod-own wants a share from 0 to 1");
+        return tool_usage("--lod-own must be a share from 0 to 1");
     }
     o->lod.own_share = a->lod.own_share > 0.0 ? (float)a->lod.own_share : -1.0f;
     o->lod.mode = a->lod.fast ? LOD_FAST : LOD_QUALITY;
@@ -229,13 +231,13 @@ static int set_rects(const build_args *a, convert_options *o)
         return 0;
     }
     if (tool_number(a->rects, &rects) || rects < 1 || rects > 65535 || rects != (double)(uint32_t)rects) {
-        return tool_usage("--rects wants auto or a whole number from 1 to 65535, not '%s'", a->rects);
+        return tool_usage("--rects must be auto or a whole number from 1 to 65535, not '%s'", a->rects);
     }
     o->morph.rects = (uint32_t)rects;
     return 0;
 }
 
-/* The order of the transfer, and whether it is the source's, about normals. */
+/* The order of the transfer, and whether its lobes are about normals, as in the sample. */
 static int set_transfer(const build_args *a, convert_options *o)
 {
     static const struct {
@@ -251,11 +253,11 @@ static int set_transfer(const build_args *a, convert_options *o)
         }
     }
     if (!(a->light.bounce >= 0.0 && a->light.bounce <= 1.0)) {
-        return tool_usage("--bounce wants a number from 0 to 1");
+        return tool_usage("--bounce must be a number from 0 to 1");
     }
     o->transfer.bounce = (uint32_t)(255.0 * a->light.bounce + 0.5);
     return a->light.transfer && !o->transfer.order
-               ? tool_usage("--transfer wants 4, 6, seed-4 or seed-6, not '%s'", a->light.transfer)
+               ? tool_usage("--transfer must be 4, 6, seed-4 or seed-6, not '%s'", a->light.transfer)
                : 0;
 }
 
@@ -269,21 +271,21 @@ static int set_wrinkles(const build_args *a, convert_options *o)
                    { "region", NOH_WRINKLE_BY_REGION },
                    { "channel", NOH_WRINKLE_BY_CHANNEL } };
     if (a->wrinkles.make && strcmp(a->wrinkles.make, "auto") != 0) {
-        return tool_usage("--wrinkles wants auto, not '%s'", a->wrinkles.make);
+        return tool_usage("--wrinkles must be auto, not '%s'", a->wrinkles.make);
     }
     for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
         if (strcmp(a->wrinkles.models, models[i].name) == 0) o->wrinkles.models = models[i].bits;
     }
     if (!o->wrinkles.models) {
-        return tool_usage("--wrinkle-model wants auto, area, region or channel, not '%s'", a->wrinkles.models);
+        return tool_usage("--wrinkle-model must be auto, area, region or channel, not '%s'", a->wrinkles.models);
     }
     o->wrinkles.size = a->wrinkles.size >= 64.0 && a->wrinkles.size <= 2048.0 ? (uint32_t)a->wrinkles.size : 0;
     if (a->wrinkles.size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
-        return tool_usage("--wrinkle-size wants a power of two from 64 to 2048, or 0 to choose it");
+        return tool_usage("--wrinkle-size must be a power of two from 64 to 2048, or 0 to choose it");
     }
     o->wrinkles.by_pixel = strcmp(a->wrinkles.lookup, "pixel") == 0;
     if (!o->wrinkles.by_pixel && strcmp(a->wrinkles.lookup, "vertex") != 0) {
-        return tool_usage("--wrinkle-lookup wants vertex or pixel, not '%s'", a->wrinkles.lookup);
+        return tool_usage("--wrinkle-lookup must be vertex or pixel, not '%s'", a->wrinkles.lookup);
     }
     o->wrinkles.automatic = a->wrinkles.make != NULL;
     o->wrinkles.map = a->wrinkles.map;
@@ -296,11 +298,11 @@ static int set_textures(const build_args *a, convert_options *o)
     o->whole_textures = a->textures.whole;
     o->etc2 = strcmp(a->textures.format, "etc2") == 0;
     if (!o->etc2 && strcmp(a->textures.format, "raw") != 0) {
-        return tool_usage("--textures wants etc2 or raw, not '%s'", a->textures.format);
+        return tool_usage("--textures must be etc2 or raw, not '%s'", a->textures.format);
     }
     o->texture_max = a->textures.max >= 1.0 && a->textures.max <= NOH_TEXTURE_SIZE_MAX ? (uint32_t)a->textures.max : 0;
     return a->textures.max != (double)o->texture_max
-               ? tool_usage("--texture-max wants a whole number from 1 to %u", NOH_TEXTURE_SIZE_MAX)
+               ? tool_usage("--texture-max must be a whole number from 1 to %u", NOH_TEXTURE_SIZE_MAX)
                : 0;
 }
 
@@ -308,7 +310,7 @@ static int set_options(const build_args *a, convert_options *o)
 {
     int status;
     if (a->error_um <= 0.0 || a->error_um > 1e6) {
-        return tool_usage("--error-um wants a number over 0 and up to 1000000");
+        return tool_usage("--error-um must be a number over 0 and up to 1000000");
     }
     o->morph.error_um = (float)a->error_um;
     status = set_clip(a, o);
@@ -338,13 +340,13 @@ static int set_terrain(const build_args *a, convert_options *o)
 {
     const double points = a->terrain.points;
     if (!(a->terrain.size >= 0.0 && a->terrain.size <= 1e5)) {
-        return tool_usage("--terrain-size wants metres, 0 to 100000");
+        return tool_usage("--terrain-size must be 0 to 100000 metres");
     }
     if (!(a->terrain.height >= 0.0 && a->terrain.height <= 1e5)) {
-        return tool_usage("--terrain-height wants metres, 0 to 100000");
+        return tool_usage("--terrain-height must be 0 to 100000 metres");
     }
     if (!(points >= 2.0 && points <= NOH_TERRAIN_SIZE_MAX && points == (double)(uint32_t)points)) {
-        return tool_usage("--terrain-points wants a whole number from 2 to %u", NOH_TERRAIN_SIZE_MAX);
+        return tool_usage("--terrain-points must be a whole number from 2 to %u", NOH_TERRAIN_SIZE_MAX);
     }
     o->ground.size_m = a->terrain.size;
     o->ground.height_m = a->terrain.height;
@@ -352,14 +354,14 @@ static int set_terrain(const build_args *a, convert_options *o)
     return 0;
 }
 
-/* A folder of targets is an .obj model's. */
+/* --targets needs an .obj input. */
 static int check_targets(const build_args *a)
 {
     for (int i = 0; a->face.targets && i < a->input_count; i++) {
         const char *dot = strrchr(a->inputs[i], '.');
         if (dot && (strcmp(dot, ".obj") == 0 || strcmp(dot, ".OBJ") == 0)) return 0;
     }
-    return a->face.targets ? tool_usage("--targets is for an .obj model; a glTF file has its own") : 0;
+    return a->face.targets ? tool_usage("--targets needs an .obj model: a glTF file holds its own targets") : 0;
 }
 
 static int run(void *args)
@@ -420,14 +422,14 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, only),
       .value = "mesh|anim",
-      .what = "write only meshes and skeletons, or only clips; --anim plays a pack of clips" },
+      .what = "write only meshes and skeletons, or only clips (for --anim)" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--error-um",
       .kind = OPTION_NUMBER,
       .at = offsetof(build_args, error_um),
       .value = "UM",
       .initial = "10",
-      .what = "largest error of a target's positions, micrometres, over 0, at most 1000000",
+      .what = "largest error of target positions, micrometres, above 0, at most 1000000",
       .example = "2",
       .excludes = "--only=anim" },
     { .name = "--rects",
@@ -435,7 +437,7 @@ static const option options[] = {
       .at = offsetof(build_args, rects),
       .value = "auto|N",
       .initial = "auto",
-      .what = "rectangles per target at most, 1 to 65535; auto: the number that is cheapest to draw",
+      .what = "most rectangles per target, 1 to 65535; auto: the number that is cheapest to draw",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod",
@@ -443,14 +445,14 @@ static const option options[] = {
       .at = offsetof(build_args, lod.levels),
       .value = "auto|N",
       .what =
-          "number of LOD levels, with the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
+          "number of LOD levels including the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod-from",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, lod.from),
       .value = "K|MESH=K",
-      .what = "leave out the levels before K, 0 to 7, of all meshes or of one, as noh strip does; may repeat",
+      .what = "leave out the levels finer than K, 0 to 7, of all meshes or of one, as noh strip does; may repeat",
       .example = "2",
       .needs = "--lod" },
     { .name = "--lod-fast",
@@ -464,7 +466,7 @@ static const option options[] = {
       .value = "EDGES",
       .initial = "0.24",
       .what =
-          "what black in place of white costs a level, in edges of the mesh: more keeps what is painted with vertex colours, and shapes less",
+          "cost of turning white into black, in mesh edges: a higher value preserves vertex colours better, and shape less",
       .example = "1.2",
       .needs = "--lod" },
     { .name = "--lod-own",
@@ -473,7 +475,7 @@ static const option options[] = {
       .value = "SHARE",
       .initial = "0.25",
       .what =
-          "the coarsest levels that together use no more than this share of a mesh's vertices get vertices of their own, which may lie beside the surface: their errors fall by a third, and the mesh grows by what they use; 0: all levels use the mesh's",
+          "give the coarsest levels that together use at most this share of a mesh's vertices their own vertices, which may lie off the surface: their errors fall by a third, and the mesh grows by these vertices; 0: all levels share the mesh's vertices",
       .example = "0",
       .needs = "--lod" },
     { .name = "--transfer",
@@ -481,7 +483,7 @@ static const option options[] = {
       .at = offsetof(build_args, light.transfer),
       .value = "4|6|seed-4|seed-6",
       .what =
-          "precompute how each vertex answers to light from all around, with occlusion that follows the targets, by spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
+          "precompute light transfer per vertex, with occlusion that follows the targets, in spherical harmonics of order 4 (6 bytes a vertex) or 6 (8 bytes); seed-: about the normal, as in the SparseMorphTargets sample (4 and 6 bytes)",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--bounce",
@@ -489,8 +491,7 @@ static const option options[] = {
       .at = offsetof(build_args, light.bounce),
       .value = "ALBEDO",
       .initial = "0",
-      .what =
-          "let --transfer have light that the mesh reflects onto itself once: the share of it that its surface reflects, 0 to 1",
+      .what = "add one bounce of light between the mesh's own surfaces to --transfer: its albedo, 0 to 1",
       .example = "0.5",
       .needs = "--transfer" },
     { .name = "--wrinkles",
@@ -498,7 +499,7 @@ static const option options[] = {
       .at = offsetof(build_args, wrinkles.make),
       .value = "auto",
       .what =
-          "give each mesh wrinkles, out of what its targets compress: a normal map of creases, twelve regions, and how much each target wrinkles each of them",
+          "generate wrinkles from the compression of each target: a normal map of creases, twelve regions, and the weight of each target in each region",
       .example = "auto",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-map",
@@ -512,7 +513,7 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, wrinkles.mask),
       .value = "FILE",
-      .what = "a painted mask of twelve wrinkle regions (noh mask looks it over), in place of generated regions",
+      .what = "a painted mask of twelve wrinkle regions (check it with noh mask), in place of generated regions",
       .example = "regions.png",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-model",
@@ -521,7 +522,7 @@ static const option options[] = {
       .value = "auto|area|region|channel",
       .initial = "auto",
       .what =
-          "what shows the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
+          "what drives the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
       .example = "area",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-lookup",
@@ -530,7 +531,7 @@ static const option options[] = {
       .value = "vertex|pixel",
       .initial = "vertex",
       .what =
-          "where wrinkle regions are read: at vertices, which costs a pixel nothing and smooths the mask to the mesh, or at pixels, exact by texel, which is one fetch more",
+          "where wrinkle regions are read: per vertex, free per pixel but smoothed to the mesh, or per pixel, exact to the texel for one more fetch",
       .example = "pixel",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-size",
@@ -539,7 +540,7 @@ static const option options[] = {
       .value = "N",
       .initial = "0",
       .what =
-          "side of a generated map of creases, texels, a power of two from 64 to 2048; half the side is a quarter of its bytes; 0: 256 or 512, the smallest that shows each crease",
+          "side of a generated crease map, texels, a power of two from 64 to 2048; 0: 256 or 512, the smallest that shows each crease",
       .example = "256",
       .excludes = "--only=anim" },
     { .name = "--textures",
@@ -548,7 +549,7 @@ static const option options[] = {
       .value = "etc2|raw",
       .initial = "etc2",
       .what =
-          "how textures are stored: in blocks of ETC2 and EAC, which GPUs read as they are (a quarter to an eighth of the bytes; noh info says what each lost), or every texel exact",
+          "how textures are stored: in ETC2 and EAC blocks, which GPUs read directly (a quarter to an eighth of the bytes; noh info lists the loss of each), or exact",
       .example = "raw",
       .excludes = "--only=anim" },
     { .name = "--texture-max",
@@ -556,14 +557,14 @@ static const option options[] = {
       .at = offsetof(build_args, textures.max),
       .value = "N",
       .initial = "2048",
-      .what = "halve textures until no side is longer than this, texels, 1 to 2048",
+      .what = "halve textures until both sides are at most this long, texels, 1 to 2048",
       .example = "1024",
       .excludes = "--only=anim" },
     { .name = "--whole-textures",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, textures.whole),
       .what =
-          "keep columns and rows of textures that no triangle reads, and texture coordinates as the file has them: for textures that a game paints, or that actors wear from another pack",
+          "keep texture rows and columns that no triangle reads, and the file's texture coordinates: for textures that a game paints or that other packs supply",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,
@@ -571,7 +572,7 @@ static const option options[] = {
       .value = "N",
       .initial = "8",
       .what =
-          "joints per vertex at most, 1 to 32; the heaviest are kept. What is drawn has up to 8 of them; the CPU has a list of all (skin_list.h)",
+          "most joints per vertex, 1 to 32; the heaviest are kept. Drawing uses up to 8; the CPU has a list of all (skin_list.h)",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--palette",
@@ -579,7 +580,7 @@ static const option options[] = {
       .at = offsetof(build_args, skin.palette),
       .value = "N",
       .initial = "256",
-      .what = "joints per draw at most, 4 to 256; a mesh with more is split",
+      .what = "most joints per draw, 4 to 256; a mesh with more is split",
       .example = "64",
       .excludes = "--only=anim" },
     { .name = "--dual-quaternion",
@@ -592,14 +593,14 @@ static const option options[] = {
     { .name = "--keep-parts",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, skin.keep_parts),
-      .what = "keep rigid meshes below joints separate instead of joining them into one skinned mesh",
+      .what = "keep rigid meshes below joints separate, instead of joining them into one skinned mesh",
       .excludes = "--only=anim" },
     { .name = "--attach",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, attach.files),
       .value = "FILE",
       .what =
-          "add the meshes of this model to the first one, a head to a body: joints of the same name become one; one without joints follows that of --attach-joint; may repeat",
+          "add the meshes of this model to the first model, such as a head to a body: joints of the same name merge; a mesh without joints follows --attach-joint; may repeat",
       .example = "head.glb",
       .excludes = "--only=anim" },
     { .name = "--attach-joint",
@@ -607,7 +608,7 @@ static const option options[] = {
       .at = offsetof(build_args, attach.joint),
       .value = "NAME",
       .what =
-          "the joint that carries what --attach adds and no joint of its own moves, from where it stands; default: the first with 'head' in its name",
+          "the joint that carries --attach meshes without joints, from where they stand; default: the first with 'head' in its name",
       .example = "mixamorig:Head",
       .needs = "--attach" },
     { .name = "--seam",
@@ -616,14 +617,15 @@ static const option options[] = {
       .value = "check|mend|off",
       .initial = "check",
       .what =
-          "where one skinned mesh goes on as another, a head on a body: warn where places, normals, weights or targets differ, or make them equal",
+          "seams between skinned meshes, such as head and body: check warns where positions, normals, weights or targets differ; mend makes them equal",
       .example = "mend",
       .excludes = "--only=anim" },
     { .name = "--two-stream",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, materials.two_streams),
       .value = "SOURCE=TARGET",
-      .what = "make the second mesh a target of the first: same triangles, same vertices in the same order; may repeat",
+      .what =
+          "make the second mesh a target of the first: both need the same triangles, and the same vertices in the same order; may repeat",
       .example = "arm=arm_bent",
       .excludes = "--only=anim" },
     { .name = "--surface",
@@ -631,7 +633,7 @@ static const option options[] = {
       .at = offsetof(build_args, materials.surfaces),
       .value = "MATERIAL=skin|eye|teeth|toon|plain",
       .what =
-          "draw a material as skin, as an eye, as teeth, gums and tongue, in the two tones of a toon, or as none of them; may repeat; default: what its extras say (\"surface\") or VRM's MToon, else the words of its name",
+          "draw a material as skin, eye, teeth (also gums and tongue), two-tone toon, or plain; may repeat; default: from its extras (\"surface\") or VRM's MToon, else from words in its name",
       .example = "face=skin",
       .excludes = "--only=anim" },
     { .name = "--tint",
@@ -639,7 +641,7 @@ static const option options[] = {
       .at = offsetof(build_args, materials.tints),
       .value = "MATERIAL=on|off",
       .what =
-          "let a material take the tint of an instance, or not; may repeat; default: what its extras say (\"tint\"), else off for skin, eyes and teeth, by surface or name",
+          "whether a material takes the tint of an instance; may repeat; default: from its extras (\"tint\"), else off for skin, eyes and teeth, by surface or name",
       .example = "hair=off",
       .excludes = "--only=anim" },
     { .name = "--priority",
@@ -647,7 +649,7 @@ static const option options[] = {
       .at = offsetof(build_args, materials.priorities),
       .value = "MATERIAL=N",
       .what =
-          "where it blends, draw a material after those of the same figure that are lower, -128 to 127; within one priority the farther mesh comes first; may repeat; default: what its extras say (\"priority\") or VRM's MToon (renderQueueOffsetNumber), else 0",
+          "draw order of a blended material within a figure, -128 to 127, lower first; for equal priorities the farther mesh comes first; may repeat; default: from its extras (\"priority\") or VRM's MToon (renderQueueOffsetNumber), else 0",
       .example = "lashes=1",
       .excludes = "--only=anim" },
     { .name = "--identity",
@@ -655,7 +657,7 @@ static const option options[] = {
       .at = offsetof(build_args, face.identity),
       .value = "FILE",
       .what =
-          "add the targets of this model, whose meshes have the same vertices in the same order, as targets that make people (noh sheet --faces)",
+          "add the targets of this model as identity targets, which make different people (noh sheet --faces); its meshes need the same vertices in the same order",
       .example = "people.glb",
       .excludes = "--only=anim" },
     { .name = "--rate",
@@ -663,7 +665,7 @@ static const option options[] = {
       .at = offsetof(build_args, clips.rate),
       .value = "HZ",
       .initial = "0",
-      .what = "sample rate of clips, Hz, at most 1000; 0: that of the file",
+      .what = "sample rate of clips, Hz, at most 1000; 0: the file's rate",
       .example = "30",
       .excludes = "--only=mesh" },
     { .name = "--error-cm",
@@ -688,7 +690,7 @@ static const option options[] = {
       .value = "sphere|axes",
       .initial = "sphere",
       .what =
-          "which points at the shell are bounded: all of them, or the three on each joint's axes, as other libraries measure",
+          "which shell points the error bound covers: all of them, or the three on each joint's axes, as other libraries measure",
       .example = "axes",
       .excludes = "--only=mesh" },
     { .name = "--segment-frames",
@@ -697,7 +699,7 @@ static const option options[] = {
       .value = "N",
       .initial = "0",
       .what =
-          "frames of a segment of clips, 8 to 40: short ones take less of a cache and are sought faster, long ones take fewer bytes; 0: what is smallest, near a third of a second",
+          "frames per clip segment, 8 to 40: short segments need less cache and seek faster, long ones take fewer bytes; 0: the smallest result, near a third of a second",
       .example = "16",
       .excludes = "--only=mesh" },
     { .name = "--split-hz",
@@ -705,8 +707,7 @@ static const option options[] = {
       .at = offsetof(build_args, clips.split_hz),
       .value = "HZ",
       .initial = "100",
-      .what =
-          "clips of at least so many frames a second are stored so that playing half of them decodes half as much; 0: none",
+      .what = "store clips of at least this rate so that playing every second frame decodes half as much; 0: none",
       .example = "60",
       .excludes = "--only=mesh" },
     { .name = "--effort",
@@ -715,7 +716,7 @@ static const option options[] = {
       .value = "1-3",
       .initial = "2",
       .what =
-          "how hard clips are searched for fewer bytes: 1 takes a third of the time of 2, 3 four times as long; more is never larger",
+          "search effort for smaller clips: 1 takes a third of the time of 2, and 3 four times as long; more effort never gives a larger pack",
       .example = "3",
       .excludes = "--only=mesh" },
     { .name = "--clip-error",
@@ -735,12 +736,12 @@ static const option options[] = {
     { .name = "--loop",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, clips.loop),
-      .what = "mark every clip as a loop, and report how far each is from closing",
+      .what = "mark every clip as a loop, and report the gap between its ends",
       .excludes = "--only=mesh" },
     { .name = "--for-masks",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, clips.open_loop),
-      .what = "let no joint compensate for the errors of its parents: for clips that are played through masks",
+      .what = "do not let joints compensate for errors of their parents: for clips that are played through masks",
       .excludes = "--only=mesh" },
     { .name = "--events",
       .kind = OPTION_INPUT,
@@ -760,34 +761,34 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, face.eyes),
       .what =
-          "find the two eyeballs, islands of a mesh whose vertices lie on spheres, and give them the joints LeftEye and RightEye at their centres, so that a gaze turns them",
+          "find the two eyeballs, connected parts of a mesh with vertices on a sphere, and give them joints LeftEye and RightEye at their centres, so that a gaze turns them",
       .excludes = "--only=anim" },
     { .name = "--targets",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, face.targets),
       .value = "FOLDER",
       .what =
-          "of an .obj model: each other .obj file in the folder, with the same positions in the same order, is a morph target of its name",
+          "for an .obj model: each other .obj file in the folder, with the same vertices in the same order, becomes a target of its name",
       .example = "expressions",
       .excludes = "--only=anim" },
     { .name = "--lips",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, face.lips),
       .what =
-          "find lips and upper teeth, make a target lipToTeeth that brings the lower lip to them, and use it for f and v",
+          "find lips and upper teeth, and make a target lipToTeeth that brings the lower lip to the teeth, used for f and v",
       .excludes = "--only=anim" },
     { .name = "--recipe",
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, face.recipe),
       .value = "FILE",
-      .what = "what the face's targets are for: blinks, looks, emotions, mouth shapes, a text file (noh help FORMATS)",
+      .what = "text file of what the face's targets show: blinks, gaze, emotions, mouth shapes (noh help FORMATS)",
       .example = "hero.recipe",
       .excludes = "--only=anim" },
     { .name = "--ragdoll",
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, body.ragdoll),
       .value = "FILE",
-      .what = "which joints begin a body of the ragdoll, and how far they turn, a text file (noh help FORMATS)",
+      .what = "text file of the ragdoll's bodies and joint limits (noh help FORMATS)",
       .example = "hero.ragdoll",
       .excludes = "--only=anim" },
     { .name = "--springs",
@@ -795,22 +796,21 @@ static const option options[] = {
       .at = offsetof(build_args, body.springs),
       .value = "FILE",
       .what =
-          "joints that swing: chains and colliders, a text file (noh help FORMATS), in place of those of the glTF file (VRMC_springBone, VRM, extras)",
+          "text file of spring chains and colliders (noh help FORMATS), in place of the glTF file's springs (VRMC_springBone, VRM, extras)",
       .example = "hero.springs",
       .excludes = "--only=anim" },
     { .name = "--spring",
       .kind = OPTION_LIST,
       .at = offsetof(build_args, body.spring_lines),
       .value = "LINE",
-      .what = "a line of such a file; may repeat",
+      .what = "one line of such a file; may repeat",
       .example = "\"chain ponytail* stiffness 0.5\"",
       .excludes = "--only=anim" },
     { .name = "--hair",
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, body.hair),
       .value = "FILE",
-      .what =
-          "a haircut: where hair grows on a skull, how it is combed and how it looks, a text file (noh help FORMATS)",
+      .what = "text file of a haircut: where hair grows, how it is combed and how it looks (noh help FORMATS)",
       .example = "hero.hair",
       .excludes = "--only=anim" },
     { .name = "--terrain",
@@ -818,14 +818,14 @@ static const option options[] = {
       .at = offsetof(build_args, terrain.file),
       .value = "FILE",
       .what =
-          "the ground: a .png whose brightness is height, a pixel a height, or a .glb or .gltf file whose highest surface it is. Without IN the pack is the ground alone",
+          "the ground: a .png with heights as brightness, or a .glb or .gltf file, whose highest surface is used. Without IN, the pack holds the ground alone",
       .example = "hill.png" },
     { .name = "--terrain-size",
       .kind = OPTION_NUMBER,
       .at = offsetof(build_args, terrain.size),
       .value = "M",
       .initial = "0",
-      .what = "metres along X; 0: of a picture a metre between pixels, of a model as it is",
+      .what = "metres along x; 0: a metre per pixel for a picture, the model's own size for a model",
       .example = "64",
       .needs = "--terrain" },
     { .name = "--terrain-height",
@@ -841,41 +841,41 @@ static const option options[] = {
       .at = offsetof(build_args, terrain.points),
       .value = "N",
       .initial = "257",
-      .what = "heights along the longer side of a model, 2 to 4097; a picture has its own",
+      .what = "heights along the longer side of a model, 2 to 4097; a picture has one per pixel",
       .example = "129",
       .needs = "--terrain" },
     { .name = "--no-correctives",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, face.no_correctives),
       .what =
-          "targets whose names join those of others (jawOpen_smile), or add hundredths to one (jawOpen50), are targets like others, and not correctives that follow from them",
+          "treat targets named after others (jawOpen_smile, jawOpen50) as ordinary targets, not as correctives and in-betweens",
       .excludes = "--only=anim" },
     { .name = "--rename",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, clips.rename),
       .value = "FILE",
       .what =
-          "joints of other names in files of clips: lines of THEIRS OURS; a namespace as in mixamorig7:Hips needs none",
+          "text file that maps joint names of clip files to the model's, lines of THEIRS OURS; a namespace, as in mixamorig7:Hips, is ignored anyway",
       .example = "mixamo.txt" },
     { .name = "--partial",
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, clips.partial),
       .what =
-          "take clips of skeletons that have at least half of their joints, or half of the pack's, in common with it; the rest keeps the bind pose, or is left out" },
+          "accept clips if at least half of their joints, or half of the pack's, match; other joints keep the bind pose or are left out" },
     { .name = "--unit-cm",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, clips.unit_cm),
       .value = "auto|CM",
       .initial = "auto",
       .what =
-          "centimetres per unit of .bvh, .obj and .fbx files, over 0; auto: 1 for .bvh, 100 for .obj, what an .fbx says",
+          "centimetres per unit of .bvh, .obj and .fbx files, above 0; auto: 1 for .bvh, 100 for .obj, the file's unit for .fbx",
       .example = "2.54" },
     { .name = "--rest",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, clips.rest),
       .value = "bind|first-frame",
       .initial = "bind",
-      .what = "the rest pose of .bvh and .rcl files: the file's, or that of its first frame",
+      .what = "rest pose of .bvh and .rcl files: the file's bind pose, or its first frame",
       .example = "first-frame" },
     { .name = "--facing",
       .kind = OPTION_TEXT,
@@ -883,7 +883,7 @@ static const option options[] = {
       .value = "keep|auto|DEG",
       .initial = "keep",
       .what =
-          "turn .bvh and .rcl files about +y: by degrees from +z towards +x, or so that the rest pose faces +z, as its joints named left and right have it",
+          "turn .bvh and .rcl files about +y: by degrees from +z towards +x; auto: so that the rest pose faces +z, judged by joints named left and right",
       .example = "auto" },
     { .name = "--clean",
       .kind = OPTION_TEXT,
@@ -891,7 +891,7 @@ static const option options[] = {
       .value = "off|all|LIST",
       .initial = "off",
       .what =
-          "clean up recorded clips, any of gaps (filled), jitter (filtered as far as it is noise), root (moved by the feet where it stays on the spot), contacts (a sync marker where a foot comes down), contact-keys (a callback key there, left_foot or right_foot: noh help FORMATS); all is the first four",
+          "clean up recorded clips, any of: gaps (fill them), jitter (filter out noise), root (move it by the feet if it stays in place), contacts (add a sync marker where a foot comes down), contact-keys (add a callback key there: noh help FORMATS); all: the first four",
       .example = "gaps,jitter",
       .excludes = "--only=mesh" },
 };

@@ -16,7 +16,7 @@
 int parse_level(double value, uint32_t *level)
 {
     if (!(value >= 0.0 && value < NOH_LOD_LEVELS_MAX) || value != (double)(uint32_t)value) {
-        return tool_usage("--lod wants a whole number from 0 to %u", NOH_LOD_LEVELS_MAX - 1u);
+        return tool_usage("--lod must be a whole number from 0 to %u", NOH_LOD_LEVELS_MAX - 1u);
     }
     *level = (uint32_t)value;
     return 0;
@@ -28,7 +28,7 @@ int parse_levels(const char *text, uint32_t *count, int *by_error)
     *by_error = strcmp(text, "auto") == 0;
     if (!*by_error &&
         (tool_number(text, &value) || value < 1.0 || value > NOH_LOD_LEVELS_MAX || value != (double)(uint32_t)value)) {
-        return tool_usage("--lod wants auto or a whole number from 1 to %u, not '%s'", NOH_LOD_LEVELS_MAX, text);
+        return tool_usage("--lod must be auto or a whole number from 1 to %u, not '%s'", NOH_LOD_LEVELS_MAX, text);
     }
     *count = (uint32_t)value;
     return 0;
@@ -65,13 +65,13 @@ static int parse_size(const char *text, uint32_t size[2])
 int tool_switch(const char *name, const char *text, int *on)
 {
     *on = strcmp(text, "on") == 0;
-    return *on || strcmp(text, "off") == 0 ? 0 : tool_usage("%s wants on or off, not '%s'", name, text);
+    return *on || strcmp(text, "off") == 0 ? 0 : tool_usage("%s must be on or off, not '%s'", name, text);
 }
 
 static int add_item(const option *o, option_list *list, const char *text)
 {
     if (list->count == OPTION_LIST_MAX) {
-        return tool_usage("more than %d times %s", OPTION_LIST_MAX, o->name);
+        return tool_usage("%s may be given at most %d times", o->name, OPTION_LIST_MAX);
     }
     list->items[list->count++] = text;
     return 0;
@@ -85,10 +85,10 @@ static int set_value(const option *o, void *args, const char *text)
     case OPTION_INPUT:
     case OPTION_OUTPUT: *(const char **)value = text; break;
     case OPTION_NUMBER:
-        return tool_number(text, (double *)value) ? tool_usage("%s wants a number, not '%s'", o->name, text) : 0;
+        return tool_number(text, (double *)value) ? tool_usage("%s must be a number, not '%s'", o->name, text) : 0;
     case OPTION_SIZE:
         return parse_size(text, (uint32_t *)value)
-                   ? tool_usage("%s wants WIDTHxHEIGHT, 1 to 8192 each, not '%s'", o->name, text)
+                   ? tool_usage("%s must be WIDTHxHEIGHT, 1 to 8192 each, not '%s'", o->name, text)
                    : 0;
     case OPTION_INPUTS:
     case OPTION_LIST: return add_item(o, (option_list *)value, text);
@@ -199,7 +199,7 @@ static int check_output(const verb *v, const given *g, const option *o, const ch
     return 0;
 }
 
-/* There are files, or the option that stands in for them, or makes do without. */
+/* Files are needed, unless the option in their place or the option without them is given. */
 static int check_files(const verb *v, const given *g)
 {
     const int instead = v->instead && was_given(v, g, v->instead, strlen(v->instead));
@@ -210,8 +210,8 @@ static int check_files(const verb *v, const given *g)
         return 0;
     }
     const char *other = v->instead ? v->instead : v->without;
-    return other ? tool_usage("noh %s wants %s or %s", v->name, v->files, other)
-                 : tool_usage("noh %s wants %s", v->name, v->files);
+    return other ? tool_usage("noh %s needs %s or %s", v->name, v->files, other)
+                 : tool_usage("noh %s needs %s", v->name, v->files);
 }
 
 static int check_all(const verb *v, const given *g)
@@ -220,7 +220,7 @@ static int check_all(const verb *v, const given *g)
     for (int i = 0; i < v->option_count && !status; i++) {
         const option *o = &v->options[i];
         if (o->required && !g->text[i]) {
-            status = tool_usage("noh %s wants %s %s", v->name, o->name, o->value);
+            status = tool_usage("noh %s needs %s %s", v->name, o->name, o->value);
         } else if (o->kind == OPTION_OUTPUT && g->text[i]) {
             status = check_output(v, g, o, g->text[i]);
         }
@@ -260,7 +260,7 @@ static int read_option(const verb *v, given *g, int argc, char **argv, int *at)
         return unknown_option(v, name);
     }
     if (o->kind != OPTION_FLAG && ++*at == argc) {
-        return tool_usage("%s wants a value", name);
+        return tool_usage("%s needs a value", name);
     }
     g->text[o - v->options] = o->kind == OPTION_FLAG ? "" : argv[*at];
     return set_value(o, v->args, argv[*at]);

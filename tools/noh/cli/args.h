@@ -34,7 +34,7 @@ typedef struct option {
     const char *what;    /* its meaning, unit and range */
     const char *example; /* a value; NULL where `value` lists all or there is none */
     const char *needs;   /* one of these must be given too, else it has no effect; separated by blanks: "--clip --to" */
-    const char *excludes; /* it has no effect with any of these; "--only=mesh": with that value */
+    const char *excludes; /* it has no effect with any of these; "--only=mesh": with this value */
 } option;
 
 typedef struct verb {
@@ -46,8 +46,8 @@ typedef struct verb {
     const option *options;
     int option_count;
     int file_max;         /* takes 1 to this many files */
-    const char *instead;  /* an option that stands in for the files: with it there are none; NULL: there is none */
-    const char *without;  /* an option with which files may be left out; NULL: there is none */
+    const char *instead;  /* an option in place of the files, which excludes them; NULL: none */
+    const char *without;  /* an option with which files are optional; NULL: none */
     size_t files_at;      /* offsetof const char *[file_max] */
     size_t file_count_at; /* offsetof an int; used if file_max is over 1 */
     void *args;
@@ -56,7 +56,7 @@ typedef struct verb {
 
 #define ARGS_HELP (-1) /* no exit code: --help was asked for */
 
-/* Read argv into v->args, which is all zero. Returns 0, ARGS_HELP, or EXIT_USAGE after printing what is wrong. */
+/* Read argv into v->args, which is all zero. Returns 0, ARGS_HELP, or EXIT_USAGE after printing the mistake. */
 int args_read(const verb *v, int argc, char **argv);
 
 const option *args_find(const verb *v, const char *name);

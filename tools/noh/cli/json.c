@@ -30,7 +30,7 @@ static void put_text(json *j, const char *text)
     put(j, text, strlen(text));
 }
 
-/* The bytes of the UTF-8 sequence at c; 0 if it is not one. JSON is UTF-8, but names are read from files and may hold
+/* The bytes of the UTF-8 sequence at c; 0: it is invalid. JSON is UTF-8, but names are read from files and may hold
  * any bytes. Ranges: RFC 3629, section 4. */
 static size_t utf8_length(const unsigned char *c)
 {

@@ -20,7 +20,8 @@ void json_drop(json *j);
 /* 1 once json_end has printed. */
 int json_was_printed(void);
 
-void json_open(json *j, const char *key, char bracket); /* '{' or '['; key NULL inside arrays: as everywhere below */
+void json_open(json *j, const char *key,
+               char bracket); /* '{' or '['; key: NULL inside arrays, also in the functions below */
 void json_close(json *j, char bracket);
 void json_text(json *j, const char *key, const char *value);
 void json_number(json *j, const char *key, double value);

@@ -1,4 +1,4 @@
-/* message.h: exit codes and errors. Every error is one line on stderr, "noh: SUBJECT: what is wrong (where)"; with
+/* message.h: exit codes and errors. Every error is one line on stderr, "noh: SUBJECT: failure (place)"; with
  * --json the last one is also an object on stdout, {"error": ...}, which main prints. */
 #ifndef NOH_NOH_CLI_MESSAGE_H
 #define NOH_NOH_CLI_MESSAGE_H

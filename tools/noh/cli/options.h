@@ -17,60 +17,63 @@
         .what = "take the clips from another pack", .example = "body_anim.noh", __VA_ARGS__ \
     }
 
-#define OPTION_ANIMS(T, m, ...)                                                                    \
-    {                                                                                              \
-        .name = "--anim", .kind = OPTION_INPUTS, .at = offsetof(T, m), .value = "PACK",            \
-        .what = "take the clips from another pack; repeat it for several, of which a later one's " \
-                "clip replaces one of the same name",                                              \
-        .example = "body_anim.noh", __VA_ARGS__                                                    \
+#define OPTION_ANIMS(T, m, ...)                                                                      \
+    {                                                                                                \
+        .name = "--anim", .kind = OPTION_INPUTS, .at = offsetof(T, m), .value = "PACK",              \
+        .what = "take the clips from another pack; may repeat: a clip of a later pack replaces one " \
+                "of the same name",                                                                  \
+        .example = "body_anim.noh", __VA_ARGS__                                                      \
     }
 
 #define OPTION_FACE(T, m, text)                                                                          \
     {                                                                                                    \
         .name = "--face", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \
-        .what = "whether faces blink, look about, breathe and are never still, beside what clips say"    \
+        .what = "whether faces blink, look about, breathe and keep moving, in addition to the clips"     \
     }
 
 #define OPTION_SPRINGS(T, m)                                                                                \
     {                                                                                                       \
         .name = "--springs", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = "on", \
-        .what = "whether the springs of the pack swing (noh build --springs), beside what clips say"        \
+        .what = "whether the pack's springs swing (noh build --springs), in addition to the clips"          \
     }
 
-#define OPTION_WEIGHT_RULES(T, m)                                                                                   \
-    {                                                                                                               \
-        .name = "--weight-rules", .kind = OPTION_FLAG, .at = offsetof(T, m),                                        \
-        .what = "keep the pack's rules for weights (range, oppose and share: noh help FORMATS), whoever says these" \
+#define OPTION_WEIGHT_RULES(T, m)                                                                          \
+    {                                                                                                      \
+        .name = "--weight-rules", .kind = OPTION_FLAG, .at = offsetof(T, m),                               \
+        .what = "apply the pack's weight rules (range, oppose and share: noh help FORMATS) to all weights" \
     }
 
 #define OPTION_HAIR(T, m, text)                                                                          \
     {                                                                                                    \
         .name = "--hair", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \
-        .what = "whether the hair of the pack is drawn and moves, where it has some"                     \
+        .what = "whether the pack's hair, if any, is drawn and moves"                                    \
     }
 
 /* Marks and how they are drawn. */
-#define OPTIONS_DECALS(T, m, k, others)                                                                                                                                            \
-    { .name = "--decal",                                                                                                                                                           \
-      .kind = OPTION_LIST,                                                                                                                                                         \
-      .at = offsetof(T, m),                                                                                                                                                        \
-      .value = "X,Y[,SIZE[,RRGGBB]]",                                                                                                                                              \
-      .what =                                                                                                                                                                      \
-          "a mark on the figure, struck at rest: where in the picture, 0 to 1 from its upper left corner; half its width, in model units; its colour. May repeat, up to 64 times", \
-      .example = "0.5,0.4,0.01,aa2211",                                                                                                                                            \
-      .excludes = (others) },                                                                                                                                                      \
-    {                                                                                                                                                                              \
-        .name = "--decal-kind", .kind = OPTION_TEXT, .at = offsetof(T, k), .value = "rest|grown", .initial = "rest",                                                               \
-        .what =                                                                                                                                                                    \
-            "how marks are drawn: looked up by where a pixel is at rest, also on a fold that only touches there; or grown as triangles, from the one that was hit",                \
-        .example = "grown", .needs = "--decal"                                                                                                                                     \
+#define OPTIONS_DECALS(T, m, k, others)                                                                              \
+    { .name = "--decal",                                                                                             \
+      .kind = OPTION_LIST,                                                                                           \
+      .at = offsetof(T, m),                                                                                          \
+      .value = "X,Y[,SIZE[,RRGGBB]]",                                                                                \
+      .what = "put a mark on the figure in its rest pose: X,Y in the picture, 0 to 1 from its "                      \
+              "upper left corner; SIZE, half its width in model units; its colour. May repeat, "                     \
+              "up to 64 times",                                                                                      \
+      .example = "0.5,0.4,0.01,aa2211",                                                                              \
+      .excludes = (others) },                                                                                        \
+    {                                                                                                                \
+        .name = "--decal-kind", .kind = OPTION_TEXT, .at = offsetof(T, k), .value = "rest|grown", .initial = "rest", \
+        .what = "how marks are drawn: rest looks each pixel up by its rest position, and also "                      \
+                "marks a fold that touches there; grown draws triangles, grown from the one that "                   \
+                "was hit",                                                                                           \
+        .example = "grown", .needs = "--decal"                                                                       \
     }
 
-#define OPTION_FEEL(T, m)                                                                                              \
-    {                                                                                                                  \
-        .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT",                        \
-        .what = "an emotion of faces that are on: joy, sadness, surprise, fear, anger, disgust, contempt; may repeat", \
-        .example = "joy=0.7", .needs = "--face"                                                                        \
+#define OPTION_FEEL(T, m)                                                                       \
+    {                                                                                           \
+        .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT", \
+        .what = "an emotion for --face on: joy, sadness, surprise, fear, anger, disgust, "      \
+                "contempt; may repeat",                                                         \
+        .example = "joy=0.7", .needs = "--face"                                                 \
     }
 
 #define OPTION_CLIP(T, m, ...)                                                                         \
@@ -85,11 +88,11 @@
         .what = "time in the clips, seconds", .example = "0.5", __VA_ARGS__                          \
     }
 
-#define OPTION_WEIGHT(T, m, ...)                                                                            \
-    {                                                                                                       \
-        .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                   \
-        .what = "weight of a target; may repeat, and the last of each name counts", .example = "smile=0.7", \
-        __VA_ARGS__                                                                                         \
+#define OPTION_WEIGHT(T, m, ...)                                                                             \
+    {                                                                                                        \
+        .name = "--weight", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "NAME=V",                    \
+        .what = "weight of a target; may repeat: the last one for each name counts", .example = "smile=0.7", \
+        __VA_ARGS__                                                                                          \
     }
 
 #define OPTION_PATH(T, m, ...)                                                \
@@ -111,32 +114,33 @@
         .what = "where the GL context comes from", __VA_ARGS__                                           \
     }
 
-#define OPTION_LOD(T, m, ...)                                                                                          \
-    {                                                                                                                  \
-        .name = "--lod", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "K", .initial = "0",                    \
-        .what = "LOD level, 0 to 7; 0 is the full mesh; meshes with fewer levels take their coarsest", .example = "2", \
-        __VA_ARGS__                                                                                                    \
+#define OPTION_LOD(T, m, ...)                                                                                        \
+    {                                                                                                                \
+        .name = "--lod", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "K", .initial = "0",                  \
+        .what = "LOD level, 0 to 7; 0 is the full mesh; a mesh with fewer levels uses its coarsest", .example = "2", \
+        __VA_ARGS__                                                                                                  \
     }
 
-#define OPTION_LIGHT_NAME(T, m, text, ...)                                                                          \
-    {                                                                                                               \
-        .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text,        \
-        .what = "light from all around: white, studio, room, sky, a panorama (.hdr, .png), or none (a plain one); " \
-                "auto: studio, but none for bones and --debug",                                                     \
-        .example = "room", __VA_ARGS__                                                                              \
+#define OPTION_LIGHT_NAME(T, m, text, ...)                                                                   \
+    {                                                                                                        \
+        .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text, \
+        .what = "environment light: white, studio, room, sky, a panorama (.hdr, .png), or none "             \
+                "(one plain lamp); "                                                                         \
+                "auto: studio, but none for bones and --debug",                                              \
+        .example = "room", __VA_ARGS__                                                                       \
     }
 
-#define OPTION_LIGHT_ROTATE(T, m, ...)                                                                   \
-    {                                                                                                    \
-        .name = "--rotate", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "DEG", .initial = "0", \
-        .what = "turn that light about the vertical axis, degrees", .example = "90", __VA_ARGS__         \
+#define OPTION_LIGHT_ROTATE(T, m, ...)                                                                      \
+    {                                                                                                       \
+        .name = "--rotate", .kind = OPTION_NUMBER, .at = offsetof(T, m), .value = "DEG", .initial = "0",    \
+        .what = "turn the environment light about the vertical axis, degrees", .example = "90", __VA_ARGS__ \
     }
 
 #define OPTION_LIGHT_TONEMAP(T, m, ...)                                                                              \
     {                                                                                                                \
         .name = "--tonemap", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "filmic|none", .initial = "filmic", \
-        .what = "how bright light becomes colour: by a curve with a shoulder, or cut off", .example = "none",        \
-        __VA_ARGS__                                                                                                  \
+        .what = "tone mapping of bright light: filmic, a curve with a shoulder, or none, which clips it",            \
+        .example = "none", __VA_ARGS__                                                                               \
     }
 
 /* Rows of draw/lighting.h; m: the light_options; text: the light by default; more: what every row needs or excludes */
@@ -148,7 +152,8 @@
           .at = offsetof(T, m.shadow),                                                                                 \
           .value = "on|off|blob",                                                                                      \
           .initial = "on",                                                                                             \
-          .what = "whether the strongest part of that light casts shadows; blob: none, but soft spots under feet",     \
+          .what = "whether the strongest part of the light casts shadows; blob: soft spots under "                     \
+                  "the feet instead",                                                                                  \
           .example = "off",                                                                                            \
           __VA_ARGS__ },                                                                                               \
         { .name = "--transfer",                                                                                        \
@@ -156,35 +161,38 @@
           .at = offsetof(T, m.transfer),                                                                               \
           .value = "on|off",                                                                                           \
           .initial = "on",                                                                                             \
-          .what = "whether the mesh shades itself from that light, in packs built with --transfer",                    \
+          .what = "whether the mesh shadows itself, in packs built with --transfer",                                   \
           .example = "off",                                                                                            \
           __VA_ARGS__ },                                                                                               \
     {                                                                                                                  \
         .name = "--background", .kind = OPTION_TEXT, .at = offsetof(T, m.background), .value = "light|gradient|plain", \
-        .initial = "light", .what = "what is behind: that light, blurred; its colours from below and above; grey",     \
+        .initial = "light",                                                                                            \
+        .what = "background: the light, blurred; a gradient of its colours below and above; or plain grey",            \
         .example = "plain", __VA_ARGS__                                                                                \
     }
 
-#define OPTIONS_BODY(T, m)                                                                                                                                                                           \
-    { .name = "--look-at",                                                                                                                                                                           \
-      .kind = OPTION_TEXT,                                                                                                                                                                           \
-      .at = offsetof(T, m.look_at),                                                                                                                                                                  \
-      .value = "X,Y,Z",                                                                                                                                                                              \
-      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body looks along +z",                                                                                        \
-      .example = "0.5,1.6,2" },                                                                                                                                                                      \
-    {                                                                                                                                                                                                \
-        .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope|FILE",                                                                                          \
-        .what =                                                                                                                                                                                      \
-            "feet on steps of 0.17 m up, on 20 degrees down, along +z, or on terrain (.png: a metre between pixels, a tenth as high as wide; .glb: as it is), as far as the clips walk; drawn, too", \
-        .needs = "--clip", .excludes = "--bones"                                                                                                                                                     \
+#define OPTIONS_BODY(T, m)                                                                                  \
+    { .name = "--look-at",                                                                                  \
+      .kind = OPTION_TEXT,                                                                                  \
+      .at = offsetof(T, m.look_at),                                                                         \
+      .value = "X,Y,Z",                                                                                     \
+      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body faces +z",     \
+      .example = "0.5,1.6,2" },                                                                             \
+    {                                                                                                       \
+        .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope|FILE", \
+        .what = "plant the feet on stairs of 0.17 m going up along +z, on a slope of 20 degrees "           \
+                "going down, or on terrain (.png: a metre between pixels, height a tenth of the "           \
+                "width; .glb: as modelled), as far as the clips walk; the ground is drawn",                 \
+        .needs = "--clip", .excludes = "--bones"                                                            \
     }
 
-#define OPTION_CAMERA(T, m, text)                                                                                    \
-    {                                                                                                                \
-        .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]",            \
-        .initial = text,                                                                                             \
-        .what = "what the camera frames, or where it is: azimuth and elevation in degrees, distance in model units", \
-        .example = "30,10,0.8"                                                                                       \
+#define OPTION_CAMERA(T, m, text)                                                                         \
+    {                                                                                                     \
+        .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "face|body|AZ,EL[,DIST]", \
+        .initial = text,                                                                                  \
+        .what = "what the camera frames, or its position: azimuth and elevation in degrees, "             \
+                "distance in model units",                                                                \
+        .example = "30,10,0.8"                                                                            \
     }
 
 #define OPTION_INSTANCES(T, m, text, ...)                                                                  \

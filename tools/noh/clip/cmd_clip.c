@@ -85,7 +85,7 @@ static void print_clip(const pack_file *file, const opened *o)
                o->info.max_error_cm, o->info.max_error_joint, o->info.max_error_time_s, o->info.rms_error_cm);
     }
     if (o->info.float_count) {
-        printf("  weights certified to %.4g cm of what they move\n", o->info.error_cm);
+        printf("  weights certified to %.4g cm of the vertices they move\n", o->info.error_cm);
     }
     printf("  %u segment%s%s, cache of %zu bytes; %u callback key%s, %u sync marker%s\n", o->info.segment_count,
            plural(o->info.segment_count), o->info.flags & NOH_CLIP_FLAG_SPLIT ? ", split" : "", o->cache_bytes,
@@ -209,7 +209,7 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     uint32_t index = 0;
     int status;
     if (file->pack.clip_count == 0 || (!name && file->pack.clip_count > 1)) {
-        return tool_fail(file->path, "--dump wants one clip; this pack has %u: name it with --clip",
+        return tool_fail(file->path, "--dump writes one clip and this pack has %u: name it with --clip",
                          file->pack.clip_count);
     }
     status = name ? find_clip(file, name, &index) : 0;
@@ -217,7 +217,8 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     if (!status) {
         status = o.info.joint_count
                      ? dump_clip(file, &o, path)
-                     : tool_fail(file->path, "clip '%s' animates floats only, and .rcl files hold joints",
+                     : tool_fail(file->path,
+                                 "clip '%s' animates only floats, and .rcl files hold joints: choose another clip",
                                  o.packed.name);
         close_clip(&o);
     }
@@ -295,7 +296,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(clip_args, name),
       .value = "NAME",
-      .what = "the clip to write; not needed where the pack has only one",
+      .what = "the clip to write; optional if the pack has only one",
       .example = "walk",
       .needs = "--dump" },
     OPTION_JSON(clip_args, as_json),
@@ -304,7 +305,7 @@ static const option options[] = {
 const verb verb_clip = {
     .name = "clip",
     .files = "PACK",
-    .what = "list compressed clips, their bytes and certified errors, or write one decoded",
+    .what = "list compressed clips with their bytes and certified errors, or write one decoded",
     .example = "body.noh\nbody.noh --dump walk.rcl --clip walk --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -1,4 +1,4 @@
-/* cmd_crowd.c: draw a crowd, and say what it took; or run agents through a scene, and measure them. */
+/* cmd_crowd.c: draws a crowd and reports its cost, or runs agents through a scene and measures them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,13 +34,13 @@ static int check_args(crowd_args *a)
 {
     int status = parse_instances(a->instances, &a->options.count);
     if (!status && !(a->pixels > 0.0 && a->pixels <= 1e6)) {
-        status = tool_usage("--pixels wants a number above 0");
+        status = tool_usage("--pixels must be a number above 0");
     }
     if (!status && !(a->time_s >= 0.0 && a->time_s <= 3600.0)) {
-        status = tool_usage("--time wants seconds, 0 to 3600");
+        status = tool_usage("--time must be 0 to 3600 seconds");
     }
     if (!status && a->debug && strcmp(a->debug, "lod") != 0) {
-        status = tool_usage("--debug wants lod, not '%s'", a->debug);
+        status = tool_usage("--debug must be lod, not '%s'", a->debug);
     }
     a->options.view = a->debug ? NOH_VIEW_LOD : NOH_VIEW_LIT;
     a->options.pixels = (float)a->pixels;
@@ -50,7 +50,7 @@ static int check_args(crowd_args *a)
     return status;
 }
 
-/* What was drawn: printed once the picture is written. */
+/* The report on the picture, printed once it is written. */
 typedef struct crowd_drawn {
     noh_stage_stats stats;
     uint32_t level_count;
@@ -135,15 +135,15 @@ static int is_whole(double value, double high)
 static int check_agents(const crowd_args *a)
 {
     if (!is_whole(a->agents, NOH_CROWD_AGENTS_MAX)) {
-        return tool_usage("--agents wants a whole number from 1 to %u; 0: as many as the scene's name says",
+        return tool_usage("--agents must be a whole number from 1 to %u, or 0 for the number in the scene's name",
                           NOH_CROWD_AGENTS_MAX);
     }
-    if (!(a->seconds >= 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds wants a number up to 3600");
-    if (!is_whole(a->seed, 4294967295.0)) return tool_usage("--seed wants a whole number below 2^32");
+    if (!(a->seconds >= 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds must be a number up to 3600");
+    if (!is_whole(a->seed, 4294967295.0)) return tool_usage("--seed must be a whole number below 2^32");
     return 0;
 }
 
-/* The scene that a word of --place stands for; NULL: a file. */
+/* The scene named by --place; NULL: a file. */
 static const char *scene_of(const char *place)
 {
     static const char *const words[][2] = { { "square", "dense1000" },
@@ -163,7 +163,7 @@ static int test(const crowd_args *a, const noh_field *ground)
     };
     if (!scene && a->orca) return tool_usage("--orca compares scenes of --test, not places");
     if (!scene) return crowd_place_run(&options, ground, a->dump, a->as_json);
-    return a->ground ? tool_usage("--ground wants a place of a file, not a scene of --test")
+    return a->ground ? tool_usage("--ground needs --place FILE: scenes of --test have no ground")
                      : crowd_test_run(&options, a->dump, a->as_json);
 }
 
@@ -207,7 +207,7 @@ static int draw_place(const crowd_args *a, const noh_field *ground)
 {
     place_file *place = NULL;
     pack_file file;
-    int status = scene_of(a->place) ? tool_usage("--place %s is drawn by no -o: it wants a file", a->place) : 0;
+    int status = scene_of(a->place) ? tool_usage("--place %s cannot be drawn: -o needs --place FILE", a->place) : 0;
     if (!status) status = place_read(a->place, &place);
     if (!status) place->ground = ground;
     if (!status) status = pack_file_open(&file, a->pack);
@@ -219,7 +219,7 @@ static int draw_place(const crowd_args *a, const noh_field *ground)
     return status;
 }
 
-/* One picture, or a strip that is as wide as one may be. */
+/* One picture, or a strip within the largest width. */
 static int parse_strip(crowd_args *a)
 {
     char end;
@@ -227,12 +227,13 @@ static int parse_strip(crowd_args *a)
     if (count < 1) a->pictures = 1;
     if (count < 2) a->apart_s = 0.5;
     if (a->strip && (count < 1 || count > 2 || a->pictures < 1 || !(a->apart_s > 0.0 && a->apart_s <= 60.0))) {
-        return tool_usage("--strip wants N[,S]: pictures, and seconds from one to the next, 60 at most, not '%s'",
-                          a->strip);
+        return tool_usage(
+            "--strip must be N[,S]: a number of pictures, and the seconds between two, at most 60; not '%s'", a->strip);
     }
     return (uint64_t)a->pictures * a->size[0] <= 8192u
                ? 0
-               : tool_usage("--strip: %u pictures of --size are wider than 8192 pixels", a->pictures);
+               : tool_usage("--strip: %u pictures are wider than 8192 pixels together: use fewer, or a smaller --size",
+                            a->pictures);
 }
 
 static int parse_hit(crowd_args *a)
@@ -248,7 +249,8 @@ static int parse_hit(crowd_args *a)
                    fabsf(h->at[1]) <= 1e5f && h->radius >= 0.0f && h->radius <= 1e5f && h->impulse >= 0.0f &&
                    h->impulse <= 1e4f
                ? 0
-               : tool_usage("--hit wants S,X,Z[,RADIUS[,NS]]: seconds, metres, newton seconds, not '%s'", a->hit);
+               : tool_usage("--hit must be S,X,Z[,RADIUS[,NS]] in seconds, metres and newton seconds, not '%s'",
+                            a->hit);
 }
 
 static int run_on(crowd_args *a, const noh_field *ground)
@@ -262,11 +264,11 @@ static int run_on(crowd_args *a, const noh_field *ground)
     if (!status) status = parse_strip(a);
     if (status) return status;
     if (a->test || (a->place && !a->output)) {
-        return a->pack ? tool_usage("agents are measured without a pack; one is drawn with --place FILE -o OUT.png")
+        return a->pack ? tool_usage("measuring agents takes no PACK; to draw one, use --place FILE -o OUT.png")
                        : test(a, ground);
     }
-    if (!a->output) return tool_usage("noh crowd wants -o OUT.png, --test SCENE or --place PLACE");
-    if (!a->pack) return tool_usage("noh crowd -o OUT.png wants a PACK: whose bodies are drawn");
+    if (!a->output) return tool_usage("noh crowd needs -o OUT.png, --test SCENE or --place PLACE");
+    if (!a->pack) return tool_usage("noh crowd -o OUT.png needs a PACK with the bodies to draw");
     status = check_args(a);
     if (!status && a->place) return draw_place(a, ground);
     if (!status) status = pack_file_open(&file, a->pack);
@@ -296,7 +298,7 @@ static const option options[] = {
       .kind = OPTION_OUTPUT,
       .at = offsetof(crowd_args, output),
       .value = "OUT.png",
-      .what = "the picture; wanted, unless agents are measured",
+      .what = "the picture; required unless agents are measured",
       .example = "crowd.png",
       .excludes = "--test" },
     OPTION_INSTANCES(crowd_args, instances, "1000", .what = "number of bodies, 1 to 65536"),
@@ -313,12 +315,12 @@ static const option options[] = {
       .at = offsetof(crowd_args, time_s),
       .value = "S",
       .initial = "2",
-      .what = "when the picture is taken, seconds, 0 to 3600; all frames up to then are run",
+      .what = "the moment of the picture, seconds, 0 to 3600; all frames before it are run",
       .example = "0.5" },
     { .name = "--plain",
       .kind = OPTION_FLAG,
       .at = offsetof(crowd_args, plain),
-      .what = "without LOD: every body with the full mesh, posed in every frame" },
+      .what = "draw every body with the full mesh and pose it in every frame, without LOD" },
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, debug),
@@ -336,27 +338,28 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, test),
       .value = "circle250|door200|dense1000|open10000|maze400|stalls600",
-      .what = "draw nothing: run agents through this scene, and measure how they get on" },
+      .what = "run agents through this scene and measure them, without drawing" },
     { .name = "--place",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, place),
       .value = "FILE|square|door|circle",
       .what =
-          "agents in a place (noh help FORMATS, places): measured, or with -o drawn as bodies of the pack; square, door and circle are scenes of --test",
+          "run agents in a place (noh help FORMATS, places) and measure them, or with -o draw them as bodies of the pack; square, door and circle are scenes of --test",
       .example = "festival.place",
       .excludes = "--test" },
     { .name = "--scenery",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, scenery),
       .value = "PACK",
-      .what = "with --place FILE -o: drawn with the bodies, where it is",
+      .what = "with --place FILE -o: a pack drawn as it stands, with the bodies",
       .example = "festival.noh",
       .needs = "--place" },
     { .name = "--camera",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, camera),
       .value = "AZ,EL,DIST[,X,Z]",
-      .what = "with --place FILE -o: degrees, and metres from the middle of the place or from X, Z",
+      .what =
+          "with --place FILE -o: azimuth and elevation in degrees, and metres from the middle of the place or from X, Z",
       .example = "30,12,14,0,4",
       .needs = "--place" },
     { .name = "--ground",
@@ -364,7 +367,7 @@ static const option options[] = {
       .at = offsetof(crowd_args, ground),
       .value = "FILE",
       .what =
-          "with --place FILE: the place lies on a height field, drawn with -o, at LOD levels: a pack with a terrain (noh build --terrain), or a .png or .glb as that takes",
+          "with --place FILE: put the place on a height field, which -o draws with LOD: a pack with a terrain (noh build --terrain), or a .png or .glb file that --terrain accepts",
       .example = "hill.noh",
       .needs = "--place" },
     { .name = "--hit",
@@ -372,15 +375,14 @@ static const option options[] = {
       .at = offsetof(crowd_args, hit),
       .value = "S,X,Z[,RADIUS[,NS]]",
       .what =
-          "with --place FILE -o: after S seconds those within RADIUS (2) metres of X, Z are pushed away from there by NS (90) newton seconds, the nearest first, at most 16: they fall, and get up by clips whose names begin with get_up",
+          "with --place FILE -o: after S seconds, push the bodies within RADIUS (2) metres of X, Z away from there by NS (90) newton seconds, the nearest first, at most 16; they fall, and get up by clips whose names begin with get_up",
       .example = "10,0,4,3",
       .needs = "--place" },
     { .name = "--strip",
       .kind = OPTION_TEXT,
       .at = offsetof(crowd_args, strip),
       .value = "N[,S]",
-      .what =
-          "with --place FILE -o: N pictures of --size beside each other, S (0.5) seconds apart, the first at --time",
+      .what = "with --place FILE -o: N pictures of --size side by side, S (0.5) seconds apart, the first at --time",
       .example = "4,0.4",
       .needs = "--place" },
     OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
@@ -390,7 +392,7 @@ static const option options[] = {
       .value = "N",
       .initial = "0",
       .what =
-          "how many, up to 262144; 0: as many as the scene's name says, 100 in a place. In scenes the room for each stays the same",
+          "number of agents, up to 262144; 0: the number in the scene's name, or 100 in a place. Scenes grow with the number, so each agent keeps the same space",
       .example = "2000",
       .needs = "--test --place" },
     { .name = "--seconds",
@@ -399,7 +401,7 @@ static const option options[] = {
       .value = "S",
       .initial = "0",
       .what =
-          "how long at most, up to 3600; 0: 300 for circle250, 120 for door200, maze400 and stalls600, 60 in a place, else 30",
+          "longest run, seconds, up to 3600; 0: 300 for circle250, 120 for door200, maze400 and stalls600, 60 in a place, else 30",
       .example = "10",
       .needs = "--test --place" },
     { .name = "--seed",
@@ -407,19 +409,19 @@ static const option options[] = {
       .at = offsetof(crowd_args, seed),
       .value = "N",
       .initial = "1",
-      .what = "of where they start and want to go",
+      .what = "seed of their starts and goals",
       .example = "7",
       .needs = "--test --place" },
     { .name = "--orca",
       .kind = OPTION_FLAG,
       .at = offsetof(crowd_args, orca),
-      .what = "all agents avoid each other by optimal reciprocal collision avoidance, to compare with",
+      .what = "use optimal reciprocal collision avoidance for all agents, for comparison",
       .needs = "--test" },
     { .name = "--dump",
       .kind = OPTION_OUTPUT,
       .at = offsetof(crowd_args, dump),
       .value = "OUT.csv",
-      .what = "where every agent is in every step of 1/30 s: frame,agent,x,z,vx,vz,radius",
+      .what = "the position of every agent in every step of 1/30 s: frame,agent,x,z,vx,vz,radius",
       .example = "agents.csv",
       .needs = "--test --place" },
     { .name = "--json",
@@ -432,7 +434,7 @@ static const option options[] = {
 const verb verb_crowd = {
     .name = "crowd",
     .files = "PACK",
-    .what = "draw a crowd of a pack's skinned mesh, each body at the LOD level that its size in pixels needs",
+    .what = "draw a crowd of a pack's skinned mesh with LOD, or run agents through a scene and measure them",
     .more =
         "--test runs agents without a pack. circle250: 250 of 3 m across, at 2 m/s, on a circle of 200 m, each to the opposite side. door200: 200 of half a metre, at 1.3 m/s, a metre apart, out through a door of 1.6 m. dense1000: 1,000 of half a metre on a square with a square metre for each, to one random place after the other; open10000: 10,000 of 0.6 m with 4 square metres for each. maze400: 400 of half a metre, from corner to corner of a maze, by flow fields; stalls600: 600 from one of 12 stalls to another, where each stays for 5 to 15 s. Printed are when half and all of them were there, the worst overlap of two, how often one overlapped by more than 5 %, the mean speed towards the goal (of the speed that they like), the longest time in which one stood still with room in front, CPU time and bytes, and a hash of where all are: the same on every processor. --place does the same in a place of a file: its agents walk from goal to goal and use what they need; all are there when each has been at a first goal.",
     .example =

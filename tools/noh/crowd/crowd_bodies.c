@@ -22,7 +22,7 @@ enum { BODY, FACE, LAYERS };
 static const noh_layer_desc layers[LAYERS] = { { "body", NOH_LAYER_BASE, NULL, NULL, 1 },
                                                { "face", NOH_LAYER_OVER, "", NULL, 1 } };
 
-/* ---- what is wanted ---- */
+/* ---- the stage's desc ---- */
 
 static int fill_options(crowd *c, const crowd_options *o)
 {
@@ -33,7 +33,7 @@ static int fill_options(crowd *c, const crowd_options *o)
     if (o->plain) c->options.near_count = o->count;
     return o->count && o->count <= NOH_MORPH_INSTANCES_MAX
                ? 0
-               : tool_fail("crowd", "a crowd has from 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
+               : tool_fail("crowd", "a crowd must have 1 to %u bodies", NOH_MORPH_INSTANCES_MAX);
 }
 
 /* The skeleton of the skinned mesh that targets move the most. */

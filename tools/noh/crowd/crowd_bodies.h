@@ -1,15 +1,15 @@
-/* crowd_bodies.h: bodies of one pack, spread over a field, on a stage (noh.h): what `noh crowd` draws and `noh
- * bench` times. Each has a place, a clip, a phase and a playback speed of its own, and a clip of the face over it.
+/* crowd_bodies.h: bodies of one pack, spread over a field, on a stage (noh.h), for `noh crowd` and `noh bench`. Each
+ * has its own place, clip, phase and playback speed, and a clip of the face over it.
  *
  *   crowd_open      plan, make, place
  *   crowd_frame     a frame of the stage
- *   crowd_draw      what the last frame's view sees
+ *   crowd_draw      draws the last frame's view
  *
  * The baseline, without LOD (crowd_options.plain), is the same stage with an error of a millionth of a pixel and a slot
  * of the finest level for every body: all joints, all targets, in every frame.
  *
- * Clips that end by themselves play ping-pong, so that every body keeps moving. Root motion on the ground is taken out:
- * bodies stay in place. One unit of the pack is a metre; y is up. */
+ * Clips that end by themselves play ping-pong, so that every body keeps moving. Root motion on the ground is removed,
+ * so that bodies stay in place. One unit of the pack is a metre; y is up. */
 #ifndef NOH_NOH_CROWD_CROWD_BODIES_H
 #define NOH_NOH_CROWD_CROWD_BODIES_H
 
@@ -59,7 +59,7 @@ noh_stage_view crowd_camera_at(const crowd *c, const float eye[3], float heading
 /* 4 m above the middle of the field. */
 noh_stage_view crowd_camera_start(const crowd *c);
 
-/* On a driver that draws, it accumulates and uploads too. */
+/* With a GPU it also accumulates and uploads. */
 void crowd_frame(crowd *c, uint32_t ticks, const noh_stage_view *view);
 /* Draw into the current framebuffer and viewport. */
 void crowd_draw(crowd *c);

@@ -1,4 +1,4 @@
-/* crowd_hair.h: the hair of a crowd's bodies, where their pack has some.
+/* crowd_hair.h: the hair of a crowd's bodies, if their pack has any.
  *
  *   crowd_hair_plan     of a kind; crowd_hair_bytes
  *   crowd_hair_open     on a driver; crowd_hair_close
@@ -28,17 +28,17 @@ typedef struct crowd_hair {
     void *memory, *drawn_memory;
 } crowd_hair;
 
-/* kind: its index on the stage, with such a skeleton and so many actors. Prints an error and returns an exit code; 0 on
- * success, also where there is no hair. */
+/* kind: its index on the stage, and its number of actors. Prints an error and returns an exit code; 0 on success, also
+ * if there is no hair. */
 int crowd_hair_plan(crowd_hair *h, const pack_file *file, uint32_t kind, uint32_t skeleton, uint32_t actors);
-/* Beside the stage; 0 without hair. */
+/* In addition to the stage; 0 without hair. */
 void crowd_hair_bytes(const crowd_hair *h, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 
 /* lit: the stage has a light */
 int crowd_hair_open(crowd_hair *h, gpu *g, noh_gl_ledger *ledger, int lit);
 void crowd_hair_close(crowd_hair *h);
 void crowd_hair_frame(crowd_hair *h, noh_stage *stage, uint32_t ticks);
-/* What follows draws the last frame: call it once before. */
+/* Call once per frame, before the functions below, which draw the last frame. */
 void crowd_hair_update(crowd_hair *h);
 void crowd_hair_draw(crowd_hair *h, const noh_stage *stage, uint32_t view);
 void crowd_hair_draw_shadow(crowd_hair *h, const noh_stage *stage, uint32_t view);

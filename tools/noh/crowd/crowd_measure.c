@@ -1,4 +1,4 @@
-/* crowd_measure.c: overlaps and waiting, by a grid of its own. */
+/* crowd_measure.c: overlaps and waiting, found with a grid. */
 #include "crowd_measure.h"
 
 #include <math.h>
@@ -53,7 +53,7 @@ static cells sorted(crowd_meter *meter, const noh_crowd_agent *agents)
     return c;
 }
 
-/* What one agent has around it. */
+/* The surroundings of one agent. */
 typedef struct around {
     double overlap; /* the worst, of the sum of radii */
     int blocked;    /* someone is in front, nearer than a step's width */

@@ -1,11 +1,11 @@
-/* crowd_measure.h: how agents stand to each other: overlaps, and who could walk but does not. */
+/* crowd_measure.h: measures agents: overlaps, and agents that could walk but stand. */
 #ifndef NOH_NOH_CROWD_CROWD_MEASURE_H
 #define NOH_NOH_CROWD_CROWD_MEASURE_H
 
 #include "crowd_scene.h"
 #include "noh/crowd.h"
 
-/* Agents by cells, found anew in each step. */
+/* Agents by cells, rebuilt in each step. */
 typedef struct crowd_meter {
     uint32_t *head, *next; /* [CROWD_METER_SIDE^2], [count] */
     uint32_t *slow, *held; /* [count]: steps so far of standing with room in front, of standing at all */
@@ -14,12 +14,12 @@ typedef struct crowd_meter {
 
 #define CROWD_METER_SIDE 256u
 
-/* returns 0 when there is no memory: close it all the same */
+/* returns 0 when out of memory: close it in any case */
 int crowd_meter_open(crowd_meter *meter, uint32_t count);
 void crowd_meter_close(crowd_meter *meter);
 
-/* Add a step: before[count] and now[count] are the agents on both sides of it; ahead[count], unit: where they wanted to
- * go. */
+/* Add a step: before[count] and now[count] are the agents on both sides of it; ahead[count], unit vectors: their
+ * wanted directions. */
 void crowd_meter_add(crowd_meter *meter, const noh_crowd_agent *before, const noh_crowd_agent *now,
                      const float (*ahead)[2], crowd_measures *m);
 

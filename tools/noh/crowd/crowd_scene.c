@@ -1,4 +1,4 @@
-/* crowd_scene.c: where agents start, and where they want to go. */
+/* crowd_scene.c: the starts and goals of agents. */
 #define _POSIX_C_SOURCE 200809L
 #include "crowd_scene.h"
 
@@ -56,7 +56,7 @@ static float chance(crowd_scene *s)
 
 static float low_of(const crowd_scene *s);
 
-/* Where agents follow flow fields: what is in them, a goal, is wide. */
+/* Flow fields lead to goals of this width. */
 static int is_within(const crowd_scene *s, uint32_t index, float distance)
 {
     const noh_crowd_agent *a = &s->now[index];
@@ -96,7 +96,7 @@ static void place_door(crowd_scene *s, uint32_t index, noh_crowd_agent *a)
     a->goal[1] = 0.5f;
 }
 
-/* To the nearest part of the door, then straight on. */
+/* To the nearest point of the door, then straight on. */
 static void aim_door(crowd_scene *s, uint32_t index)
 {
     const noh_crowd_agent *a = &s->now[index];
@@ -141,7 +141,7 @@ static void aim_square(crowd_scene *s, uint32_t index)
     noh_crowd_aim(s->crowd, index, goal);
 }
 
-/* ---- what is shared by scenes with flow fields: agents go from one of the goals to the next ---- */
+/* ---- shared by scenes with flow fields: agents walk from goal to goal ---- */
 
 static uint32_t choice(crowd_scene *s, uint32_t count)
 {
@@ -222,7 +222,7 @@ static void aim_maze(crowd_scene *s, uint32_t index)
     if (is_within(s, index, 2.0f)) follow_another(s, index);
 }
 
-/* ---- a square with stalls: boxes of 4 x 2 m, in front of which agents stay for 5 to 15 s ---- */
+/* ---- a square with stalls: boxes of 4 x 2 m; agents stay in front of them for 5 to 15 s ---- */
 
 #define STALLS 12u
 #define STALL_REACH 2.5f /* in front of it */
@@ -300,7 +300,7 @@ static const kind *find_kind(const char *name)
         if (strcmp(kinds[i].name, name) == 0) return &kinds[i];
     }
     near = nearest_name(name, names, KINDS);
-    tool_usage("--test wants circle250, door200, dense1000, open10000, maze400 or stalls600, not '%s'%s%s%s", name,
+    tool_usage("--test must be circle250, door200, dense1000, open10000, maze400 or stalls600, not '%s'%s%s%s", name,
                near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
     return NULL;
 }
@@ -314,7 +314,7 @@ static float low_of(const crowd_scene *s)
     return is_circle ? -1.1f * s->extent : is_door ? -30.0f - (float)s->side : 0.0f;
 }
 
-/* The area, and what is in it. */
+/* The area and its obstacles. */
 static noh_crowd_desc desc_of(crowd_scene *s, uint32_t job_count, noh_crowd_obstacle walls[WALLS_MAX])
 {
     const float low = low_of(s);
@@ -438,7 +438,7 @@ static void count_arrived(crowd_scene *s)
     if (s->measures.done < 0.0 && count == s->agents) s->measures.done = (double)s->step / 30.0;
 }
 
-/* Straight to the goal, or where a flow field leads. */
+/* Straight to the goal, or along a flow field. */
 static void look_ahead(crowd_scene *s)
 {
     for (uint32_t i = 0; i < s->agents; i++) {

@@ -1,5 +1,5 @@
-/* crowd_scene.h: agents who cross a circle, leave through a door, walk about among each other, in a maze or from stall
- * to stall, and how well they do (crowd.h). Starts follow from a seed, and are the same on every processor. */
+/* crowd_scene.h: agents that cross a circle, leave through a door, walk among each other, in a maze or from stall to
+ * stall, and their measurements (crowd.h). Starts follow from a seed, and are the same on every processor. */
 #ifndef NOH_NOH_CROWD_CROWD_SCENE_H
 #define NOH_NOH_CROWD_CROWD_SCENE_H
 
@@ -7,23 +7,23 @@
 
 typedef struct crowd_scene_options {
     const char *name; /* circle250, door200, dense1000, open10000, maze400, stalls600 */
-    uint32_t agents;  /* 0: as the name says */
+    uint32_t agents;  /* 0: the number in the name */
     double seconds;   /* 0: the scene's own: 300 for circle250, 120 for door200, maze400 and
                          stalls600, 30 */
     uint32_t seed, job_count;
     uint32_t flags; /* of all agents: NOH_CROWD_ORCA */
 } crowd_scene_options;
 
-/* Of all agents in all steps so far. */
+/* Over all agents and all steps so far. */
 typedef struct crowd_measures {
     double overlap_max;  /* of the sum of two radii */
     uint64_t overlapped; /* agent-steps with more than a twentieth of it */
     uint64_t agent_steps;
     double progress;    /* sum of the speed towards the goal, of the speed that an agent likes */
-    uint64_t under_way; /* agent-steps of those who want to walk and have not arrived */
+    uint64_t under_way; /* agent-steps of agents that want to walk and have not arrived */
     uint32_t stuck_max; /* most steps in a row in which an agent hardly moves although there is room in front of it */
-    uint32_t held_max;  /* the same, whoever is in front */
-    double done, half;  /* seconds after which all, half of them were where they wanted to be; below 0: not yet */
+    uint32_t held_max;  /* the same, with or without agents in front */
+    double done, half;  /* seconds until all agents, half of them, had arrived; below 0: not yet */
 } crowd_measures;
 
 typedef struct crowd_scene crowd_scene;

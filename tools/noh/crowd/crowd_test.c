@@ -1,4 +1,4 @@
-/* crowd_test.c: a scene's steps, its dump, and what is said about it. */
+/* crowd_test.c: a scene's steps, dump and report. */
 #include "crowd_test.h"
 
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 #define PLACE_S 60.0
 
-/* What agents came to. */
+/* The results of the agents. */
 typedef struct result {
     const char *name;
     uint32_t agents, steps, hash;
@@ -74,10 +74,10 @@ static int print_text(const result *r)
 {
     const crowd_measures *m = r->measures;
     printf("%s: %u agents, %.4g s", r->name, r->agents, (double)r->steps / 30.0);
-    if (m->done >= 0.0) printf("; half of them there after %.1f s, all after %.1f", m->half, m->done);
+    if (m->done >= 0.0) printf("; half arrived after %.1f s, all after %.1f", m->half, m->done);
     printf("\n  overlapped by at most %.1f %% of two radii, by more than 5 %% in %.4f %% of all agents' steps\n",
            100.0 * m->overlap_max, share((double)m->overlapped, m->agent_steps));
-    printf("  progress %.1f %%; none stood still for more than %.1f s with room in front, %.1f s at all\n",
+    printf("  progress %.1f %%; longest stop %.1f s with room in front, %.1f s in all\n",
            share(m->progress, m->under_way), (double)m->stuck_max / 30.0, (double)m->held_max / 30.0);
     if (r->field_bytes) printf("  %zu bytes of flow fields\n", r->field_bytes);
     printf("  %.0f ns an agent and step, %zu bytes, %.1f an agent; hash %08x\n", r->cpu_ns / (double)m->agent_steps,

@@ -24,12 +24,12 @@ static int camera_of(const place_scene *s, noh_stage_view *view)
         const int count = sscanf(s->options->camera, "%lf,%lf,%lf,%lf,%lf%c", &azimuth, &elevation, &distance, &x, &z,
                                  &end);
         if (count != 3 && count != 5) {
-            return tool_usage("--camera of a place wants AZ,EL,DIST or AZ,EL,DIST,X,Z, not '%s'", s->options->camera);
+            return tool_usage("--camera of a place must be AZ,EL,DIST or AZ,EL,DIST,X,Z, not '%s'", s->options->camera);
         }
     }
     if (!(fabs(x) <= 1e5) || !(fabs(z) <= 1e5) || !(fabs(azimuth) <= 3600.0) ||
         !(elevation >= -89.0 && elevation <= 89.0) || !(distance > 0.0 && distance < 1e5)) {
-        return tool_usage("--camera wants EL from -89 to 89, DIST above 0 and a place that is not far away");
+        return tool_usage("--camera needs EL from -89 to 89, DIST above 0, and a point near the place");
     }
     const float at[2] = { (float)x, (float)z }, target[3] = { at[0], 1.0f + place_scene_height(s->place, at), at[1] };
     noh_view_orbit(view, target, (float)(azimuth * RADIAN), (float)(elevation * RADIAN), (float)distance,

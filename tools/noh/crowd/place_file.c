@@ -39,7 +39,7 @@ static int number(reader *r, const char *what, double least, double most, float 
     if (!word.size) return text_fail(&r->s, r->line, "%s is missing: %s", what, r->form);
     if (text_number(&r->s, word, &value)) return 1;
     if (!(value >= least && value <= most)) {
-        return text_fail(&r->s, r->line, "%s is %g, and has to be %g to %g", what, value, least, most);
+        return text_fail(&r->s, r->line, "%s is %g: it must be %g to %g", what, value, least, most);
     }
     *out = (float)value;
     return 0;
@@ -189,7 +189,7 @@ static int find_need(reader *r, uint32_t *need)
     for (*need = 0; *need < p->smart.need_count && strcmp(p->need_names[*need], wanted) != 0; ++*need) {}
     if (*need == p->smart.need_count) {
         const char *near = nearest_name(wanted, (const char *const *)p->need_names, p->smart.need_count);
-        status = text_fail(&r->s, r->line, "there is no need '%.40s' above this line%s%.40s%s", wanted,
+        status = text_fail(&r->s, r->line, "no line above gives the need '%.40s'%s%.40s%s", wanted,
                            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
     }
     free(wanted);
@@ -206,7 +206,7 @@ static int read_object(reader *r)
     if (!o) return 1;
     o->first_slot = p->smart.slot_count;
     const int status = name(r, "NAME", &unused);
-    free(unused); /* it is for who reads the file */
+    free(unused); /* names are for readers of the file only */
     return status || find_need(r, &o->need) || number(r, "RATE", 1e-3, 1e3, &o->rate) ||
            seconds(r, "GOING_S", 1.0, &o->going_ticks);
 }
@@ -238,7 +238,7 @@ static int read_slot(reader *r)
 {
     place_file *p = r->place;
     float degrees = 0.0f;
-    if (!p->smart.object_count) return text_fail(&r->s, r->line, "a slot stands below its object");
+    if (!p->smart.object_count) return text_fail(&r->s, r->line, "a slot must follow the line of its object");
     noh_smart_slot *slot = grown(r, (void **)&p->slots, &p->smart.slot_count, NOH_SMART_SLOTS_MAX, sizeof *slot,
                                  "slots");
     if (!slot) return 1;
@@ -260,16 +260,16 @@ static const struct {
     const char *word, *form;
     int (*read)(reader *r);
 } lines[] = {
-    { "area", "a line is `area X0 Z0 X1 Z1`", read_area },
-    { "wall", "a line is `wall X0 Z0 X1 Z1 [THICKNESS]`", read_wall },
-    { "post", "a line is `post X Z RADIUS`", read_post },
-    { "step", "a line is `step X0 Z0 X1 Z1 HEIGHT`", read_step },
-    { "spawn", "a line is `spawn X0 Z0 X1 Z1`", read_spawn },
-    { "goal", "a line is `goal X Z [RADIUS]`", read_goal },
-    { "agents", "a line is `agents RADIUS SLOWEST FASTEST`", read_agents },
-    { "need", "a line is `need NAME GROWTH`", read_need },
-    { "object", "a line is `object NAME NEED RATE GOING_S`", read_object },
-    { "slot", "a line is `slot X Z FACING [USE_S [CLIP [ENTER ENTER_S LEAVE LEAVE_S]]]`", read_slot },
+    { "area", "write `area X0 Z0 X1 Z1`", read_area },
+    { "wall", "write `wall X0 Z0 X1 Z1 [THICKNESS]`", read_wall },
+    { "post", "write `post X Z RADIUS`", read_post },
+    { "step", "write `step X0 Z0 X1 Z1 HEIGHT`", read_step },
+    { "spawn", "write `spawn X0 Z0 X1 Z1`", read_spawn },
+    { "goal", "write `goal X Z [RADIUS]`", read_goal },
+    { "agents", "write `agents RADIUS SLOWEST FASTEST`", read_agents },
+    { "need", "write `need NAME GROWTH`", read_need },
+    { "object", "write `object NAME NEED RATE GOING_S`", read_object },
+    { "slot", "write `slot X Z FACING [USE_S [CLIP [ENTER ENTER_S LEAVE LEAVE_S]]]`", read_slot },
 };
 #define LINES (sizeof lines / sizeof lines[0])
 
@@ -279,7 +279,7 @@ static int unknown(reader *r, text_word word)
     char shown[TEXT_SHOWN];
     for (size_t i = 0; i < LINES; i++) words[i] = lines[i].word;
     near = nearest_name(text_show(word, shown), words, LINES);
-    return text_fail(&r->s, r->line, "'%s' begins no line of a place%s%s%s", shown, near ? "; did you mean '" : "",
+    return text_fail(&r->s, r->line, "a place has no line '%s'%s%s%s", shown, near ? "; did you mean '" : "",
                      near ? near : "", near ? "'?" : "");
 }
 
@@ -293,7 +293,7 @@ static int read_line(reader *r)
         if (!text_is(word, lines[i].word)) continue;
         r->form = lines[i].form;
         if (lines[i].read(r)) return 1;
-        return is_over(r) ? 0 : text_fail(&r->s, r->line, "there is a word too many: %s", r->form);
+        return is_over(r) ? 0 : text_fail(&r->s, r->line, "one word too many: %s", r->form);
     }
     return unknown(r, word);
 }
@@ -310,17 +310,17 @@ static int check_inside(reader *r)
     const place_file *p = r->place;
     for (uint32_t i = 0; i < p->spawn_count; i++) {
         if (!is_within(&p->area, p->spawns[i].low) || !is_within(&p->area, p->spawns[i].high)) {
-            return text_fail(&r->s, 0, "the %u. spawn is not within the area", i + 1u);
+            return text_fail(&r->s, 0, "spawn %u is not within the area", i + 1u);
         }
     }
     for (uint32_t i = 0; i < p->goal_count; i++) {
         if (!is_within(&p->area, p->goals[i].at)) {
-            return text_fail(&r->s, 0, "the %u. goal is not within the area", i + 1u);
+            return text_fail(&r->s, 0, "goal %u is not within the area", i + 1u);
         }
     }
     for (uint32_t i = 0; i < p->smart.slot_count; i++) {
         if (!is_within(&p->area, p->slots[i].at)) {
-            return text_fail(&r->s, 0, "the %u. slot is not within the area", i + 1u);
+            return text_fail(&r->s, 0, "slot %u is not within the area", i + 1u);
         }
     }
     return 0;
@@ -330,15 +330,15 @@ static int check(reader *r)
 {
     const place_file *p = r->place;
     r->line = 0;
-    if (!r->has_area) return text_fail(&r->s, 0, "a place has a line `area X0 Z0 X1 Z1`");
-    if (!p->spawn_count) return text_fail(&r->s, 0, "nobody enters: a place has a line `spawn X0 Z0 X1 Z1`");
+    if (!r->has_area) return text_fail(&r->s, 0, "the place has no area: add a line `area X0 Z0 X1 Z1`");
+    if (!p->spawn_count) return text_fail(&r->s, 0, "agents have nowhere to enter: add a line `spawn X0 Z0 X1 Z1`");
     if (!p->goal_count && !p->smart.object_count) {
-        return text_fail(&r->s, 0, "nobody wants to go anywhere: a place has a line `goal X Z`, or objects");
+        return text_fail(&r->s, 0, "agents have no destination: add a line `goal X Z`, or objects");
     }
     for (uint32_t i = 0; i < p->smart.object_count; i++) {
         if (!p->objects[i].slot_count) {
             r->line = r->object_lines[i];
-            return text_fail(&r->s, r->line, "this object has no slot below it");
+            return text_fail(&r->s, r->line, "this object has no slot: add a line `slot X Z FACING` below it");
         }
     }
     return check_inside(r);

@@ -13,9 +13,9 @@
 #include "place_people.h"
 
 #define STEPS_PER_S 30u
-#define WANTS 0.6f     /* of a need: it goes and satisfies it */
-#define THERE_M 0.25f  /* from its slot: it is there */
-#define NEAR_M 2.0f    /* from its slot: it goes straight there */
+#define WANTS 0.6f     /* a need above this level is satisfied */
+#define THERE_M 0.25f  /* distance from its slot at which it has arrived */
+#define NEAR_M 2.0f    /* distance from its slot at which it walks straight to it */
 #define PATIENCE_S 40u /* on the way to a goal; then it takes another */
 #define SPAWN_TRIES 200u
 
@@ -34,7 +34,7 @@ struct place_life {
     void *crowd_memory, *smart_memory;
     size_t bytes;
     noh_crowd_agent *now, *before;
-    float (*ahead)[2]; /* where each wants to go next */
+    float (*ahead)[2]; /* the wanted direction of each */
     inhabitant *people;
     crowd_meter meter;
     crowd_measures measures;
@@ -106,7 +106,7 @@ static int is_free(const place_life *l, uint32_t count, const float at[2])
     return 1;
 }
 
-/* A place in one of the areas, each as likely as it is large. returns 0 where there is no room left */
+/* A random place in the areas, each with a chance by its size. returns 0 if there is no room left */
 static int find_room(place_life *l, uint32_t index, float at[2])
 {
     const place_file *p = l->place;
@@ -129,7 +129,7 @@ static int find_room(place_life *l, uint32_t index, float at[2])
     return 0;
 }
 
-/* Another goal than the last one, and a place about it. */
+/* A goal other than the last one, and a place around it. */
 static void choose_goal(place_life *l, uint32_t index)
 {
     const place_file *p = l->place;
@@ -161,7 +161,8 @@ static int enter(place_life *l, uint32_t index)
     float needs[NOH_SMART_NEEDS_MAX];
     memset(a, 0, sizeof *a);
     if (!find_room(l, index, a->position)) {
-        return tool_fail("crowd", "there is no room for more than %u agents where they spawn", index);
+        return tool_fail("crowd", "the spawn areas have room for only %u agents: enlarge them, or use fewer agents",
+                         index);
     }
     h->speed = p->speed[0] + chance(l) * (p->speed[1] - p->speed[0]);
     h->goal = NOH_NONE;
@@ -215,7 +216,7 @@ void place_life_close(place_life *l)
     free(l);
 }
 
-/* ---- what they decide ---- */
+/* ---- decisions ---- */
 
 static float distance(const float a[2], const float b[2])
 {
@@ -340,7 +341,7 @@ void place_life_set_down(place_life *l, uint32_t index, int is_down)
     h->is_down = is_down != 0;
 }
 
-/* ---- what is ---- */
+/* ---- queries ---- */
 
 const crowd_measures *place_life_measures(const place_life *l)
 {

@@ -44,7 +44,7 @@ static int find_feet(place_people *p, const pack_file *file)
     source.metres = 1.0f;
     if (noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, &error) ||
         noh_feet_rig_make(&source, &p->feet.rig, &error)) {
-        return tool_fail(file->path, "a place wants a body that walks: %s", error.what);
+        return tool_fail(file->path, "a place needs a body that walks: %s", error.what);
     }
     p->feet.ground.world = &p->world;
     p->parts[0] = noh_walkers_feet_part(&p->feet);

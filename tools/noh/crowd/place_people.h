@@ -1,5 +1,5 @@
-/* place_people.h: who lives in a place (place_file.h), as agents and as a kind of a stage: what place_life makes of
- * them, place_draw draws, and `noh budget` counts. */
+/* place_people.h: the agents of a place (place_file.h) and their kind on a stage, for place_life, place_draw and
+ * `noh budget`. */
 #ifndef NOH_NOH_CROWD_PLACE_PEOPLE_H
 #define NOH_NOH_CROWD_PLACE_PEOPLE_H
 
@@ -10,10 +10,10 @@
 #include "noh/noh.h"
 #include "place_file.h"
 
-#define PLACE_NEAR 48u     /* whose feet are put on the ground */
-#define PLACE_RAGDOLLS 16u /* who falls at once, where something makes them */
+#define PLACE_NEAR 48u     /* feet are placed on the ground */
+#define PLACE_RAGDOLLS 16u /* bodies that can fall at once */
 
-/* Of a stage with one kind of them. Do not move it: kind and feet point into it. */
+/* The kind of a stage with one kind of agents. Do not move it: kind and feet point into it. */
 typedef struct place_people {
     noh_kind_desc kind;
     noh_walkers_desc walkers; /* idle and run are not known yet */
@@ -29,14 +29,14 @@ typedef struct place_people {
 enum { PLACE_BODY, PLACE_ACT, PLACE_LAYERS };
 
 /* agents    0: PLACE_AGENTS
- * ragdolls  of them that may fall at once; 0: none does
+ * ragdolls  bodies that may fall at once; 0: none
  * Prints an error and returns an exit code; 0 on success. */
 int place_people_make(place_people *p, const pack_file *file, const place_file *place, uint32_t agents,
                       uint32_t ragdolls);
 
-/* Of the place's crowd, with a flow field for each goal, then one for each object, as many as there may be. */
+/* The desc of the place's crowd, with a flow field for each goal, then one for each object, up to the limit. */
 void place_crowd_desc(const place_file *place, uint32_t agents, noh_crowd_desc *desc);
-/* Of what it uses; object_count 0: nothing. */
+/* The smart objects; object_count 0: none. */
 void place_smart_desc(const place_file *place, uint32_t agents, noh_smart_desc *desc);
 
 #endif

@@ -69,7 +69,8 @@ static int open_walkers(place_scene *s)
     s->walkers_memory = malloc(s->walkers_bytes);
     if (!s->walkers_memory) return tool_fail(s->file->path, "out of memory");
     if (noh_walkers_init(s->walkers_memory, s->walkers_bytes, &desc, s->stage, &s->walkers, &error)) {
-        return tool_fail(s->file->path, "%s; a place wants a clip 'walk', best an 'idle'", error.what);
+        return tool_fail(s->file->path, "%s: a place needs a pack with a clip 'walk', and preferably 'idle'",
+                         error.what);
     }
     return 0;
 }
@@ -143,7 +144,7 @@ static int open_all(place_scene *s, gpu *g)
 {
     const place_draw_options *o = s->options;
     light_options light = o->light;
-    int status = lighting_wanted(&light, 1) ? 0 : tool_usage("a place is lit: --light is not 'none'");
+    int status = lighting_wanted(&light, 1) ? 0 : tool_usage("--light none cannot draw a place: choose another light");
     if (!status) status = lighting_open(&s->light, &light);
     if (!status && o->scenery) status = pack_file_open(&s->scenery, o->scenery);
     if (!status) status = place_life_open(s->place, o->agents, o->seed, &s->life);
@@ -209,7 +210,7 @@ void place_scene_close(place_scene *s)
 
 /* ---- frames ---- */
 
-/* A clip of the place; 0: none. Loops begin anywhere, so that neighbours are not in step. */
+/* A clip of the place; 0: none. Loops begin at random times, so that neighbours are not in step. */
 static void play_clip(const place_scene *s, uint32_t person, uint32_t clip, noh_loop loop)
 {
     noh_play play;
@@ -224,7 +225,7 @@ static void play_clip(const place_scene *s, uint32_t person, uint32_t clip, noh_
     (void)noh_actor_play(s->stage, s->actors[person], PLACE_ACT, s->place->clips[clip - 1u], &play, NULL);
 }
 
-/* What a slot lets its holder do: enter it, facing its way, use it and leave it, by its clips. */
+/* The holder of a slot enters it, facing its direction, uses it and leaves it, with its clips. */
 static void act(place_scene *s, uint32_t person)
 {
     const noh_smart_use use = place_life_use(s->life, person);
@@ -246,7 +247,7 @@ static void act(place_scene *s, uint32_t person)
     s->phases[person] = use.phase;
 }
 
-/* Who falls is let alone until it stands. */
+/* A body that falls is left alone until it stands. */
 static void fall(place_scene *s)
 {
     const place_hit *hit = &s->options->hit;
@@ -259,7 +260,7 @@ static void fall(place_scene *s)
     for (uint32_t i = 0; i < place_life_agents(s->life); i++) {
         const int is_down = noh_walkers_is_down(s->walkers, i);
         place_life_set_down(s->life, i, is_down);
-        if (is_down) s->phases[i] = NOH_SMART_AWAY; /* what it did is over */
+        if (is_down) s->phases[i] = NOH_SMART_AWAY; /* its action is over */
     }
 }
 

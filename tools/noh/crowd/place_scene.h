@@ -1,9 +1,9 @@
-/* place_scene.h: a place (place_file.h) that lives: its inhabitants as characters of a pack, on its ground and steps,
- * on a stage. place_draw.h draws pictures of it, a page shows it.
+/* place_scene.h: a place (place_file.h) on a stage: its agents as characters of a pack, on its ground and steps.
+ * place_draw.h draws pictures of it, and a web page shows it.
  *
  *   place_scene_open     plan, make, place
  *   place_scene_step     1/30 s
- *   place_scene_show     pose and upload what a view sees
+ *   place_scene_show     pose and upload the actors in a view
  *   place_scene_shadow   draw its shadows, into a map
  *   place_scene_draw     draw it, into the current framebuffer and viewport */
 #ifndef NOH_NOH_CROWD_PLACE_SCENE_H
@@ -20,7 +20,7 @@
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 
-/* A push: who is within `radius` metres of x, z then falls, away from there. */
+/* A push: bodies within `radius` metres of x, z fall away from that point. */
 typedef struct place_hit {
     int is_given;
     float time_s, at[2], radius, impulse; /* newton seconds */
@@ -31,13 +31,13 @@ typedef struct place_draw_options {
     float pixels;        /* the largest error of LOD levels */
     double time_s;       /* when the first picture is taken */
     uint32_t count;      /* of pictures, 1 or more, */
-    double apart_s;      /* so many seconds apart */
+    double apart_s;      /* seconds from one picture to the next */
     const char *camera;  /* "AZ,EL,DIST[,X,Z]": about the place's middle, or about X, Z; NULL: over the whole place */
     const char *scenery; /* a pack drawn where it is; NULL: none */
     light_options light;
     uint32_t width, height;
     place_hit hit;
-    int encode_srgb; /* 1: what is drawn into does not */
+    int encode_srgb; /* 1: the target does not */
 } place_draw_options;
 
 enum { PLACE_PEOPLE, PLACE_SCENERY, PLACE_KINDS };
@@ -75,15 +75,15 @@ int place_scene_open(place_scene *s, gpu *g, const pack_file *file, const place_
                      const place_draw_options *o);
 void place_scene_close(place_scene *s);
 
-/* As far as 1/30 s goes: what its people decide, where they walk, what they show. */
+/* Advance by 1/30 s: the agents' decisions, walking and clips. */
 void place_scene_step(place_scene *s);
 
-/* What the view sees, for the next draws. Those that draw print an error and return an exit code; 0 on success. */
+/* Prepare the view for the next draws. Functions that draw print an error and return an exit code; 0 on success. */
 int place_scene_show(place_scene *s, const noh_stage_view *view);
 int place_scene_shadow(place_scene *s, const noh_stage_view *view);
 int place_scene_draw(place_scene *s, const noh_stage_view *view);
 
-/* The height of the ground there; 0 where there is none of its own. */
+/* The height of the ground there; 0 without a ground. */
 float place_scene_height(const place_file *place, const float at[2]);
 
 #endif

@@ -126,7 +126,7 @@ static uint32_t chain_of(const noh_skeleton *s, uint32_t joint)
     return joint;
 }
 
-/* Hues a golden angle apart, so that those of neighbouring chains differ; light, of low saturation. */
+/* Hues a golden angle apart, so that neighbouring chains differ; light, of low saturation. */
 static void chain_color(uint32_t chain, float color[3])
 {
     float hue = fmodf((float)chain * 0.61803399f, 1.0f) * 6.2831853f;

@@ -20,7 +20,7 @@ typedef struct bones {
 int bones_open(bones *b, gpu *g, uint32_t joint_count);
 void bones_close(bones *b);
 
-/* Draw into the framebuffer that is bound, with a depth test against what is there.
+/* Draw into the bound framebuffer, with a depth test.
  * shapes  matrices[joint_count][12], rows of 3 x 4: the joints in the world */
 void bones_draw(bones *b, const noh_skeleton *skeleton, const float *matrices, const noh_gl_camera *camera);
 

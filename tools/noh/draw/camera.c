@@ -132,7 +132,8 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
     orbit at = orbit_fit(box, (double)o->width / (double)o->height);
     if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
         return tool_usage(
-            "--camera wants face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
+            "--camera must be face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over "
+            "0), not '%s'",
             o->camera);
     }
     if (o->around) at.radius *= 8.0;

@@ -1,4 +1,4 @@
-/* camera.h: what a picture frames, and from where. */
+/* camera.h: the camera of a picture and what it frames. */
 #ifndef NOH_NOH_DRAW_CAMERA_H
 #define NOH_NOH_DRAW_CAMERA_H
 
@@ -13,7 +13,7 @@ bounds bounds_union(bounds a, bounds b);
 typedef struct view_options {
     const char *camera; /* "face", "body" or "AZ,EL,DIST" in degrees and model units; NULL: body */
     uint32_t width, height;
-    int around; /* 1: what is round the box is seen too, not only what is in it */
+    int around; /* 1: also frames the surroundings of the box */
 } view_options;
 
 #define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
@@ -32,9 +32,9 @@ void orbit_axes(const orbit *o, double right[3], double up[3], double back[3]);
 /* A perspective camera, lit from over the left shoulder. */
 void orbit_camera(const orbit *o, noh_gl_camera *camera);
 
-/* The camera that the options ask for, framing the box. 0, or EXIT_USAGE after printing. */
+/* The camera of the options, framing the box. 0, or EXIT_USAGE after printing. */
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
-/* 1 when the option asks for the face. */
+/* 1 if the options frame the face. */
 int view_wants_face(const view_options *o);
 
 #endif

@@ -1,4 +1,4 @@
-/* data_page.h: what morph targets read and write, as pictures: one pixel for each accumulation texel of a mesh, in
+/* data_page.h: the data textures of morph targets as pictures: one pixel for each accumulation texel of a mesh, in
  * three layers: position, normal, tangent. x, y, z are red, green, blue.
  *
  *   data_page_open / data_page_close

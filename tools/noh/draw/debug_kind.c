@@ -16,7 +16,7 @@ int debug_parse(const char *text, debug_kind *kind)
             return 0;
         }
     }
-    return text ? tool_usage("--debug wants none, position, normal, tangent, lod, light, occlusion, wrinkle, "
+    return text ? tool_usage("--debug must be none, position, normal, tangent, lod, light, occlusion, wrinkle, "
                              "wireframe, joints, weights or bones, not '%s'",
                              text)
                 : 0;

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* The first are those of noh_debug_view, which the library's shaders show; the others are drawn by overlay.h. */
+/* The first values equal noh_debug_view, which the library's shaders show; overlay.h draws the others. */
 typedef enum debug_kind {
     DEBUG_NONE,
     DEBUG_WIREFRAME = NOH_VIEW_WRINKLE + 1,
@@ -23,7 +23,7 @@ extern const char *const debug_names[DEBUG_COUNT];
 
 /* text  NULL: none. Prints an error and returns an exit code; 0 on success. */
 int debug_parse(const char *text, debug_kind *kind);
-/* What the library's shaders show meanwhile. */
+/* The view that the library's shaders show below the overlay. */
 noh_debug_view debug_view_of(debug_kind kind);
 
 #ifdef __cplusplus

@@ -11,7 +11,7 @@
 
 /* ---- its kinds ---- */
 
-/* The skeleton that moves what a node draws; NOH_NONE: rigid. */
+/* The skeleton that moves a node's mesh; NOH_NONE: rigid. */
 static uint32_t skeleton_of(const noh_pack *pack, uint32_t mesh)
 {
     noh_mesh m;
@@ -20,7 +20,7 @@ static uint32_t skeleton_of(const noh_pack *pack, uint32_t mesh)
     return noh_pack_skin_at(pack, m.header->skin, &skin, NULL) == NOH_OK ? skin.header->skeleton : NOH_NONE;
 }
 
-/* The nodes (meshes, in a pack without nodes) of a skeleton, those of the first with all that are rigid. */
+/* The nodes (meshes, in a pack without nodes) of a skeleton; the first skeleton also gets all rigid ones. */
 static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *nodes)
 {
     const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
@@ -40,8 +40,8 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     noh_kind_desc *k = &f->kinds[f->stage_desc.kind_count];
     const figure_desc *d = &f->desc;
     if (f->stage_desc.kind_count == NOH_STAGE_KINDS_MAX) {
-        return tool_fail(d->file->path, "more meshes than a stage can have: %u kinds of %u each", NOH_STAGE_KINDS_MAX,
-                         NOH_STAGE_MESHES_MAX);
+        return tool_fail(d->file->path, "too many meshes for a stage, which holds %u kinds of %u each",
+                         NOH_STAGE_KINDS_MAX, NOH_STAGE_MESHES_MAX);
     }
     k->mesh = &d->file->pack;
     k->clips = d->clips && !d->more_clip_count ? &d->clips->pack : NULL;
@@ -98,7 +98,7 @@ static int list_kinds(figure *f, int draws)
     return status;
 }
 
-/* Of all kinds the one that has the most. */
+/* The largest number over all kinds. */
 static uint32_t count_targets(const figure *f)
 {
     const noh_pack *pack = &f->desc.file->pack;
@@ -435,11 +435,11 @@ static void draw_backdrop(const figure *f)
                       noh_stage_light_of(f->stage), &l->told, &f->seen);
 }
 
-/* What is opaque, then marks and hair on it, then what blends and shows them. */
+/* Opaque meshes, then marks and hair on them, then blended meshes over both. */
 static noh_result draw_in_parts(figure *f, noh_error *error)
 {
     noh_result result = noh_stage_draw(f->stage, NOH_PASS_OPAQUE, 0, NULL, error);
-    if (!result && figure_draw_decals(f)) return noh_fail(error, NOH_ERR_GL, "marks could not be drawn", 0, 0);
+    if (!result && figure_draw_decals(f)) return noh_fail(error, NOH_ERR_GL, "cannot draw marks", 0, 0);
     if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
     if (!result) result = noh_stage_draw(f->stage, NOH_PASS_BLENDED, 0, NULL, error);
     if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);

@@ -1,20 +1,20 @@
-/* figure.h: a pack on a stage, as the verbs want it: everything that it holds, once, in the pose of its clips.
+/* figure.h: a pack on a stage, as the verbs use it: all its meshes, once, in the pose of its clips.
  *
  *   figure_plan            the bytes, without a driver; figure_open makes the stage; figure_close, figure_restore
- *   figure_bytes           of its plan, and of the hair that is drawn beside it
+ *   figure_bytes           of its plan, including the hair, which is drawn separately
  *   figure_reset           at rest: nothing plays, nothing is held; figure_set_look
  *   figure_play            a clip; figure_clip_seconds, figure_pause
  *   figure_hold            a morph target or named float; figure_hold_all, figure_hold_options
- *   figure_pose            a frame that no view sees, for what follows
- *   figure_find_faces      where the eyes are; figure_feel, figure_live: faces that live
- *   figure_fall            pushed, it falls and gets up
- *   figure_bounds          of what is posed; figure_anchor, figure_joints, figure_deform
- *   figure_look            a frame that a camera sees; figure_draw draws it; figure_view
+ *   figure_pose            a frame without a view, for the functions below
+ *   figure_find_faces      find the eyes; figure_feel, figure_live: live faces
+ *   figure_fall            push it: it falls, and gets up
+ *   figure_bounds          bounds of the pose; figure_anchor, figure_joints, figure_deform
+ *   figure_look            a frame with a camera; figure_draw draws it; figure_view
  *   figure_views           the views of such a frame; figure_frame, figure_shade: the same in steps
  *
- * A figure is a kind of the stage for each skeleton of the pack, the first of which also has what no joint moves, and
- * of each kind one actor at the origin. Whatever a verb needs beside these functions it does with figure.stage and
- * figure.actors: steps, callback keys, fades, detail.
+ * A figure has a kind of the stage for each skeleton of the pack, with one actor at the origin; the first kind also has
+ * the meshes that no joint moves. For all else a verb uses figure.stage and figure.actors: steps, callback keys, fades,
+ * detail.
  *
  * Functions that return an int print an error and return an exit code; 0 on success. A figure must not move in memory,
  * and its pack_files must outlive it. */
@@ -41,8 +41,8 @@
 #define FIGURE_HELD_ALL UINT32_MAX
 #define FIGURE_ANIM_MAX 8u /* packs of clips */
 
-/* Zero is a good value for all but file. */
-/* A mark that is struck: where in the picture, from the upper left corner, 0 to 1; half a side, 0: a share of the
+/* All fields may be zero, except file. */
+/* A mark: its place in the picture, 0 to 1 from the upper left corner; half its side, 0: a share of the
  * figure's height. */
 typedef struct figure_mark {
     double x, y, size;
@@ -51,23 +51,23 @@ typedef struct figure_mark {
 
 typedef struct figure_desc {
     const pack_file *file;
-    const pack_file *clips;      /* whose clips are played; may be `file`. NULL: none */
-    const pack_file *more_clips; /* [more_clip_count] packs of clips beside `clips`; a later one's clip replaces one of
+    const pack_file *clips;      /* the pack with the clips; may be `file`. NULL: none */
+    const pack_file *more_clips; /* [more_clip_count] more packs of clips; a later one's clip replaces one of
                                   * the same name */
     uint32_t more_clip_count;
     int face_layer;       /* 1: clips that move no joint play over those that do, as a face does */
-    int alive;            /* 1: faces whose eyes are found blink, look, breathe and feel */
-    int without_springs;  /* 1: what springs of the pack would swing is left to clips */
-    int weight_rules;     /* 1: rules of the pack for weights are kept, whoever says them */
-    uint32_t level;       /* the finest LOD level that is there, as `noh info` counts them */
-    int by_error;         /* 1: levels are chosen by error, and fade; 0: `level` is shown, with all else in full */
-    noh_lod_settings lod; /* by which they are chosen; zeros: as low_stage.h has them */
-    uint32_t actor_count; /* of each kind; 0: 1. Only the first of each is there */
+    int alive;            /* 1: faces with eyes blink, look, breathe and show emotions */
+    int without_springs;  /* 1: no springs: clips move their joints */
+    int weight_rules;     /* 1: the pack's rules apply to all weights */
+    uint32_t level;       /* the finest LOD level to use, numbered as by `noh info` */
+    int by_error;         /* 1: levels are chosen by error, and fade; 0: always `level`, with all else in full */
+    noh_lod_settings lod; /* how they are chosen; zeros: the defaults of low_stage.h */
+    uint32_t actor_count; /* actors of each kind; 0: 1. Only the first of each is spawned */
     uint32_t track_count; /* clips at one time, 1..NOH_LAYER_TRACKS_MAX; 0: 2, so that one fades into another */
     const noh_layer_desc *layers; /* [layer_count] in place of one for all; they must outlive the figure */
     uint32_t layer_count;
     const char *graphs;        /* as in noh_kind_desc */
-    uint32_t root_axes;        /* NOH_ROOT_* that clips move it by; y is up */
+    uint32_t root_axes;        /* NOH_ROOT_* axes of root motion; y is up */
     uint32_t held_float_count; /* floats held at one time, FIGURE_HELD_ALL: all targets; 0: none */
     int inertia;               /* 1: room for NOH_PLAY_INERTIA */
     int falls;                 /* 1: its first skeleton can fall, onto the ground at a height of 0 */
@@ -77,22 +77,22 @@ typedef struct figure_desc {
     int sums; /* 1: of the path cpu in a texture, which layers are shown from */
     noh_accumulate accumulate;
     noh_debug_view view;
-    figure_body *body;        /* NULL: it looks ahead and stands where its clips have it. Must stay, and not move */
-    int hair;                 /* 1: the hair of the pack, where it has some */
-    float wind[3];            /* that blows in it, as in noh_hair_carrier */
+    figure_body *body; /* NULL: it looks ahead and stands as in its clips. Must outlive the figure, at one address */
+    int hair;          /* 1: with the pack's hair, if any */
+    float wind[3];     /* wind in the hair, as in noh_hair_carrier */
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
     uint32_t mark_count;
     int grown;       /* 1: marks are grown as triangles */
     int on_floor;    /* 1: its shadow may fall on a floor (figure_set_floor) */
-    lighting *light; /* NULL: the plain renderer's own. Must stay, and not move */
+    lighting *light; /* NULL: the plain renderer's own. Must outlive the figure, at one address */
 } figure_desc;
 
 typedef struct figure {
     figure_desc desc;
     noh_stage_desc stage_desc;
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
-    noh_layer_desc own_layers[2];                /* those that all kinds have */
-    const noh_pack *packs[FIGURE_ANIM_MAX + 1u]; /* of clips, where there are several */
+    noh_layer_desc own_layers[2];                /* supported by all kinds */
+    const noh_pack *packs[FIGURE_ANIM_MAX + 1u]; /* one layer per clip, if there are several */
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
     noh_haircut cut;      /* of the pack */
@@ -116,7 +116,7 @@ typedef struct figure {
     void *patch_memory[NOH_STAGE_KINDS_MAX];
     noh_blob_rig blob_rigs[NOH_STAGE_KINDS_MAX];
     noh_stage_floor level; /* zeros: no shadow falls on a floor */
-    int shows_floor;       /* 1: it does just now */
+    int shows_floor;       /* 1: it casts one now */
     float floor;           /* y of the ground where the body has none */
     noh_stage_hair hair;   /* zeros: none */
     void *hair_memory;
@@ -129,10 +129,10 @@ typedef struct figure {
  * caps  NULL: nothing is drawn, and packs of skeletons or clips alone are taken, too */
 int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps);
 void figure_plan_free(figure *f); /* of a figure that is not opened */
-/* What it takes as planned: the stage and its hair. Lights, marks and debug views are not of it. */
+/* The planned bytes: the stage and its hair, without lights, marks and debug views. */
 void figure_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 
-/* Whether its shadow falls on a floor at a height, where figure_desc.on_floor and a light with a shadow map allow it. */
+/* Whether a shadow falls on a floor at a height, if figure_desc.on_floor and a light with a shadow map allow it. */
 void figure_set_floor(figure *f, int on, float height);
 
 /* g  NULL: nothing is drawn, as above */
@@ -161,7 +161,7 @@ int figure_draws(const noh_pack *pack);
 uint32_t figure_level_count(const noh_pack *pack);
 uint32_t figure_level_first(const noh_pack *pack);
 int figure_check_level(const pack_file *file, uint32_t level);
-/* Of all that is drawn at a level. */
+/* Counts of everything drawn at a level. */
 uint32_t figure_triangles(const figure *f, uint32_t level);
 
 int figure_reset(figure *f);
@@ -172,10 +172,9 @@ int figure_set_look(figure *f, const noh_look *look);
  * is an error that suggests the nearest. */
 int figure_play(figure *f, const char *clip, const noh_play *play);
 int figure_clip_seconds(const figure *f, const char *clip, double *seconds);
-/* Each --clip at this time, beside each other. Where springs swing, what comes before it, up to two seconds, is played
- * first. */
+/* All --clip options together at this time. If springs swing, up to two seconds before it are played first. */
 int figure_play_options(figure *f, const option_list *clips, double time_s);
-/* What plays stands still from now on, while the stage's clock goes on: for fades of levels in one pose. */
+/* Freeze all clips while the stage's clock runs: for fades of levels in one pose. */
 void figure_pause(figure *f);
 
 /* Hold a float of that name, in all kinds that have it. The same of all floats; --weight NAME=VALUE. */
@@ -187,14 +186,14 @@ int figure_check_target(const pack_file *file, const char *name);
 
 int figure_pose(figure *f);
 
-/* Where a kind's eyes are; 0: nowhere. */
+/* Find a kind's eyes; 0: it has none. */
 int figure_find_eyes(const noh_kind_desc *kind, noh_kind_face *face, noh_error *error);
-/* The faces of kinds whose eyes can be found: a bit for each that has one. */
+/* A bit for each kind with a face, which needs eyes. */
 uint32_t figure_find_faces(const noh_kind_desc *kinds, uint32_t kind_count, noh_kind_face *faces);
 /* --feel EMOTION=AMOUNT, of all its faces. */
 int figure_feel(figure *f, const option_list *emotions);
-/* Time moves on, clips, faces, hair and what a body obeys, 60 steps a second; meanwhile the figure turns, in degrees a
- * second about y, to where it stands without. */
+/* Advance clips, faces, hair and modifiers, 60 steps a second, while the figure turns about y, degrees a second, ending
+ * where it stands without a turn. */
 int figure_live(figure *f, double seconds, double turn);
 
 /* The spots under a figure (--shadow blob): opened with its actors, closed; drawn, before the figure. */
@@ -205,8 +204,7 @@ void figure_draw_floor(const figure *f);
 
 /* --decal X,Y[,SIZE[,RRGGBB]] and --decal-kind rest|grown. marks: [NOH_DECALS_MAX], that desc has afterwards */
 int figure_read_marks(const option_list *texts, const char *kind, figure_mark *marks, figure_desc *desc);
-/* The marks of a figure: opened with it, closed, restored; struck as it stands, seen by a camera; drawn over what is
- * opaque. */
+/* The marks of a figure: opened, closed and restored with it; struck as seen by a camera; drawn over opaque meshes. */
 int figure_open_decals(figure *f);
 void figure_close_decals(figure *f);
 noh_result figure_restore_decals(figure *f, char *log, size_t log_bytes, noh_error *error);
@@ -215,7 +213,7 @@ int figure_draw_decals(figure *f);
 
 /* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
 int figure_add_hair(figure *f);
-/* Beside the stage; 0 without hair. */
+/* In addition to the stage; 0 without hair. */
 void figure_hair_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 int figure_open_hair(figure *f);
 int figure_update_hair(figure *f);
@@ -226,14 +224,14 @@ int figure_read_push(const char *text, float impulse[3]);
 int figure_can_fall(const noh_pack *pack, noh_error *why);
 /* Called while its kinds are made. */
 void figure_want_fall(figure *f);
-/* Time moves on: half a second in it is pushed at its chest and falls, and once it lies it gets up by its clips whose
- * names begin with get_up. */
+/* Advance: half a second in it is pushed at its chest and falls; once it lies still, it gets up by clips whose names
+ * begin with get_up. */
 int figure_fall(figure *f, const float impulse[3], double seconds);
 
 /* The world bounds of all meshes as posed, of their coarsest levels, whichever is shown: pictures of all levels can be
- * compared, also with those of a stripped pack. face: only of vertices that targets move. */
+ * compared, also with a stripped pack. face: only vertices that targets move. */
 bounds figure_bounds(const figure *f, int face);
-/* Where the first joint stands over the ground: what a camera follows. 0 without joints. */
+/* The first joint's place over the ground, which a camera follows. 0 without joints. */
 void figure_anchor(const figure *f, double anchor[3]);
 /* The joints of a kind: matrices[joint_count][12], by malloc; NULL: it has none. */
 float *figure_joints(const figure *f, uint32_t kind, noh_skeleton *skeleton);
@@ -244,17 +242,16 @@ noh_vertex *figure_deform(const figure *f, uint32_t kind, uint32_t index, uint32
 
 /* A camera as a stage takes it. height: of the picture, pixels */
 noh_stage_view figure_view(const noh_gl_camera *camera, uint32_t height);
-/* The views of a frame: the camera's, and that of its light's shadow map, by where it was posed last. Returns how many.
- */
+/* The views of a frame: the camera and the light's shadow map, by the last pose. Returns their number. */
 uint32_t figure_views(figure *f, const noh_gl_camera *camera, uint32_t height, noh_stage_view views[2]);
-/* A frame that these views see. */
+/* A frame with these views. */
 int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count);
 /* After a frame of these views: draw the shadow map, if there is one. */
 int figure_shade(figure *f);
 /* height: of the picture, pixels. Accumulates, and draws the shadow map: bind the framebuffer to draw into afterwards
  */
 int figure_look(figure *f, const noh_gl_camera *camera, uint32_t height);
-/* With what is behind it. */
+/* With the background. */
 int figure_draw(figure *f);
 
 /* "no clip named 'wlak' (did you mean 'walk'?)" */

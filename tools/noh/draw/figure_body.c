@@ -1,4 +1,4 @@
-/* figure_body.c: what a figure looks at and stands on. */
+/* figure_body.c: the gaze and the ground of a figure. */
 #include "figure_body.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@
 #define STEPS_FROM 0.6f
 #define STAIRS_HALF 0.9f
 #define LANDING 6.0f
-#define HIGHEST 5000.0f         /* metres: nothing of a ground is above */
+#define HIGHEST 5000.0f         /* metres, above all ground */
 #define SLOPE_RAD 0.3490658504f /* 20 degrees, downhill along +z */
 #define FLOATS 9u               /* of a corner: position, normal, colour */
 
@@ -53,7 +53,7 @@ static int parse_point(const char *text, float point[3])
 static int read_land(const char *path, figure_body *b)
 {
     if (!strchr(path, '.') && !strchr(path, '/')) {
-        return tool_usage("--ground wants stairs, slope or a file (.noh, .png, .glb), not '%s'", path);
+        return tool_usage("--ground must be stairs, slope or a file (.noh, .png, .glb), not '%s'", path);
     }
     return ground_file_open(&b->land, path);
 }
@@ -66,7 +66,7 @@ int figure_body_parse(const body_options *o, figure_body *b, int *wanted)
     b->name = o->ground;
     *wanted = b->looks || b->has_ground;
     if (o->look_at && parse_point(o->look_at, b->point)) {
-        return tool_usage("--look-at wants X,Y,Z in the pack's unit, each at most 1e6, not '%s'", o->look_at);
+        return tool_usage("--look-at must be X,Y,Z in the pack's unit, each at most 1e6, not '%s'", o->look_at);
     }
     return o->ground && strcmp(o->ground, "stairs") != 0 && strcmp(o->ground, "slope") != 0 ? read_land(o->ground, b)
                                                                                             : 0;
@@ -238,7 +238,7 @@ static float *put_plane(const figure_body *b, float fall, float *out)
     return out;
 }
 
-/* Half metres of terrain, as far as there is some. Their normal is that of the middle. */
+/* Half-metre squares of terrain, as far as it reaches. The normal is taken at the middle. */
 static float *put_land(const figure_body *b, float *out)
 {
     static const float corner[4][2] = { { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } };
@@ -258,7 +258,7 @@ static float *put_land(const figure_body *b, float *out)
     return out;
 }
 
-/* Of each step its front, its top and its sides. */
+/* The front, top and sides of each step. */
 static float *put_steps(const figure_body *b, float *out)
 {
     static const float up[3] = { 0.0f, 1.0f, 0.0f }, front[3] = { 0.0f, 0.0f, -1.0f }, left[3] = { 1.0f, 0.0f, 0.0f },

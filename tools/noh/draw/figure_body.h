@@ -1,5 +1,4 @@
-/* figure_body.h: figures that obey a world: they look at a point, and stand on stairs, a slope or terrain, which are
- * drawn. */
+/* figure_body.h: figures that look at a point, and stand on stairs, a slope or terrain, which are drawn. */
 #ifndef NOH_NOH_DRAW_FIGURE_BODY_H
 #define NOH_NOH_DRAW_FIGURE_BODY_H
 
@@ -35,19 +34,19 @@ typedef struct figure_body {
     int has_faces;
     noh_kind_feet feet[NOH_STAGE_KINDS_MAX];
     noh_stage_part parts[NOH_STAGE_KINDS_MAX][2];
-    /* what is drawn; zeros: nothing */
+    /* the drawn ground; zeros: none */
     gpu *g;
     GLuint program, vertex_array, buffer;
     uint32_t corners;
 } figure_body;
 
-/* What the options ask for. *wanted: whether they ask for something. Prints an error and returns an exit code; 0 on
+/* Parse the options. *wanted: whether any is given. Prints an error and returns an exit code; 0 on
  * success. */
 int figure_body_parse(const body_options *o, figure_body *b, int *wanted);
 void figure_body_free(figure_body *b); /* in any case */
 
-/* Give kinds their parts, each for its own skeleton. Prints an error and returns an exit code where none of them can do
- * what is asked for. */
+/* Give each kind the modifiers for its skeleton. Prints an error and returns an exit code if no kind supports the
+ * options. */
 int figure_body_add(figure_body *b, const char *file, noh_kind_desc *kinds, uint32_t kind_count);
 
 /* The height of the ground under a point; 0 without one. */

@@ -26,16 +26,20 @@ static int parse(const char *text, figure_mark *mark)
         mark->y <= 1.0 && mark->size >= 0.0 && mark->size <= 1e6) {
         return 0;
     }
-    return tool_usage("--decal wants X,Y[,SIZE[,RRGGBB]]: 0 to 1 from the upper left corner, a length, not '%s'", text);
+    return tool_usage(
+        "--decal must be X,Y[,SIZE[,RRGGBB]]: X and Y from 0 to 1 from the upper left corner, SIZE a length; not '%s'",
+        text);
 }
 
 int figure_read_marks(const option_list *texts, const char *kind, figure_mark *marks, figure_desc *desc)
 {
-    int status = texts->count > (int)NOH_DECALS_MAX ? tool_usage("more than %u times --decal", NOH_DECALS_MAX) : 0;
+    int status = texts->count > (int)NOH_DECALS_MAX
+                     ? tool_usage("--decal may be given at most %u times", NOH_DECALS_MAX)
+                     : 0;
     for (int i = 0; i < texts->count && !status; i++) status = parse(texts->items[i], &marks[i]);
     desc->grown = strcmp(kind, "grown") == 0;
     if (!status && !desc->grown && strcmp(kind, "rest") != 0) {
-        status = tool_usage("--decal-kind wants rest or grown, not '%s'", kind);
+        status = tool_usage("--decal-kind must be rest or grown, not '%s'", kind);
     }
     desc->marks = texts->count ? marks : NULL;
     desc->mark_count = (uint32_t)texts->count;
@@ -109,7 +113,7 @@ static int strike(figure *f, const figure_mark *mark, const noh_stage_view *view
     if (!noh_view_ray(view, (float)(mark->x * width - 0.5), (float)(mark->y * height - 0.5), width, height, origin,
                       direction) ||
         noh_stage_pick(f->stage, origin, direction, FAR_AWAY, &hit, NULL)) {
-        return tool_fail("--decal", "nothing is at %g,%g of the picture, as the figure is at rest", mark->x, mark->y);
+        return tool_fail("--decal", "--decal: the figure at rest is not at %g,%g in the picture", mark->x, mark->y);
     }
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         if (f->actors[k].id == hit.actor.id && noh_decals_strike(&f->rings[k], f->stage, &hit, &desc, NULL, &error)) {

@@ -1,4 +1,4 @@
-/* figure_face.c: faces of a figure that live: where the eyes are, what they feel, time. */
+/* figure_face.c: live faces of a figure: eyes, emotions, time. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +34,7 @@ int figure_feel(figure *f, const option_list *emotions)
         double amount = 1.0;
         const size_t length = equals ? (size_t)(equals - text) : strlen(text);
         if (length >= sizeof name || (equals && tool_number(equals + 1, &amount))) {
-            return tool_usage("--feel wants EMOTION=AMOUNT, not '%s'", text);
+            return tool_usage("--feel must be EMOTION=AMOUNT, not '%s'", text);
         }
         memcpy(name, text, length);
         name[length] = '\0';

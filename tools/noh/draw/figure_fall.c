@@ -19,9 +19,10 @@ int figure_read_push(const char *text, float impulse[3])
     char end;
     const int count = sscanf(text, "%f,%f,%f%c", &impulse[0], &impulse[1], &impulse[2], &end);
     for (int i = 0; i < 3 && count == 3; i++) {
-        if (!(impulse[i] >= -1e5f && impulse[i] <= 1e5f)) return tool_usage("--push: at most 100000 newton seconds");
+        if (!(impulse[i] >= -1e5f && impulse[i] <= 1e5f))
+            return tool_usage("--push must be at most 100000 newton seconds");
     }
-    return count == 3 ? 0 : tool_usage("--push wants X,Y,Z, newton seconds, not '%s'", text);
+    return count == 3 ? 0 : tool_usage("--push must be X,Y,Z in newton seconds, not '%s'", text);
 }
 
 int figure_can_fall(const noh_pack *pack, noh_error *why)
@@ -41,7 +42,7 @@ void figure_want_fall(figure *f)
     f->kinds[0].inertia = 1;
 }
 
-/* Without clips to get up by it stays where it lies. */
+/* Without get_up clips it stays down. */
 static int can_rise(const figure *f)
 {
     const char *name;

@@ -1,4 +1,4 @@
-/* figure_names.c: clips and floats of a figure by name; what is said where there is none. */
+/* figure_names.c: clips and floats of a figure by name; messages for unknown names. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ int figure_fail_unknown(const char *subject, const char *kind, const char *name,
     if (near) {
         return tool_fail(subject, "no %s named '%s' (did you mean '%s'?)", kind, name, near);
     }
-    return tool_fail(subject, "no %s named '%s' (it has %zu; `noh info` lists them)", kind, name, count);
+    return tool_fail(subject, "no %s named '%s' (the pack has %zu; `noh info` lists them)", kind, name, count);
 }
 
 /* ---- clips ---- */
@@ -51,7 +51,7 @@ int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file
     a->count = 0;
     desc->clips = file;
     if (paths->count > (int)FIGURE_ANIM_MAX) {
-        return tool_usage("more than %u times --anim", FIGURE_ANIM_MAX);
+        return tool_usage("--anim may be given at most %u times", FIGURE_ANIM_MAX);
     }
     for (int i = 0; i < paths->count; i++) {
         const int status = pack_file_open(&a->files[a->count], paths->items[i]);
@@ -106,8 +106,8 @@ static int fail_clip(const figure *f, const char *name)
             names[count++] = clip.name;
             if (strcmp(clip.name, name) != 0) continue;
             status = tool_fail(clips_of(f, n)->path,
-                               "clip '%s' moves another skeleton than that of %s: names or parents of joints differ",
-                               name, f->desc.file->path);
+                               "clip '%s' does not fit the skeleton of %s: names or parents of joints differ", name,
+                               f->desc.file->path);
         }
     }
     if (!status) {
@@ -250,7 +250,7 @@ static int hold_option(figure *f, const char *assignment)
     double value;
     if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof name ||
         tool_number(equals + 1, &value)) {
-        return tool_usage("--weight wants NAME=NUMBER, not '%s'", assignment);
+        return tool_usage("--weight must be NAME=NUMBER, not '%s'", assignment);
     }
     memcpy(name, assignment, (size_t)(equals - assignment));
     name[equals - assignment] = 0;

@@ -1,4 +1,4 @@
-/* figure_shape.c: what a figure looks like in its pose, by the CPU: levels, joints, vertices, bounds. */
+/* figure_shape.c: the shape of a figure in its pose, on the CPU: levels, joints, vertices, bounds. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

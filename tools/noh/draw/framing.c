@@ -38,7 +38,7 @@ static void direction(uint32_t n, float d[3])
     for (int c = 0; c < 3; c++) d[c] = x[c] / length;
 }
 
-/* Keep a vertex where it lies farther out than what a joint has. farthest[joint][direction]: vertex + 1 */
+/* Keep a vertex that lies farther out than a joint's present one. farthest[joint][direction]: vertex + 1 */
 static void keep_farthest(const noh_mesh *mesh, uint32_t *farthest, uint32_t vertex, uint32_t joint)
 {
     const float *p = mesh->positions + 3u * (size_t)vertex;

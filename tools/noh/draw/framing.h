@@ -1,8 +1,8 @@
-/* framing.h: where a clip takes a figure, so that a camera that follows it keeps it in the picture.
+/* framing.h: the space that a figure takes in a clip, so that a camera that follows it keeps it in the picture.
  *
  *   framing_open / framing_close
- *   framing_clip    the box that a clip fills around what the camera follows
- *   orbit_frame     the nearest distance from which an orbit sees a box, from where it looks
+ *   framing_clip    the box that a clip fills around the camera's target
+ *   orbit_frame     the nearest distance at which an orbit sees a box, from its direction
  *   orbit_sees      the share of a figure's vertices that a camera sees
  *
  * A figure is measured by outline points: of each joint, the vertices that it moves most and that lie farthest out in
@@ -18,7 +18,7 @@
 
 typedef struct framing framing;
 
-/* Of a figure's pack and clips, on a stage of its own without a driver. Prints an error and returns NULL. */
+/* For a figure's pack and clips, on its own stage without a driver. Prints an error and returns NULL. */
 framing *framing_open(const figure_desc *desc);
 void framing_close(framing *f);
 

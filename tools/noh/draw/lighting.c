@@ -30,8 +30,8 @@ static int choose(const char *option, const char *text, const char *const words[
     if (!text) {
         return 0;
     }
-    return count == 3 ? tool_usage("%s wants %s, %s or %s, not '%s'", option, words[0], words[1], words[2], text)
-                      : tool_usage("%s wants %s or %s, not '%s'", option, words[0], words[1], text);
+    return count == 3 ? tool_usage("%s must be %s, %s or %s, not '%s'", option, words[0], words[1], words[2], text)
+                      : tool_usage("%s must be %s or %s, not '%s'", option, words[0], words[1], text);
 }
 
 static int bake(lighting *l, noh_radiance radiance, const void *user)
@@ -60,7 +60,8 @@ static int read_light(lighting *l, const char *name)
         return bake(l, noh_reflection_of_environment, noh_environment_at(index));
     }
     if (!strchr(name, '.') && !strchr(name, '/')) {
-        return tool_usage("--light wants auto, none, white, studio, room, sky or a file (.hdr, .png), not '%s'", name);
+        return tool_usage("--light must be auto, none, white, studio, room, sky or a file (.hdr, .png), not '%s'",
+                          name);
     }
     status = light_file_open(&file, name);
     if (!status) {

@@ -31,7 +31,7 @@ typedef struct lighting {
     lighting_background background;
 } lighting;
 
-/* 1 where the options ask for light of an environment: not for "none". "auto" becomes the light that it stands for.
+/* 1 if the options select an environment, not "none". "auto" is replaced by its light.
  * shows_surfaces: 0: bones, or values as colours */
 int lighting_wanted(light_options *o, int shows_surfaces);
 /* Read or bake the environment. Prints an error and returns an exit code; 0 on success. */
@@ -40,7 +40,7 @@ void lighting_close(lighting *l);
 /* Turn it. */
 void lighting_turn(lighting *l, double degrees);
 
-/* The view that the shadow map is drawn by, for what is in the box; told to shaders, too. */
+/* The view of the shadow map, for the contents of the box; also passed to shaders. */
 noh_stage_view lighting_shadow_view(lighting *l, const bounds *box);
 
 #endif

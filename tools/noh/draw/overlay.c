@@ -22,7 +22,7 @@ typedef struct overlay_vertex {
     uint8_t color[4]; /* linear */
 } overlay_vertex;
 
-/* What is drawn of one mesh. */
+/* The drawing of one mesh. */
 typedef struct drawing {
     overlay_vertex *vertices;
     uint32_t *indices;
@@ -219,7 +219,7 @@ static const noh_skin *skin_of(const noh_mesh *mesh, noh_skin *skin)
     return noh_pack_skin_at(mesh->pack, mesh->header->skin, skin, NULL) == NOH_OK ? skin : NULL;
 }
 
-/* The largest side of what a drawing's vertices fill. */
+/* The largest side of the box around a drawing's vertices. */
 static float size_of(const drawing *d)
 {
     float low[3], high[3], most = 0.0f;

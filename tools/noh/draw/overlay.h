@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 typedef enum overlay_kind {
-    OVERLAY_WIREFRAME, /* the edges of what is shown */
+    OVERLAY_WIREFRAME, /* the edges of the shown level */
     OVERLAY_NORMALS,   /* a line for the normal of each vertex */
     OVERLAY_JOINTS,    /* surfaces: the colours of the joints that move a vertex, by weight. Rigid: grey */
     OVERLAY_WEIGHTS    /* surfaces: the weight of one joint, from dark blue over green and yellow to red */
@@ -35,7 +35,7 @@ void overlay_close(overlay *o);
 /* joint  of OVERLAY_WEIGHTS, of the first kind; NOH_NONE: no joint */
 int overlay_draw(overlay *o, const figure *f, overlay_kind kind, uint32_t joint, const noh_gl_camera *camera);
 
-/* name  NULL: overlay_main_joint. Prints an error where there is no such joint, or no skeleton. */
+/* name  NULL: overlay_main_joint. Prints an error if the joint or the skeleton is missing. */
 int overlay_joint(const figure *f, const char *name, uint32_t *joint);
 /* NOH_NONE: nothing is skinned. */
 uint32_t overlay_main_joint(const figure *f);

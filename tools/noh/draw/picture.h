@@ -29,10 +29,10 @@ int picture_shows_bones(const pack_file *file, int asked_for);
  * success. */
 int picture_open(picture *p, gpu *g, const figure_desc *desc, int shows_bones, uint32_t width, uint32_t height);
 void picture_close(picture *p);
-/* What --debug shows beside the views of figure_desc, once it is open. joint: as overlay_joint */
+/* The --debug views that figure_desc does not cover, once it is open. joint: as overlay_joint */
 int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint);
 
-/* The world bounds of what is drawn, as posed. */
+/* The world bounds of the picture's contents, as posed. */
 bounds picture_bounds(const picture *p, int face);
 
 /* Draw the figure into the canvas, as it is. */

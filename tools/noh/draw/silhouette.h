@@ -1,5 +1,5 @@
-/* silhouette.h: what a figure covers as a camera sees it: how much of that is inside the picture. It is what the
- * triangles of the posed meshes cover, on a raster on the CPU that is five pictures wide and high.
+/* silhouette.h: the silhouette of a figure in a camera, and the share of it inside the picture. The triangles of the
+ * posed meshes are rasterised on the CPU, in a raster five pictures wide and high.
  *
  *   silhouette_measure */
 #ifndef NOH_NOH_DRAW_SILHOUETTE_H
@@ -9,8 +9,8 @@
 #include "noh/low_gl.h"
 
 typedef struct silhouette {
-    double inside; /* 0..1, of what is covered: the share in the picture; 0 where some is behind the camera */
-    double height; /* of what is covered, in heights of the picture */
+    double inside; /* 0..1: the share of the silhouette in the picture; 0 if part of it is behind the camera */
+    double height; /* of the silhouette, in heights of the picture */
 } silhouette;
 
 /* level: an LOD level, or NOH_LOD_LEVELS_MAX: the coarsest. Prints an error and returns an exit code. */

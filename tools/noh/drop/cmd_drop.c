@@ -1,4 +1,4 @@
-/* cmd_drop.c: ragdolls of a character, dropped: how well they fall, where to, and what it takes. */
+/* cmd_drop.c: drops ragdolls of a character and measures how they fall, where they end and their cost. */
 #include <stdio.h>
 #include <string.h>
 
@@ -87,7 +87,7 @@ static int print_text(const drop_args *a, const drop_scene *s)
 {
     printf("%s: %u dolls of %u bodies, %.3g s in %.0f substeps a frame\n", a->pack, s->dolls, s->rig.body_count,
            (double)s->steps / 60.0, a->substeps);
-    printf("  limits passed by at most %.1f degrees, the floor by %.1f mm; joints %.2f mm apart (mean of the worst)\n",
+    printf("  largest excess: joint limits %.1f degrees, floor %.1f mm; joints %.2f mm apart (mean of the worst)\n",
            (double)s->worst.limit * 57.29577951, (double)s->worst.penetration * 1e3,
            (double)s->worst.separation_mean * 1e3);
     printf("  asleep: %u of %u, the last after %.2f s; %zu bytes a doll; %.0f ns a body and step; hash %08x\n",
@@ -120,13 +120,13 @@ static int is_whole(double value, double low, double high)
 static int check_args(const drop_args *a)
 {
     if (!is_whole(a->dolls, 1.0, NOH_RAGDOLLS_MAX)) {
-        return tool_usage("--dolls wants a whole number from 1 to %u", NOH_RAGDOLLS_MAX);
+        return tool_usage("--dolls must be a whole number from 1 to %u", NOH_RAGDOLLS_MAX);
     }
     if (!is_whole(a->substeps, 5.0, NOH_RAGDOLL_SUBSTEPS_MAX)) {
-        return tool_usage("--substeps wants a whole number from 5 to %u", NOH_RAGDOLL_SUBSTEPS_MAX);
+        return tool_usage("--substeps must be a whole number from 5 to %u", NOH_RAGDOLL_SUBSTEPS_MAX);
     }
-    if (!(a->seconds > 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds wants a number up to 3600");
-    return is_whole(a->seed, 0.0, 4294967295.0) ? 0 : tool_usage("--seed wants a whole number below 2^32");
+    if (!(a->seconds > 0.0 && a->seconds <= 3600.0)) return tool_usage("--seconds must be a number up to 3600");
+    return is_whole(a->seed, 0.0, 4294967295.0) ? 0 : tool_usage("--seed must be a whole number below 2^32");
 }
 
 static int run(void *args)
@@ -154,40 +154,40 @@ static const option options[] = {
       .at = offsetof(drop_args, dolls),
       .value = "N",
       .initial = "16",
-      .what = "how many fall, 1 to 1024; they do not meet each other",
+      .what = "number of ragdolls, 1 to 1024; they do not collide with each other",
       .example = "4" },
     { .name = "--seconds",
       .kind = OPTION_NUMBER,
       .at = offsetof(drop_args, seconds),
       .value = "S",
       .initial = "10",
-      .what = "how long",
+      .what = "simulated time, seconds",
       .example = "3" },
     { .name = "--substeps",
       .kind = OPTION_NUMBER,
       .at = offsetof(drop_args, substeps),
       .value = "N",
       .initial = "10",
-      .what = "of each 1/60 s, 5 to 20: more keep joints tighter",
+      .what = "substeps per 1/60 s, 5 to 20: more keep joints tighter",
       .example = "20" },
     { .name = "--seed",
       .kind = OPTION_NUMBER,
       .at = offsetof(drop_args, seed),
       .value = "N",
       .initial = "1",
-      .what = "of how they are turned and thrown",
+      .what = "seed of the random turns and throws",
       .example = "7" },
     { .name = "--dump",
       .kind = OPTION_OUTPUT,
       .at = offsetof(drop_args, dump),
       .value = "OUT.csv",
-      .what = "where every body is in every frame: frame,doll,body,x,y,z,qx,qy,qz,qw",
+      .what = "the pose of every body in every frame: frame,doll,body,x,y,z,qx,qy,qz,qw",
       .example = "fall.csv" },
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(drop_args, output),
       .value = "OUT.png",
-      .what = "a strip of the fall, bodies as capsules",
+      .what = "a picture strip of the fall, with bodies as capsules",
       .example = "fall.png" },
     OPTION_JSON(drop_args, as_json),
 };
@@ -195,9 +195,9 @@ static const option options[] = {
 const verb verb_drop = {
     .name = "lab drop",
     .files = "PACK",
-    .what = "drop ragdolls of a character, and measure how they fall",
+    .what = "drop ragdolls of a character and measure how they fall",
     .more =
-        "Bodies come from the names of joints, their capsules from the skin. Each doll is turned at random, 1.5 m up, at up to 3 m/s sideways, and falls onto a floor with a friction of 0.6. Printed are the worst angle past a joint's limits, the deepest point in the floor, the mean distance of the worst joint's anchors, when the last doll fell asleep, and the CPU time of a body in 1/60 s. The hash is of where all of them end: the same on every processor.",
+        "Bodies follow from joint names, and their capsules from the skin. Each ragdoll starts 1.5 m up, turned at random, with up to 3 m/s sideways, and falls onto a floor with a friction of 0.6. Prints the largest angle past a joint's limits, the largest depth below the floor, the mean distance of the worst joint's anchors, the time at which the last ragdoll fell asleep, and the CPU time per body in 1/60 s. The hash covers all final poses, and is the same on every processor.",
     .example = "body.noh\nbody.noh --dolls 4 --seconds 3 -o fall.png\nbody.noh --substeps 20 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

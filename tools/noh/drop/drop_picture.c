@@ -35,7 +35,7 @@ void drop_picture_close(drop_picture *p)
     p->rgba = NULL;
 }
 
-/* ---- what is drawn ---- */
+/* ---- drawing ---- */
 
 static float far_from(const float a[3], const float b[3])
 {

@@ -41,7 +41,7 @@ static int make_rig(const pack_file *file, noh_ragdoll_rig *rig)
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t count;
     if (noh_pack_skeleton_at(&file->pack, 0, &source.joints, &header, &error)) {
-        return tool_fail(file->path, "the pack has no skeleton: nothing of it can fall");
+        return tool_fail(file->path, "the pack has no skeleton, and so no ragdoll");
     }
     source.metres = header->unit_cm / 100.0f;
     if (noh_ragdoll_find_rows(&source, rows, &count, &error) ||

@@ -135,7 +135,7 @@ static int dump_meshes(byte_buffer *out, const figure *f, readback *r)
     return status;
 }
 
-/* What no view sees is not handed to the GPU. */
+/* Actors that no view sees are not sent to the GPU. */
 static int look_at_all(figure *f)
 {
     const bounds box = figure_bounds(f, 0);
@@ -216,7 +216,7 @@ static int fail_graph(const pack_file *file, const char *name)
     for (; count < file->pack.graph_count && count < sizeof names / sizeof names[0]; count++) {
         names[count] = noh_pack_chunk_name(&file->pack, file->pack.first_graph + (uint32_t)count);
     }
-    if (!count) return tool_fail(file->path, "holds no animation graph");
+    if (!count) return tool_fail(file->path, "has no animation graph");
     near = nearest_name(name, names, count);
     return near ? tool_fail(file->path, "no graph '%s'; did you mean '%s'?", name, near)
                 : tool_fail(file->path, "no graph '%s'; it has %zu", name, count);
@@ -270,7 +270,7 @@ static const option options[] = {
       .at = offsetof(dump_args, output),
       .required = 1,
       .value = "OUT.obj",
-      .what = "the mesh: positions in world space, linear vertex colours; or the text of --graph",
+      .what = "the mesh, with positions in world space and linear vertex colours; or the text of --graph",
       .example = "face.obj" },
     { .name = "--graph",
       .kind = OPTION_TEXT,
@@ -293,9 +293,9 @@ static const option options[] = {
 const verb verb_dump = {
     .name = "dump",
     .files = "PACK",
-    .what = "write the deformed mesh, as drawn, to an OBJ file; or an animation graph as text",
+    .what = "write the deformed mesh, as drawn, as an OBJ file, or an animation graph as text",
     .more =
-        "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With any other path the vertices are those of the vertex shader.",
+        "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With any other path the vertices come from the vertex shader.",
     .example =
         "face.noh -o face.obj --weight smile=1\nbody.noh -o walk.obj --clip walk --time 0.5 --path mrt\nbody.noh -o hero.graph --graph hero",
     .options = options,

@@ -1,4 +1,4 @@
-/* cmd_face.c: what a pack's targets can show: each channel, the recipe that it takes, and what falls back. */
+/* cmd_face.c: the face channels that a pack's targets can show, with their recipes and fallbacks. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,7 +160,7 @@ static void print_mesh(const face_report *r)
     print_correctives(r);
     print_rules(r);
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
-        if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets of no channel: ", r->names[t]);
+        if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets without a channel: ", r->names[t]);
     }
     if (unused) printf("\n");
 }
@@ -310,9 +310,9 @@ static const option options[] = { OPTION_JSON(face_args, as_json) };
 const verb verb_face = {
     .name = "face",
     .files = "PACK",
-    .what = "what a face's targets show: blinks, looks, emotions, mouth shapes, and the recipe of each",
+    .what = "show which targets of a face make blinks, gaze, emotions and mouth shapes, with the recipe of each",
     .more =
-        "Each channel takes the first recipe that fits the targets' names: the pack's own (noh build --recipe), then those for ARKit's names, VRM's and facial units. A mouth shape without any takes that of the nearest other one.",
+        "Each channel uses the first recipe that fits the targets' names: the pack's own (noh build --recipe), then the built-in recipes for ARKit, VRM and facial units. A mouth shape without a recipe uses the nearest other shape.",
     .example = "head.noh\nhead.noh --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

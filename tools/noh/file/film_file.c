@@ -64,7 +64,7 @@ static void run_ffmpeg(const film *f, int from, const char *const *words)
 static int start_ffmpeg(film *f, const char *const *words)
 {
     int ends[2];
-    if (pipe(ends)) return tool_fail(f->path, "no pipe to ffmpeg: %s", strerror(errno));
+    if (pipe(ends)) return tool_fail(f->path, "cannot open a pipe to ffmpeg: %s", strerror(errno));
     (void)fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
     fflush(NULL);
@@ -73,7 +73,7 @@ static int start_ffmpeg(film *f, const char *const *words)
         close(ends[0]);
         close(ends[1]);
         f->process = 0;
-        return tool_fail(f->path, "no process for ffmpeg: %s", strerror(errno));
+        return tool_fail(f->path, "cannot start ffmpeg: %s", strerror(errno));
     }
     if (!f->process) run_ffmpeg(f, ends[0], words);
     close(ends[0]);
@@ -90,11 +90,12 @@ static int wait_for(film *f)
     f->process = 0;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return 0;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-        return tool_fail(f->path,
-                         "ffmpeg is not installed, which makes %s (apt-get install ffmpeg); a name that ends in "
-                         ".png gives numbered pictures without it",
-                         ending_of(f->path));
-    return tool_fail(f->path, "ffmpeg could not make it; its reason is above");
+        return tool_fail(
+            f->path,
+            "%s files need ffmpeg, which is not installed (apt-get install ffmpeg); a name that ends in .png gives "
+            "numbered pictures without it",
+            ending_of(f->path));
+    return tool_fail(f->path, "ffmpeg failed; its message is above");
 }
 
 /* ---- a film ---- */
@@ -112,7 +113,9 @@ int film_open(film *f, const char *path, uint32_t width, uint32_t height, uint32
     if (words) return start_ffmpeg(f, words);
     return strcmp(ending_of(path), ".png") == 0
                ? 0
-               : tool_fail(path, "a film ends in .gif, .mp4, .webm or .apng; numbered pictures end in .png");
+               : tool_fail(
+                     path,
+                     "the name of a film must end in .gif, .mp4, .webm or .apng, or in .png for numbered pictures");
 }
 
 /* "walk.png" to "walk_0007.png". */
@@ -126,7 +129,7 @@ static int write_all(film *f, const uint8_t *bytes, size_t count)
 {
     struct sigaction ignore, before;
     memset(&ignore, 0, sizeof ignore);
-    ignore.sa_handler = SIG_IGN; /* a broken pipe is told by wait_for */
+    ignore.sa_handler = SIG_IGN; /* wait_for reports a broken pipe */
     sigaction(SIGPIPE, &ignore, &before);
     while (count) {
         const ssize_t written = write(f->pipe, bytes, count);

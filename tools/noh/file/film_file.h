@@ -1,9 +1,9 @@
-/* film_file.h: pictures one after another, into a film or into numbered .png files.
+/* film_file.h: writes a sequence of pictures as a film or as numbered .png files.
  *
  *   film_open / film_add / film_close
  *
- * By the ending of its name: .gif, .mp4, .webm and .apng are made by ffmpeg, a program that is started beside this one
- * and fed with pictures; .png are numbered files, for which nothing else is needed: "walk.png" becomes walk_0000.png,
+ * By the ending of its name: .gif, .mp4, .webm and .apng are made by ffmpeg, a separate program
+ * that is fed with pictures; .png gives numbered files and needs no program: "walk.png" becomes walk_0000.png,
  * walk_0001.png and so on. A film that fails half-way is not left behind. */
 #ifndef NOH_NOH_FILE_FILM_FILE_H
 #define NOH_NOH_FILE_FILM_FILE_H

@@ -37,7 +37,7 @@ static int decode_radiance(light_file *file, const char *path, const char *bytes
     file->rgb = stbi_loadf_from_memory(data, (int)count, &width, &height, &channels, 3);
     file->width = (uint32_t)width;
     file->height = (uint32_t)height;
-    return file->rgb ? 0 : tool_fail(path, "the Radiance picture is damaged, or memory is out");
+    return file->rgb ? 0 : tool_fail(path, "the Radiance picture is damaged, or there is not enough memory");
 }
 
 static float linear_of(uint8_t byte)
@@ -51,7 +51,7 @@ static int decode_picture(light_file *file, const char *path)
     model_error error;
     image_file image;
     if (image_read(path, &image, &error)) {
-        return tool_fail(path, "neither a Radiance picture nor a PNG or JPEG that can be read: %s", error.what);
+        return tool_fail(path, "not a readable Radiance, PNG or JPEG picture: %s", error.what);
     }
     file->width = image.width;
     file->height = image.height;

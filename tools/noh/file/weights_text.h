@@ -1,11 +1,11 @@
-/* weights_text.h: weights of targets as text, as they are copied, pasted and kept as presets:
+/* weights_text.h: weights of targets as text, to copy, paste and keep as presets:
  *
  *   [grin]
  *   smile = 0.8
  *   cheekPuff = 0.2
  *
- * What is pasted may come from elsewhere: "--weight smile=0.8 --weight cheekPuff=0.2", "smile: 0.8, cheekPuff: 0.2" and
- * JSON's {"smile": 0.8, "cheekPuff": 0.2} are read, too. # begins a comment. */
+ * Pasted text may come from other programs: "--weight smile=0.8 --weight cheekPuff=0.2", "smile: 0.8, cheekPuff: 0.2"
+ * and JSON's {"smile": 0.8, "cheekPuff": 0.2} are read, too. # begins a comment. */
 #ifndef NOH_NOH_FILE_WEIGHTS_TEXT_H
 #define NOH_NOH_FILE_WEIGHTS_TEXT_H
 
@@ -34,8 +34,8 @@ typedef struct weights_reader {
 /* The next item of a text. */
 weights_kind weights_next(weights_reader *reader, weights_item *item);
 
-/* A line as it is read, "name = value\n": the shortest digits that give the same float. Returns its length without the
- * zero; where it does not fit, nothing is written and the length is 0. */
+/* A line "name = value\n" with the shortest digits that give the same float. Returns its length without the zero; if it
+ * does not fit, nothing is written and the length is 0. */
 size_t weights_line(char *text, size_t bytes, const char *name, float value);
 
 #endif

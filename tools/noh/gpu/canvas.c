@@ -53,7 +53,7 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height)
     gl->BindRenderbuffer(GL_RENDERBUFFER, 0);
     if (noh_gl_error_take(gl) != GL_NO_ERROR || status != GL_FRAMEBUFFER_COMPLETE) {
         canvas_close(c);
-        return tool_fail("canvas", "the driver refuses a target of %ux%u pixels", width, height);
+        return tool_fail("canvas", "the driver cannot create a target of %ux%u pixels", width, height);
     }
     return 0;
 }

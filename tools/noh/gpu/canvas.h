@@ -1,4 +1,4 @@
-/* canvas.h: the target that pictures are drawn into. */
+/* canvas.h: the render target of pictures. */
 #ifndef NOH_NOH_GPU_CANVAS_H
 #define NOH_NOH_GPU_CANVAS_H
 
@@ -22,7 +22,7 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height);
 void canvas_close(canvas *c);
 /* Bind, set the viewport, clear to the background. */
 void canvas_begin(canvas *c);
-/* What is drawn from now on hides what was drawn before. */
+/* Clear the depth: later draws cover earlier ones. */
 void canvas_clear_depth(const canvas *c);
 /* Resolve into the texture. Leaves framebuffer 0 bound. */
 void canvas_resolve(canvas *c);

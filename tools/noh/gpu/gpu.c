@@ -65,7 +65,7 @@ int gpu_open_drawing(gpu *g, const char *driver)
 {
     int status = gpu_open(g, driver);
     if (!status && !gpu_gives_vertices(&g->gl)) {
-        status = tool_fail(g->platform->name, "this driver draws nothing that could be read back");
+        status = tool_fail(g->platform->name, "this driver's pictures cannot be read back");
         gpu_close(g);
     }
     return status;

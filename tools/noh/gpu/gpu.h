@@ -11,15 +11,15 @@ typedef struct gpu {
     noh_platform_context *context;
     noh_gl_api gl;
     noh_gl_caps caps;
-    noh_gl_ledger ledger; /* what the library's objects use */
+    noh_gl_ledger ledger; /* the memory of the library's objects */
 } gpu;
 
 /* Make a context of that driver ("egl" when NULL) and probe it. Prints an error and returns an exit code; 0 on success.
  */
 int gpu_open(gpu *g, const char *driver);
-/* For what reads pictures or vertices back: refuse a driver that draws nothing ("null") too. */
+/* For verbs that read pictures or vertices back: also refuses a driver that draws nothing ("null"). */
 int gpu_open_drawing(gpu *g, const char *driver);
-/* 1 where the driver gives vertices back, by transform feedback. */
+/* 1 if the driver can read vertices back, by transform feedback. */
 int gpu_gives_vertices(const noh_gl_api *gl);
 void gpu_close(gpu *g);
 

@@ -14,9 +14,9 @@ int parse_path(const char *text, noh_morph_path *path)
             return 0;
         }
     }
-    return text
-               ? tool_usage("--path wants auto, blend, layered, mrt, per-layer, gather, cpu or streams, not '%s'", text)
-               : 0;
+    return text ? tool_usage("--path must be auto, blend, layered, mrt, per-layer, gather, cpu or streams, not '%s'",
+                             text)
+                : 0;
 }
 
 int parse_accumulate(const char *text, noh_accumulate *accumulate)
@@ -28,13 +28,13 @@ int parse_accumulate(const char *text, noh_accumulate *accumulate)
             return 0;
         }
     }
-    return text ? tool_usage("--accumulate wants auto, f32 or f16, not '%s'", text) : 0;
+    return text ? tool_usage("--accumulate must be auto, f32 or f16, not '%s'", text) : 0;
 }
 
 int parse_instances(double value, uint32_t *instances)
 {
     if (value < 1.0 || value > NOH_MORPH_INSTANCES_MAX || value != (double)(uint32_t)value) {
-        return tool_usage("--instances wants a whole number from 1 to %u", NOH_MORPH_INSTANCES_MAX);
+        return tool_usage("--instances must be a whole number from 1 to %u", NOH_MORPH_INSTANCES_MAX);
     }
     *instances = (uint32_t)value;
     return 0;

@@ -1,4 +1,4 @@
-/* gpu_args.h: values of options about the GPU. */
+/* gpu_args.h: the values of GPU options. */
 #ifndef NOH_NOH_GPU_GPU_ARGS_H
 #define NOH_NOH_GPU_GPU_ARGS_H
 

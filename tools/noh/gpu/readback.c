@@ -128,7 +128,7 @@ static int finish(readback *r, bit_target *t, int status)
     gl->UseProgram(0);
     target_close(gl, t);
     if (status) {
-        return tool_fail("readback", "out of memory, or the driver refuses an RGBA32UI target");
+        return tool_fail("readback", "out of memory, or the driver cannot create an RGBA32UI target");
     }
     return error ? tool_fail("readback", "GL error 0x%x", error) : 0;
 }
@@ -170,7 +170,7 @@ int readback_buffer(readback *r, GLuint buffer, size_t offset, size_t bytes, voi
     mapped = gl->MapBufferRange(GL_COPY_READ_BUFFER, (GLintptr)offset, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
     if (mapped) memcpy(out, mapped, bytes);
     if (!mapped || !gl->UnmapBuffer(GL_COPY_READ_BUFFER)) {
-        return tool_fail("readback", "the driver does not give a buffer back (GL error 0x%x)", gl->GetError());
+        return tool_fail("readback", "the driver cannot read a buffer back (GL error 0x%x)", gl->GetError());
     }
     gl->BindBuffer(GL_COPY_READ_BUFFER, 0);
     return 0;

@@ -115,8 +115,7 @@ int readback_skinned(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_bi
     tear_down(r->g);
     gl->DeleteBuffers(1, &buffer);
     error = gl->GetError();
-    return lost || error ? tool_fail("readback", "the driver does not give its vertices back (GL error 0x%x)", error)
-                         : 0;
+    return lost || error ? tool_fail("readback", "the driver cannot read vertices back (GL error 0x%x)", error) : 0;
 }
 
 int readback_vertices_uv(readback *r, const noh_gl_mesh *mesh, const noh_gl_morph_binding *binding, float *positions,

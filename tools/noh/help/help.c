@@ -80,7 +80,7 @@ void help_verb(FILE *out, const verb *v)
     for (int i = 0; i < v->option_count; i++) {
         print_option(out, &v->options[i]);
     }
-    fprintf(out, "  %-22s%s\n", "-h, --help", "this text");
+    fprintf(out, "  %-22s%s\n", "-h, --help", "show this help");
     if (v->more) {
         fputc('\n', out);
         print_paragraphs(out, v->more);
@@ -105,7 +105,7 @@ void help_lab(FILE *out)
 {
     fputs("noh lab: measurements for the library's developers\n\n", out);
     print_verbs(out, 1);
-    fputs("\nnoh lab VERB --help   a verb's options, with examples (also: noh help lab VERB)\n", out);
+    fputs("\nnoh lab VERB --help   options and examples of a verb (also: noh help lab VERB)\n", out);
 }
 
 void help_print(FILE *out)
@@ -113,11 +113,11 @@ void help_print(FILE *out)
     fputs("noh " NOH_VERSION ": characters in fixed memory\n\n", out);
     print_verbs(out, 0);
     fputs("  noh lab     measurements for the library's developers (noh lab --help)\n"
-          "\nnoh VERB --help     a verb's options, with examples (also: noh help VERB)\n"
-          "noh help FORMATS    the formats of files and options\n"
-          "noh help --man      all of it as a man page; --bash: completion for bash\n"
+          "\nnoh VERB --help     options and examples of a verb (also: noh help VERB)\n"
+          "noh help FORMATS    formats of files and options\n"
+          "noh help --man      the whole help as a man page; --bash: completion for bash\n"
           "noh --version\n\n"
-          "exit code: 0, 1 (the input or the check failed), 2 (usage)\n",
+          "exit code: 0 success, 1 the input or the check failed, 2 the command line is wrong\n",
           out);
 }
 

@@ -1,4 +1,4 @@
-/* cmd_info.c: what is in a pack. */
+/* cmd_info.c: lists the contents of a pack. */
 #include <stdio.h>
 #include <string.h>
 
@@ -70,7 +70,7 @@ static void print_levels(const noh_mesh *m)
                millimetres(m->header, m->header->influence_errors[2]));
     }
     if (m->header->level_first) {
-        printf("  finer levels than %u were left out; source %08x\n", m->header->level_first, noh_mesh_source(m));
+        printf("  levels finer than %u were left out; source %08x\n", m->header->level_first, noh_mesh_source(m));
     }
     for (uint32_t k = m->header->level_first; k < m->header->level_count && m->header->level_count > 1; k++) {
         const noh_mesh level = noh_mesh_at_lod(m, k);
@@ -134,7 +134,7 @@ static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)
         }
     }
     if (h->flags & NOH_MESH_UV_TARGETS) {
-        printf("  texture coordinates of %u vertices move, each by a texel of its own\n", count_sliding(m));
+        printf("  texture coordinates of %u vertices move\n", count_sliding(m));
     }
     info_print_transfer(m);
     print_levels(m);
@@ -425,7 +425,7 @@ const verb verb_info = {
     .name = "info",
     .files = "PACK",
     .what =
-        "list what is in a pack: counts, names, joints, callback keys and markers with their times, bytes, errors certified at build",
+        "list the contents of a pack: counts, names, joints, callback keys and markers with their times, bytes, and errors certified at build",
     .example = "face.noh\nface.noh --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -22,9 +22,9 @@ static void print_param(const noh_pack_graph *g, const noh_pack_graph_param *p)
         for (uint32_t i = 0; i < p->value_count; i++) {
             printf("%s%s", i ? ", " : "", text_of(g, g->names[p->first_value + i].name));
         }
-        printf("; at first %s\n", text_of(g, g->names[p->first_value + (uint32_t)p->initial].name));
+        printf("; initially %s\n", text_of(g, g->names[p->first_value + (uint32_t)p->initial].name));
     } else {
-        printf("%.6g to %.6g%s; at first %.6g\n", (double)p->minimum, (double)p->maximum,
+        printf("%.6g to %.6g%s; initially %.6g\n", (double)p->minimum, (double)p->maximum,
                p->kind == NOH_PARAM_INTEGER ? ", whole" : "", (double)p->initial);
     }
 }

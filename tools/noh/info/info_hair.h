@@ -1,4 +1,4 @@
-/* info_hair.h: what noh info says of a pack's haircut. */
+/* info_hair.h: `noh info` for a pack's haircut. */
 #ifndef NOH_NOH_INFO_INFO_HAIR_H
 #define NOH_NOH_INFO_INFO_HAIR_H
 

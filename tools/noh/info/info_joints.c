@@ -43,7 +43,7 @@ static uint32_t depth_of(const noh_skeleton *s, uint32_t joint)
     return depth;
 }
 
-/* Joints lie in an order of their own (coarser levels are the first so many), so each line says the parent. */
+/* Joints have an order of their own (coarser levels use the first ones), so each line names the parent. */
 void info_print_joints(const noh_pack *pack, uint32_t skeleton)
 {
     noh_skeleton s;

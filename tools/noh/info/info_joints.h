@@ -9,7 +9,7 @@
 /* Print the end of a skeleton's line, and the lines below a clip's; or add members to the open object. */
 void info_print_levels(const noh_pack *pack, uint32_t skeleton);
 void info_json_levels(json *j, const noh_pack *pack, uint32_t skeleton);
-/* What of a skeleton swings: lines, or a member of the open object. */
+/* The springs of a skeleton: lines, or a member of the open object. */
 void info_print_springs(const noh_pack *pack, uint32_t skeleton);
 void info_json_springs(json *j, const noh_pack *pack, uint32_t skeleton);
 /* Joints as a tree, or with their parents' names (null: a root). */

@@ -65,7 +65,8 @@ void info_print_materials(const noh_pack *pack)
 }
 
 /* A pixel reads the base colour, a white texel where there is none, and a map for each feature; weights of wrinkles are
- * read at vertices, a mask of their regions at pixels. Lit, it reads the environment and up to four texels of the shadow map, too. */
+ * read at vertices, a mask of their regions at pixels. Lit, it reads the environment and up to four texels of the
+ * shadow map, too. */
 typedef struct material_cost {
     uint32_t textures, fetches, lit;
     uint64_t bytes;
@@ -131,7 +132,7 @@ void info_print_textures(const noh_pack *pack)
             const double db = texture_quality_db(h);
             printf(" %.1f dB%s", db, db < TEXTURE_QUALITY_DB ? " (below 38: --textures raw)" : "");
         }
-        if (h->trim) printf(", of %u x %u what triangles read", h->whole_width, h->whole_height);
+        if (h->trim) printf(", trimmed from %u x %u", h->whole_width, h->whole_height);
         printf(", %llu bytes on the GPU", (unsigned long long)noh_gl_picture_bytes(&t, 1));
         if (h->format) printf(", %llu without ETC2", (unsigned long long)noh_gl_picture_bytes(&t, 0));
         printf("\n");

@@ -1,4 +1,4 @@
-/* info_terrain.h: what `noh info` says of a pack's terrain. */
+/* info_terrain.h: `noh info` for a pack's terrain. */
 #ifndef NOH_NOH_INFO_INFO_TERRAIN_H
 #define NOH_NOH_INFO_INFO_TERRAIN_H
 

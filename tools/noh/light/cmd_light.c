@@ -1,4 +1,4 @@
-/* cmd_light.c: how near a pack's transfers come to brute force. */
+/* cmd_light.c: compares a pack's precomputed light transfer with brute force. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,7 +138,7 @@ static int measure(const light_args *a, const pack_file *file)
     light_measure m;
     int status;
     if (!file->pack.transfer_count) {
-        return tool_fail(a->pack, "the pack has no transfers: build it with --transfer 4 or 6");
+        return tool_fail(a->pack, "the pack has no light transfer: build it with --transfer 4 or 6");
     }
     status = check_weights(a, file);
     if (status) {
@@ -159,7 +159,7 @@ static int run(void *args)
     pack_file file;
     int status;
     if (!(a->rays >= RAYS_MIN && a->rays <= RAYS_MAX) || a->rays != (double)(uint32_t)a->rays) {
-        return tool_usage("--rays wants a whole number from %.0f to %.0f", RAYS_MIN, RAYS_MAX);
+        return tool_usage("--rays must be a whole number from %.0f to %.0f", RAYS_MIN, RAYS_MAX);
     }
     status = pack_file_open(&file, a->pack);
     if (!status) {
@@ -178,7 +178,7 @@ static const option options[] = {
       .at = offsetof(light_args, rays),
       .value = "N",
       .initial = "4096",
-      .what = "directions that the brute force tries for each vertex, over the whole sphere, 64 to 65536",
+      .what = "rays per vertex of the brute force, over the whole sphere, 64 to 65536",
       .example = "1024" },
     OPTION_JSON(light_args, as_json),
 };
@@ -186,9 +186,9 @@ static const option options[] = {
 const verb verb_light = {
     .name = "lab light",
     .files = "PACK",
-    .what = "how near precomputed light (noh build --transfer) comes to brute force",
+    .what = "compare precomputed light (noh build --transfer) with brute force",
     .more =
-        "Relative root mean square of what white matte vertices reflect, against rays from every vertex of this mesh, over 12 random lights of each sort: soft ones, and lamps of about 25 degrees. Vertices that see less than 15 % are left out. Beside it the method of the SparseMorphTargets sample, lobes about the normal. Without --weight the pose is an open mouth, brows down and mouth corners pulled, by the targets' names; where no name says so, the four targets that move the farthest.",
+        "Prints the relative root mean square error of the light reflected by white matte vertices, against rays from every vertex, over 12 random lights of each kind: soft lights, and lamps of about 25 degrees; and the same for the method of the SparseMorphTargets sample, lobes about the normal. Vertices that see less than 15 % of the sphere are left out. Without --weight the pose is an open mouth, brows down and mouth corners pulled, by the targets' names, or else the four targets that move the farthest.",
     .example = "head.noh\nhead.noh --json --weight jawOpen=1",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

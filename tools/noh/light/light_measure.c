@@ -134,7 +134,7 @@ typedef struct mesh_work {
     float *direct;    /* [vertex_count][3 * LIGHT_COUNT] without reflections; NULL where the transfer has none */
 } mesh_work;
 
-/* What a vertex reflects, by brute force, under every light; and how much of the sky it sees. */
+/* The reflected light of a vertex under every light, by brute force, and the share of the sky it sees. */
 static double brute_force(const mesh_work *w, uint32_t vertex, float sums[3u * LIGHT_COUNT])
 {
     const light_rays *rays = &w->m->rays;

@@ -31,8 +31,8 @@ typedef struct light_measure {
 int light_measure_open(light_measure *m, uint32_t ray_count);
 void light_measure_close(light_measure *m);
 
-/* Add one mesh that has a transfer. weights[target_count] is its pose. Vertices of materials that blend, and those that
- * see less than 15 % of what a matte surface could, are left out. 0, or 1 and a filled error. */
+/* Add one mesh that has a transfer. weights[target_count] is its pose. Vertices of materials that blend, and vertices
+ * that see less than 15 % of an open matte surface, are left out. 0, or 1 and a filled error. */
 int light_measure_mesh(light_measure *m, const noh_pack *pack, uint32_t mesh, const float *weights, model_error *error);
 
 /* The relative root mean square of the error, mean over the lights of a kind. posed: 0 or 1. */

@@ -15,7 +15,7 @@ static void letters_of(const char *name, char letters[NOH_NAME_BYTES_MAX])
     letters[count] = 0;
 }
 
-/* What a name has to hold; of an expression that has targets for left and right, those alone are taken. */
+/* Words that a name must contain; if an expression has left and right targets, only these are used. */
 static const char *const expressions[][2] = {
     { "mouthopen", "" }, { "jawopen", "" }, { "brow", "down" }, { "cornerpuller", "" }, { "smile", "" },
 };

@@ -1,4 +1,4 @@
-/* cmd_mask.c: a painted mask of wrinkle regions looked over: what it suffered, its regions, a repair. */
+/* cmd_mask.c: checks a painted mask of wrinkle regions: damage, regions, repair. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,8 +24,7 @@ static const struct {
     uint32_t damage;
     const char *name, *advice;
 } causes[] = {
-    { MASK_BLOCKS, "block-compression",
-      "keep the mask uncompressed; noh build decodes it to maps that may be compressed" },
+    { MASK_BLOCKS, "block-compression", "keep the mask uncompressed; noh build compresses the maps it makes from it" },
     { MASK_GAMMA, "gamma", "save it without colour management, as linear data" },
     { MASK_SMOOTHED, "smoothing", "select without anti-aliasing, and resize by nearest texels only" },
 };
@@ -46,7 +45,7 @@ static void print_causes(FILE *out, const mask_findings *f)
         }
     }
     if (!f->damage && guard) {
-        fprintf(out, "damage: illegal codes of an unknown cause; the picture of --show tells where\n");
+        fprintf(out, "damage: illegal codes of unknown cause; --show draws where they are\n");
     }
     if (!f->damage && !guard) {
         fprintf(out, "no damage\n");
@@ -193,10 +192,10 @@ static int run(void *args)
         return tool_usage("--json and -o both write to stdout");
     }
     if (mask_is_exported(a->file) && !a->exported) {
-        return tool_usage("noh mask looks a PNG over; --export FILE.png takes one out of a pack or a model");
+        return tool_usage("noh mask checks a PNG; use --export FILE.png to write one from a pack or a model");
     }
     if (a->size != (double)(uint32_t)a->size || (a->size > 0.0 && a->size < 16.0) || a->size > 4096.0) {
-        return tool_usage("--size wants a whole number of texels from 16 to 4096, or 0");
+        return tool_usage("--size must be a whole number of texels from 16 to 4096, or 0");
     }
     if (a->exported) {
         status = mask_export(a->file, (uint32_t)a->size, &mask);
@@ -218,7 +217,7 @@ static const option options[] = {
       .kind = OPTION_OUTPUT,
       .at = offsetof(mask_args, output),
       .value = "OUT.png",
-      .what = "a repaired mask: no code in it is illegal",
+      .what = "a repaired mask, without illegal codes",
       .example = "repaired.png" },
     { .name = "--show",
       .kind = OPTION_OUTPUT,
@@ -231,7 +230,7 @@ static const option options[] = {
       .at = offsetof(mask_args, exported),
       .value = "OUT.png",
       .what =
-          "FILE is a pack, or a model with targets: write its regions, or those that noh build --wrinkles auto would give it, as a mask to paint on. noh build --region-mask reads the same regions from it",
+          "write the regions of a pack, or the regions that noh build --wrinkles auto would give a model with targets, as a mask to paint on; noh build --region-mask reads it",
       .example = "regions.png",
       .excludes = "-o" },
     { .name = "--size",
@@ -239,8 +238,7 @@ static const option options[] = {
       .at = offsetof(mask_args, size),
       .value = "N",
       .initial = "0",
-      .what =
-          "the side of the mask of a model, in texels; 0: as noh build would make it, a quarter of the normal map's",
+      .what = "side of a model's mask, texels; 0: as noh build would make it, a quarter of the normal map's side",
       .example = "512",
       .needs = "--export" },
     { .name = "--quiet",
@@ -254,10 +252,9 @@ static const option options[] = {
 const verb verb_mask = {
     .name = "mask",
     .files = "FILE",
-    .what =
-        "look over a painted mask of wrinkle regions: illegal codes, their cause, a repair; or write one to paint on",
+    .what = "check and repair a painted mask of wrinkle regions, or write one to paint on",
     .more =
-        "Each channel of a mask has three regions, by its value: 0 to 75, 90 to 165, 180 to 255. The values between are illegal; anti-aliasing, colour management and block compression put them there, and turn regions into others.",
+        "Each channel of a mask has three regions, by its value: 0 to 75, 90 to 165, 180 to 255. Values between these ranges are illegal: they come from anti-aliasing, colour management or block compression, which also change regions into others.",
     .example = "regions.png\nregions.png -o repaired.png --show damage.png\nhead.glb --export regions.png",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

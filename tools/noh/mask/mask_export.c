@@ -88,9 +88,9 @@ static int of_material(const char *path, const noh_pack *pack, const noh_materia
     for (uint32_t k = 0; k < (is_mask ? 1u : REGION_MAP_COUNT) && !failed; k++) {
         (void)noh_pack_texture_at(pack, m->wrinkle_weights[k], &t, NULL);
         if (t.header->trim) {
-            return tool_fail(path,
-                             "its textures have lost what no triangle reads, and a mask painted on them would not fit "
-                             "the model: build it with --whole-textures, or give the model itself");
+            return tool_fail(
+                path, "its textures were trimmed, so a painted mask would not fit the model: build the pack with "
+                      "--whole-textures, or give the model itself");
         }
         maps[k] = texels_of(&t);
         failed = !maps[k];

@@ -22,7 +22,7 @@ typedef struct pack_args {
     int keep_tangents, at_once, quiet, as_json;
 } pack_args;
 
-/* What the pack goes through on its way, and what is said of it. */
+/* The steps from a pack to its wire form, and the report. */
 typedef struct packing {
     const pack_args *a;
     const noh_pack *from;
@@ -42,15 +42,15 @@ static void print_mesh(FILE *report, const packing *p, uint32_t i)
     const round_mesh *m = &p->meshes[i];
     const char *name = noh_pack_chunk_name(p->from, p->from->first_mesh + i);
     if (m->dropped_tangents) {
-        fprintf(report, "mesh '%s': no material has a map that needs tangents: they are left out (--keep-tangents)\n",
+        fprintf(report, "mesh '%s': no material needs tangents: they were left out (--keep-tangents keeps them)\n",
                 name);
     }
     if (p->a->error_um > 0.0 && m->grid.step > 0.0f) {
         fprintf(report, "mesh '%s': vertices moved by at most %.2f um, normals turned by %.2f degrees", name,
                 1e6 * m->moved_m, m->turned);
-        fprintf(report, m->delta_off > 0.0 ? ", those of targets off by %.4f\n" : "\n", m->delta_off);
+        fprintf(report, m->delta_off > 0.0 ? ", target normals off by %.4f\n" : "\n", m->delta_off);
     } else if (p->a->error_um > 0.0) {
-        fprintf(report, "mesh '%s': too large for a grid of --error-um: its positions stay as they are\n", name);
+        fprintf(report, "mesh '%s': too large for the grid of --error-um: its positions stay exact\n", name);
     }
 }
 
@@ -112,7 +112,7 @@ static int open_made(const packing *p, const byte_buffer *made, noh_pack *pack)
     noh_error error = { NOH_OK, "", 0, 0 };
     if (noh_pack_open(made->bytes, made->count, pack, &error)) {
         return tool_fail(p->a->pack,
-                         "a pack that was made on the way does not open: %s (byte %llu); this is a bug of noh",
+                         "an intermediate pack does not open: %s (byte %llu); this is a bug in noh: please report it",
                          error.what, (unsigned long long)error.where);
     }
     return 0;
@@ -161,7 +161,7 @@ static int make_packs(packing *p)
     return status ? status : make_coarse(p);
 }
 
-/* What was made is unpacked with the library's own reader, and has to be the pack, before it is written. */
+/* The result is unpacked with the library's own reader, and must equal the pack, before it is written. */
 static int check_back(packing *p)
 {
     const noh_pack *whole = &p->packs[p->pack_count - 1u];
@@ -179,7 +179,8 @@ static int check_back(packing *p)
                noh_wire_push(wire, p->out.bytes, p->out.count, &error) || !noh_wire_whole(wire) ||
                memcmp(desc.block, whole->bytes, whole->byte_count) != 0) {
         status = tool_fail(
-            p->a->pack, "the wire form that was made does not unpack to the pack: %s (byte %llu); this is a bug of noh",
+            p->a->pack,
+            "the wire form does not unpack to the pack: %s (byte %llu); this is a bug in noh: please report it",
             error.what, (unsigned long long)error.where);
     }
     free(memory);
@@ -230,7 +231,7 @@ static int pack(const pack_args *a, const noh_pack *from)
 static int check_args(const pack_args *a)
 {
     if (a->error_um < 0.0 || a->error_um > 1e6) {
-        return tool_usage("--error-um wants a number from 0, nothing is rounded, to 1000000");
+        return tool_usage("--error-um must be a number from 0, nothing is rounded, to 1000000");
     }
     return a->as_json && report_stream(a->output) != stdout ? tool_usage("--json and -o both write to stdout") : 0;
 }
@@ -264,16 +265,16 @@ static const option options[] = {
       .value = "UM",
       .initial = "0",
       .what =
-          "round: vertices at rest move by at most so many micrometres, 0 to 1000000; with it normals become 9 bits a component (half a degree), differences of normals multiples of 0.0039, texture coordinates 12 bits, joint weights multiples of 1/16384, and triangles and vertices are put in an order that takes less; 0: all values stay as they are",
+          "round: rest positions move by at most this many micrometres, 0 to 1000000; normals become 9 bits a component (half a degree), normal deltas multiples of 0.0039, texture coordinates 12 bits, joint weights multiples of 1/16384, and triangles and vertices are reordered to compress better; 0: all values stay exact",
       .example = "10" },
     { .name = "--keep-tangents",
       .kind = OPTION_FLAG,
       .at = offsetof(pack_args, keep_tangents),
-      .what = "keep tangents also of meshes whose materials have no normal map" },
+      .what = "keep the tangents of meshes without a normal map, too" },
     { .name = "--at-once",
       .kind = OPTION_FLAG,
       .at = offsetof(pack_args, at_once),
-      .what = "only the whole pack: none of the coarsest LOD levels before it" },
+      .what = "write only the whole pack, without the coarsest LOD levels first" },
     { .name = "--quiet",
       .kind = OPTION_FLAG,
       .at = offsetof(pack_args, quiet),
@@ -285,9 +286,9 @@ static const option options[] = {
 const verb verb_pack = {
     .name = "pack",
     .files = "PACK",
-    .what = "the wire form of a pack: several times smaller, to be sent, unpacked while it arrives",
+    .what = "make the wire form of a pack: several times smaller to send, unpacked while it arrives",
     .more =
-        "Every verb that reads a pack reads its wire form, too. A game unpacks it with noh_wire_push (wire.h), in pieces as they come. A pack with LOD levels is preceded by one of its coarsest levels, which can be shown while the rest arrives.",
+        "Every verb that reads a pack also reads its wire form. A game unpacks it piece by piece with noh_wire_push (wire.h). A pack with LOD levels is preceded by a pack of its coarsest levels, which can be shown while the rest arrives.",
     .example = "head.noh -o head.nohz\nhead.noh -o head.nohz --error-um 10",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

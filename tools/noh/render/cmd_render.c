@@ -44,7 +44,7 @@ static int parse_wind(const char *text, float wind[3])
         fabsf(wind[1]) <= 100.0f && fabsf(wind[2]) <= 100.0f) {
         return 0;
     }
-    return tool_usage("--wind wants X,Y,Z, each -100 to 100, not '%s'", text);
+    return tool_usage("--wind must be X,Y,Z, each -100 to 100, not '%s'", text);
 }
 
 static int check_args(render_args *a)
@@ -53,7 +53,7 @@ static int check_args(render_args *a)
     int status = parse_path(a->path, &a->figure.path);
     if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
     if (!status) status = debug_parse(a->debug, &a->shows);
-    if (!status && a->joint && a->shows != DEBUG_WEIGHTS) status = tool_usage("--joint wants --debug weights");
+    if (!status && a->joint && a->shows != DEBUG_WEIGHTS) status = tool_usage("--joint needs --debug weights");
     a->figure.view = debug_view_of(a->shows);
     if (!status) status = parse_level(a->lod, &a->figure.level);
     if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
@@ -64,9 +64,9 @@ static int check_args(render_args *a)
     if (!status) status = figure_read_marks(&a->decals, a->decal_kind, a->marks, &a->figure);
     if (!status && a->wind) status = parse_wind(a->wind, a->figure.wind);
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
-        status = tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
+        status = tool_usage("--clip may be given at most %u times", NOH_LAYER_TRACKS_MAX);
     }
-    if (!status && !(a->swing >= 0.0 && a->swing <= 60.0)) status = tool_usage("--swing wants 0 to 60 seconds");
+    if (!status && !(a->swing >= 0.0 && a->swing <= 60.0)) status = tool_usage("--swing must be 0 to 60 seconds");
     a->view.width = a->size[0];
     a->view.height = a->size[1];
     return status;
@@ -209,7 +209,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, wind),
       .value = "X,Y,Z",
-      .what = "wind in its hair, at its mean: metres per second squared that it gives it",
+      .what = "mean wind on the hair, as an acceleration in metres per second squared",
       .example = "4,0,-2" },
     { .name = "--turn",
       .kind = OPTION_NUMBER,
@@ -217,14 +217,14 @@ static const option options[] = {
       .value = "DEG",
       .initial = "0",
       .what =
-          "it has turned by so many degrees a second before the picture, where no clip plays, and is now where it is without",
+          "turn the head at this rate, degrees a second, before the picture, if no clip plays; it ends in the same place",
       .example = "180" },
     { .name = "--swing",
       .kind = OPTION_NUMBER,
       .at = offsetof(render_args, swing),
       .value = "S",
       .initial = "2",
-      .what = "how long hair has moved before the picture, seconds, where no clip plays",
+      .what = "how long hair moves before the picture, seconds, if no clip plays",
       .example = "0.5" },
     OPTIONS_DECALS(render_args, decals, decal_kind, "--bones"),
     OPTION_CAMERA(render_args, view.camera, "body"),
@@ -233,20 +233,20 @@ static const option options[] = {
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(render_args, show_bones),
-      .what = "draw the skeletons instead of the meshes; implied where the pack has no meshes" },
+      .what = "draw the skeletons instead of the meshes; implied if the pack has no meshes" },
     { .name = "--debug",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, debug),
       .value = DEBUG_VALUES,
       .initial = "none",
       .what =
-          "show this as colours instead of lighting: joints: those that move each vertex, weights: how much one of them does. wireframe and bones are drawn over the lit figure",
+          "show this as colours instead of lighting; joints: which joints move each vertex; weights: the weight of one joint. wireframe and bones are drawn over the lit figure",
       .excludes = "--bones" },
     { .name = "--joint",
       .kind = OPTION_TEXT,
       .at = offsetof(render_args, joint),
       .value = "NAME",
-      .what = "the joint of --debug weights; default: the one that moves the most vertices",
+      .what = "the joint for --debug weights; default: the joint that moves the most vertices",
       .example = "Head",
       .needs = "--debug" },
     OPTION_PATH(render_args, path, .initial = "auto", .excludes = "--bones"),
@@ -257,7 +257,7 @@ static const option options[] = {
 const verb verb_render = {
     .name = "render",
     .files = "PACK",
-    .what = "draw a picture",
+    .what = "draw a picture of a pack",
     .example = "face.noh -o face.png --weight smile=1 --camera face\nbody.noh -o walk.png --clip walk --time 0.5",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -1,4 +1,4 @@
-/* cmd_replay.c: a session on a stage, drawn by seed or read from a file, played and hashed; and played again. */
+/* cmd_replay.c: plays a session on a stage, random by seed or read from a file, hashes its frames, and replays it. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -18,11 +18,11 @@ typedef struct replay_args {
     int as_json;
 } replay_args;
 
-/* What came of a session. */
+/* The results of a session. */
 typedef struct replay_result {
     session_hashes *hashes;
     size_t input_bytes;
-    uint32_t equal_frames; /* with those of the file */
+    uint32_t equal_frames; /* with the hashes of the file */
     uint32_t parts;        /* that differ in the frame after these */
     uint32_t refused, first_refused;
     noh_error refused_error;
@@ -46,8 +46,8 @@ static int read(const replay_args *a, uint32_t pack_crc, session *s)
     model_error error = { "", "" };
     if (session_read(s, a->input, &error)) return tool_fail(a->input, "%s (%s)", error.what, error.where);
     if (s->pack_crc == pack_crc) return 0;
-    return tool_fail(a->input, "the session is of another pack: its checksum is %08x, that of %s is %08x", s->pack_crc,
-                     a->pack, pack_crc);
+    return tool_fail(a->input, "the session belongs to another pack: its checksum is %08x, the checksum of %s is %08x",
+                     s->pack_crc, a->pack, pack_crc);
 }
 
 /* ---- the run ---- */
@@ -70,7 +70,7 @@ static int run_session(const replay_args *a, const pack_file *file, const sessio
     return status;
 }
 
-/* The session with what came of it now. */
+/* The session with its new results. */
 static int write_session(const replay_args *a, const session *s, replay_result *r)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -126,7 +126,7 @@ static void print_text(const replay_args *a, const session *s, const replay_resu
         fprintf(report, "%u inputs were refused; the first, '%s' in frame %u: %s\n", r->refused,
                 session_forms[in->what].word, in->frame, r->refused_error.what);
     }
-    if (s->hashes && !r->parts) fprintf(report, "every part of every frame is as in %s\n", a->input);
+    if (s->hashes && !r->parts) fprintf(report, "every part of every frame equals %s\n", a->input);
 }
 
 static int report_all(const replay_args *a, const session *s, const replay_result *r)
@@ -166,13 +166,13 @@ static int replay(const replay_args *a, const pack_file *file)
 static int check_args(const replay_args *a)
 {
     if (!(a->seconds >= 1.0 / 60.0 && a->seconds <= (double)SESSION_FRAMES_MAX / 60.0)) {
-        return tool_usage("--seconds wants a number from 0.02 to %u", SESSION_FRAMES_MAX / 60u);
+        return tool_usage("--seconds must be a number from 0.02 to %u", SESSION_FRAMES_MAX / 60u);
     }
     if (!(a->actors >= 1.0 && a->actors <= SESSION_ACTORS_MAX && a->actors == (double)(uint32_t)a->actors)) {
-        return tool_usage("--actors wants a whole number from 1 to %u", SESSION_ACTORS_MAX);
+        return tool_usage("--actors must be a whole number from 1 to %u", SESSION_ACTORS_MAX);
     }
     if (!(a->seed >= 0.0 && a->seed <= 4294967295.0 && a->seed == (double)(uint32_t)a->seed)) {
-        return tool_usage("--seed wants a whole number below 2^32");
+        return tool_usage("--seed must be a whole number below 2^32");
     }
     return a->as_json && report_stream(a->output) != stdout ? tool_usage("--json and -o both write to stdout") : 0;
 }
@@ -197,7 +197,7 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(replay_args, input),
       .value = "SESSION",
-      .what = "play the inputs of this file, and compare each frame with its hashes, if it has some",
+      .what = "play the inputs of this file, and compare each frame with its hashes, if it has any",
       .example = "run.session",
       .excludes = "--seconds --seed --actors" },
     { .name = "--seconds",
@@ -205,27 +205,27 @@ static const option options[] = {
       .at = offsetof(replay_args, seconds),
       .value = "S",
       .initial = "10",
-      .what = "how long, at 60 frames a second",
+      .what = "length of the session, seconds, at 60 frames a second",
       .example = "60" },
     { .name = "--seed",
       .kind = OPTION_NUMBER,
       .at = offsetof(replay_args, seed),
       .value = "N",
       .initial = "1",
-      .what = "which inputs are drawn",
+      .what = "seed of the random inputs",
       .example = "7" },
     { .name = "--actors",
       .kind = OPTION_NUMBER,
       .at = offsetof(replay_args, actors),
       .value = "N",
       .initial = "4",
-      .what = "how many, 1 to 64",
+      .what = "number of actors, 1 to 64",
       .example = "8" },
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(replay_args, output),
       .value = "OUT.session",
-      .what = "the inputs and what each frame came to (noh help FORMATS)",
+      .what = "the inputs, and the hashes of each frame (noh help FORMATS)",
       .example = "run.session" },
     OPTION_JSON(replay_args, as_json),
 };
@@ -233,9 +233,9 @@ static const option options[] = {
 const verb verb_replay = {
     .name = "lab replay",
     .files = "PACK",
-    .what = "play inputs to a stage, hash every frame, and play them again to the same hashes",
+    .what = "play inputs to a stage and hash every frame, or replay a session and compare its hashes",
     .more =
-        "Without --play the inputs are drawn by seed: characters come in, play clips and graphs, feel, look, are hit, fall and get up, as the pack allows; that is a test of a pack on a new processor or compiler, and of a new version of the library. Of each frame are hashed: the stage's state, callback keys, places, floats, joints, palettes, and the vertices of one actor every half second. noh lab bisect compares two files.",
+        "Without --play the inputs are random: characters spawn, play clips and graphs, show emotions, look at points, are hit, fall and get up, as far as the pack allows. This tests a pack on a new processor or compiler, and a new version of the library. Each frame's hashes cover the stage's state, callback keys, positions, floats, joints, palettes, and every half second the vertices of one actor. noh lab bisect compares two files.",
     .example = "body.noh -o run.session\nbody.noh --play run.session\nbody.noh --seed 7 --seconds 60 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

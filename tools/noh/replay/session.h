@@ -1,13 +1,13 @@
-/* session.h: what a game did to a stage of one pack, frame by frame, and what came of it.
+/* session.h: the inputs of a game to a stage of one pack, frame by frame, and their results.
  *
- *   session_open, session_close     a stage of a pack with everything that the pack allows
+ *   session_open, session_close     a stage of a pack with all features that the pack supports
  *   session_draw                    a session by seed
  *   session_run                     play a session, and hash each part of each frame
  *   session_write, session_read     as text (session_text.h)
  *
  * A stage is deterministic: the same pack and the same inputs give the same hashes on every processor. The stage of a
- * session follows from its pack and its number of actors: root motion along the ground, inertia, all graphs, and a face
- * and a ragdoll where the pack has what they need. Nothing is drawn. */
+ * session follows from its pack and its number of actors: root motion along the ground, inertia, all graphs, and a
+ * face and a ragdoll if the pack supports them. Nothing is drawn. */
 #ifndef NOH_NOH_REPLAY_SESSION_H
 #define NOH_NOH_REPLAY_SESSION_H
 
@@ -21,10 +21,10 @@
 #define SESSION_NUMBERS_MAX 6u
 #define SESSION_FRAME_TICKS 800u /* 1/60 s */
 
-/* What a frame is hashed by. */
+/* The hashes of a frame. */
 typedef enum session_part {
     SESSION_STATE,    /* noh_stage_hash */
-    SESSION_EVENTS,   /* callback keys, and what inputs returned */
+    SESSION_EVENTS,   /* callback keys, and the results of inputs */
     SESSION_PLACES,   /* of actors */
     SESSION_FLOATS,   /* morph weights and named floats */
     SESSION_JOINTS,   /* in the world */
@@ -35,7 +35,7 @@ typedef enum session_part {
 
 const char *session_part_name(session_part part);
 
-/* The order is that of the table in session_input.c. */
+/* In the order of the table in session_input.c. */
 typedef enum session_what {
     SESSION_SPAWN, /* x, z, tangent of half the heading */
     SESSION_DESPAWN,
@@ -103,21 +103,21 @@ typedef struct session_stage {
     float *matrices;         /* [NOH_SKIN_JOINTS_MAX][12] */
     float view[3];           /* yaw, pitch, distance */
     uint32_t ticks;          /* of a frame */
-    uint32_t returned;       /* CRC of what this frame's inputs returned */
+    uint32_t returned;       /* CRC of the results of this frame's inputs */
     uint32_t refused;        /* inputs that returned an error, */
     uint32_t first_refused;  /* the first of them, */
     noh_error refused_error; /* and why */
 } session_stage;
 
-/* A stage for so many actors, all without clips yet. 0, or 1 and *error. */
+/* A stage for this many actors, all without clips yet. 0, or 1 and *error. */
 int session_open(session_stage *stage, const noh_pack *pack, uint32_t actor_count, noh_error *error);
 void session_close(session_stage *stage);
 
-/* Do one input, the index-th of its session. What it returns is hashed, and kept if it is an error. */
+/* Do one input, the index-th of its session. Its result is hashed, and kept if it is an error. */
 void session_do(session_stage *stage, const session_input *input, uint32_t index);
 
-/* Fill a session with inputs drawn by seed: clips, graphs, parameters, floats, looks, emotions, hits, as the pack has
- * them. `stage` tells names. 0, or 1 when out of memory. */
+/* Fill a session with random inputs by seed: clips, graphs, parameters, floats, gaze, emotions, hits, as the pack
+ * supports them. `stage` gives names. 0, or 1 when out of memory. */
 int session_draw(session *s, const session_stage *stage, uint32_t frame_count, uint32_t seed);
 
 /* Play a session on a fresh stage into hashes[frame_count]. 0, or 1 and *error. */

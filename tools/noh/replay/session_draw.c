@@ -1,9 +1,9 @@
-/* session_draw.c: a session by seed: what a game might do to characters, drawn at random. */
+/* session_draw.c: a random session by seed: inputs that a game might give. */
 #include <string.h>
 
 #include "session.h"
 
-#define INPUT_CHANCE 6u /* one frame of so many has an input */
+#define INPUT_CHANCE 6u /* one frame in INPUT_CHANCE has an input */
 
 /* A linear congruential generator, whose high bits are used (Knuth, The Art of Computer Programming 2, 3.3.4). */
 static uint32_t draw(uint32_t *state, uint32_t below)
@@ -32,7 +32,7 @@ static void draw_numbers(uint32_t *state, float *numbers, uint32_t count, float 
     for (uint32_t i = 0; i < count; i++) numbers[i] = between(state, low, high);
 }
 
-/* What an input of a sort says; 0 where the pack has nothing for it. */
+/* The arguments of an input; 0: the pack does not support it. */
 static int draw_input(const session_stage *stage, uint32_t *state, session_input *in)
 {
     static const char *const emotions[] = { "joy", "sadness", "surprise", "fear", "anger", "disgust", "contempt" };

@@ -12,7 +12,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 
-#define VERTEX_FRAMES 30u /* one actor's vertices are hashed every so many frames */
+#define VERTEX_FRAMES 30u /* frames between two hashes of an actor's vertices */
 
 static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
 static const noh_world floor_world = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
@@ -44,7 +44,7 @@ static void fill_desc(session_stage *s, uint32_t actor_count)
     s->kind.ragdoll = s->pack->skeleton_count ? &ragdoll : NULL;
 }
 
-/* A skeleton out of which no ragdoll can be made does without one. */
+/* A skeleton that cannot have a ragdoll goes without. */
 static int plan(session_stage *s, noh_error *error)
 {
     s->has_ragdoll = s->kind.ragdoll != NULL;

@@ -41,7 +41,7 @@ int session_write(const session *s, byte_buffer *out, size_t *input_bytes, model
     before = out->count;
     for (uint32_t i = 0; i < s->input_count; i++) {
         if (strpbrk(s->inputs[i].name, "\"\n")) {
-            return model_fail(error, s->inputs[i].name, "a name with a quote or a line's end cannot be written");
+            return model_fail(error, s->inputs[i].name, "a name with a quote or a line break cannot be written");
         }
         write_input(&s->inputs[i], out);
     }
@@ -73,7 +73,7 @@ static int end_line(text_scan *t)
     text_word word;
     char shown[TEXT_SHOWN];
     if (text_take_on_line(t, &word)) return 1;
-    if (word.size) return text_fail(t, word.line, "'%s' is too much on this line", text_show(word, shown));
+    if (word.size) return text_fail(t, word.line, "'%s' is one word too many on this line", text_show(word, shown));
     (void)text_next_line(t);
     return 0;
 }
@@ -96,10 +96,11 @@ static int read_head(text_scan *t, session *s)
 {
     uint32_t version = 0;
     if (expect(t, TITLE) || read_count(t, 1000, &version)) return 1;
-    if (version != VERSION) return text_fail(t, t->line, "version %u of sessions is not known here", version);
+    if (version != VERSION)
+        return text_fail(t, t->line, "the session has version %u, which this noh does not read", version);
     if (end_line(t) || expect(t, "pack") || read_hex(t, &s->pack_crc) || end_line(t)) return 1;
     if (expect(t, "actors") || read_count(t, SESSION_ACTORS_MAX, &s->actor_count)) return 1;
-    if (!s->actor_count) return text_fail(t, t->line, "a session has at least one actor");
+    if (!s->actor_count) return text_fail(t, t->line, "a session needs at least one actor");
     return end_line(t) || expect(t, "frames") || read_count(t, SESSION_FRAMES_MAX, &s->frame_count) || end_line(t);
 }
 
@@ -122,7 +123,7 @@ static int read_what(text_scan *t, session_input *in)
     for (in->what = 0; in->what < SESSION_WHATS; in->what++) {
         if (text_is(word, session_forms[in->what].word)) return 0;
     }
-    return text_fail(t, t->line, "no input is called '%s'", text_show(word, shown));
+    return text_fail(t, t->line, "there is no input '%s'", text_show(word, shown));
 }
 
 static int read_input(text_scan *t, session *s, text_word frame)
@@ -131,8 +132,9 @@ static int read_input(text_scan *t, session *s, text_word frame)
     uint32_t actor = 0;
     const uint32_t before = s->input_count ? s->inputs[s->input_count - 1u].frame : 0u;
     if (text_count(t, frame, SESSION_FRAMES_MAX, &in.frame)) return 1;
-    if (in.frame >= s->frame_count) return text_fail(t, t->line, "frame %u is past the last one", in.frame);
-    if (in.frame < before) return text_fail(t, t->line, "frame %u comes after frame %u", in.frame, before);
+    if (in.frame >= s->frame_count) return text_fail(t, t->line, "frame %u is past the last frame", in.frame);
+    if (in.frame < before)
+        return text_fail(t, t->line, "frame %u follows frame %u: frames must be in order", in.frame, before);
     if (read_what(t, &in) || read_count(t, s->actor_count - 1u, &actor)) return 1;
     in.actor = (uint16_t)actor;
     if (session_forms[in.what].has_name && read_name(t, in.name)) return 1;
@@ -179,7 +181,7 @@ static int read_body(text_scan *t, session *s)
         if (!word.size) {
             if (!text_next_line(t)) return 0;
         } else if (text_is(word, "hashes")) {
-            return s->hashes ? text_fail(t, word.line, "a second list of hashes") : read_hashes(t, s);
+            return s->hashes ? text_fail(t, word.line, "the hashes are given twice") : read_hashes(t, s);
         } else if (read_input(t, s, word) || end_line(t)) {
             return 1;
         }

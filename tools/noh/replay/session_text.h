@@ -6,8 +6,8 @@
 #include "convert/base/error.h"
 #include "session.h"
 
-/* Append the session to a buffer; with its hashes, where it has them. 0, or 1 and *error. Returns in *input_bytes how
- * many bytes of it the inputs are. */
+/* Append the session to a buffer, with its hashes if it has any. *input_bytes: the bytes of the inputs. 0, or 1 and
+ * *error. */
 int session_write(const session *s, byte_buffer *out, size_t *input_bytes, model_error *error);
 
 /* Read a session from a file. 0, or 1 and *error; *s is then empty. */

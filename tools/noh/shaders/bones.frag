@@ -1,5 +1,5 @@
 #version 300 es
-/* bones.frag: one light beside the viewer, one above. Writes linear light. */
+/* bones.frag: one light next to the viewer, one above. Writes linear light. */
 precision highp float;
 
 uniform vec3 u_key; /* unit, towards the light */

@@ -1,5 +1,5 @@
 #version 300 es
-/* overlay.frag: colours as they are, or with some form by a light beside the viewer. Linear light. */
+/* overlay.frag: colours as they are, or shaded by a light at the viewer to show their form. Linear light. */
 precision highp float;
 
 uniform vec3 u_key;     /* unit, towards the light */

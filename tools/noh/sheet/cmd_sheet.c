@@ -62,7 +62,7 @@ static bounds move_box(bounds box, const double by[3], double sign)
 }
 
 /* One box for all tiles, relative to the anchor, from at most 40 of the poses. */
-/* What the camera goes along with: who walks, but not who falls. */
+/* The camera follows a figure that walks, but not one that falls. */
 static void find_anchor(const sheet *s, const picture *p, double anchor[3])
 {
     figure_anchor(&p->figure, anchor);
@@ -191,12 +191,13 @@ static int make_sheet(sheet *s, const pack_file *file)
 static int check_clips(const sheet_tiles *t, const char *transition)
 {
     if (strcmp(transition, "fade") != 0 && strcmp(transition, "inertia") != 0) {
-        return tool_usage("--transition wants fade or inertia, not '%s'", transition);
+        return tool_usage("--transition must be fade or inertia, not '%s'", transition);
     }
     if (t->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
-        return tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
+        return tool_usage("--clip may be given at most %u times", NOH_LAYER_TRACKS_MAX);
     }
-    return t->over_s > 0.0 && t->over_s <= 60.0 ? 0 : tool_usage("--over wants up to 60 seconds");
+    return t->over_s > 0.0 && t->over_s <= 60.0 ? 0
+                                                : tool_usage("--over must be a number of seconds above 0, at most 60");
 }
 
 static int check_body(sheet *s)
@@ -218,14 +219,14 @@ static int check_args(sheet_args *a)
     if (!status) status = parse_accumulate(a->accumulate, &s->figure.accumulate);
     if (!status && !(a->tile >= 16.0 && a->tile <= 1024.0 && a->tiles >= 1.0 && a->tiles <= 1024.0 &&
                      a->columns >= 0.0 && a->columns <= 64.0)) {
-        status = tool_usage("--tile wants 16 to 1024 pixels, --tiles 1 to 1024, --columns at most 64");
+        status = tool_usage("--tile must be 16 to 1024 pixels, --tiles 1 to 1024, --columns at most 64");
     }
     if (!status && !(a->faces >= 0.0 && a->faces <= 1024.0 && a->seed >= 0.0 && a->seed < 4294966000.0 &&
                      a->faces == (double)(uint32_t)a->faces && a->seed == (double)(uint32_t)a->seed)) {
-        status = tool_usage("--faces wants a whole number from 1 to 1024, --seed one from 0 to 4294965999");
+        status = tool_usage("--faces must be a whole number from 1 to 1024, --seed one from 0 to 4294965999");
     }
     if (!status && !(s->tiles.half_s >= 0.0 && s->tiles.half_s <= 60.0)) {
-        status = tool_usage("--ping-pong wants seconds, over 0, at most 60");
+        status = tool_usage("--ping-pong must be a number of seconds above 0, at most 60");
     }
     if (!status) status = check_clips(&s->tiles, a->transition);
     if (!status && s->tiles.push) status = figure_read_push(s->tiles.push, s->tiles.impulse);
@@ -305,14 +306,14 @@ static const option options[] = {
       .at = offsetof(sheet_args, s.tiles.only),
       .value = "NAME[=V]",
       .what =
-          "show this target alone, at weight V (default 1); may repeat; with --lods: a row, with --wrinkles: a column, of one or several targets, NAME[=V],NAME[=V]...",
+          "show this target alone, at weight V (default 1); may repeat; with --lods it adds a row, with --wrinkles a column, of one or several targets, NAME[=V],NAME[=V]...",
       .example = "smile=0.5",
       .excludes = "--clip --bones" },
     { .name = "--ping-pong",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, s.tiles.half_s),
       .value = "S",
-      .what = "the only --target over time: to its weight in S seconds, and back in as many; over 0, at most 60",
+      .what = "show the only --target over time: up to its weight in S seconds and back in S, above 0, at most 60",
       .example = "0.5",
       .needs = "--target",
       .excludes = "--clip --lods --wrinkles --faces --data" },
@@ -320,7 +321,7 @@ static const option options[] = {
       .kind = OPTION_LIST,
       .at = offsetof(sheet_args, s.tiles.clips),
       .value = "NAME",
-      .what = "show this clip over time; repeat it to play others along with the first",
+      .what = "show this clip over time; may repeat: the others play along with the first",
       .example = "walk",
       .excludes = "--lods" },
     OPTION_ANIMS(sheet_args, s.tiles.anims, .needs = "--clip"),
@@ -341,7 +342,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(sheet_args, s.tiles.blend),
       .value = "CLIP",
-      .what = "blend the clip with this one, in step: five rows of weights from 0 to 1",
+      .what = "blend the clip with this one, synchronised: five rows of weights from 0 to 1",
       .example = "run",
       .needs = "--clip",
       .excludes = "--to" },
@@ -349,7 +350,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(sheet_args, s.tiles.to),
       .value = "CLIP",
-      .what = "a transition from the clip to this one",
+      .what = "show a transition from the clip to this one",
       .example = "bow",
       .needs = "--clip" },
     { .name = "--transition",
@@ -357,14 +358,14 @@ static const option options[] = {
       .at = offsetof(sheet_args, transition),
       .value = "fade|inertia",
       .initial = "fade",
-      .what = "a cross-fade, or inertialization",
+      .what = "kind of transition: a cross-fade, or inertialization",
       .needs = "--to" },
     { .name = "--over",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, s.tiles.over_s),
       .value = "S",
       .initial = "0.3",
-      .what = "how long the transition takes, seconds, over 0, at most 60",
+      .what = "duration of the transition, seconds, above 0, at most 60",
       .example = "0.5",
       .needs = "--to" },
     { .name = "--push",
@@ -372,7 +373,7 @@ static const option options[] = {
       .at = offsetof(sheet_args, s.tiles.push),
       .value = "X,Y,Z",
       .what =
-          "half a second into the clip it is pushed by so many newton seconds, falls onto the ground, and gets up by its clips whose names begin with get_up",
+          "push the character by this impulse, newton seconds, half a second into the clip: it falls as a ragdoll, and gets up by clips whose names begin with get_up",
       .example = "0,0,-90",
       .needs = "--clip",
       .excludes = "--blend --to" },
@@ -380,13 +381,13 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.lods),
       .what =
-          "a column per LOD level: at rest, with each --target (default: all smiles), and at the size at which it is used",
+          "a column per LOD level: at rest, with each --target (default: all smiles), and at the size at which the level is used",
       .excludes = "--bones" },
     { .name = "--faces",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, faces),
       .value = "N",
-      .what = "N people by seed, 1 to 1024, out of the mesh's identity targets (noh build --identity)",
+      .what = "show N people, 1 to 1024, each from a seed and the mesh's identity targets (noh build --identity)",
       .example = "64",
       .excludes = "--clip --target --lods --bones" },
     { .name = "--seed",
@@ -394,26 +395,26 @@ static const option options[] = {
       .at = offsetof(sheet_args, seed),
       .value = "N",
       .initial = "1",
-      .what = "seed of the first; the others follow",
+      .what = "seed of the first person; the others count up from it",
       .example = "100",
       .needs = "--faces" },
     { .name = "--expressions",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.tiles.expressions),
-      .what = "each person at rest, with eyes shut, and with four expressions",
+      .what = "show each person at rest, with eyes shut, and with four expressions",
       .needs = "--faces",
       .excludes = "--columns" },
     { .name = "--wrinkles",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.tiles.wrinkled),
       .what =
-          "rows without wrinkles, and with those of each model: by area, region, channel, and as built; a column for each --target, NAME[=V],NAME[=V]..., or for five emotions",
+          "rows without wrinkles and with each wrinkle model: by area, region, channel, and as built; a column for each --target, NAME[=V],NAME[=V]..., or for five emotions",
       .excludes = "--clip --lods --faces --bones --columns" },
     { .name = "--data",
       .kind = OPTION_FLAG,
       .at = offsetof(sheet_args, s.data),
       .what =
-          "the data textures of each mesh, a pixel a vertex: the base, each target's deltas (default: all; or each --target), and their sum; positions, normals and tangents",
+          "the data textures of each mesh, one pixel per vertex: the base, each target's deltas (default: all; or each --target), and their sum, for positions, normals and tangents",
       .excludes = "--clip --lods --faces --wrinkles --bones" },
     { .name = "--bones",
       .kind = OPTION_FLAG,
@@ -446,7 +447,7 @@ const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK",
     .what =
-        "draw a contact sheet: every target at full weight, a clip over time, people by seed, models of wrinkles, the LOD levels, or data textures",
+        "draw a contact sheet: every target at full weight, a clip over time, people by seed, wrinkle models, LOD levels, or data textures",
     .example =
         "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
     .options = options,

@@ -64,7 +64,7 @@ static int lay_out(data_sheet *d)
     const char *path = d->o->tiles->file->path;
     const uint32_t pages = measure(d);
     uint64_t width, height;
-    if (!pages) return tool_fail(path, "no mesh has accumulation texels: no target moves any vertex");
+    if (!pages) return tool_fail(path, "no mesh has data textures: no target moves a vertex");
     d->columns = d->o->columns;
     if (!d->columns) {
         d->columns = (uint32_t)ceil(sqrt((double)pages * d->cell[1] / (DATA_LAYERS * (double)d->cell[0])));
@@ -74,8 +74,9 @@ static int lay_out(data_sheet *d)
     width = (uint64_t)d->columns * DATA_LAYERS * d->cell[0];
     height = (uint64_t)d->rows * d->cell[1];
     if (width > SIDE_PIXELS_MAX || height > SIDE_PIXELS_MAX) {
-        return tool_fail(path, "the picture would be %llu by %llu pixels, over %u: name fewer targets by --target",
-                         (unsigned long long)width, (unsigned long long)height, SIDE_PIXELS_MAX);
+        return tool_fail(
+            path, "the picture would be %llu by %llu pixels, above the limit of %u: choose fewer targets with --target",
+            (unsigned long long)width, (unsigned long long)height, SIDE_PIXELS_MAX);
     }
     d->size[0] = (uint32_t)width;
     d->size[1] = (uint32_t)height;

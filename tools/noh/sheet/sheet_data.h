@@ -11,8 +11,8 @@ typedef struct sheet_data {
         columns; /* tile: the side that a layer fills as far as whole pixels allow; columns 0: about square */
 } sheet_data;
 
-/* For each mesh that targets move, three pictures a page (draw/data_page.h): of the base, of each target's deltas, and
- * of what the targets sum up to at their weights. A texel is a square of whole pixels. Prints an error and returns an
+/* For each mesh that targets move, three pictures a page (draw/data_page.h): the base, each target's deltas, and the
+ * sum of the targets at their weights. A texel is a square of whole pixels. Prints an error and returns an
  * exit code; 0 on success. */
 int sheet_data_write(const sheet_data *s);
 

@@ -29,7 +29,7 @@ static int hold_part(figure *f, const char *part, size_t length)
     static option_list one;
     char text[NOH_NAME_BYTES_MAX + 32];
     if (length >= sizeof text - 3) {
-        return tool_usage("--target wants NAME[=V][,NAME[=V]]...");
+        return tool_usage("--target must be NAME[=V][,NAME[=V]]...");
     }
     snprintf(text, sizeof text, "%.*s%s", (int)length, part, memchr(part, '=', length) ? "" : "=1");
     one.count = 1;
@@ -67,7 +67,7 @@ static uint32_t face_count(const sheet_lods *o)
     return o->faces->count ? (uint32_t)o->faces->count : 1u;
 }
 
-/* Set the weights of a row; those of the row before are cleared. */
+/* Set the weights of a row, and clear the weights of the row before. */
 static int apply_row(grid *g, uint32_t row)
 {
     const int status = figure_hold_all(&g->picture->figure, 0.0);

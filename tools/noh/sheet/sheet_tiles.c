@@ -51,7 +51,7 @@ static int list_ping_pong(sheet_tiles *t)
     const int64_t half = noh_ticks_from_seconds(t->half_s);
     sheet_target whole;
     int status;
-    if (t->only.count != 1) return tool_usage("--ping-pong wants one --target");
+    if (t->only.count != 1) return tool_usage("--ping-pong needs one --target");
     read_target(t->only.items[0], &whole);
     status = figure_check_target(t->file, whole.name);
     if (status) return status;

@@ -1,5 +1,5 @@
-/* sheet_tiles.h: what the tiles of a contact sheet show: targets, a clip in time, two clips blended,
- * a transition from one to another, people, models of wrinkles. */
+/* sheet_tiles.h: the tiles of a contact sheet: targets, a clip in time, two clips blended,
+ * a transition from one to another, people, wrinkle models. */
 #ifndef NOH_NOH_SHEET_SHEET_TILES_H
 #define NOH_NOH_SHEET_SHEET_TILES_H
 
@@ -11,7 +11,7 @@
 #define SHEET_FALL_S 6.0    /* a push, a fall, and time to get up */
 #define SHEET_BLEND_ROWS 5u /* weights 0, 1/4, 1/2, 3/4, 1 */
 
-/* What one tile shows. */
+/* The contents of one tile. */
 typedef struct sheet_target {
     char name[NOH_NAME_BYTES_MAX];
     double weight;
@@ -42,7 +42,7 @@ typedef struct sheet_tiles {
     sheet_wrinkles wrinkles;
 } sheet_tiles;
 
-/* What a figure must have for them. */
+/* The features that a figure needs for them. */
 void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc);
 /* Find what was asked for. Prints an error and returns an exit code; 0 on success. */
 int sheet_tiles_open(sheet_tiles *t, const pack_file *file);

@@ -67,7 +67,7 @@ static int check_emotions(const sheet_wrinkles *s, const pack_file *file)
             if (s->weights[t] != 0.0f) return 0;
         }
     }
-    return tool_fail(file->path, "no recipe knows its targets: say by --target which to show");
+    return tool_fail(file->path, "no recipe fits its targets: choose them with --target");
 }
 
 int sheet_wrinkles_open(sheet_wrinkles *s, const pack_file *file, const option_list *faces)

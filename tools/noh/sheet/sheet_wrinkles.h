@@ -1,4 +1,4 @@
-/* sheet_wrinkles.h: the same expressions without wrinkles, and with those of each model: a row each. */
+/* sheet_wrinkles.h: the same expressions without wrinkles, and with each wrinkle model, one row each. */
 #ifndef NOH_NOH_SHEET_SHEET_WRINKLES_H
 #define NOH_NOH_SHEET_SHEET_WRINKLES_H
 
@@ -20,7 +20,7 @@ int sheet_wrinkles_open(sheet_wrinkles *s, const pack_file *file, const option_l
 void sheet_wrinkles_close(sheet_wrinkles *s);
 
 uint32_t sheet_wrinkles_columns(const sheet_wrinkles *s);
-/* Hold what a tile shows; tiles are counted row by row. */
+/* Hold the weights of a tile; tiles are counted row by row. */
 int sheet_wrinkles_hold(const sheet_wrinkles *s, figure *f, uint32_t tile);
 void sheet_wrinkles_label(const sheet_wrinkles *s, uint32_t tile, char *text, size_t bytes);
 

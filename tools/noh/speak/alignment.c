@@ -10,14 +10,14 @@
 
 #define TOP_HZ 7600.0f
 #define TOP_PART 0.475f   /* of the recording's rate, where that is less */
-#define SPOKEN_PART 0.3f  /* from the quietest to the loudest: what is louder is speech */
+#define SPOKEN_PART 0.3f  /* share of the range from the quietest to the loudest above which a frame is speech */
 #define SPOKEN_GAP 12u    /* frames: a shorter silence is within speech, as before a p, t or k */
-#define RANGE_DB 45.0f    /* of speech in a room: what is quieter still tells nothing */
-#define QUIET_DB (-75.0f) /* a recording that nowhere is louder has no speech */
-#define RIDGE 0.2         /* on the diagonal of what voices differ by: people differ by more */
+#define RANGE_DB 45.0f    /* floor of speech in a room: quieter differences carry no information */
+#define QUIET_DB (-75.0f) /* a recording below this everywhere has no speech */
+#define RIDGE 0.2         /* on the diagonal of the voices' differences: people differ more */
 #define PAUSE_COST 0.45f  /* of the quietest frame in a pause, where a frame that fits costs about 1 */
 #define PAUSE_SLOPE 2.75f /* and more up to the loudest: breath is cheaper than speech */
-#define SHIFT_FRAMES 10.0 /* of a class before its own mean counts as much as that of all */
+#define SHIFT_FRAMES 10.0 /* of a class, at which its own mean counts as much as the mean of all */
 
 /* ---- which frames are speech ---- */
 
@@ -70,7 +70,7 @@ static int hear(const sound *recording, float top_hz, heard *h)
     h->at = malloc((h->f.frames + 1u) * sizeof *h->at);
     if (!h->pause_cost || !h->at) return tool_fail("speak", "out of memory");
     if (!h->f.frames || h->high < QUIET_DB) {
-        return tool_fail("speak", "the recording is silent: at no time louder than %d dB", (int)QUIET_DB);
+        return tool_fail("speak", "the recording is silent: it never exceeds %d dB", (int)QUIET_DB);
     }
     for (size_t t = 0; t < h->f.frames; t++) {
         const float part = (h->f.level[t] - h->low) / (h->high - h->low + 1e-3f);
@@ -150,7 +150,7 @@ static void measure_shifts(const reference *r, const heard *h, shifts *s)
     }
 }
 
-/* The voices' sounds are moved to the speaker's, class by class, by what a first warp found. */
+/* The voices' sounds are moved to the speaker's, class by class, by the result of a first warp. */
 static void adapt(reference *r, const heard *h)
 {
     shifts s;
@@ -204,7 +204,7 @@ static int turn(const reference *r, reference *out)
     return 0;
 }
 
-/* Of the way's distance against that of the best way through the same sounds in another order. */
+/* The path's distance against the best path through the same sounds in another order. */
 static int score(const reference *r, heard *h, double *out)
 {
     reference turned;

@@ -1,8 +1,8 @@
-/* alignment.h: where in a recording the words of a known text are.
+/* alignment.h: finds the words of a known text in a recording.
  *
  * No recogniser: the text is spoken by several voices of a synthesiser, whose phones begin at known times, and the
- * recording is warped onto them. Voices that say the same phone differ as speakers differ, so features are weighed by
- * how little they do. Sources: Sakoe and Chiba, "Dynamic programming algorithm optimization for spoken word
+ * recording is warped onto them. Voices that say the same phone differ as speakers differ, so features are weighted by
+ * how little they differ. Sources: Sakoe and Chiba, "Dynamic programming algorithm optimization for spoken word
  * recognition", 1978 (the warp and its limits of slope); Malfrere and Dutoit, "High-quality speech synthesis for
  * phonetic speech segmentation", 1997 (onto synthetic speech). */
 #ifndef NOH_NOH_SPEAK_ALIGNMENT_H

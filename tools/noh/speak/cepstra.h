@@ -1,7 +1,7 @@
-/* cepstra.h: what speech sounds like, a hundred times a second: mel-frequency cepstra and how they change.
+/* cepstra.h: features of speech, a hundred times a second: mel-frequency cepstra and their slopes.
  *
  * Source: Davis and Mermelstein, "Comparison of parametric representations for monosyllabic word recognition in
- * continuously spoken sentences", 1980. Windows of 25 ms; frame t stands for the ten milliseconds from t / 100 s. */
+ * continuously spoken sentences", 1980. Windows of 25 ms; frame t covers the ten milliseconds from t / 100 s. */
 #ifndef NOH_NOH_SPEAK_CEPSTRA_H
 #define NOH_NOH_SPEAK_CEPSTRA_H
 

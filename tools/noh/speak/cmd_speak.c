@@ -17,7 +17,7 @@
 
 #define FRAME_RATE SPEECH_TRACK_RATE
 #define TEXT_BYTES_MAX 65536u
-#define TEXT_BYTES_A_SECOND 150.0 /* ten times what people say, in scripts of one byte a character */
+#define TEXT_BYTES_A_SECOND 150.0 /* ten times the rate of speech, in scripts of one byte a character */
 #define TEXT_BYTES_SPARE 500.0
 
 typedef struct speak_args {
@@ -26,7 +26,7 @@ typedef struct speak_args {
     hearing how;
 } speak_args;
 
-/* What is said, out of a text alone or out of a recording. */
+/* The speech, from a text alone or from a recording. */
 typedef struct spoken {
     char *text;
     synthesis said;
@@ -38,7 +38,7 @@ typedef struct spoken {
     label_score against;
 } spoken;
 
-/* ---- what it found ---- */
+/* ---- results ---- */
 
 static void json_phones(json *j, const synthesis *said)
 {
@@ -138,7 +138,7 @@ static void print_text(const speak_args *a, const spoken *s)
     }
     fprintf(out, "\n");
     if (s->recorded && !s->heard)
-        fprintf(out, "alignment's score %.2f (%.2f and less: other words)\n", s->score, ALIGNMENT_SCORE_POOR);
+        fprintf(out, "alignment score %.2f (%.2f or less: other words)\n", s->score, ALIGNMENT_SCORE_POOR);
     if (s->labelled) {
         const label_score *l = &s->against;
         fprintf(out,
@@ -167,11 +167,11 @@ static int read_text_file(const char *path, char **out)
     int status = 0;
     if (noh_file_map(path, &file, &error)) return tool_fail(path, "cannot be read: %s", error.what);
     if (!file.bytes) {
-        status = tool_fail(path, "is empty: there is nothing to say");
+        status = tool_fail(path, "is empty: write the words to speak");
     } else if (file.bytes > TEXT_BYTES_MAX) {
-        status = tool_fail(path, "is longer than %u bytes: say it in parts", TEXT_BYTES_MAX);
+        status = tool_fail(path, "is longer than %u bytes: split it", TEXT_BYTES_MAX);
     } else if (memchr(file.data, 0, file.bytes)) {
-        status = tool_fail(path, "is no text: it holds bytes of 0");
+        status = tool_fail(path, "is not a text: it contains zero bytes");
     } else {
         *out = copy(file.data, file.bytes);
         status = *out ? 0 : tool_fail(path, "out of memory");
@@ -197,10 +197,10 @@ static int take_text(const speak_args *a, spoken *s)
     s->recorded = a->text || a->text_file;
     s->heard = !s->recorded && is_sound_file(a->subject);
     if ((a->how.live || a->how.amplitude) && !s->heard) {
-        return tool_usage("speak: --live and --amplitude are for a recording without words");
+        return tool_usage("speak: --live and --amplitude need a recording without words");
     }
     if ((s->recorded || s->heard) && a->wav) return tool_usage("speak: --wav has no effect with a recording");
-    if (!s->recorded && !s->heard && a->labels) return tool_usage("speak: --labels wants a recording");
+    if (!s->recorded && !s->heard && a->labels) return tool_usage("speak: --labels needs a recording");
     if (s->heard) text = "";
     if (a->text_file) return read_text_file(a->text_file, &s->text);
     if (strlen(text) > TEXT_BYTES_MAX) return tool_fail("speak", "the text is longer than %u bytes", TEXT_BYTES_MAX);
@@ -214,33 +214,35 @@ static void warn(const speak_args *a, const spoken *s)
 {
     if (s->score < ALIGNMENT_SCORE_POOR) {
         fprintf(stderr,
-                "noh: %s: warning: these words do not seem to be those of the recording (the alignment's score is "
-                "%.2f, %.2f is wanted): is the text right, and the language (--lang)?\n",
+                "noh: %s: warning: the words do not seem to match the recording (alignment score %.2f, expected "
+                "%.2f): check the text and the language (--lang)\n",
                 a->subject, s->score, ALIGNMENT_SCORE_POOR);
     }
     if (s->clipped) {
-        fprintf(stderr, "noh: %s: warning: %zu samples at full scale: it is clipped, times are less exact\n",
-                a->subject, s->clipped);
+        fprintf(stderr, "noh: %s: warning: %zu samples are clipped at full scale: times are less exact\n", a->subject,
+                s->clipped);
     }
 }
 
-/* Nothing can say so much in so little time: the warp would take minutes to find that out. */
+/* A text too long for its recording: the alignment would take minutes to fail. */
 static int check_length(const speak_args *a, const spoken *s, const sound *recording)
 {
     const double seconds = (double)recording->count / recording->rate;
     const size_t bytes = strlen(s->text);
     if ((double)bytes <= TEXT_BYTES_SPARE + TEXT_BYTES_A_SECOND * seconds) return 0;
-    return tool_fail(a->subject, "%zu bytes of text are not said in %.1f s: is it the text of this recording alone?",
-                     bytes, seconds);
+    return tool_fail(a->subject,
+                     "%zu bytes of text are too many for %.1f s of sound: give only the words of this recording", bytes,
+                     seconds);
 }
 
 static int read_recording(const speak_args *a, sound *recording)
 {
     const int status = sound_read(a->subject, recording);
     if (!status && recording->only_channel) {
-        fprintf(stderr,
-                "noh: %s: warning: its channels take each other away, as in opposite phase: channel %u alone is used\n",
-                a->subject, (unsigned)recording->only_channel);
+        fprintf(
+            stderr,
+            "noh: %s: warning: its channels cancel each other out, as with opposite phase: only channel %u is used\n",
+            a->subject, (unsigned)recording->only_channel);
     }
     return status;
 }
@@ -327,43 +329,43 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(speak_args, text),
       .value = "WORDS",
-      .what = "what is said in the recording IN.wav",
+      .what = "the words spoken in the recording IN.wav",
       .example = "Hello.",
       .excludes = "--text-file" },
     { .name = "--text-file",
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, text_file),
       .value = "FILE",
-      .what = "the same, in a file of UTF-8",
+      .what = "the same, from a UTF-8 text file",
       .example = "line.txt" },
     { .name = "--labels",
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, labels),
       .value = "FILE",
-      .what = "measure what was found against phones that are known: lines of start, end (s) and phone",
+      .what = "measure the result against known phones: lines of start, end (s) and phone",
       .example = "line.phones" },
     { .name = "--live",
       .kind = OPTION_FLAG,
       .at = offsetof(speak_args, how.live),
-      .what = "a recording without words, heard in one go as from a microphone (JSON: how late)",
+      .what = "process a recording without words like a live microphone (JSON has the latency)",
       .excludes = "--text --text-file" },
     { .name = "--amplitude",
       .kind = OPTION_FLAG,
       .at = offsetof(speak_args, how.amplitude),
-      .what = "a recording without words, by loudness alone: three shapes, ten times a second",
+      .what = "use only the loudness of a recording without words: three shapes, ten times a second",
       .excludes = "--text --text-file" },
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(speak_args, output),
       .value = "OUT.noh",
-      .what = "a pack with the clip, to be played beside others (--anim OUT.noh --clip speech)",
+      .what = "a pack with the clip, to play along with other clips (--anim OUT.noh --clip speech)",
       .example = "line.noh",
       .needs = "--face" },
     { .name = "--face",
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, face),
       .value = "PACK",
-      .what = "whose face speaks: its targets have names of ARKit, of VRM or of facial units",
+      .what = "the face that speaks: its targets need names of ARKit, VRM or facial units",
       .example = "face.noh",
       .needs = "-o" },
     { .name = "--name",
@@ -371,7 +373,7 @@ static const option options[] = {
       .at = offsetof(speak_args, name),
       .value = "NAME",
       .initial = "speech",
-      .what = "of the clip",
+      .what = "name of the clip",
       .example = "greeting" },
     { .name = "--lang",
       .kind = OPTION_TEXT,
@@ -392,14 +394,9 @@ static const option options[] = {
 const verb verb_speak = {
     .name = "speak",
     .files = "TEXT|IN.wav",
-    .what = "say a text, or find one in a recording: phones, and a clip of the mouth for a face",
+    .what = "make phones and a mouth clip for a face from a text, a recording, or both",
     .more =
-        "eSpeak NG says it (Debian: libespeak-ng1, espeak-ng-data); phones begin at its samples, to the sample. Mouth "
-        "shapes run into each other as they do in speech, and lips meet for every p, b and m. Words are callback "
-        "keys of the clip. With --text the words are found in a recording (8 to 32 bits or floats, any rate, up to ten "
-        "minutes; Debian: libsndfile1): it is warped onto several voices of eSpeak NG that say them, in any of its "
-        "languages. A warning tells when the words do not seem to be in it. A recording without words is heard by the "
-        "same ear that hears microphones: fewer shapes are right, and any language will do.",
+        "eSpeak NG speaks a text (Debian: libespeak-ng1, espeak-ng-data), and phones are exact to the sample. Mouth shapes blend as they do in speech, and the lips meet for every p, b and m. Words become callback keys of the clip. With --text, the words are found in a recording (8 to 32 bits or floats, any rate, up to ten minutes; Debian: libsndfile1) by aligning it with several voices of eSpeak NG, in any of its languages; a warning says if the words do not seem to match. A recording without words goes through the same ear as a microphone: fewer shapes are right, but any language works.",
     .example =
         "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json\n"
         "line.wav --text \"Hello.\" --face face.noh -o line.noh\nline.wav --face face.noh -o line.noh",

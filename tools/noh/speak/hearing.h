@@ -6,11 +6,11 @@
 #include "speech_track.h"
 
 typedef struct hearing {
-    int live;      /* in one go, as a program hears a microphone; else what is learnt of the voice is known at once */
+    int live;      /* in one pass, as from a microphone; otherwise a second pass knows the voice from the start */
     int amplitude; /* by loudness alone (face.h), not by the ear (face.h) */
 } hearing;
 
-/* Fills `said` with runs of one shape, each as a phone that stands for its shape, and `track` with frames. Prints an
+/* Fills `said` with runs of one shape, each as a phone of that shape, and `track` with frames. Prints an
  * error and returns an exit code; 0 on success. */
 int hearing_make(const sound *recording, const hearing *how, synthesis *said, speech_track *track);
 

@@ -41,7 +41,8 @@ static int read_line(const char *path, size_t number, const char *line, label_li
     char phone[32];
     double start, end;
     if (sscanf(line, "%lf %lf %31s", &start, &end, phone) != 3 || !(start >= 0.0 && end >= start && end < 1e6)) {
-        return tool_fail(path, "line %zu: not \"start end phone\" in seconds: %.60s", number, line);
+        return tool_fail(path, "line %zu: expected \"start end phone\" with times in seconds, not: %.60s", number,
+                         line);
     }
     if (out->count >= LABELS_MAX) return tool_fail(path, "line %zu: more than %u phones", number, LABELS_MAX);
     if (!strcmp(phone, "NS") || !strcmp(phone, "BREATH")) memcpy(phone, "SIL", 4); /* noise: shut lips */

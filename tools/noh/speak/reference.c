@@ -162,7 +162,7 @@ static const char *const variants[] = { "", "+f2", "+m3", "+klatt2", "+f5", "+m7
 
 #define VARIANTS (sizeof variants / sizeof variants[0])
 
-/* One that says other phones is left out: *means is NULL. */
+/* A voice with other phones is left out: *means is NULL. */
 static int hear_voice(const reference *r, const char *text, const char *language, const char *variant, float top_hz,
                       float **means)
 {
@@ -195,7 +195,7 @@ static void add_outer(const float *x, const float *mean, double *sum)
     }
 }
 
-/* What all voices have in common, and what they differ by. */
+/* The mean of all voices, and their differences. */
 static void pool(reference *r, float *const *voices, size_t count)
 {
     double degrees = 0.0;
@@ -236,7 +236,7 @@ int reference_make(const char *text, const char *language, double seconds, float
     status = synthesis_make(text, language, &out->said);
     if (status) return status;
     if (spoken_seconds(&out->said) <= 0.0) {
-        status = tool_fail("speak", "there is nothing to say in this text");
+        status = tool_fail("speak", "the text contains no words to speak");
     } else if (make_states(out, seconds)) {
         status = tool_fail("speak", "out of memory");
     } else {

@@ -29,7 +29,8 @@ static int load(sndfile *s)
 {
     s->library = dlopen("libsndfile.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!s->library) {
-        return tool_fail("speak", "libsndfile is not here, which reads sound files (Debian: apt install libsndfile1)");
+        return tool_fail("speak",
+                         "sound files need libsndfile, which is not installed (Debian: apt install libsndfile1)");
     }
     /* ISO C has no cast from an object's address to a function's: POSIX takes this one */
     *(void **)&s->open = dlsym(s->library, "sf_open");
@@ -60,7 +61,7 @@ static int grow(sound *s, size_t *room, size_t more)
     return !samples;
 }
 
-/* What of each channel alone and of their mean is heard: the sums of squares. */
+/* The loudness of each channel and of their mean: sums of squares. */
 typedef struct loudness {
     double own[CHANNELS_MAX], mean;
 } loudness;
@@ -100,7 +101,7 @@ static size_t only_channel(const loudness *heard, size_t channels)
 static int check_info(const char *path, const file_info *info)
 {
     if (info->rate < RATE_MIN || info->rate > RATE_MAX) {
-        return tool_fail(path, "%d samples a second: speech wants %d to %d", info->rate, RATE_MIN, RATE_MAX);
+        return tool_fail(path, "%d samples a second: speech needs %d to %d", info->rate, RATE_MIN, RATE_MAX);
     }
     if (info->channels < 1 || info->channels > CHANNELS_MAX) {
         return tool_fail(path, "%d channels: at most %d can be read", info->channels, CHANNELS_MAX);
@@ -108,7 +109,7 @@ static int check_info(const char *path, const file_info *info)
     return 0;
 }
 
-/* What the header says of the length is not trusted: the samples are counted. */
+/* The length in the header is not trusted: the samples are counted. */
 static int read_all(const sndfile *s, void *file, const char *path, const file_info *info, size_t only, sound *out,
                     loudness *heard)
 {
@@ -129,7 +130,7 @@ static int read_all(const sndfile *s, void *file, const char *path, const file_i
     }
     free(block);
     if (!status && s->error(file)) status = tool_fail(path, "sample %zu: %s", out->count, s->what(file));
-    if (!status && !out->count) status = tool_fail(path, "holds no sound: a header without samples");
+    if (!status && !out->count) status = tool_fail(path, "contains no samples");
     return status;
 }
 

@@ -216,8 +216,8 @@ static float shut_of(const float *visemes)
     return visemes[NOH_VISEME_PP] + visemes[NOH_VISEME_FF];
 }
 
-/* The shapes of a frame. Where lips are shut more a frame earlier or later, as they are then: what is played between
- * two frames is then shut for as long as the lips are. */
+/* The shapes of a frame. If the lips are more closed a frame earlier or later, that frame's: blends between frames then
+ * stay closed for as long as the lips do. */
 static void visemes_of(const speech_track *t, uint32_t frame, float *visemes)
 {
     const int64_t step = NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND, tick = (int64_t)frame * step;
@@ -280,7 +280,7 @@ static int add_words(const synthesis *said, const char *text, raw_clip *clip)
     return 0;
 }
 
-/* A named float that tells a face (modules.h) how much of the mouth is taken: an emotion leaves it that. */
+/* A named float that gives a face (modules.h) the share of the mouth in use, which emotions leave free. */
 static int add_float(const speech_track *t, const char *name, int shut_alone, raw_clip *clip)
 {
     raw_floats *out = &clip->floats[clip->float_count++];
@@ -296,7 +296,7 @@ static int add_float(const speech_track *t, const char *name, int shut_alone, ra
     return !out->name;
 }
 
-/* The clip's floats: those of every node with mouth shapes. Returns 1 when out of memory. */
+/* The clip's floats: the weights of every node with mouth shapes. Returns 1 when out of memory. */
 static int add_faces(const speech_track *t, const noh_pack *pack, raw_clip *clip)
 {
     const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
@@ -351,8 +351,9 @@ int speech_track_pack(const speech_track *t, const synthesis *said, const char *
             add_words(said, text, clip)) {
             status = tool_fail(face->path, "out of memory");
         } else if (!clip->float_count) {
-            status = tool_fail(face->path, "the pack has no targets that shape a mouth: neither names of ARKit, nor of "
-                                           "VRM, nor of facial units (`noh info` lists them)");
+            status = tool_fail(
+                face->path,
+                "the pack has no mouth targets with names of ARKit, VRM or facial units (`noh info` lists its targets)");
         }
     }
     if (!status) status = encode(set, face->path, out);

@@ -1,4 +1,4 @@
-/* speech_track.h: what is said, as mouth shapes over time, and as a clip of morph weights for the face of a pack. */
+/* speech_track.h: speech as mouth shapes over time, and as a clip of morph weights for the face of a pack. */
 #ifndef NOH_NOH_SPEAK_SPEECH_TRACK_H
 #define NOH_NOH_SPEAK_SPEECH_TRACK_H
 
@@ -25,7 +25,7 @@ typedef struct speech_track {
 
 /* Prints an error and returns an exit code; 0 on success: as all here. */
 int speech_track_make(const synthesis *said, speech_track *out);
-/* Room for the frames of so many seconds. */
+/* Room for the frames of this duration. */
 int speech_track_frames(speech_track *t, double seconds);
 void speech_track_free(speech_track *t);
 

@@ -56,7 +56,7 @@ static int load(espeak *e)
 {
     e->library = dlopen("libespeak-ng.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!e->library) {
-        return tool_fail("speak", "eSpeak NG is not here (Debian: apt install libespeak-ng1 espeak-ng-data)");
+        return tool_fail("speak", "eSpeak NG is not installed (Debian: apt install libespeak-ng1 espeak-ng-data)");
     }
     /* ISO C has no cast from an object's address to a function's: POSIX takes this one */
     *(void **)&e->initialize = dlsym(e->library, "espeak_Initialize");
@@ -74,7 +74,7 @@ static int load(espeak *e)
     return 0;
 }
 
-/* ---- what it says ---- */
+/* ---- events of eSpeak NG ---- */
 
 /* Its callback has no place for ours. */
 static synthesis *current;
@@ -130,10 +130,10 @@ static int start(void)
     if (status) return status;
     engine_rate = engine.initialize(OUTPUT_SYNCHRONOUS, 200, NULL, WITH_PHONEMES | PHONEMES_IPA | DO_NOT_EXIT);
     if (engine_rate > 0) return 0;
-    return tool_fail("speak", "eSpeak NG does not start: its data may be missing (Debian: apt install espeak-ng-data)");
+    return tool_fail("speak", "eSpeak NG cannot start: its data may be missing (Debian: apt install espeak-ng-data)");
 }
 
-/* A voice's own name, or else that of the best voice for a language, and then its variant ("+f2"). */
+/* A voice's own name, or else the name of the best voice for a language, and then its variant ("+f2"). */
 static int set_voice(const char *name)
 {
     const char *variant = strchr(name, '+');
@@ -160,12 +160,12 @@ static int say(const char *text, const char *name, synthesis *out)
     current = out;
     engine.set_callback(take);
     if (engine.synth(text, strlen(text) + 1u, 0, BY_CHARACTER, 0, IN_UTF8, NULL, NULL) || engine.synchronize()) {
-        return tool_fail("speak", "eSpeak NG cannot say this text");
+        return tool_fail("speak", "eSpeak NG cannot speak this text");
     }
     if (out->failed) return tool_fail("speak", "out of memory");
     return out->word_count && out->phone_count && out->sample_count
                ? 0
-               : tool_fail("speak", "there is nothing to say in this text");
+               : tool_fail("speak", "the text contains no words to speak");
 }
 
 int synthesis_make(const char *text, const char *name, synthesis *out)

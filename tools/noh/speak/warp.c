@@ -16,7 +16,7 @@
 #define FAR 1e30f
 #define CELLS_MAX 8e6  /* of a warp without a band */
 #define BAND_MIN 300u  /* states on each side of the coarse path */
-#define BAND_STEPS 20u /* and so many coarse steps */
+#define BAND_STEPS 20u /* the same, in coarse steps */
 
 float warp_distance(const float *a, const float *b)
 {
@@ -25,7 +25,7 @@ float warp_distance(const float *a, const float *b)
     return sqrtf(sum);
 }
 
-/* One warp: which states each frame may be in, and what it came from. */
+/* One warp: the possible states of each frame, and their predecessors. */
 typedef struct grid {
     const reference_state *states;
     const float *means, *values, *pause_cost;
@@ -189,8 +189,8 @@ static void band(const coarse *c, size_t states, size_t by, size_t width, uint32
 static int told(int result)
 {
     if (result < 0) return tool_fail("speak", "out of memory");
-    return result ? tool_fail("speak", "the recording is too short for these words: more than thrice as many as can be "
-                                       "said in it")
+    return result ? tool_fail("speak",
+                              "the recording is too short for these words: they need more than three times its length")
                   : 0;
 }
 

@@ -18,7 +18,7 @@ typedef struct strip_args {
     int quiet, as_json;
 } strip_args;
 
-/* The level that is asked of all meshes: the last one without a name; 0: none is. */
+/* The level requested for all meshes: the last one without a name; 0: none. */
 static uint32_t level_of_all(const option_list *levels)
 {
     uint32_t of_all = 0, level;
@@ -35,14 +35,14 @@ static int check_args(const strip_args *a)
     size_t name_bytes;
     for (int i = 0; i < a->levels.count; i++) {
         if (strip_level_parse(a->levels.items[i], &name_bytes, &level)) {
-            return tool_usage("--from-level wants K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
+            return tool_usage("--from-level must be K or MESH=K, K from 0 to %u, not '%s'", NOH_LOD_LEVELS_MAX - 1u,
                               a->levels.items[i]);
         }
     }
     return a->as_json && report_stream(a->output) != stdout ? tool_usage("--json and -o both write to stdout") : 0;
 }
 
-/* The largest error of the finest level that is left, millimetres: what the shares of LOD go by. */
+/* The largest error of the finest remaining level, millimetres, on which the choice of LOD depends. */
 static double error_mm(const noh_mesh *mesh)
 {
     noh_lod_mesh levels[NOH_LOD_LEVELS_MAX];
@@ -114,7 +114,8 @@ static int write_pack(const strip_args *a, const noh_pack *before, const byte_bu
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_pack after;
     if (noh_pack_open(out->bytes, out->count, &after, &error)) {
-        return tool_fail(a->pack, "the pack that was made does not open: %s (byte %llu); this is a bug of noh",
+        return tool_fail(a->pack,
+                         "the stripped pack does not open: %s (byte %llu); this is a bug in noh: please report it",
                          error.what, (unsigned long long)error.where);
     }
     if (noh_file_write(a->output, out->bytes, out->count, &error)) {
@@ -130,8 +131,7 @@ static int strip(const strip_args *a, const noh_pack *pack)
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error;
     int status = first ? 0 : tool_fail(a->pack, "out of memory");
-    if (!status && !pack->mesh_count)
-        status = tool_fail(a->pack, "the pack has no meshes, so there is no level to cut");
+    if (!status && !pack->mesh_count) status = tool_fail(a->pack, "the pack has no meshes, and so no levels to strip");
     if (!status && (strip_levels_of(&levels, pack, first, &error) || pack_strip(pack, first, &out, &error))) {
         status = tool_fail(a->pack, "%s", error.what);
     }
@@ -170,7 +170,7 @@ static const option options[] = {
       .required = 1,
       .value = "K|MESH=K",
       .what =
-          "the finest level that stays, 0 to 7, of all meshes or of one; a mesh with fewer levels keeps its coarsest; may repeat, and the last for each mesh counts",
+          "the finest level to keep, 0 to 7, for all meshes or for one; a mesh with fewer levels keeps its coarsest; may repeat: the last one for each mesh counts",
       .example = "2" },
     { .name = "--quiet",
       .kind = OPTION_FLAG,
@@ -183,9 +183,9 @@ static const option options[] = {
 const verb verb_strip = {
     .name = "strip",
     .files = "PACK",
-    .what = "a pack of the coarser LOD levels alone, made from a finished pack",
+    .what = "make a pack of only the coarser LOD levels from a finished pack",
     .more =
-        "Levels keep their numbers and their errors, so the levels that are left are chosen, and look, as in the full pack. Skins, clips, nodes, materials and textures stay as they are.",
+        "Levels keep their numbers and errors, so they are chosen and look the same as in the full pack. Skins, clips, nodes, materials and textures are unchanged.",
     .example =
         "head.noh -o head_small.noh --from-level 2\nbody.noh -o body_small.noh --from-level 1 --from-level mask=3",
     .options = options,

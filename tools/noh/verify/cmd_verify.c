@@ -88,12 +88,12 @@ static int verify_figure(verify_job *job)
         job->gpu_used = noh_gl_ledger_bytes(&job->g.ledger);
         status = show(&f);
         verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == job->gpu_used,
-                            "GPU memory was taken after init");
+                            "GPU memory was allocated after init");
         figure_close(&f);
     }
-    verify_check_memory(job, job->cpu_predicted == job->cpu_used, "CPU bytes are not those predicted");
-    verify_check_memory(job, job->gpu_predicted == job->gpu_used, "GPU bytes are not those predicted");
-    verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
+    verify_check_memory(job, job->cpu_predicted == job->cpu_used, "CPU bytes differ from the prediction");
+    verify_check_memory(job, job->gpu_predicted == job->gpu_used, "GPU bytes differ from the prediction");
+    verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not freed");
     job->failed |= status;
     return status;
 }
@@ -145,7 +145,7 @@ static int run(void *args)
         return status;
     }
     if (!(a->bound_scale > 0.0)) {
-        return tool_usage("--bound-scale wants a number over 0");
+        return tool_usage("--bound-scale must be a number over 0");
     }
     job.bound_scale = a->bound_scale;
     job.without_tangents = a->without_tangents;
@@ -180,14 +180,14 @@ static const option options[] = {
       .value = "X",
       .initial = "1",
       .what =
-          "multiply the bounds of skinned vertices by this, over 0: to see how close errors come, or the check fail",
+          "multiply the error bounds of skinned vertices by this, above 0: shows how close errors come to them, or makes the check fail",
       .example = "0.1" },
     { .name = "--without-tangents",
       .kind = OPTION_FLAG,
       .at = offsetof(verify_args, without_tangents),
-      .what = "accumulate positions and normals alone, on every path" },
+      .what = "accumulate only positions and normals, on every path" },
     OPTION_INSTANCES(verify_args, instances, "1",
-                     .what = "copies of the scene whose memory is compared with the budget, 1 to 65536"),
+                     .what = "copies of the scene for the comparison of memory and budget, 1 to 65536"),
     OPTION_LOD(verify_args, lod, .needs = NULL),
     OPTION_DRIVER(verify_args, driver, .initial = "egl"),
     OPTION_JSON(verify_args, as_json),
@@ -198,8 +198,7 @@ const verb verb_verify = {
     .files = "PACK",
     .what = "compare every path and format with the CPU reference, and memory with its budget",
     .more =
-        "Fails (exit code 1) when a value that must be equal differs, or when one exceeds its bound; each FAILED line names the row, "
-        "the value and the bound.",
+        "Fails (exit code 1) if a value that must be equal differs, or if one exceeds its bound; each FAILED line names the row, the value and the bound.",
     .example = "face.noh\nbody.noh --instances 100 --lod 1 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

@@ -5,7 +5,7 @@
 #include "noh/base.h"
 #include "noh/pack.h"
 
-/* What is known of the weights, and of how sums are rounded. */
+/* The known facts about the weights and the rounding of sums. */
 typedef struct half_range {
     const float *low, *high; /* [target_count]: the range of each weight; both 0: the target is not there */
     int once;           /* sums are rounded at the end alone, as paths do that sum in floats; else after each target,

@@ -1,8 +1,8 @@
-/* verify.h (private to cmd_verify.c, verify_*.c): what is compared, and the results.
+/* verify.h (private to cmd_verify.c, verify_*.c): the comparisons and their results.
  *
  *   verify_paths    every path and format, SIMD, skins, against the CPU
  *   verify_skin     skinned vertices
- *   verify_rows     which rows fail; how they are printed */
+ *   verify_rows     finds rows that fail; prints rows */
 #ifndef NOH_NOH_VERIFY_VERIFY_H
 #define NOH_NOH_VERIFY_VERIFY_H
 

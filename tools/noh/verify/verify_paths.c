@@ -114,8 +114,8 @@ static void measure_f16(verify_row *row, const noh_mesh *mesh, const float *got,
     }
 }
 
-/* How far a unit normal may be off whose sum is off by errors[]: it turns by asin(error / length) at most, and asin x is
- * at most pi / 2 x. errors NULL: not at all. */
+/* How far a unit normal may be off whose sum is off by errors[]: it turns by asin(error / length) at most, and asin x
+ * is at most pi / 2 x. errors NULL: not at all. */
 static double normal_allowance(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t v, const double *errors)
 {
     const size_t texel = noh_mesh_accumulation_texel(mesh, v);
@@ -130,8 +130,8 @@ static double normal_allowance(const noh_mesh *mesh, const noh_morph_layers *lay
     return fmin(2.0, HALF_PI * errors[texel] / sqrt(square));
 }
 
-/* The fetched vertices: position is one exact sum; directions are compared within what a
- * GPU's normalize may differ, and within what normal_errors[] of the sums allow. */
+/* The fetched vertices: position is one exact sum; directions are compared within the
+ * tolerance of a GPU's normalize and the bounds normal_errors[] of the sums. */
 static void compare_vertices(verify_row *row, const noh_mesh *mesh, const noh_morph_layers *layers,
                              const verify_buffers *b, const double *normal_errors)
 {
@@ -208,8 +208,8 @@ static int verify_streams(verify_row *row, readback *r, const noh_gl_mesh *gl_me
     return 0;
 }
 
-/* Finished vertices: every word of the vertex buffer is that of the reference in plain C; drawn, positions are equal to
- * the bit and directions within what their pairs of 16 bits allow. */
+/* Finished vertices: every word of the vertex buffer equals the reference in plain C; drawn, positions are equal to the
+ * bit and directions within the precision of their pairs of 16 bits. */
 static int verify_finished(verify_row *row, readback *r, const noh_gl_mesh *gl_mesh,
                            const noh_gl_morph_binding *binding, const noh_morph_layers *expected,
                            const verify_buffers *b)
@@ -238,9 +238,8 @@ static void clear_layers(const verify_job *job, void *memory, size_t bytes, cons
     layers->tangent = job->without_tangents ? NULL : layers->tangent;
 }
 
-/* Sums whose bits are known give the vertices that the CPU makes of them. Of other sums how far they may be off is
- * known, for these weights: a row's bound of positions is that of the set of weights that allows the most, and normals
- * are held to what their own sums allow. */
+/* Sums with known bits give the CPU's vertices. For other sums the error has a bound for these weights: a row's bound
+ * of positions is the largest over its sets of weights, and normals are held to the bounds of their own sums. */
 static int verify_vertices(const verify_job *job, const noh_gl_morph_plan *plan, const noh_mesh *mesh,
                            const noh_morph_layers *expected, const noh_morph_layers *exact, const verify_buffers *b,
                            verify_row *row)
@@ -366,7 +365,8 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
         return 0;
     }
     if (vertices && !plan.vertex_ring) {
-        row->reason = "no finished vertices: meshes with a transfer, or with targets of texture coordinates, need sums";
+        row->reason =
+            "cannot write finished vertices: a mesh with a light transfer or texture coordinate targets needs sums";
         return 0;
     }
     row->available = row->exact = 1;
@@ -480,6 +480,6 @@ int verify_paths(verify_job *job)
         noh_gl_mesh_delete(&job->g.gl, &job->g.ledger, &gl_meshes[i]);
     }
     free(gl_meshes);
-    verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not given back");
+    verify_check_memory(job, noh_gl_ledger_bytes(&job->g.ledger) == 0, "GPU memory was not freed");
     return status;
 }

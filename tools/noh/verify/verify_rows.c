@@ -71,7 +71,7 @@ int verify_print(const verify_job *job)
     for (int i = 0; i < job->row_count; i++) {
         const verify_row *row = &job->rows[i];
         if (!row->available) {
-            printf("%-12s %-4s %10s %10s %12s %12s  not here: %s\n", row->path, row->accumulate, "-", "-", "-", "-",
+            printf("%-12s %-4s %10s %10s %12s %12s  unavailable: %s\n", row->path, row->accumulate, "-", "-", "-", "-",
                    row->reason);
             continue;
         }

@@ -29,7 +29,7 @@ typedef struct job {
     verify_skin *out;
 } job;
 
-/* What one mesh is compared in. */
+/* The cases in which a mesh is compared. */
 typedef struct mesh_job {
     job *j;
     const noh_mesh *mesh;

@@ -1,5 +1,4 @@
-/* cmd_view.c: a pack or a model in a window. view_window.c opens it, or view_without.c says that libraries are missing.
- */
+/* cmd_view.c: a pack or a model in a window. view_window.c opens it, or view_without.c reports missing libraries. */
 #include <string.h>
 
 #include "view/view_window.h"
@@ -26,22 +25,22 @@ static int check_args(view_args *a)
         return status;
     }
     if (a->frames < 0.0 || a->frames > 1e6 || a->frames != (double)(uint32_t)a->frames) {
-        return tool_usage("--frames wants a whole number up to 1000000");
+        return tool_usage("--frames must be a whole number up to 1000000");
     }
     if (a->run.screenshot && a->frames < 1.0) {
-        return tool_usage("--screenshot wants --frames N, after which it is taken");
+        return tool_usage("--screenshot needs --frames N: it is taken after the last frame");
     }
     if (a->run.film && a->frames < 1.0) {
-        return tool_usage("--film wants --frames N, which it shows");
+        return tool_usage("--film needs --frames N, the frames to show");
     }
     if (a->run.script && a->frames > 0.0) {
-        return tool_usage("--script draws as many frames as it says: it has no --frames");
+        return tool_usage("--frames has no effect with --script, which counts its own frames");
     }
     if (strcmp(a->driver, "egl") != 0 && strcmp(a->driver, "native") != 0) {
-        return tool_usage("--driver wants egl or native, not '%s'", a->driver);
+        return tool_usage("--driver must be egl or native, not '%s'", a->driver);
     }
     if (strcmp(a->camera, "follow") != 0 && strcmp(a->camera, "fixed") != 0) {
-        return tool_usage("--camera wants follow or fixed, not '%s'", a->camera);
+        return tool_usage("--camera must be follow or fixed, not '%s'", a->camera);
     }
     return 0;
 }
@@ -90,7 +89,7 @@ static const option options[] = {
       .at = offsetof(view_args, play),
       .value = "on|off",
       .what =
-          "whether it opens playing: idle, or the first clip that moves joints; default: on, off with --frames or --clip" },
+          "whether a clip plays at once: idle, or the first clip that moves joints; default: on, off with --frames or --clip" },
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),
@@ -101,15 +100,14 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.data),
       .value = "sums|base|TARGET",
-      .what =
-          "the data textures that the panel shows: what is accumulated, the mesh's own, or a target's deltas; default: sums",
+      .what = "the data textures in the panel: accumulated sums, the mesh's base, or a target's deltas; default: sums",
       .example = "jawOpen" },
     { .name = "--camera",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, camera),
       .value = "follow|fixed",
       .initial = "follow",
-      .what = "whether the camera goes with a figure that walks over the ground" },
+      .what = "whether the camera follows a figure that walks over the ground" },
     { .name = "--walk",
       .kind = OPTION_FLAG,
       .at = offsetof(view_args, run.desc.root_motion),
@@ -122,7 +120,8 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, lod),
       .value = "auto|N",
-      .what = "number of LOD levels to convert a model with, with the full mesh, 1 to 8; auto: up to five, by error",
+      .what =
+          "number of LOD levels when converting a model, including the full mesh, 1 to 8; auto: up to five, by error",
       .example = "4" },
     OPTIONS_LIGHT(view_args, light, "auto", .needs = NULL),
     OPTION_PATH(view_args, path, .initial = "auto"),
@@ -132,7 +131,7 @@ static const option options[] = {
       .at = offsetof(view_args, driver),
       .value = "egl|native",
       .initial = "egl",
-      .what = "how the window gets its GL context" },
+      .what = "how the window creates its GL context" },
     { .name = "--size",
       .kind = OPTION_SIZE,
       .at = offsetof(view_args, size),
@@ -144,7 +143,7 @@ static const option options[] = {
       .kind = OPTION_NUMBER,
       .at = offsetof(view_args, frames),
       .value = "N",
-      .what = "draw this many frames, 1/60 s of the clips apart, and end; default: run until the window is closed",
+      .what = "draw this many frames, 1/60 s of clip time apart, and exit; default: run until the window is closed",
       .example = "60" },
     { .name = "--screenshot",
       .kind = OPTION_OUTPUT,
@@ -157,28 +156,28 @@ static const option options[] = {
       .at = offsetof(view_args, run.film),
       .value = "OUT.gif",
       .what =
-          "write the figure of every second frame as a film, 30 pictures a second: .gif, .mp4, .webm or .apng by ffmpeg, or .png, numbered",
+          "write every second frame of the figure as a film of 30 pictures a second: .gif, .mp4, .webm or .apng with ffmpeg, or numbered .png files",
       .example = "walk.gif",
       .needs = "--frames" },
     { .name = "--presets",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.presets),
       .value = "FILE",
-      .what = "where presets of your own are kept, as text; default: the model's name and .presets",
+      .what = "text file for your own presets; default: the model's name with .presets",
       .example = "faces.presets" },
     { .name = "--script",
       .kind = OPTION_INPUT,
       .at = offsetof(view_args, run.script),
       .value = "FILE",
       .what =
-          "lines that move the mouse, press keys, save pictures and check the state, frame by frame (noh help FORMATS); then it ends",
+          "run a script that moves the mouse, presses keys, saves pictures and checks the state frame by frame (noh help FORMATS), then exit",
       .example = "hand.txt" },
 };
 
 const verb verb_view = {
     .name = "view",
     .files = "PACK|MODEL",
-    .what = "open a window: sliders, presets, clips, detail, light, films; files dropped on it are shown",
+    .what = "open a window with sliders, presets, clips, levels, light and films; shows files dropped on it",
     .example =
         "head.glb\nbody.noh --clip walk\nbody.noh --frames 60 --screenshot window.png\nbody.noh --clip walk --frames 120 --film walk.gif",
     .options = options,

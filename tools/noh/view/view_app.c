@@ -40,7 +40,7 @@ static void set_defaults(view_app *a, const view_model_desc *desc)
     a->ground.shown = desc->root_motion;
     a->speed = a->how.speed = a->how.weight = 1.0f;
     a->how.fade_s = 0.2f;
-    a->how.loop = NOH_LOOP_REPEAT; /* who looks at a clip wants to look again */
+    a->how.loop = NOH_LOOP_REPEAT; /* a clip on show repeats */
     a->layer_gain = a->lod.wrinkles = 1.0f;
     a->lod.pixels = 1.0f;
     a->over.joint = NOH_NONE;
@@ -352,7 +352,7 @@ static void draw_marks(view_app *a)
     }
 }
 
-/* What is accumulated on the GPU. */
+/* Accumulation on the GPU. */
 static int accumulate(view_app *a)
 {
     const noh_gl_api *gl = &a->gpu.gl;

@@ -2,26 +2,26 @@
  *
  *   view_app_begin, view_app_blank    a window without a model yet
  *   view_app_open / view_app_close
- *   view_app_lost, view_app_restore   everything on the GPU again, after a lost context
- *   view_app_show        a pack, or a model once it is converted, instead of what is shown
+ *   view_app_lost, view_app_restore   restore everything on the GPU after a lost context
+ *   view_app_show        replace the model by a pack or a converted model
  *   view_app_load        begin to convert a model, or show a pack at once; view_app_poll: show it when it is done, and
  *                        again when the file has changed on disk
  *   view_app_frame       advance time, draw the figure into the window
  *   view_app_moves       whether the next frame will differ
- *   view_app_after       carry out what the panels asked for
- *   view_play            a clip; view_play_first the one that it opens with
- *   view_pick_window     what is under a point of the window
- *   view_push_window, view_push   push what is under a point, or the figure at its chest
+ *   view_app_after       carry out the requests of the panels
+ *   view_play            play a clip; view_play_first plays the initial one
+ *   view_pick_window     pick the point under the mouse
+ *   view_push_window, view_push   push the figure under a point, or at its chest
  *   view_walk            root motion on and off; view_walk_home back to the origin
  *   view_toggle_play     play and pause; starts the first clip where none is on
- *   view_tell            the last error, into the window
+ *   view_tell            show the last error in the window
  *   view_print           the state, as lines of text
  *   view_save            a picture
  *
  * The camera (view_camera.c):
  *   view_turn, view_pan, view_zoom   by hand
- *   view_frame_all       all that plays in the picture, from the front
- *   view_follow          goes with the figure, and turns about it; frames other clips, until it was moved by hand */
+ *   view_frame_all       frame all clips that play, from the front
+ *   view_follow          follows the figure and turns about it; frames other clips until it is moved by hand */
 #ifndef NOH_NOH_VIEW_VIEW_APP_H
 #define NOH_NOH_VIEW_VIEW_APP_H
 
@@ -83,7 +83,7 @@ extern "C" {
 
 typedef enum view_data { VIEW_DATA_SUMS, VIEW_DATA_BASE, VIEW_DATA_DELTA } view_data;
 
-/* The camera, and what it frames. */
+/* The camera and its framing. */
 typedef struct view_eye {
     orbit orbit;
     double anchor[3];     /* where the figure stood in the last frame */
@@ -127,7 +127,7 @@ typedef struct view_files {
     view_load load;
     view_watch watch;
     uint32_t reloads;         /* files read again after they changed on disk */
-    const char *presets_path; /* NULL: beside the model */
+    const char *presets_path; /* NULL: in the model's folder */
 } view_files;
 
 /* The data textures drawn below the gain. */
@@ -136,7 +136,7 @@ typedef struct view_textures {
     uint32_t target; /* VIEW_DATA_DELTA: a target of view_data_mesh; past the last: none is shown */
 } view_textures;
 
-/* What the panels ask for; view_app_after does it. */
+/* Requests of the panels, carried out by view_app_after. */
 typedef struct view_request {
     view_model_desc desc;
     int reload; /* open the figure again with this desc */
@@ -191,21 +191,21 @@ int view_show_data(view_app *a, const char *name);
 int view_app_begin(view_app *a);
 void view_app_blank(view_app *a, float scale);
 
-/* After it. desc: with the window's size; desc->converted for a model. Prints an error and returns an exit code; 0 on
- * success. */
+/* After view_app_begin. desc: with the window's size; desc->converted for a model. Prints an error and returns an exit
+ * code; 0 on success. */
 int view_app_open(view_app *a, const view_model_desc *desc);
 void view_app_close(view_app *a);
 
-/* converted: of a model, taken over; NULL: the file is a pack. On failure the current model stays. */
+/* converted: the pack of a model, taken over; NULL: the file is a pack. On failure the current model stays. */
 int view_app_show(view_app *a, const char *path, byte_buffer *converted);
-/* Shown at once where it is a pack, else by view_app_poll when its conversion is done. */
+/* Show a pack at once; view_app_poll shows a model when its conversion is done. */
 int view_app_load(view_app *a, const char *path);
-/* The same file again: weights, tracks of the same names, light and camera stay. */
+/* Read a changed file again: weights, tracks of the same names, light and camera stay. */
 void view_app_poll(view_app *a);
 void view_tell(view_app *a);
-/* status  0: it takes the last error away; else as view_tell */
+/* status  0: clear the last error; else as view_tell */
 void view_keep(view_app *a, int status);
-/* What belongs to a model, once it is shown: presets, camera, the first clip. */
+/* Set up presets, camera and the first clip of a model that is shown. */
 void view_begin_model(view_app *a);
 
 /* The context was lost: forget its object names. Then fill a->gpu for another context and restore, or close. */
@@ -216,17 +216,17 @@ int view_app_restore(view_app *a);
  * Prints an error and returns an exit code; 0 on success. */
 int view_app_frame(view_app *a, float scale, double seconds);
 void view_app_after(view_app *a);
-/* Where a->lazy: draw the figure as it was posed last, unless that was done. Prints an error and returns an exit code;
+/* If a->lazy: draw the figure in its last pose, unless it is drawn already. Prints an error and returns an exit code;
  * 0 on success. */
 int view_app_picture(view_app *a);
-/* The pictures into the window. */
+/* Copy the pictures into the window. */
 void view_app_present(view_app *a);
 /* 1 while clips play, change or fade: the next frame will differ. */
 int view_app_moves(const view_app *a);
 
 /* The figure's part of the window: left, top, right, bottom in points. */
 void view_app_stage(const view_app *a, float box[4]);
-/* Of the figure's picture, of the first where several are side by side: its lower left corner, its size. */
+/* The figure's picture, the first of several: its lower left corner and size. */
 void view_figure_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint32_t *height);
 
 /* dx, dy in points, y down. */
@@ -236,14 +236,14 @@ void view_zoom(view_app *a, double steps);
 void view_frame_all(view_app *a);
 /* seconds: of the turntable. */
 void view_follow(view_app *a, double seconds);
-/* Another model: measure nothing of the old one. */
+/* For another model: drop all measurements of the old one. */
 void view_forget_frames(view_app *a);
 /* Turn the light, where there is one. */
 void view_turn_light(view_app *a, double degrees);
 void view_toggle_play(view_app *a);
-/* Start a clip as a->how says, in place of what plays on its layer or beside it. */
+/* Start a clip with the settings a->how, in place of the clips on its layer or in addition to them. */
 void view_play(view_app *a, uint32_t clip, int beside);
-/* One whose name begins with idle, else the first that moves joints, else the first. */
+/* Play a clip whose name begins with idle, else the first that moves joints, else the first. */
 void view_play_first(view_app *a);
 /* A film of the picture: one turn, or the longest clip that plays, once, from its start. */
 void view_export_begin(view_app *a);
@@ -251,20 +251,20 @@ void view_graph_start(view_app *a, uint32_t n);
 /* Put a clip on the pad or take it off; play the pad, or stop. */
 void view_pad_choose(view_app *a, uint32_t clip);
 void view_pad_switch(view_app *a);
-/* Where the mouse is over the picture, for faces that look at it. inside: 0: it is elsewhere */
+/* The mouse over the picture, at which faces look. inside 0: it is elsewhere */
 void view_point_window(view_app *a, float x, float y, int inside);
 
 void view_look_at_pointer(const view_app *a, const noh_gl_camera *camera);
 
-/* Pick, or let go where nothing is: prints what was picked. */
+/* Pick the point under the mouse and print it; nothing there: unpick. */
 void view_pick_window(view_app *a, float x, float y);
-/* Away from the camera; it falls, and gets up. Nothing there: nothing is pushed. */
+/* Push the figure away from the camera: it falls, and gets up. Nothing there: no push. */
 void view_push_window(view_app *a, float x, float y);
 void view_push(view_app *a);
 /* Takes effect with view_app_after. */
 void view_walk(view_app *a, int root_motion);
 void view_walk_home(view_app *a);
-/* Tracks, pad, place, level, what is held, what is under way. */
+/* Prints tracks, pad, place, level, held weights and work in progress. */
 void view_print(const view_app *a, FILE *out);
 
 /* The figure without the panels, or the whole window, to a file. */

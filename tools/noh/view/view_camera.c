@@ -26,7 +26,7 @@ void view_figure_pixels(const view_app *a, int *x, int *y, uint32_t *width, uint
     *height = (uint32_t)fmaxf((box[3] - box[1]) * a->window.scale, 1.0f);
 }
 
-/* ---- what it frames ---- */
+/* ---- framing ---- */
 
 void view_forget_frames(view_app *a)
 {
@@ -133,7 +133,7 @@ static void frame_again(view_app *a)
         a->camera.orbit.distance = orbit_fit(&a->camera.framed_box, a->camera.orbit.aspect).distance;
 }
 
-/* A clip that walks takes the camera along, and back where it begins again; who falls does not. */
+/* The camera follows a clip that walks, and returns when it restarts; it does not follow a fall. */
 void view_follow(view_app *a, double seconds)
 {
     const int falls = view_fall_lasts(&a->fall, a->model), goes = a->camera.follow && !falls;

@@ -123,7 +123,7 @@ static int count_differing(view_compare *c, canvas *first)
 
 int view_compare_draw(view_compare *c, view_model *m, overlay *o, const view_over *over, const noh_gl_camera *camera)
 {
-    view_model second = *m; /* it draws what the setting is */
+    view_model second = *m; /* it draws by the setting */
     int status;
     if (c->is.with == VIEW_COMPARE_OFF) return 0;
     second.figure = c->setting.figure;

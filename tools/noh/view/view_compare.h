@@ -1,12 +1,12 @@
-/* view_compare.h: the figure a second time, at another LOD level or by another path, beside the first, and where their
+/* view_compare.h: a second figure next to the first, at another LOD level or by another path, and where their
  * pictures differ.
  *
  *   view_compare_fit      opens and closes the second by `how`, before a frame
  *   view_compare_step, view_compare_pose, view_compare_draw   as the first
- *   view_compare_columns  how many pictures are side by side
+ *   view_compare_columns  the number of pictures side by side
  *
- * The second plays what the first plays, tick by tick. It does not fall when the first is pushed, and its face does not
- * live. */
+ * The second plays the same clips as the first, tick by tick. It does not fall when the first is pushed, and its face
+ * is still. */
 #ifndef NOH_NOH_VIEW_VIEW_COMPARE_H
 #define NOH_NOH_VIEW_VIEW_COMPARE_H
 
@@ -28,7 +28,7 @@ typedef struct view_compare_how {
 } view_compare_how;
 
 typedef struct view_compare {
-    view_compare_how how, is; /* is: what is open */
+    view_compare_how how, is; /* is: the open one */
     setting setting;
     const figure *beside; /* the first's, when it was opened */
     canvas canvas;

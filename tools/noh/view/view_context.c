@@ -145,7 +145,7 @@ static int reopen(view_context *c, const char *title)
     }
     /* A plan for the old driver may not work on another. */
     if (!status && memcmp(&caps, &c->gpu->caps, sizeof caps) != 0) {
-        status = tool_fail("view", "the context was lost and another driver came back (%s): start again",
+        status = tool_fail("view", "the GL context was lost and came back with another driver (%s): restart noh view",
                            caps.renderer);
     }
     return status;

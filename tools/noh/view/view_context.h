@@ -1,4 +1,4 @@
-/* view_context.h: a GLFW window and its GL context, which a driver may take away.
+/* view_context.h: a GLFW window and its GL context, which may be lost.
  *
  *   view_context_open / view_context_close
  *   view_context_lost     whether the context is gone

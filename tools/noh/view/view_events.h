@@ -1,8 +1,8 @@
-/* view_events.h: the window's state, and what happens in it: from GLFW, or from a script (view_script.h).
+/* view_events.h: the window's state and input events, from GLFW or from a script (view_script.h).
  *
- *   view_listen      be called by GLFW
+ *   view_listen      register the GLFW callbacks
  *   view_on_button, view_on_move, view_on_wheel, view_on_key, view_on_letter, view_on_drop
- *   view_take_input  what the panels get of it, once a frame */
+ *   view_take_input  passes the input to the panels, once a frame */
 #ifndef NOH_NOH_VIEW_VIEW_EVENTS_H
 #define NOH_NOH_VIEW_VIEW_EVENTS_H
 

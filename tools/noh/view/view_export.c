@@ -47,7 +47,7 @@ int view_export_frame(view_export *e, canvas *c)
     int status = 0;
     if (!e->is_on) return 0;
     if (c->width != e->film.width || c->height != e->film.height) {
-        status = tool_fail(e->film.path, "the picture changed its size meanwhile");
+        status = tool_fail(e->film.path, "the picture changed its size during the export: start again");
         view_export_stop(e);
         return status;
     }
@@ -61,6 +61,6 @@ int view_export_frame(view_export *e, canvas *c)
         fflush(stdout);
         return status;
     }
-    /* A broken pipe: closing tells why. */
+    /* A broken pipe: closing reports the reason. */
     return end(e, 1) ? EXIT_FAILED : status;
 }

@@ -1,8 +1,8 @@
-/* view_export.h: the picture, frame by frame at a fixed rate, into a film (file/film_file.h): one turn about the
- * figure, or what plays, once.
+/* view_export.h: exports the picture, frame by frame at a fixed rate, as a film (file/film_file.h): one turn about
+ * the figure, or the clips that play, once.
  *
  *   view_export_start, view_export_stop
- *   view_export_step   the seconds of the next frame, and what it turns by; 0: none is going on
+ *   view_export_step   the seconds and the turn of the next frame; 0: no export is running
  *   view_export_frame  the picture that was drawn */
 #ifndef NOH_NOH_VIEW_VIEW_EXPORT_H
 #define NOH_NOH_VIEW_VIEW_EXPORT_H
@@ -33,7 +33,7 @@ int view_export_start(view_export *e, const canvas *c, const char *path, uint32_
 int view_export_frame(view_export *e, canvas *c);
 
 int view_export_step(const view_export *e, double *seconds, double *radians);
-/* Nothing is left behind. */
+/* Deletes the unfinished film. */
 void view_export_stop(view_export *e);
 
 #ifdef __cplusplus

@@ -14,10 +14,10 @@ int view_fall_push(view_model *m, const view_pick *pick, const float eye[3])
     const noh_place place = view_model_place(m);
     float impulse[3];
     if (error.result) {
-        return tool_fail(m->path, "it cannot fall: %s", error.what);
+        return tool_fail(m->path, "it cannot ragdoll: %s", error.what);
     }
     if (pick && pick->kind) {
-        return tool_fail(m->path, "only the pack's first skeleton can fall");
+        return tool_fail(m->path, "only the pack's first skeleton can ragdoll");
     }
     noh_push_away(eye, pick ? pick->hit.point : place.position, PUSH, impulse);
     return noh_actor_push(s, m->figure->actors[0], pick ? pick->hit.point : NULL, impulse, &error)

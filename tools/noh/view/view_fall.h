@@ -1,8 +1,8 @@
-/* view_fall.h: pushes: the first figure falls, gets up, and goes on with what it played.
+/* view_fall.h: pushes: the first figure falls, gets up, and resumes its clips.
  *
  *   view_fall_push    where it was clicked, or at its chest
  *   view_fall_step    before time moves on
- *   view_fall_lasts   whether it is not over yet */
+ *   view_fall_lasts   whether the fall is still going on */
 #ifndef NOH_NOH_VIEW_VIEW_FALL_H
 #define NOH_NOH_VIEW_VIEW_FALL_H
 
@@ -12,9 +12,9 @@
 
 typedef struct view_fall {
     noh_fall fall;
-    uint32_t clip, graph;   /* of its body that played when it began to get up; NOH_NONE: none */
+    uint32_t clip, graph;   /* the body's clip that played when it began to get up; NOH_NONE: none */
     uint32_t rise;          /* the clip by which it gets up */
-    int had_pad, has_risen; /* has_risen: it is to go on with them */
+    int had_pad, has_risen; /* has_risen: it resumes them */
 } view_fall;
 
 /* These print an error and return an exit code; 0 on success. */

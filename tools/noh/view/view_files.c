@@ -5,7 +5,7 @@
 #include "cli/message.h"
 #include "view/view_app.h"
 
-/* What belongs to a model, once it is shown. */
+/* Presets, camera and first clip of a model that is shown. */
 void view_begin_model(view_app *a)
 {
     const int status = view_presets_read(&a->presets, a->model, a->files.presets_path);
@@ -18,7 +18,7 @@ void view_begin_model(view_app *a)
     if (a->autoplay) view_play_first(a);
 }
 
-/* What the old model's sliders held, by name. */
+/* The held weights of the old model, by name. */
 static void carry_weights(const view_model *from, view_model *to)
 {
     for (uint32_t i = 0; i < from->target_count; i++) {

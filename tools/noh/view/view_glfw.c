@@ -102,7 +102,8 @@ int view_glfw_load(void)
     void *opened = noh_library_open("libglfw.so.3", message, sizeof message);
     const char *missing = NULL;
     if (!opened) {
-        return tool_fail("view", "libglfw.so.3 is not here, which opens windows (Debian: apt install libglfw3): %.*s",
+        return tool_fail("view",
+                         "windows need libglfw.so.3, which is not installed (Debian: apt install libglfw3): %.*s",
                          (int)strcspn(message, "\n"), message);
     }
 #define TAKE(result, name, parameters, arguments)                                \

@@ -1,4 +1,4 @@
-/* view_glfw.h: GLFW, opened when a window is: noh runs where its library is not.
+/* view_glfw.h: loads GLFW when a window is opened, so that noh runs without its library.
  *
  * The viewer and the panels' backend call GLFW's functions by their names; these are defined here, and forward. */
 #ifndef NOH_NOH_VIEW_VIEW_GLFW_H

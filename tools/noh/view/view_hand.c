@@ -1,4 +1,4 @@
-/* view_hand.c: what the pointer does to the figure: faces look at it, clicks pick, clicks with Alt push. */
+/* view_hand.c: the pointer's effects on the figure: faces look at it, clicks pick, clicks with Alt push. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-/* view_lights.h: which light the figure stands in: that of the command line, or one of those built in. */
+/* view_lights.h: the light around the figure: from the command line, or built in. */
 #ifndef NOH_NOH_VIEW_VIEW_LIGHTS_H
 #define NOH_NOH_VIEW_VIEW_LIGHTS_H
 
@@ -19,17 +19,17 @@ typedef struct view_lights {
     char name[VIEW_LIGHT_NAME]; /* "": first, which is a file's */
 } view_lights;
 
-/* Begin with that of the command line. */
+/* Begin with the light of the command line. */
 void view_lights_open(view_lights *l, lighting *first);
 
 /* The name of the one that is shown. */
 const char *view_lights_shown(const view_lights *l);
 
-/* The file that the command line named, without its folders; NULL: its light is one of those built in. */
+/* The light file of the command line, without its folders; NULL: its light is built in. */
 const char *view_lights_file(const view_lights *l);
 
 struct view_app;
-/* name: of view_light_names, or "". Turned, with shadow and background as the one before. Takes effect with
+/* name: of view_light_names, or "". Keeps rotation, shadow and background. Takes effect with
  * view_app_after. */
 void view_light_choose(struct view_app *a, const char *name);
 void view_lights_close(view_lights *l);

@@ -69,7 +69,7 @@ static void convert(const view_load *l, const lod_settings *levels, int words)
         _exit(EXIT_FAILED);
     }
     if (!write_all(l->bytes, pack.bytes, pack.count)) {
-        fprintf(says, "\r!there is no room for the converted file");
+        fprintf(says, "\r!cannot write the converted file: no space left");
         fflush(says);
         _exit(EXIT_FAILED);
     }
@@ -105,7 +105,7 @@ int view_load_start(view_load *l, const char *path, const lod_settings *levels)
     l->bytes = open_nameless();
     if (l->bytes < 0 || pipe(ends)) {
         close_files(l);
-        return tool_fail(path, "no temporary file or pipe can be made: %s", strerror(errno));
+        return tool_fail(path, "cannot make a temporary file or pipe: %s", strerror(errno));
     }
     fflush(NULL); /* or the other process writes it again */
     l->process = fork();
@@ -118,7 +118,7 @@ int view_load_start(view_load *l, const char *path, const lod_settings *levels)
     if (l->process < 0) {
         l->process = 0;
         close_files(l);
-        return tool_fail(path, "no process can be started to convert it: %s", strerror(errno));
+        return tool_fail(path, "cannot start a process to convert it: %s", strerror(errno));
     }
     (void)fcntl(l->words, F_SETFL, O_NONBLOCK);
     l->started_ns = noh_clock_ns();
@@ -161,7 +161,7 @@ view_load_state view_load_poll(view_load *l)
     if (l->does[0] == '!') {
         tool_fail(l->path, "%s", l->does + 1);
     } else {
-        tool_fail(l->path, "the conversion broke off while %s", l->does);
+        tool_fail(l->path, "the conversion crashed while %s", l->does);
     }
     close_files(l);
     l->state = VIEW_LOAD_FAILED;

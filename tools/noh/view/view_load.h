@@ -1,5 +1,5 @@
-/* view_load.h: the conversion of a model beside the window, in a process of its own: it can be called off at any time,
- * and a file that breaks the converter does not break the viewer.
+/* view_load.h: converts a model in a separate process while the window runs: it can be cancelled at any time, and a
+ * file that crashes the converter does not crash the viewer.
  *
  *   view_is_model                  whether a file has to be converted
  *   view_load_start, view_load_poll, view_load_cancel
@@ -20,17 +20,17 @@ typedef enum view_load_state { VIEW_LOAD_NONE, VIEW_LOAD_RUNS, VIEW_LOAD_DONE, V
 typedef struct view_load {
     view_load_state state;
     char path[1024];
-    char does[256];   /* what it does now, in words */
+    char does[256];   /* its present step, in words */
     int process;      /* 0: none */
-    int words, bytes; /* files: what it says, and the pack */
+    int words, bytes; /* files: its messages, and the pack */
     uint64_t started_ns;
 } view_load;
 
 int view_is_model(const char *path);
 
-/* One at a time: another is called off. Prints an error and returns an exit code; 0 on success. */
+/* One at a time: a running conversion is cancelled. Prints an error and returns an exit code; 0 on success. */
 int view_load_start(view_load *l, const char *path, const lod_settings *levels);
-/* Hear what it says. VIEW_LOAD_FAILED: after an error was printed. */
+/* Read its messages. VIEW_LOAD_FAILED: after an error was printed. */
 view_load_state view_load_poll(view_load *l);
 int view_load_take(view_load *l, byte_buffer *out);
 void view_load_cancel(view_load *l);

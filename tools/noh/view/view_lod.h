@@ -1,10 +1,10 @@
 /* view_lod.h: the LOD level that the viewer shows: a fixed one, or by the error in pixels; and its wrinkles.
  *
  *   view_lod_level, view_lod_pixels   the switch
- *   view_lod_next                     cycles through its positions
- *   view_lod_look                     told to a figure
+ *   view_lod_next                     cycles through the settings
+ *   view_lod_look                     sets it on a figure
  *   view_lod_begin, view_lod_end      before and after a frame of the model
- *   view_lod_text                     what the frame showed, in words
+ *   view_lod_text                     describes the last frame, in words
  *
  * It does nothing where bones are drawn. */
 #ifndef NOH_NOH_VIEW_VIEW_LOD_H
@@ -19,13 +19,13 @@ typedef struct view_lod {
     float pixels; /* the allowed error */
     int by_pixels;
     uint32_t level;     /* the fixed level; 0: the full mesh */
-    int wrinkle_models; /* NOH_WRINKLE_BY_*: in place of those of the pack; 0: those */
+    int wrinkle_models; /* NOH_WRINKLE_BY_*, in place of the pack's models; 0: the pack's */
     float wrinkles;     /* 0..1: how much of them shows */
 
-    /* what the last frame showed, of all kinds */
+    /* the last frame, over all kinds */
     uint32_t finest, coarsest; /* levels */
     uint32_t fading;           /* actors between two levels */
-    float error_px;            /* the largest, as the runtime states it */
+    float error_px;            /* the largest error, by the runtime */
     uint32_t weights;          /* of targets that were drawn */
 } view_lod;
 

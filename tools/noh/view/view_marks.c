@@ -90,7 +90,7 @@ static void draw(view_marks *k, const orbit *o, int in_front)
 
 /* ---- shapes ---- */
 
-/* The length of a pixel at what the camera orbits. */
+/* The length of a pixel at the camera's target. */
 static double pixel_of(const orbit *o, uint32_t picture_height)
 {
     return 2.0 * tan(ORBIT_VIEW_RAD / 2.0) * o->distance / (double)picture_height;

@@ -1,5 +1,4 @@
-/* view_marks.h: what the viewer draws around the figure: a floor with a grid, the path that was walked, the point that
- * was picked.
+/* view_marks.h: draws around the figure: a floor with a grid, the walked path, the picked point.
  *
  *   view_marks_open / view_marks_close
  *   view_marks_floor, view_marks_path, view_marks_point   into the framebuffer that is bound, after the figure */
@@ -23,7 +22,7 @@ typedef struct view_marks {
 int view_marks_open(view_marks *k, gpu *g);
 void view_marks_close(view_marks *k);
 
-/* A grid at this height, as far as the camera's planes reach around what it orbits. */
+/* A grid at this height, as far as the camera's planes reach around its target. */
 void view_marks_floor(view_marks *k, const orbit *o, double height, uint32_t picture_height);
 
 /* A line over the floor through points[count][2], x and z. */

@@ -115,7 +115,7 @@ static void measure_targets(view_model *m)
     }
 }
 
-/* ---- what a stage costs ---- */
+/* ---- the cost of a stage ---- */
 
 static int find_costs(view_costs *out, const figure *f, const noh_gl_caps *caps)
 {
@@ -190,7 +190,7 @@ static int open_model(view_model *m, gpu *g, const view_model_desc *desc)
 
 int view_model_open(gpu *g, const view_model_desc *desc, view_model **out)
 {
-    view_model *m = calloc(1, sizeof *m); /* its address is kept by what is opened */
+    view_model *m = calloc(1, sizeof *m); /* opened objects keep its address */
     int status;
     if (!m || strlen(desc->path) >= sizeof m->path) {
         free(m);
@@ -232,7 +232,7 @@ int view_model_reload(view_model *m, gpu *g, const view_model_desc *desc)
     setting is, was = setting_of(m);
     int status = setting_open(m, g, desc, &is);
     if (!status && is.figure->stage_desc.kind_count != was.figure->stage_desc.kind_count) {
-        status = tool_fail(m->path, "the same pack is planned with other kinds");
+        status = tool_fail(m->path, "the pack is planned with other kinds");
     }
     if (!status) status = count_setting(m, g, &is);
     if (status) {
@@ -325,8 +325,8 @@ void view_model_send_home(view_model *m)
     }
 }
 
-/* By weight the places where the body's clips have the root now: that of the pose, before there is one. Of a graph that
- * of the last pose. */
+/* The root's place: the body's clips averaged by weight, or the pose's root before any clip plays; for a graph, the
+ * root of the last pose. */
 void view_model_anchor(view_model *m, double anchor[3])
 {
     const noh_clip_set *set;

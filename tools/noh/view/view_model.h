@@ -1,7 +1,7 @@
 /* view_model.h: the viewer's model: a pack, or a model converted in memory, on a stage.
  *
  *   view_model_open / view_model_close
- *   view_model_reload          the same on another stage: what plays goes on
+ *   view_model_reload          opens it again on another stage; clips keep playing
  *   view_model_step            time; view_model_hold: sliders; view_model_pose: a frame
  *   view_model_place, view_model_anchor, view_model_send_home   where it stands
  *   view_start, view_stop, view_stop_layer, view_stop_all, view_seek, ...   its clips (view_play.c) */
@@ -21,7 +21,7 @@
 #include "noh/noh_gl.h"
 #include "noh/low_gl.h"
 
-/* ---- what is shown ---- */
+/* ---- drawing ---- */
 
 /* A slider: the floats of that name. */
 typedef struct view_target {
@@ -62,13 +62,13 @@ typedef struct view_model_desc {
     uint32_t width, height; /* of the canvas */
 } view_model_desc;
 
-/* What each LOD level of the whole figure costs. */
+/* The cost of each LOD level of the whole figure. */
 typedef struct view_costs {
     level_cost levels[NOH_LOD_LEVELS_MAX];
     uint32_t first, count; /* the levels first to count - 1 are there */
 } view_costs;
 
-/* What is drawn over the surface, or in its place. */
+/* Drawn over the surface, or in its place. */
 typedef enum view_skin { VIEW_SKIN_OFF, VIEW_SKIN_JOINTS, VIEW_SKIN_WEIGHTS } view_skin;
 typedef struct view_over {
     view_skin skin;
@@ -82,13 +82,13 @@ typedef struct view_model {
     char path[1024];
     byte_buffer converted; /* the pack, where the file was a model */
     pack_file file, anim_file;
-    const pack_file *clips_of; /* whose clips are played */
+    const pack_file *clips_of; /* the packs with the clips */
     figure *figure;
     int root_motion;
-    int has_graphs;                    /* actors may play those of clips_of, of a figure with one kind */
-    noh_frame_clock clock;             /* what is left over of the seconds of frames */
+    int has_graphs;                    /* actors may play the graphs of clips_of, in a figure with one kind */
+    noh_frame_clock clock;             /* the rest of the frames' seconds below a tick */
     noh_error cannot_fall;             /* OK: the first skeleton can */
-    int touched;                       /* a track was changed by hand: it has to be posed, even if time stands still */
+    int touched;                       /* a track was changed by hand: pose it even if time stands still */
     bones *bones[NOH_STAGE_KINDS_MAX]; /* of each kind with joints */
     int show_bones;
     canvas canvas;
@@ -119,23 +119,22 @@ int view_model_restore(view_model *m, gpu *g);
 /* Another size of the canvas. */
 int view_model_fit(view_model *m, gpu *g, uint32_t width, uint32_t height);
 
-/* The bounds of what is drawn, in its pose. */
+/* The bounds of the drawn figure in its pose. */
 bounds view_model_bounds(const view_model *m);
 
 /* ---- where it stands ---- */
 
 noh_place view_model_place(const view_model *m);
-/* What a camera follows: where the first joint will be over the ground when it is posed next. */
+/* The camera's target: the first joint's next place over the ground. */
 void view_model_anchor(view_model *m, double anchor[3]);
 /* Back to the origin. */
 void view_model_send_home(view_model *m);
 
 /* ---- a frame ---- */
 
-/* Held sliders to the stage; the others from what was shown last. */
+/* Send held sliders to the stage, and set the others from the last pose. */
 void view_model_hold(view_model *m);
-/* All of a frame but what happens on the GPU: prints an error and returns an exit code; 0 on success. Then
- * noh_stage_frame_end. */
+/* A frame up to its GPU work: prints an error and returns an exit code; 0 on success. noh_stage_frame_end follows. */
 int view_model_pose(view_model *m, const noh_gl_camera *camera, int cut);
 int view_model_draw(view_model *m, canvas *c, overlay *o, const view_over *over, const noh_gl_camera *camera);
 void view_model_draw_bones(view_model *m, const noh_gl_camera *camera);
@@ -151,8 +150,8 @@ typedef struct view_how {
     int inertia;
 } view_how;
 
-/* Play a clip on its layer, in place of what plays there or beside it. Prints an error and returns an exit code when no
- * track is free. */
+/* Play a clip on its layer, in place of the clips there or in addition to them. Prints an error and returns an exit
+ * code if no track is free. */
 int view_start(view_model *m, uint32_t clip, const view_how *how, int beside);
 void view_stop_track(view_model *m, uint32_t kind, uint32_t track);
 void view_stop_layer(view_model *m, uint32_t layer, float fade_s);
@@ -162,7 +161,7 @@ int view_plays(const view_model *m);
 /* A kind's controller, and its set. */
 noh_controller *view_controller(const view_model *m, uint32_t kind, const noh_clip_set **set);
 uint32_t view_layer_of(uint32_t track);
-/* Whether a track plays a clip: 0 where it stands for a graph. */
+/* Whether a track plays a clip: 0 if it stands for a graph. */
 int view_clip_of(const view_model *m, uint32_t kind, const noh_track *track);
 const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip);
 /* These take effect at once, also while nothing moves. */
@@ -175,7 +174,7 @@ void view_seek(view_model *m, uint32_t kind, uint32_t track, double seconds);
 void view_seek_newest(view_model *m, uint32_t kind, uint32_t layer, double seconds);
 /* Where a track is in its clip. */
 double view_position(const view_model *m, uint32_t kind, uint32_t track);
-/* Over to another weight or speed in so many seconds. */
+/* Change to another weight or speed within this time, seconds. */
 int view_ramp(view_model *m, uint32_t kind, uint32_t track, noh_change_kind what, float to, float seconds);
 
 /* ---- graphs ---- */

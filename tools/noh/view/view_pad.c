@@ -89,7 +89,7 @@ static int add(view_pad *pad, const view_model *m, uint32_t clip, int32_t speed)
     if (!pad->count) {
         for (pad->kind = 0; c->clips[pad->kind] == NOH_NONE;) pad->kind++;
     } else if (c->clips[pad->kind] == NOH_NONE) {
-        return tool_fail(m->path, "'%s' moves another skeleton than '%s'", c->name, m->clips[pad->clips[0]].name);
+        return tool_fail(m->path, "'%s' and '%s' move different skeletons", c->name, m->clips[pad->clips[0]].name);
     }
     pad->speeds[pad->count] = speed;
     pad->clips[pad->count++] = clip;
@@ -237,7 +237,7 @@ int view_pad_take(view_pad *pad, view_model *m, uint32_t n)
 {
     noh_pack_graph g;
     const noh_pack_graph_node *node = find_space(m, n, &g);
-    int status = node ? 0 : tool_fail(m->path, "no graph of the pack has such a blend space");
+    int status = node ? 0 : tool_fail(m->path, "no graph of the pack has this blend space");
     view_pad_stop(pad, m);
     pad->count = 0;
     for (uint32_t i = 0; !status && i < node->child_count; i++) {

@@ -1,13 +1,13 @@
-/* view_pad.h: a blend space to drag a point in: clips at places of a square, all of them playing, weighed by where the
- * point is.
+/* view_pad.h: a blend space with a point to drag: clips at places of a square all play, weighted by the point's
+ * position.
  *
  *   view_pad_toggle      put a clip on the pad, or take it off
  *   view_pad_take        a blend space of one of the pack's graphs
  *   view_pad_play        start all of its clips, view_pad_stop
  *   view_pad_move        the point; view_pad_move_clip a clip
- *   view_pad_frame       stop where another clip took the layer
+ *   view_pad_frame       stop if another clip took the layer
  *
- * The clips play beside each other on the body layer, in one sync group. */
+ * The clips play together on the body layer, in one sync group. */
 #ifndef NOH_NOH_VIEW_VIEW_PAD_H
 #define NOH_NOH_VIEW_VIEW_PAD_H
 

@@ -8,7 +8,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 
-/* The world from the joint that the point hangs on, or from its actor. */
+/* The world transform of the joint that carries the point, or of its actor. */
 static void hook(const view_pick *p, const view_model *m, float matrix[12])
 {
     noh_stage *s = m->figure->stage;

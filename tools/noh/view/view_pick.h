@@ -1,4 +1,4 @@
-/* view_pick.h: what was clicked on: a point of a mesh, which then moves with its joint.
+/* view_pick.h: picking: a clicked point of a mesh, which then moves with its joint.
  *
  *   view_pick_at     under a point of the window
  *   view_pick_text   in words

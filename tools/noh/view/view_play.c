@@ -25,7 +25,7 @@ int view_clip_of(const view_model *m, uint32_t kind, const noh_track *track)
 const char *view_clip_name(const view_model *m, uint32_t kind, uint32_t clip)
 {
     const char *name = noh_stage_name(m->figure->stage, kind, NOH_NAME_CLIP, clip);
-    return name ? name : "graph"; /* a clip past those of the packs stands for one */
+    return name ? name : "graph"; /* indices past the packs' clips stand for graphs */
 }
 
 static uint32_t kind_count(const view_model *m)

@@ -54,7 +54,7 @@ char *view_weights_copy(const view_model *m)
     return (char *)text.bytes;
 }
 
-/* Whether a text has any weight of the model; the first name that is none of its. */
+/* Whether a text has any weight of the model, and the first name that the model lacks. */
 static int has_weights(const view_model *m, const char *text, char unknown[NOH_NAME_BYTES_MAX])
 {
     weights_reader reader = { text, 0 };
@@ -78,15 +78,18 @@ int view_weights_paste(view_model *m, const char *text)
     weights_item item;
     weights_kind kind;
     if (!has_weights(m, text, unknown)) {
-        return unknown[0] ? tool_fail("paste", "no weights of this figure, such as smile = 0.5, but '%.80s'", unknown)
-                          : tool_fail("paste", "the clipboard has no text");
+        return unknown[0]
+                   ? tool_fail("paste", "the text has no weights of this figure, such as smile = 0.5, but '%.80s'",
+                               unknown)
+                   : tool_fail("paste", "the clipboard has no text");
     }
     let_go_of_all(m);
     while ((kind = weights_next(&reader, &item)) != WEIGHTS_END) {
         view_target *target = kind == WEIGHTS_VALUE ? find_target(m, item.name) : NULL;
         if (target) view_target_hold(target, (float)item.value);
     }
-    return unknown[0] ? tool_fail("paste", "'%.80s' is no target of this figure; the others are taken", unknown) : 0;
+    return unknown[0] ? tool_fail("paste", "this figure has no target '%.80s'; the other weights were applied", unknown)
+                      : 0;
 }
 
 /* ---- the list ---- */
@@ -118,7 +121,7 @@ static int add_preset(view_presets *p, const char *name, int own)
     return 0;
 }
 
-/* What the recipes link to these channels, as one preset; none where they link nothing. */
+/* The targets that recipes link to these channels, as one preset; none if they link nothing. */
 static int add_channels(view_presets *p, const view_model *m, const noh_face_link *links, uint32_t link_count,
                         const uint32_t channels[2], const char *name)
 {
@@ -160,7 +163,7 @@ static int add_recipes(view_presets *p, const view_model *m)
     return status;
 }
 
-/* ---- one's own ---- */
+/* ---- the user's own ---- */
 
 static char *read_text(const char *path)
 {
@@ -189,8 +192,8 @@ static int add_own(view_presets *p)
         } else if (kind == WEIGHTS_VALUE && begun) {
             status = add_weight(p, item.name, (float)item.value);
         } else {
-            status = tool_fail(p->path, "line %u: '%.80s' is neither [a name] nor TARGET = WEIGHT below one", item.line,
-                               item.name);
+            status = tool_fail(p->path, "line %u: '%.80s' is neither [NAME] nor TARGET = WEIGHT below a [NAME]",
+                               item.line, item.name);
         }
     }
     free(text);
@@ -212,7 +215,7 @@ void view_presets_free(view_presets *p)
     memset(p, 0, sizeof *p);
 }
 
-/* All or nothing: written beside the file, and moved to it. */
+/* All or nothing: written to a temporary file in the same folder, which then replaces the file. */
 static int write_own(const view_presets *p)
 {
     char beside[1200], line[NOH_NAME_BYTES_MAX + 40u];
@@ -244,7 +247,7 @@ int view_presets_keep(view_presets *p, const view_model *m, const char *name)
     int status = 0, any = 0;
     if (!name[0] || strpbrk(name, "[]\n")) return tool_fail("presets", "a preset needs a name without brackets");
     for (uint32_t t = 0; t < m->target_count; t++) any |= m->targets[t].held;
-    if (!any) return tool_fail("presets", "no slider was moved: there is nothing to keep");
+    if (!any) return tool_fail("presets", "no slider was moved: there is nothing to save");
     for (uint32_t i = 0; i < p->count; i++) {
         if (p->list[i].own && strcmp(p->list[i].name, name) == 0) p->list[i--] = p->list[--p->count];
     }

@@ -1,13 +1,13 @@
-/* view_presets.h: faces by name: what the pack's recipes make of its targets, and one's own, kept in a text file
+/* view_presets.h: faces by name: presets from the pack's recipes, and the user's own, kept in a text file
  * (file/weights_text.h).
  *
- *   view_presets_read       those of a model, and those of the file
- *   view_presets_use        hold a preset's targets, and let go of the others
- *   view_presets_keep       what is held as a preset of one's own, written at once
- *   view_presets_drop       take one's own away again
- *   view_weights_copy, view_weights_paste   what is held, as text
+ *   view_presets_read       the presets of a model and of the file
+ *   view_presets_use        hold a preset's targets, and release the others
+ *   view_presets_keep       save the held weights as a user preset, written at once
+ *   view_presets_drop       delete a user preset
+ *   view_weights_copy, view_weights_paste   the held weights, as text
  *
- * Those that return int print an error and return an exit code; 0 on success. */
+ * Functions that return int print an error and return an exit code; 0 on success. */
 #ifndef NOH_NOH_VIEW_VIEW_PRESETS_H
 #define NOH_NOH_VIEW_VIEW_PRESETS_H
 
@@ -33,14 +33,14 @@ typedef struct view_preset_weight {
 } view_preset_weight;
 
 typedef struct view_presets {
-    char path[1100]; /* of one's own */
+    char path[1100]; /* the user's own */
     view_preset list[VIEW_PRESETS_MAX];
     uint32_t count;
     view_preset_weight *weights;
     uint32_t weight_count, weight_room;
 } view_presets;
 
-/* path  NULL: the model's, with .presets behind it. A file that is not there has none */
+/* path  NULL: the model's name with .presets. A missing file has no presets */
 int view_presets_read(view_presets *p, const view_model *m, const char *path);
 void view_presets_free(view_presets *p);
 
@@ -50,11 +50,11 @@ int view_presets_drop(view_presets *p, uint32_t index);
 
 /* The held weights: zero-terminated, by malloc; NULL: nothing is held, or there is no memory. */
 char *view_weights_copy(const view_model *m);
-/* Hold these and let go of the others. Names that no target has are told, all others are taken; of a text without any
- * nothing is. */
+/* Hold these targets and release the others. Unknown names are reported, and all others are applied; a text without any
+ * known name changes nothing. */
 int view_weights_paste(view_model *m, const char *text);
 
-/* Hold a target, let go of it. */
+/* Hold a target; release it. */
 void view_target_hold(view_target *t, float value);
 void view_target_let_go(view_target *t);
 

@@ -52,7 +52,7 @@ static void print_graph(FILE *out, const view_model *m)
     fprintf(out, "\n");
 }
 
-/* None of what cannot fall. */
+/* Nothing for a figure that cannot fall. */
 static void print_body(FILE *out, const view_app *a)
 {
     static const char *const states[] = { "stands", "falls", "lies", "gets up" };
@@ -65,7 +65,7 @@ static void print_body(FILE *out, const view_app *a)
             states[body == NOH_BODY_STANDS && view_fall_lasts(&a->fall, m) ? NOH_BODY_GETS_UP : body]);
 }
 
-/* What the hand has set. */
+/* The user's settings. */
 static void print_set(FILE *out, const view_app *a)
 {
     static const char *const withs[] = { "nothing", "level", "path" }, *const skins[] = { "surface", "joints",
@@ -88,7 +88,7 @@ static void print_set(FILE *out, const view_app *a)
     }
 }
 
-/* What is under way. */
+/* Work in progress. */
 static void print_going_on(FILE *out, const view_app *a)
 {
     noh_gl_camera camera;

@@ -43,14 +43,14 @@ void view_screen_begin(view_screen *s);
 /* x, y: of the lower left corner, pixels. */
 void view_screen_picture(view_screen *s, canvas *c, int x, int y);
 
-/* Of the same size, both shown before: black where they are alike. */
+/* Two pictures of the same size, both shown before: black where they are equal. */
 void view_screen_difference(view_screen *s, const canvas *a, const canvas *b, float gain, int x, int y);
 
 /* gains[layer]: the share of the range from black to white for a delta of 1. */
 void view_screen_layers(view_screen *s, const noh_gl_morph_plan *plan, const noh_gl_morph_binding *binding,
                         const float gains[3]);
 
-/* In their place; none if no target moves the page's mesh. */
+/* Draws data textures in place of the layers; none if no target moves the page's mesh. */
 void view_screen_data(view_screen *s, const data_page *page);
 
 /* width, height of the window in points. */

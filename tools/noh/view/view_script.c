@@ -13,7 +13,7 @@
 #define QUEUE_MAX 512u
 #define WORDS_MAX 8
 
-/* What happens before one frame. */
+/* The events before one frame. */
 typedef enum act_kind { ACT_NONE, ACT_WANT, ACT_PRESS, ACT_MOVE, ACT_RELEASE, ACT_KEY, ACT_UP, ACT_LETTER } act_kind;
 
 typedef struct act {
@@ -105,7 +105,7 @@ static int point_of(view_script *s, const act *a, float at[2])
     if (!a->name[0]) return 0;
     switch (view_panels_find(a->name, box)) {
     case 0: return fail(s, "there is no control", a->name);
-    case 2: return fail(s, "it is not in the window, even scrolled to:", a->name);
+    case 2: return fail(s, "scrolling does not bring it into the window:", a->name);
     default: break;
     }
     at[0] = box[0] + a->at[0] * (box[2] - box[0]);
@@ -147,7 +147,8 @@ static int act_out(view_script *s, const act *a, view_window *w)
     }
 }
 
-/* A press and a release, a frame apart, one for what it does and one for what opens. A control is scrolled to first. */
+/* A press and a release, a frame apart, then a frame for the action and one for what it opens. Controls are scrolled
+ * into view first. */
 static void add_click(view_script *s, const char *name, float x, float y, int button, int mods)
 {
     if (name[0]) add_at(s, ACT_WANT, name, 0.0f, 0.0f, 0, 0);
@@ -274,7 +275,7 @@ static int point_line(view_script *s, char *words[WORDS_MAX], int count)
         const float from[2] = { number(words[1]), number(words[2]) }, to[2] = { number(words[3]), number(words[4]) };
         add_drag(s, "", from, to, count > 5 ? GLFW_MOUSE_BUTTON_RIGHT : GLFW_MOUSE_BUTTON_LEFT);
     } else {
-        return fail(s, "what is meant by", word);
+        return fail(s, "not a command:", word);
     }
     return 0;
 }
@@ -341,7 +342,7 @@ static int stays_inside(const view_script *s, view_app *a)
     if (seen.inside >= s->inside) return 0;
     view_print(a, stdout);
     snprintf(text, sizeof text, "%.4f", seen.inside);
-    return fail(s, "of the silhouette there is in the picture", text);
+    return fail(s, "share of the silhouette in the picture:", text);
 }
 
 /* Whether a frame is to be drawn before the next line. */
@@ -353,7 +354,7 @@ static int waits(view_script *s, view_app *a)
     if (s->until[0] && state_has(a, s->until)) s->until[0] = 0, s->frames = 0;
     if (s->until[0] && !s->frames) {
         view_print(a, stdout);
-        return fail(s, "in all these frames the state had no line with", s->until);
+        return fail(s, "none of these frames had a state line with", s->until);
     }
     if (s->loading && a->files.load.state == VIEW_LOAD_RUNS) {
         nanosleep(&moment, NULL);

@@ -1,5 +1,5 @@
-/* view_script.h: `noh view --script FILE`: a hand that moves as a text says, frame by frame, so that what it does can
- * be tested, shown and told in a report. A frame is 1/60 s of the clips, however long it takes.
+/* view_script.h: `noh view --script FILE`: replays user input from a text, frame by frame, for tests, demonstrations
+ * and bug reports. A frame is 1/60 s of clip time, however long it takes to draw.
  *
  *   frames N                 draw N frames
  *   click WHAT               WHAT: the name of a control, as it is written in the window: click "walk/play"
@@ -17,7 +17,7 @@
  *   loaded                   wait until a conversion is done, without drawing more than it takes
  *   save FILE, window FILE   a picture of the figure, of the window
  *
- * Only the pictures that are saved, filmed or compared are drawn; all else of a frame happens. # begins a comment.
+ * Only pictures that are saved, filmed or compared are drawn; the rest of each frame runs. # begins a comment.
  * After the last line the window is closed. */
 #ifndef NOH_NOH_VIEW_VIEW_SCRIPT_H
 #define NOH_NOH_VIEW_VIEW_SCRIPT_H
@@ -30,8 +30,8 @@ typedef struct view_script view_script;
 view_script *view_script_open(const char *path);
 void view_script_close(view_script *s);
 
-/* Before a frame. Returns 1 where the script is at its end, 0 where a frame is to be drawn, -1 after printing what
- * failed, with its line. */
+/* Before a frame. Returns 1 at the end of the script, 0 if a frame must be drawn, -1 after printing the failure and its
+ * line. */
 int view_script_step(view_script *s, view_window *w);
 
 #endif

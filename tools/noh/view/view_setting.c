@@ -6,7 +6,7 @@
 
 #include "cli/message.h"
 
-/* A figure, and what it borrows. */
+/* A figure and the data it refers to. */
 typedef struct staged {
     figure figure;
     noh_layer_desc layers[VIEW_LAYERS];
@@ -97,7 +97,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     d.on_floor = 1;
     d.graphs = m->clips_of->pack.graph_count && pack->skeleton_count == 1 ? "*" : NULL;
     status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
-    if (status && d.graphs) { /* such as graphs of clips that the pack of clips lacks: it has been told */
+    if (status && d.graphs) { /* such as graphs whose clips the pack lacks: the error was printed */
         d.graphs = NULL;
         status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     }
@@ -107,7 +107,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     return status;
 }
 
-/* A graph begins anew, with the parameters that it had. */
+/* A graph restarts with its present parameters. */
 static void carry_graph(const figure *from, figure *to)
 {
     const noh_graph_pack *made;
@@ -133,7 +133,7 @@ void setting_carry_tracks(const figure *from, figure *to)
         if (!has_graph && was->bytes == is->bytes && was->clip_count == is->clip_count) memcpy(is, was, was->bytes);
         for (uint32_t t = 0; t < is->track_count; t++) {
             noh_track *track = &noh_controller_tracks(is)[t];
-            track->root_position = track->position; /* only what is walked from here on moves it */
+            track->root_position = track->position; /* only root motion from here on moves it */
         }
         (void)noh_actor_place(from->stage, from->actors[k], &place, NULL);
         (void)noh_actor_set_place(to->stage, to->actors[k], &place, NULL);

@@ -9,7 +9,7 @@
 #include "view/view_events.h"
 #include "view/view_script.h"
 
-#define LOOK_S 0.5 /* how often an idle viewer looks whether its file has changed */
+#define LOOK_S 0.5 /* how often an idle viewer checks its file for changes */
 
 /* ---- a frame ---- */
 
@@ -58,7 +58,7 @@ static void save_when_asked(view_window *w)
     }
 }
 
-/* An unchanging picture is redrawn only after an event, and where its file has changed. */
+/* A still picture is redrawn only after an event, or after its file has changed. */
 static void wait_events(view_window *w, int moving)
 {
     if (moving || view_app_moves(&w->app) || w->awake > 0) {
@@ -93,7 +93,7 @@ static void name_window(view_window *w, char shown[1024])
 
 /* ---- the loop ---- */
 
-/* What is drawn by a count or a script, instead of by the clock. */
+/* Frames by a count or a script instead of the clock. */
 typedef struct fixed_frames {
     view_script *script; /* NULL: none */
     film film;
@@ -116,7 +116,7 @@ static int add_to_film(view_window *w, fixed_frames *fixed, const view_run *run,
     if (!status) status = canvas_read(c, fixed->rgba);
     if (!status && film_add(&fixed->film, fixed->rgba)) {
         fixed->has_film = 0;
-        (void)film_close(&fixed->film, 1); /* it tells why */
+        (void)film_close(&fixed->film, 1); /* it printed the reason */
         status = EXIT_FAILED;
     }
     return status;
@@ -162,7 +162,8 @@ static int loop(view_window *w, const view_run *run)
         last = now;
         name_window(w, shown);
         status = one_frame(w, &fixed, run, frame, is_fixed ? 1.0 / 60.0 : seconds < 0.1 ? seconds : 0.1);
-        ends = glfwWindowShouldClose(w->context.window) || w->app.window.quits || (run->frames && frame + 1 >= run->frames);
+        ends = glfwWindowShouldClose(w->context.window) || w->app.window.quits ||
+               (run->frames && frame + 1 >= run->frames);
         if (!status && fixed.script) {
             const int step = view_script_step(fixed.script, w);
             status = step < 0 ? EXIT_FAILED : 0;
@@ -185,8 +186,8 @@ static int start_clip(view_app *a, const char *name)
     return tool_fail(a->model->path, "no clip named '%s' (`noh clip` lists them)", name);
 }
 
-/* The model is converted beside the window, which shows how far it is. *converted is empty where the file is a pack,
- * and where the window was closed meanwhile. */
+/* Converts the model in another process while the window shows the progress. *converted is empty if the file is a pack,
+ * or if the window was closed before the end. */
 static int convert(view_window *w, const view_run *run, byte_buffer *converted)
 {
     view_load *load = &w->app.files.load;

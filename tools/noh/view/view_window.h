@@ -10,7 +10,7 @@ typedef struct view_run {
     const char *data;       /* the data textures to show from the start (view_show_data); NULL: the sums */
     const char *script;     /* a text that moves the hand (view_script.h); NULL: none */
     const char *film;       /* of the frames, every second; NULL: none */
-    const char *presets;    /* the file of one's own; NULL: beside the model */
+    const char *presets;    /* the file of user presets; NULL: in the model's folder */
     int plays;              /* a model that is opened plays its first clip */
     int fixed_camera;       /* the camera does not follow the figure */
     int native;             /* the context by GLX or WGL instead of EGL */

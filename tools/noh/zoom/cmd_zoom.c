@@ -30,13 +30,13 @@ static int print_result(const zoom *z, const zoom_args *a)
     const double most = ZOOM_SLACK * a->pixels;
     fprintf(out, "%s: %u frames from %.3g to %.3g m and back, %ux%u, %g pixels allowed\n", a->pack, z->path.frames,
             z->path.near, z->path.far, z->path.side, z->path.side, a->pixels);
-    fprintf(out, "  silhouettes off by at most   %6.3f pixels  (allowed: %g), slits and holes by %.3f\n",
-            r->silhouette_px, most, r->hole_px);
-    fprintf(out, "  the surface off by at most   %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most,
+    fprintf(out, "  largest silhouette error     %6.3f pixels  (allowed: %g), slits and holes %.3f\n", r->silhouette_px,
+            most, r->hole_px);
+    fprintf(out, "  largest surface error        %6.3f pixels  (allowed: %g), claimed %.3f\n", r->position_px, most,
             r->claimed_px);
     fprintf(out, "  a level change alters        %6.3f of 255  (allowed: %g), the zoom itself %.3f\n", r->pop, ZOOM_POP,
             r->zoom_change);
-    fprintf(out, "  frames differ more by        %6.3f of 255  (allowed: %g) than those of the full mesh\n", r->excess,
+    fprintf(out, "  extra change between frames  %6.3f of 255  (allowed: %g), compared with the full mesh\n", r->excess,
             ZOOM_POP);
     fprintf(
         out,
@@ -132,22 +132,22 @@ static int zoom_pack(const pack_file *file, const zoom_args *a)
 static int check_args(const zoom_args *a)
 {
     if (!(a->frames >= 4.0 && a->frames <= 100000.0) || a->frames != (double)(uint32_t)a->frames) {
-        return tool_usage("--frames wants a whole number from 4 to 100000");
+        return tool_usage("--frames must be a whole number from 4 to 100000");
     }
     if (!(a->pixels > 0.0 && a->pixels <= 100.0)) {
-        return tool_usage("--pixels wants a number above 0, up to 100");
+        return tool_usage("--pixels must be a number above 0, up to 100");
     }
     if (!(a->every >= 1.0 && a->every <= 100000.0) || a->every != (double)(uint32_t)a->every) {
-        return tool_usage("--every wants a whole number from 1 to 100000");
+        return tool_usage("--every must be a whole number from 1 to 100000");
     }
     if (!(a->jitter >= 0.0 && a->jitter < 1.0)) {
-        return tool_usage("--jitter wants a number from 0, below 1");
+        return tool_usage("--jitter must be a number from 0, below 1");
     }
     if (a->size[0] != a->size[1] || a->size[0] > 8192u / ZOOM_FINE || a->size[0] % 2u) {
-        return tool_usage("--size wants a square with an even side of at most %u", 8192u / ZOOM_FINE);
+        return tool_usage("--size must be a square with an even side of at most %u", 8192u / ZOOM_FINE);
     }
     if (a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
-        return tool_usage("more than %u times --clip", NOH_LAYER_TRACKS_MAX);
+        return tool_usage("--clip may be given at most %u times", NOH_LAYER_TRACKS_MAX);
     }
     return 0;
 }
@@ -193,7 +193,7 @@ static const option options[] = {
       .at = offsetof(zoom_args, near),
       .value = "M",
       .what =
-          "nearest distance from the camera to the middle of the scene, metres; default: such that every level is shown for a while",
+          "nearest distance from the camera to the middle of the scene, metres; default: one that shows every level for a while",
       .example = "0.5" },
     { .name = "--far",
       .kind = OPTION_NUMBER,
@@ -216,7 +216,7 @@ static const option options[] = {
       .at = offsetof(zoom_args, every),
       .value = "N",
       .initial = "1",
-      .what = "measure silhouettes only in every N-th frame, 1 to 100000, and wherever a level changes",
+      .what = "measure silhouettes only in every N-th frame, 1 to 100000, and at each change of level",
       .example = "8" },
     { .name = "--jitter",
       .kind = OPTION_NUMBER,
@@ -235,7 +235,7 @@ const verb verb_zoom = {
     .files = "PACK",
     .what = "compare LOD levels with the full mesh in a slow zoom out and back: silhouettes, surfaces, pops, flicker",
     .more =
-        "Fails (exit code 1) when silhouettes or the surface are off by more than 1.25 times --pixels, when a change of level is visible, or when a level is entered twice on the way out or on the way back.",
+        "Fails (exit code 1) if silhouettes or the surface are off by more than 1.25 times --pixels, if a change of level is visible, or if a level is entered twice on the way out or on the way back.",
     .example = "face.noh -o zoom.png\nface.noh --frames 120 --pixels 2 --json",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

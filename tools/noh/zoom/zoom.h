@@ -1,16 +1,16 @@
-/* zoom.h (private to cmd_zoom.c, zoom_*.c): a camera moves slowly out and back, and what can be seen of the LOD levels
- * chosen on the way is measured.
+/* zoom.h (private to cmd_zoom.c, zoom_*.c): a camera moves slowly out and back, and the visible differences of the LOD
+ * levels chosen on the way are measured.
  *
  *   zoom_subject    a pack in a pose, on a stage
  *   zoom_path       the camera, and the levels entered
  *   zoom_target     pictures
- *   zoom_compare    how far two pictures differ
+ *   zoom_compare    the difference of two pictures
  *   zoom_surface    distance of the drawn level's surface from the full one, in the pose
  *   zoom_run        all frames
- *   zoom_strip      a picture of frames of all of it
+ *   zoom_strip      a picture of several frames
  *
- * The pack is on three stages: in full detail; with everything chosen by error, as games have it; and the same without
- * a driver and without fades, before a camera that shakes. The scale, pixels per metre, is the stage's: that of the
+ * The pack is on three stages: in full detail; with levels chosen by error, as in games; and the same without a
+ * driver and without fades, with a camera that shakes. The scale, pixels per metre, is the stage's, at the
  * nearest point of the sphere that holds an actor in all its clips. */
 #ifndef NOH_NOH_ZOOM_ZOOM_H
 #define NOH_NOH_ZOOM_ZOOM_H
@@ -23,7 +23,7 @@
 #define ZOOM_TICKS 800 /* per frame: 60 frames a second */
 #define ZOOM_FINE 4u   /* silhouettes are compared in pictures this many times larger */
 
-/* ---- what is zoomed at ---- */
+/* ---- the subject ---- */
 
 typedef struct zoom_subject {
     figure_desc desc; /* lod: all fields are set, because the path is planned by them. by_error is set by openings */
@@ -31,7 +31,7 @@ typedef struct zoom_subject {
     double time_s;
 } zoom_subject;
 
-/* A figure in its pose, which stands still while time goes on. g: NULL: nothing is drawn. Prints an error and returns
+/* A figure in a fixed pose while time runs. g: NULL: nothing is drawn. Prints an error and returns
  * an exit code; 0 on success: as all below. */
 int zoom_subject_open(const zoom_subject *s, gpu *g, int by_error, uint32_t fade_ticks, figure *f);
 
@@ -45,24 +45,24 @@ typedef struct zoom_entries {
 } zoom_entries;
 
 typedef struct zoom_path {
-    figure shaken; /* see zoom_path_jitter; also what the path is planned by */
+    figure shaken; /* see zoom_path_jitter; also used to plan the path */
     zoom_entries entries[NOH_STAGE_KINDS_MAX];
     orbit at;              /* its distance is the frame's */
-    double reach;          /* what a stage takes the nearest point to be nearer by than the middle of the scene */
+    double reach;          /* distance by which the stage's nearest point is nearer than the middle of the scene */
     double near, far;      /* from the camera to the middle of the scene */
     uint32_t frames, side; /* pictures are square */
 } zoom_path;
 
-/* near, far, side: 0 for a path on which every level is chosen for a while, in pictures that hold the scene. */
+/* near, far, side: 0 for a path that shows every level for a while, in pictures that hold the scene. */
 int zoom_path_open(zoom_path *p, const zoom_subject *s, double near, double far, uint32_t side, uint32_t frames);
 void zoom_path_close(zoom_path *p);
 
 /* Move the camera to its place in a frame: its distance changes by the same factor in every frame, and by one more. The
- * distance is that of a camera without what the stage's sphere is larger by than the scene. */
+ * distance is corrected for the difference between the stage's sphere and the scene. */
 void zoom_path_place(zoom_path *p, uint32_t frame, double factor);
 
-/* zoom_path_place, and a step and a frame of a figure there. Its view 0 is of this frame; view 1, which asks for no
- * detail, of the next one: until then it shows from there what this frame shows. */
+/* zoom_path_place, and a step and a frame of a figure there. View 0 is this frame's; view 1, which requests no
+ * detail, is the next frame's, from which it draws this frame's levels. */
 int zoom_path_show(zoom_path *p, uint32_t frame, double factor, figure *f);
 
 /* Count the levels that a figure entered in a frame. */
@@ -110,7 +110,7 @@ typedef struct zoom_shift {
 zoom_shift zoom_compare_silhouettes(const zoom_picture *a, const zoom_picture *b);
 
 /* Mean colour difference, 0 to 255, of the pixels that either picture covers; at least 32 x 32 are counted, since the
- * eye takes smaller things as a whole. The pictures are aligned at their centres. */
+ * eye averages over smaller areas. The pictures are aligned at their centres. */
 double zoom_compare_colors(const zoom_picture *a, const zoom_picture *b);
 
 /* ---- surfaces ---- */
@@ -127,8 +127,8 @@ typedef struct zoom_mesh {
     uint32_t level, joint_count;
 } zoom_mesh;
 
-/* The distance in metres, both ways, between a mesh of `kept` at a level and that of `full`, each as its figure showed
- * it last, but with all influences. */
+/* The distance in metres, both ways, between a mesh of `kept` at a level and the mesh of `full`, each in its figure's
+ * last pose, but with all influences. */
 int zoom_surface_distance(zoom_surface *z, const figure *full, const figure *kept, const zoom_mesh *at, double *metres);
 void zoom_surface_close(zoom_surface *z);
 
@@ -136,9 +136,8 @@ void zoom_surface_close(zoom_surface *z);
 
 /* Bounds. */
 #define ZOOM_SLACK 1.25 /* times the allowed error in pixels: of silhouettes and surfaces */
-#define ZOOM_POP \
-    1.02 /* of 255, as zoom_compare_colors measures: what a level change may do in one frame; the least step of 8 bits \
-         */
+/* Of 255, as zoom_compare_colors measures: the largest effect of a level change in a frame, the least 8-bit step. */
+#define ZOOM_POP 1.02
 
 /* The worst of all frames. */
 typedef struct zoom_result {
@@ -147,9 +146,9 @@ typedef struct zoom_result {
                            length */
     double position_px; /* from the drawn surface to the full one, in the pose */
     double claimed_px;  /* noh_actor_detail.error_m, in pixels */
-    double pop;         /* what a change of level changes in the picture of a camera at rest; of 255 */
-    double excess;      /* how much more than full pictures those with levels change from frame to frame; of 255 */
-    double zoom_change; /* mean change of the full pictures from frame to frame; of 255 */
+    double pop;         /* effect of a change of level on the picture with a camera at rest; of 255 */
+    double excess; /* additional change of pictures with levels from frame to frame, compared with full ones; of 255 */
+    double zoom_change;                /* mean change of the full pictures from frame to frame; of 255 */
     uint32_t entered[2], most_entered; /* levels entered on the way out and back; the most times that one was */
     uint32_t most_entered_shaken;      /* zoom_path_jitter */
     uint32_t targets_left_out;         /* at once, at most */
@@ -157,18 +156,18 @@ typedef struct zoom_result {
 
 int zoom_result_ok(const zoom_result *r, double pixels);
 
-/* What a zoom is measured with. */
+/* The state of a measurement. */
 typedef struct zoom {
     const zoom_subject *subject;
     gpu *g;
     zoom_path path;
-    figure full, kept; /* in full detail, and with what is chosen */
+    figure full, kept; /* in full detail, and with chosen levels */
     uint32_t every;    /* silhouettes are measured in every n-th frame, and where a level changes */
     noh_actor_detail details[NOH_STAGE_KINDS_MAX]; /* of `kept` in this frame */
     float *weights;                                /* of all its meshes, one after another */
     zoom_target fine, seen;
     zoom_picture fine_full, fine_kept, seen_full[2], seen_kept[2]; /* two frames each; the current one is frame % 2 */
-    zoom_picture standing; /* from this frame's place, what the frame before shows */
+    zoom_picture standing;                                         /* the frame before, from this frame's place */
     zoom_surface surface;
     struct zoom_strip *strip; /* NULL: none */
     zoom_result worst;

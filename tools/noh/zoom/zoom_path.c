@@ -15,7 +15,7 @@
 #define PROBE_AWAY 16.0 /* times the distance at which the scene fills a picture: farther than any reach */
 #define PROBE_PIXELS 1024u
 
-/* ---- what is zoomed at ---- */
+/* ---- the subject ---- */
 
 int zoom_subject_open(const zoom_subject *s, gpu *g, int by_error, uint32_t fade_ticks, figure *f)
 {
@@ -89,7 +89,7 @@ static double largest_scale(const figure *f)
     return most;
 }
 
-/* A stage is asked for its scale at one distance: what the nearest point has there tells how near it is. */
+/* Query the stage's scale at one distance: the scale of the nearest point gives its distance. */
 static int find_reach(zoom_path *p)
 {
     const double away = p->at.distance * PROBE_AWAY;
@@ -111,7 +111,8 @@ static int plan(zoom_path *p, const char *path, double near, double far)
     if (!find_scales(p, &near_scale, &far_scale) && (near <= 0.0 || far <= 0.0 || !p->side)) {
         return tool_fail(
             path,
-            "no LOD level differs from the full mesh (`noh build --lod N` makes them): give --near, --far and --size");
+            "no LOD level differs from the full mesh: build levels with `noh build --lod N`, or give --near, --far "
+            "and --size");
     }
     if (!p->side) {
         const double wanted = near_scale * 2.0 * half_view() *
@@ -121,7 +122,7 @@ static int plan(zoom_path *p, const char *path, double near, double far)
     p->near = near > 0.0 ? near : distance_of(p, near_scale);
     p->far = far > 0.0 ? far : distance_of(p, far_scale);
     if (p->near <= p->at.radius || p->far <= p->near) {
-        return tool_usage("--near wants more than the scene's radius, %g, --far more than --near; they are %g and %g",
+        return tool_usage("--near must exceed the scene's radius, %g, and --far must exceed --near; they are %g and %g",
                           p->at.radius, p->near, p->far);
     }
     if (p->near <= p->reach) p->reach = p->at.radius; /* so near that the finest level is certain */

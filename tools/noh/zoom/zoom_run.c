@@ -23,7 +23,7 @@ static uint32_t target_count(const figure *f, const noh_actor_mesh *shown)
     return mesh.header->target_count;
 }
 
-/* Of all meshes; at least as many as are shown. */
+/* Over all meshes; at least the number shown. */
 static size_t count_weights(const figure *f)
 {
     size_t count = 0;
@@ -78,9 +78,9 @@ void zoom_run_close(zoom *z)
     free(z->weights);
 }
 
-/* ---- what is shown ---- */
+/* ---- drawn levels ---- */
 
-/* What a frame shows, against the one before and against everything in full. */
+/* Compares a frame with the frame before and with the full mesh. */
 typedef struct shown_frame {
     int changed;       /* something is drawn otherwise than in the frame before */
     int is_full;       /* nothing is left out */
@@ -205,7 +205,7 @@ static void frame_targets(zoom *z)
     zoom_target_frame(&z->seen, share);
 }
 
-/* Once the frame before was drawn: what it shows from this frame's place, then this frame. */
+/* After the frame before: draw it from this frame's place, then draw this frame. */
 static int show(zoom *z, uint32_t frame, shown_frame *now)
 {
     int status = 0;

@@ -13,7 +13,7 @@ typedef struct zoom_surface_entry {
     double metres;
 } zoom_surface_entry;
 
-/* Both surfaces as one mesh: the vertices of the full one, then those of the level. */
+/* Both surfaces as one mesh: the vertices of the full mesh, then the vertices of the level. */
 typedef struct pair {
     model_mesh mesh; /* with the triangles of the full one */
     lod_level level;

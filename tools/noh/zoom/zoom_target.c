@@ -40,7 +40,7 @@ int zoom_target_open(zoom_target *t, gpu *g, uint32_t side, uint32_t samples)
     gl->BindRenderbuffer(GL_RENDERBUFFER, 0);
     return status == GL_FRAMEBUFFER_COMPLETE
                ? 0
-               : tool_fail("zoom", "the driver refuses a target of %ux%u pixels", side, side);
+               : tool_fail("zoom", "the driver cannot create a target of %ux%u pixels", side, side);
 }
 
 void zoom_target_close(zoom_target *t)

@@ -17,7 +17,7 @@ void clip_row(view_app *a, uint32_t clip)
     if (ui::small_button("add")) {
         view_play(a, clip, 1);
     }
-    ui::hint("play it beside what plays");
+    ui::hint("play it in addition to the other clips");
     ImGui::SameLine();
     const float room = ImGui::GetWindowContentRegionMax().x - 68.0f - ImGui::GetCursorPosX();
     const ImVec2 at = ImGui::GetCursorScreenPos();

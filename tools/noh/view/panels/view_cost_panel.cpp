@@ -72,7 +72,7 @@ void times_section(view_app *a)
         return;
     }
     if (ImGui::BeginTable("times", 3, ImGuiTableFlags_SizingFixedFit)) {
-        time_row("frame", t.frame, "ms, to the next");
+        time_row("frame", t.frame, "ms per frame");
         time_row("animate", t.animate, "ms, CPU: clips and poses");
         time_row("accumulate", t.accumulate, "ms, GPU: morph targets");
         time_row("draw", t.draw, "ms, GPU: the figure");

@@ -32,7 +32,7 @@ void loading(view_app *a)
     begin_over(a, "loading", 380.0f);
     ImGui::TextColored(amber, "converting %s", name ? name + 1 : a->files.load.path);
     ImGui::TextDisabled("%s", a->files.load.does);
-    // How long it takes is not known: something moves, and the seconds are told.
+    // The duration is not known: an animation shows that it runs, and the seconds are shown.
     const float at = static_cast<float>(view_load_seconds(&a->files.load)),
                 share = at - 2.0f * static_cast<float>(static_cast<int>(at * 0.5f));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -73,12 +73,12 @@ void help(view_app *a)
     static const char *const keys[][2] = {
         { "drag", "turn about the figure" },
         { "right drag, wheel", "move, zoom" },
-        { "F", "fit what plays, from the front" },
+        { "F", "frame the clips that play, from the front" },
         { "T", "turntable" },
         { "click, Alt-click", "pick, push" },
         { "P", "push at the chest" },
         { "space", "play, pause" },
-        { "W N B", "wireframe, normals, bones over it" },
+        { "W N B", "wireframe, normals, bones over the mesh" },
         { "L", "next level of detail" },
         { "[ ]", "turn the light" },
         { "Ctrl+Z, Ctrl+Shift+Z", "undo, redo" },
@@ -126,7 +126,7 @@ void columns(const view_app *a)
     } else {
         view_lod_text(&a->lod, first, sizeof first);
         if (!a->lod.coarsest && !a->lod.fading) {
-            snprintf(first, sizeof first, "full"); // as beside it
+            snprintf(first, sizeof first, "full"); // as the label next to it
         }
         snprintf(second, sizeof second, c->is.level ? "level %u" : "full", c->is.level);
     }

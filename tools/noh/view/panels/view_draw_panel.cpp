@@ -1,4 +1,4 @@
-// view_draw_panel.cpp: what is drawn of the figure and over it, by which path, and a second one beside it.
+// view_draw_panel.cpp: what is drawn of the figure and over it, by which path, and the second figure.
 #include "view/panels/view_panels.h"
 #include "view/panels/view_widgets.h"
 

@@ -1,4 +1,4 @@
-// view_graph_panel.cpp: the graphs of a pack: one plays on the body, its parameters are moved, its states are told.
+// view_graph_panel.cpp: the graphs of a pack: plays one on the body, with its parameters and states.
 #include "view/panels/view_panels.h"
 #include "view/panels/view_widgets.h"
 

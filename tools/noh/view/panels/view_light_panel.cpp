@@ -81,7 +81,7 @@ void camera_section(view_app *a)
         return;
     }
     ui::checkbox("follow", &a->camera.follow);
-    ui::hint("the camera goes with a figure that walks");
+    ui::hint("the camera follows a figure that walks");
     ImGui::SameLine();
     ui::checkbox("turntable", &a->camera.turntable);
     ui::hint("T");
@@ -91,7 +91,7 @@ void camera_section(view_app *a)
     if (ui::button("fit", -1.0f)) {
         view_frame_all(a);
     }
-    ui::hint("all of what plays in the picture, from the front; F");
+    ui::hint("frame all that plays, from the front; F");
     if (!a->model->file.pack.skeleton_count) {
         return;
     }
@@ -109,7 +109,7 @@ void camera_section(view_app *a)
     if (ui::button("push", -1.0f)) {
         view_push(a);
     }
-    ui::hint("at its chest: it falls, and gets up; P, or Alt-click on the figure");
+    ui::hint("push the chest: it falls, and gets up; P, or Alt-click on the figure");
     if (a->model->root_motion) {
         ImGui::TextDisabled("at %.3f %.3f", static_cast<double>(place.position[0]),
                             static_cast<double>(place.position[2]));

@@ -58,7 +58,7 @@ void key_lines(const view_app *a)
         ImGui::TextUnformatted(a->log.lines[(a->log.next + VIEW_LINES - count + i) % VIEW_LINES]);
     }
     if (!count) {
-        ImGui::TextDisabled("callback keys that clips pass are listed here");
+        ImGui::TextDisabled("callback keys appear here when clips pass them");
     }
 }
 

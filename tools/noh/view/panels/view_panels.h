@@ -8,7 +8,7 @@ extern "C" {
 
 #include "view/view_app.h"
 
-/* What happened in the window since the last frame. */
+/* The input since the last frame. */
 typedef struct view_input {
     float mouse[2]; /* points */
     int buttons[3]; /* left, right, middle: down, or pressed since the last frame */
@@ -31,8 +31,8 @@ int view_panels_hold_mouse(void);
 /* Once more what was laid out last, where frames are not drawn (view_app.lazy). */
 void view_panels_draw(view_app *a);
 
-/* A control by its name, as it is written; one of several of a name by what it is in: "walk/play". box: left, top,
- * right, bottom. Returns 0: there was none in the last frame, 1: it is in the window, 2: it has to be scrolled to. */
+/* Find a control by its label; "walk/play" selects the one inside "walk" if there are several. box: left, top, right,
+ * bottom. Returns 0: none in the last frame, 1: it is in the window, 2: it must be scrolled to. */
 int view_panels_find(const char *name, float box[4]);
 /* Scroll to it, in the next frame. */
 void view_panels_want(const char *name);

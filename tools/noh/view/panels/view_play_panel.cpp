@@ -44,7 +44,7 @@ bool track_head(view_app *a, uint32_t kind, uint32_t track)
     if (ui::small_button(muted ? "pose" : "mute")) {
         view_set_mode(a->model, kind, track, muted ? NOH_TRACK_ON : NOH_TRACK_TIME_ONLY);
     }
-    ui::hint("muted: its time goes on and its keys fire, but it is not in the pose");
+    ui::hint("muted: its time runs and its keys fire, but it does not affect the pose");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 40.0f);
     return ui::small_button("stop");
 }
@@ -184,5 +184,5 @@ void how_section(view_app *a)
     ui::checkbox("by inertia", &how->inertia);
     ImGui::SameLine();
     ui::checkbox("ramps", &a->ramps);
-    ui::hint("sliders of tracks are followed smoothly, within the time of a fade");
+    ui::hint("tracks follow their sliders smoothly, over the time of a fade");
 }

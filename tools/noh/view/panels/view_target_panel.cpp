@@ -65,8 +65,7 @@ void edit_buttons(view_app *a)
             view_target_let_go(&a->model->targets[t]);
         }
     }
-    ui::hint("every slider that was moved goes back to what clips and the face make of it. Ctrl+C copies them as text, "
-             "Ctrl+V pastes");
+    ui::hint("return all moved sliders to clips and face. Ctrl+C copies them as text, Ctrl+V pastes");
 }
 
 // ---- presets ----
@@ -92,7 +91,7 @@ void preset_buttons(view_app *a)
             const ui::in own(preset.name);
             ImGui::SameLine(0.0f, 1.0f);
             dropped = ui::small_button("x");
-            ui::hint("take it out of the file again");
+            ui::hint("delete it from the file");
         }
         ImGui::PopID();
         if (dropped) {
@@ -155,7 +154,7 @@ void target_slider(view_target &target)
             view_target_let_go(&target);
         }
     }
-    ui::hint(held ? "held: click the name to let go. Ctrl-click the slider to type a value" : target.name);
+    ui::hint(held ? "held: click the name to release it. Ctrl-click the slider to type a value" : target.name);
     if (held) {
         ImGui::PopStyleColor(2);
     }
