@@ -1,11 +1,25 @@
 # filter.awk: a header of the library as Doxygen reads it. The headers have plain comments with our own headings; this
 # turns a comment in column 1 into a documentation comment, one behind a member into the member's, "shapes", "units" and
 # the like into titled paragraphs, and lines that are indented (tables, examples) into verbatim blocks.
-function escape(text) {
+# What stands in backticks is code, and needs no escapes.
+function escape(text,   at, out) {
+    while (match(text, /`[^`]*`/)) {
+        at = RSTART + RLENGTH
+        out = out escape_words(substr(text, 1, RSTART - 1)) substr(text, RSTART, RLENGTH)
+        text = substr(text, at)
+    }
+    return out escape_words(text)
+}
+function escape_words(text) {
     gsub(/\\/, "\\\\", text)
-    gsub(/[@#<>%$&]/, "\\\\&", text)
-    gsub(/ \./, " \\&#46;", text) # a dot by itself would end a list
-    gsub(/\.\./, "\\&#46;\\&#46;", text)
+    gsub(/[@#<>%$&*~]/, "\\\\&", text)
+    gsub(/ \.\.\./, " \\&hellip;", text) # a dot before a blank ends the brief text, or a list
+    gsub(/ \.\. /, " to ", text)
+    gsub(/\.\. /, " or more ", text)
+    gsub(/\.\.,/, " or more,", text)
+    gsub(/\.\.;/, " or more;", text)
+    sub(/\.\.$/, " or more", text)
+    gsub(/ \./, " \\.", text)
     return text
 }
 function close_block() {
@@ -35,7 +49,7 @@ function comment(text,   word) {
 }
 BEGIN { first = 1 }
 # A heading of the header, with or without a text of its own, which belongs to the file.
-!inside && /^\/\* =+ .* =+ \*\/$/ { next }
+!inside && /^\/\* (=+|--+) .* (=+|--+) \*\/$/ { next }
 !inside && /^\/\* =+ .* =+$/ {
     gsub(/^\/\* =+ | =+$/, "")
     print "/** @file"
