@@ -61,7 +61,7 @@ check 'targets are in the Makefile' sh -c '! grep . "$1"' - "$work/targets"
 names() {
     sed 's/noh_[a-z_]*\.h//g' "$@" | grep -oE '\<(noh|NOH)_[a-zA-Z0-9_]*[a-z0-9A-Z]\>' | grep -vE '[a-z]_[A-Z]' | sort -u
 }
-find runtime -name '*.h' ! -name '*_internal.h' -exec cat {} + >"$work/headers"
+cat runtime/noh/*.h >"$work/headers"
 cat shaders_es/*.glsl shaders_es/README.md runtime/CMakeLists.txt tests/run.sh >>"$work/headers" 2>/dev/null
 find runtime tools/convert tools/noh platform -name '*.[ch]' -exec cat {} + >"$work/sources"
 pages=$(ls $guide/*.md | grep -v 'find_your_way\|/add_')
