@@ -4,7 +4,7 @@
 #   - links and pictures lead to files, and pictures have at most 120 KB
 #   - commands are verbs and options of the tool, and targets of the Makefile
 #   - names of the library are in its headers; pages about the code may name what any source file has
-#   - files that pages about the code name are there
+#   - files that pages about the code name are there, and have the names that the table of searches gives
 set -u
 . tests/cli/lib.sh
 guide=tools/docs/guide
@@ -79,4 +79,19 @@ cat $guide/find_your_way.md $guide/add_*.md | grep -oE '`[a-z_]+(/[a-z_0-9]+)+\.
     echo "$file"
 done >"$work/files"
 check 'files that they name are there' sh -c '! grep . "$1"' - "$work/files"
+# "`file`: `name`, `name`" in a cell of the table of searches.
+awk '/^\| .*\.(c|glsl)`/ {
+    cells = split($0, cell, "|")
+    for (c = 3; c < cells; c++) {
+        n = split(cell[c], part, "`")
+        for (i = 4; i <= n; i += 2) if (part[2] ~ /[a-z]\.(c|glsl)$/ && part[i] !~ /\.|NAME/) print part[2], part[i]
+    }
+}' $guide/find_your_way.md >"$work/places"
+while read -r file name; do
+    root=runtime/
+    test -e "$root$file" || root=
+    grep -qw "$name" "$root$file" || echo "$file: $name"
+done <"$work/places" >"$work/misplaced"
+echo "# $(wc -l <"$work/places") names in files"
+check 'names are in the files that the searches give' sh -c '! grep . "$1"' - "$work/misplaced"
 finish
