@@ -58,5 +58,6 @@ if [ -s "$out/warnings.txt" ]; then
     echo "0 passed, 1 failed, 0 skipped"
     exit 1
 fi
+awk -f tools/docs/search.awk "$out/html/search/searchdata.js" "$out"/html/search/all_*.js tools/docs/guide/*.md
 echo "$out/html/index.html: $(echo "$headers" | wc -w) headers, $(ls tools/docs/guide/*.md | wc -l) pages, no warning"
 echo '1 passed, 0 failed, 0 skipped'

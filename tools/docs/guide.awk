@@ -12,6 +12,7 @@ FNR == 1 {
 }
 /^```/ { fence = !fence; sub(/^```glsl/, "```c"); print; next }
 fence { print; next }
+/^## / { $0 = $0 " {#guide_" page "_" ++sections[page] "}" } # search.awk counts likewise
 {
     out = ""
     while (match($0, /!?\[[^]]*\]\([^)]*\)|`[^`]*`/)) {
