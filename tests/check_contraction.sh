@@ -6,6 +6,8 @@
 
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'no fused multiply-add' 'checked in the build without sanitizers'
+elif [ -z "${NOH_LONG:-}" ]; then
+    skip 'no fused multiply-add' 'it compiles the library once more: make check-long; tests/cross.sh looks at aarch64'
 elif ! ${CC:-gcc} -mfma -E - </dev/null >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1; then
     skip 'no fused multiply-add' "${CC:-gcc} does not build for x86-64 with -mfma, or objdump is missing"
 else

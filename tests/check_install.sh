@@ -30,7 +30,7 @@ installs 'make install-lib without a C++ compiler' install-lib PREFIX="$prefix" 
 check 'the library alone: no program' test ! -e "$prefix/bin" -a -f "$prefix/lib/libnoh.a"
 installs 'make install over it' install PREFIX="$prefix"
 for file in bin/noh bin/noh-embed lib/libnoh.a lib/pkgconfig/noh.pc lib/cmake/noh/nohConfig.cmake lib/cmake/noh/nohConfigVersion.cmake \
-    include/noh/noh.h share/noh/shaders/common_layers.glsl; do
+    include/noh/noh.h share/noh/shaders/common_layers.glsl share/noh/examples/walker.c share/noh/platform/template.c share/noh/guide/figures.md; do
     check "$file" test -s "$prefix/$file"
 done
 [ ! -f "$build/noh.1" ] || check 'the man page' test -s "$prefix/share/man/man1/noh.1"
@@ -38,6 +38,19 @@ done
 (cd "$prefix/include" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
 (cd runtime && find noh -name '*.h') | sort >"$work/public"
 check 'the public headers and no other' cmp "$work/public" "$work/headers"
+# A folder of the source is share/noh/FOLDER there. A header that is named is public.
+(cd "$prefix/include/noh" && grep -rhoE '\<(runtime|tools|tests|platform|shaders_es|core|motion|deform|life|stage|gl)/[A-Za-z0-9_./]*[A-Za-z0-9*_]' .) | sort -u >"$work/paths"
+(cd "$prefix/include/noh" && grep -rhoE '\<[a-z0-9_]+\.(h|c)\>' .) | sort -u >"$work/files"
+{
+    while read -r path; do
+        ls "$prefix/share/noh/"$(echo "$path" | sed 's|^shaders_es|shaders|') >/dev/null 2>&1 || echo "$path"
+    done <"$work/paths"
+    while read -r file; do
+        [ -f "$prefix/include/noh/$file" ] || [ "$file" = stddef.h ] || [ "$file" = stdint.h ] || echo "$file"
+    done <"$work/files"
+} >"$work/nowhere"
+check 'headers point to files that are installed' sh -c 'test -s "$1" && ! grep . "$2"' - "$work/files" "$work/nowhere"
+check 'the template compiles there' gcc -std=c99 -fsyntax-only "-I$prefix/include" "$prefix/share/noh/platform/template.c"
 version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/noh/base.h)
 (cd "$prefix" && find . -type f | sort) >"$work/before"
 mv "$prefix" "$work/moved"
@@ -216,7 +229,7 @@ check 'a BUILD with a space is refused' sh -c '! make -n BUILD="a b" DEPS=0 lib 
 if has arm-linux-gnueabihf-gcc && has arm-linux-gnueabihf-ar; then
     check 'a cross target builds and installs' make --no-print-directory BUILD="$work/arm" DEPS=0 OPT=-O0 CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
         CXX=false PREFIX=/usr DESTDIR="$work/armhf" install-lib
-    check 'and with -Os' make --no-print-directory BUILD="$work/arm-os" DEPS=0 OPT=-Os WERROR=-Werror CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
+    [ -z "${NOH_LONG:-}" ] || check 'and with -Os' make --no-print-directory BUILD="$work/arm-os" DEPS=0 OPT=-Os WERROR=-Werror CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
         CXX=false PREFIX=/usr DESTDIR="$work/armhf-os" install-lib
     check 'for that processor' sh -c 'readelf -h "$1" | grep -q "Machine:.*ARM"' - "$work/armhf/usr/lib/libnoh.a"
 else

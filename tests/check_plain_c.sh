@@ -18,7 +18,7 @@ plain=$build/plain
 plain_make() {
     make --no-print-directory -j"${JOBS:-2}" CC="${CC:-gcc}" DEPS=0 SAN= "$@" >"$work/log" 2>&1
 }
-check 'the library builds as plain C' plain_make BUILD="$plain" CROSS=1 OPT='-O1 -DNOH_PLAIN_C' lib
+check 'the library builds as plain C' plain_make BUILD="$plain" OPT='-O1 -DNOH_PLAIN_C' lib
 # Tests and tools as they are, linked with it.
 names=
 for name in hash math quat trig mesh bounds blend clip_codec; do

@@ -5,7 +5,7 @@
 #
 #   golden.sh            all of them (`make golden`)
 #   golden.sh short      what `make check` runs: gcc without and with optimisation
-#   golden.sh cross      the other processors alone, compared with gcc here (tests/cross.sh)
+#   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here
 #   golden.sh update     write golden.txt anew, after a change that is meant to change results
 #
 # The table holds for packs with the checksums that it names; where the demo's packs come out otherwise, builds are
@@ -17,7 +17,7 @@ case $build in /*) ;; *) build=$PWD/$build ;; esac
 work=$build/golden
 packs="$build/mask_levels.noh $build/demo/puppet_levels.noh $build/demo/puppet.noh"
 table=tests/golden/golden.txt
-sources="$build/amalgam/noh.c tests/golden/golden.c tools/noh/replay/session.c tools/noh/replay/session_input.c
+sources="tests/golden/golden.c tools/noh/replay/session.c tools/noh/replay/session_input.c
     tools/noh/replay/session_stage.c tools/noh/replay/session_draw.c platform/file.c"
 flags='-std=c99 -ffp-contract=off -fno-math-errno -DNOH_WITHOUT_GL -Iruntime -Iplatform -Itools -Itools/noh -w'
 tests=0 failures=0
@@ -31,18 +31,19 @@ report() { # ok|not ok, NAME
 
 has() { command -v "$1" >/dev/null 2>&1; }
 
-# COMPILER-AND-FLAGS PROGRAM: objects first, because emcc wants more tools to optimise while it links.
+# COMPILER-AND-FLAGS PROGRAM ARCHIVE: the library is compiled as one file, where there is no archive. Objects first,
+# because emcc wants more tools to optimise while it links.
 compile() {
     rm -rf "$work/objects"
     mkdir -p "$work/objects"
     # shellcheck disable=SC2086
-    for source in $sources; do
+    for source in $sources $([ -n "$3" ] || echo "$build/amalgam/noh.c"); do
         $1 $flags -c "$source" -o "$work/objects/$(basename "$source").o" || return
     done
-    $1 -O0 "$work"/objects/*.o -o "$2" -lm
+    $1 -O0 "$work"/objects/*.o $3 -o "$2" -lm
 }
 
-# NAME COMPILER-AND-FLAGS [RUNNER]: build, run, compare with the first.
+# NAME COMPILER-AND-FLAGS [RUNNER [ARCHIVE]]: build, run, compare with the first.
 variant() {
     if ! has "${2%% *}" || { [ -n "${3:-}" ] && ! has "${3%% *}"; }; then
         report ok "$1 # SKIP no ${2%% *}${3:+ or ${3%% *}} here"
@@ -54,7 +55,7 @@ variant() {
         return
     fi
     # shellcheck disable=SC2086
-    if ! compile "$2" "$work/$1" >"$work/$1.log" 2>&1 || ! ${3:-} "$work/$1" $packs >"$work/$1.txt" 2>"$work/$1.err"; then
+    if ! compile "$2" "$work/$1" "${4:-}" >"$work/$1.log" 2>&1 || ! ${3:-} "$work/$1" $packs >"$work/$1.txt" 2>"$work/$1.err"; then
         report 'not ok' "$1"
         tail -n 5 "$work/$1.log" "$work/$1.err" 2>/dev/null | sed 's/^/# /'
         return
@@ -89,8 +90,18 @@ against_table() {
     fi
 }
 
+# TARGET: the library of tests/cross.sh for it.
+archive() {
+    [ "$how" != cross ] || ls "$build/$1/libnoh.a" 2>/dev/null
+}
+
+how=${1:-}
 first=
-variant gcc-O2 'gcc -O2'
+case $how in
+short) made=$(ls "$build/amalgam/noh.o" 2>/dev/null) ;; # -O2, too
+*) made=$(archive .) ;;
+esac
+variant gcc-O2 'gcc -O2' '' "$made"
 if [ "${1:-}" = update ]; then
     [ $failures = 0 ] && cp "$work/gcc-O2.txt" "$table" && echo "# $table is written"
     exit $failures
@@ -108,9 +119,9 @@ if [ -z "${1:-}" ]; then
     variant clang-O3-native 'clang -O3 -march=native'
 fi
 if [ "${1:-}" != short ]; then
-    variant aarch64 'aarch64-linux-gnu-gcc -O2 -static' qemu-aarch64-static
-    variant armv7 'arm-linux-gnueabihf-gcc -O2 -mfpu=neon -static' qemu-arm-static
-    variant wasm.js 'emcc -O2 -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' 'node --no-experimental-fetch'
+    variant aarch64 'aarch64-linux-gnu-gcc -O2 -static' qemu-aarch64-static "$(archive aarch64)"
+    variant armv7 'arm-linux-gnueabihf-gcc -O2 -mfpu=neon -static' qemu-arm-static "$(archive armv7)"
+    variant wasm.js 'emcc -O2 -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' 'node --no-experimental-fetch' "$(archive wasm)"
 fi
 echo "1..$tests"
 exit $failures

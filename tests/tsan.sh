@@ -10,7 +10,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0 skipped=0
 
-programs='test_threads test_stage_threads test_crowd_threads'
+programs='motion/test_threads stage/test_stage_threads stage/test_crowd_threads'
 packs=${NOH_BUILD:-build} # test_stage_threads reads mask_levels.noh and demo/puppet_levels.noh there
 
 compiler() {
@@ -25,8 +25,8 @@ compiler() {
     fi
     # Optimised only a little: fewer accesses disappear before the sanitizer sees them.
     # shellcheck disable=SC2046 # words
-    if ! make --no-print-directory -j"${JOBS:-2}" DEPS=0 CROSS=1 SAN=thread BUILD="$build" CC="$cc" OPT='-O1 -g -DNOH_ASSERT_LEVEL=2' \
-        CFLAGS= CPPFLAGS= LDFLAGS=-pthread $(printf "$build/cross/%s " $programs) >"$build/make.txt" 2>&1; then
+    if ! make --no-print-directory -j"${JOBS:-2}" DEPS=0 CROSS=tsan SAN=thread BUILD="$build" CC="$cc" OPT='-O1 -g -DNOH_ASSERT_LEVEL=2' \
+        CFLAGS= CPPFLAGS= LDFLAGS=-pthread $(printf "$build/cross/unit/%s " $programs) >"$build/make.txt" 2>&1; then
         echo "$cc: it does not build"
         tail -n 20 "$build/make.txt" | sed 's/^/    | /'
         failed=$((failed + 1))
@@ -34,7 +34,7 @@ compiler() {
     fi
     status=0
     for program in $programs; do
-        NOH_BUILD=$packs TSAN_OPTIONS="halt_on_error=0 exitcode=66 ${TSAN_OPTIONS:-}" "$build/cross/$program" || status=$?
+        NOH_BUILD=$packs TSAN_OPTIONS="halt_on_error=0 exitcode=66 ${TSAN_OPTIONS:-}" "$build/cross/unit/$program" || status=$?
     done >"$build/tsan.txt" 2>&1
     reports=$(grep -c 'WARNING: ThreadSanitizer' "$build/tsan.txt")
     right=$(grep -c '^ok ' "$build/tsan.txt") wrong=$(grep -c '^not ok ' "$build/tsan.txt")

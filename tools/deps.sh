@@ -59,7 +59,10 @@ packages_cross='?gcc-aarch64-linux-gnu:aarch64
 ?libc6-dev-armhf-cross:armv7
 ?qemu-user-static:running both
 ?emscripten:wasm
-?nodejs:running wasm'
+?nodejs:running wasm
+?gcc-mingw-w64-x86-64-win32:Windows
+?wine64:running it
+?wine:running it'
 packages_web='?emscripten:the page
 ?nodejs:its test
 ?npm:its test

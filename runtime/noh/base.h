@@ -72,7 +72,7 @@ typedef enum noh_half_mode {
 
 #define NOH_NONE 0xffffffffu /* no index; above every count */
 
-/* Most stack that any call of the library uses, by the compiler's reports. */
+/* No call of the library uses more stack than this. */
 #define NOH_STACK_BYTES 8192u
 
 /* ---- a pack ---- */
@@ -233,7 +233,7 @@ typedef enum noh_half_mode {
 #define NOH_GL_OWN_INPUTS_MAX 8u    /* a game's own attributes for its shaders */
 #define NOH_GL_OWN_SAMPLERS_MAX 13u /* of a game's own shaders: ES 3.0 guarantees 16, and the library uses 3 */
 #define NOH_GL_LABEL_BYTES 96u      /* of an object's name; longer ones are cut. GL accepts at least 256 */
-#define NOH_GL_PIECES_MAX 56u       /* of a shader's text; equal to PIECES_MAX in tools/embed */
+#define NOH_GL_PIECES_MAX 56u       /* of a shader's text; noh-embed writes no more */
 
 /* ======== versions ========
  * The version of noh. Semantic versioning; below 1.0.0 a new minor version may change the interface. The

@@ -371,7 +371,7 @@ void noh_amplitude_between(const noh_amplitude_frame *from, const noh_amplitude_
  *
  * Windows of 25 ms every 10 ms become thirteen mel-frequency cepstral coefficients (Davis and Mermelstein, 1980), minus
  * their running mean, and loudness relative to recent loudness. A network with one hidden layer, trained on synthetic
- * speech by tools/train_ear, reads shapes from six of twelve such frames. Lips change after enough evidence, and close
+ * speech, reads shapes from six of twelve such frames. Lips change after enough evidence, and close
  * immediately. All arithmetic is in integers: the same bits on every processor, whatever the size of the chunks.
  *
  * A frame is ready NOH_EAR_LATENCY_MS after its middle: a program that plays the sound itself can delay it by the same

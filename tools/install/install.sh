@@ -2,7 +2,8 @@
 # install.sh lib|all|remove: what `make install-lib`, `make install` and `make uninstall` call, with BUILD, VERSION, CC,
 # PREFIX, BINDIR, LIBDIR, INCLUDEDIR, DATADIR and DESTDIR set.
 #
-#   lib     libnoh.a, the public headers, the GLSL for a game's own shaders, noh.pc, the CMake package
+#   lib     libnoh.a, the public headers, noh.pc, the CMake package; in DATADIR/noh the GLSL for a
+#           game's own shaders, the examples, the platform template and the guide
 #   all     that, and the programs noh and noh-embed (tools/embed), the man page and bash completion
 #   remove  what DATADIR/noh/installed.txt lists, and the folders that were made for it, where they are empty
 #
@@ -103,6 +104,15 @@ for shader in shaders_es/*.glsl; do
     put 644 "$shader" "$DATADIR/noh/shaders/${shader##*/}"
 done
 put 644 shaders_es/README.md "$DATADIR/noh/shaders/README.md"
+for example in tools/examples/*.[ch]; do
+    put 644 "$example" "$DATADIR/noh/examples/${example##*/}"
+done
+for file in template.c platforms.h platform.h README.md; do
+    put 644 "platform/$file" "$DATADIR/noh/platform/$file"
+done
+for page in tools/docs/*.md; do
+    put 644 "$page" "$DATADIR/noh/guide/${page##*/}"
+done
 fill tools/install/noh.pc.in "$LIBDIR/pkgconfig/noh.pc"
 fill tools/install/nohConfig.cmake.in "$LIBDIR/cmake/noh/nohConfig.cmake"
 fill tools/install/nohConfigVersion.cmake.in "$LIBDIR/cmake/noh/nohConfigVersion.cmake"

@@ -1,4 +1,5 @@
-/* test_bvh_read.c: .bvh files, written here and real. */
+/* test_bvh_read.c: .bvh files, written here and real.
+ * cross: slow, thousands of damaged files */
 #include "support/support.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* test_events_read.c: callback keys from text files. */
+/* test_events_read.c: callback keys from text files.
+ * cross: slow, thousands of damaged files */
 #include "support/support.h"
 
 #include <math.h>

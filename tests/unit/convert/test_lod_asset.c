@@ -1,5 +1,6 @@
 /* LOD levels of models as people bring them: facets with split normals, hair cards, materials side by side, several
- * meshes (tools/convert/lod/). */
+ * meshes (tools/convert/lod/).
+ * cross: slow, makes levels */
 #include "support/support.h"
 
 #include <math.h>

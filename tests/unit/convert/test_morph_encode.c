@@ -1,4 +1,5 @@
-/* Tests of the morph encoder (tools/convert/morph/) on meshes made here. */
+/* Tests of the morph encoder (tools/convert/morph/) on meshes made here.
+ * cross: slow, encodes meshes */
 #include "support/support.h"
 
 #include <math.h>

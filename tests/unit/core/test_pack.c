@@ -1,5 +1,6 @@
 /* The checker of packs: a good one opens and can be used in full; cut, flipped and forged ones are errors that say what
- * and where, or packs that can still be used in full. */
+ * and where, or packs that can still be used in full.
+ * cross: never, its pack has clips, which C++ makes of a model */
 #include "support/support.h"
 
 #include <float.h>

@@ -1,5 +1,6 @@
 /* Textures in blocks of ETC2 and EAC in the wire form: all formats come back to the byte, whatever their bits, and take
- * fewer bytes than as bytes; what is cut short or flipped is refused; forms of version 1 are still read. */
+ * fewer bytes than as bytes; what is cut short or flipped is refused; forms of version 1 are still read.
+ * cross: long, thousands of damaged blocks */
 #include "support.h"
 
 #include <math.h>

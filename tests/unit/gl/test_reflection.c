@@ -1,5 +1,6 @@
 /* test_reflection.c: windows and key lights as spherical harmonics, and the prefiltered cube, against brute force in
- * double precision. */
+ * double precision.
+ * cross: slow, integrals by brute force */
 #include "support/support.h"
 
 #include <math.h>

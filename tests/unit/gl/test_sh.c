@@ -1,4 +1,5 @@
-/* test_sh.c: spherical harmonics and environments against closed forms, in double precision. */
+/* test_sh.c: spherical harmonics and environments against closed forms, in double precision.
+ * cross: slow, integrals by brute force */
 #include "support/support.h"
 
 #include <math.h>

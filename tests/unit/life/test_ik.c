@@ -1,4 +1,5 @@
-/* Tests of runtime/sim/ik*.c in closed form: ends on their targets, poles, limits, and a million cases at random. */
+/* Tests of runtime/sim/ik*.c in closed form: ends on their targets, poles, limits, and a million cases at random.
+ * cross: slow, a million cases */
 #include "noh/body.h"
 #include "noh/low_core.h"
 

@@ -1,5 +1,5 @@
 /* Tests of ragdoll.c and ragdoll_lanes.c: closed forms, energy, torture, and the same bits at every width.
- */
+ * cross: slow, minutes of falls */
 #include "life/physics/motion.h"
 #include "life/physics/ragdoll.h"
 #include "life/physics/world.h"

@@ -1,4 +1,5 @@
-/* Tests of clip_cache.c: which segments it holds, at what cost, and what is decoded late. */
+/* Tests of clip_cache.c: which segments it holds, at what cost, and what is decoded late.
+ * cross: long, encodes clips */
 #include "motion/clip/clip_cache.h"
 #include "noh/base.h"
 #include "noh/clip.h"

@@ -1,6 +1,7 @@
 /* Tests of the clip codec: the encoder (tools/convert/codec/), the decoder and its cache
  * (runtime/motion/clip/). The evaluator here is written from the definition of the error, in
- * double precision, and shares nothing with the encoder's. */
+ * double precision, and shares nothing with the encoder's.
+ * cross: long, the encoder takes minutes under an emulator */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* test_clip_packs.c: several packs of clips in one clip bank: equal to one pack of them all; what a later pack
- * replaces, leaves alone or breaks. */
+ * replaces, leaves alone or breaks.
+ * cross: long, encodes clips */
 #include "support/set_fixture.h"
 
 #include "noh/base.h"

@@ -1,4 +1,5 @@
-/* Tests of callback keys: runtime/motion/anim/{events,event_queue}.c, and through the controller. */
+/* Tests of callback keys: runtime/motion/anim/{events,event_queue}.c, and through the controller.
+ * cross: long, thousands of clips with keys */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* Controllers of one clip set posed by four threads at once, each through its own view: the same bits
- * as one thread, and (tests/tsan.sh) no race. */
+ * as one thread, and (tests/tsan.sh) no race.
+ * cross: long, poses a crowd four times */
 #define _POSIX_C_SOURCE 200112L
 #include "support/set_fixture.h"
 #include "motion/anim/controller.h"

@@ -1,4 +1,5 @@
-/* Tests of character.c: one block that steps, chooses, poses and shows; and a crowd of them. */
+/* Tests of character.c: one block that steps, chooses, poses and shows; and a crowd of them.
+ * cross: long, minutes of a crowd */
 #include "motion/anim/controller.h"
 #include "motion/anim/tracks.h"
 #include "stage/character/character.h"

@@ -1,5 +1,6 @@
 /* Tests of runtime/stage/crowd/: agents that arrive, pass each other, and stay out of walls; the same bits however they are
- * stepped. Scenes with bounds are in cli/crowd.sh. */
+ * stepped. Scenes with bounds are in cli/crowd.sh.
+ * cross: long, minutes of a crowd */
 #include "noh/base.h"
 #include "noh/crowd.h"
 

@@ -1,5 +1,6 @@
 /* Tests of crowd_round.c and of doors in crowd_plan.c: whatever the shape of what is in the way, an agent
- * gets round it without a flow field; crowds that meet in a narrow door all get through. */
+ * gets round it without a flow field; crowds that meet in a narrow door all get through.
+ * cross: long, ten thousand steps take minutes under an emulator */
 #include "noh/base.h"
 #include "noh/crowd.h"
 

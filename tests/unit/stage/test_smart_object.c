@@ -1,5 +1,6 @@
 /* Smart objects: a million random reservations against a model that is written from the header alone; what objects tell
- * agents to do; and what is refused. */
+ * agents to do; and what is refused.
+ * cross: long, a million reservations */
 #include "noh/base.h"
 #include "noh/crowd.h"
 
