@@ -1,7 +1,7 @@
-/* egl.c: an OpenGL ES context through EGL: the system's own, or ANGLE's. Headless, or in a window that the caller made.
+/* egl.c: an OpenGL ES context through EGL: the system's own or ANGLE's; headless, or in a window of the caller.
  *
- * ANGLE's two libraries are looked for in the folder that the environment variable NOH_ANGLE names (tools/angle.sh
- * fills one), then in the folders of Debian's chromium, some versions of which bring them. */
+ * ANGLE's two libraries are looked up in the folder named by the environment variable NOH_ANGLE (tools/angle.sh fills
+ * one), then in the folders of Debian's chromium; some of its versions contain them. */
 #define EGL_EGL_PROTOTYPES 0
 #include "platforms.h"
 
@@ -20,8 +20,7 @@
 #define ANGLE_DEVICE_SWIFTSHADER 0x3487
 
 #define EGL_HINT "to install on Debian: libegl1 libgles2 libegl-mesa0 libgl1-mesa-dri\n"
-#define ANGLE_HINT \
-    "NOH_ANGLE must name the folder that holds ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
+#define ANGLE_HINT "set NOH_ANGLE to the folder with ANGLE's libEGL.so and libGLESv2.so (tools/angle.sh makes one)\n"
 #define DEVICES_MAX 16
 
 /* X(field, name in the type PFNEGL...PROC) */
@@ -47,14 +46,14 @@ typedef struct egl_api {
 #define EGL_FIELD(field, TYPE) PFNEGL##TYPE##PROC field;
     EGL_FUNCTIONS(EGL_FIELD)
 #undef EGL_FIELD
-    void *gles; /* libGLESv2, for names that eglGetProcAddress does not find; may be NULL */
+    void *gles; /* libGLESv2, for names unknown to eglGetProcAddress; may be NULL */
 } egl_api;
 
 struct noh_platform_context {
     egl_api egl;
     EGLDisplay display;
     EGLContext context;
-    EGLSurface surface; /* EGL_NO_SURFACE where none is needed */
+    EGLSurface surface; /* EGL_NO_SURFACE if none is needed */
 };
 
 /* What each attempt needs: the EGL functions, the desc, and the message to append failures to. */
@@ -72,7 +71,7 @@ static void say(attempt *at, const char *way, const char *what)
                     (unsigned)at->egl.GetError());
 }
 
-/* Whole-word search in a list separated by blanks. */
+/* Search a whole word in a list separated by spaces. */
 static int lists(const char *extensions, const char *name)
 {
     size_t length = strlen(name);
@@ -95,7 +94,7 @@ static EGLContext create_context(const egl_api *egl, EGLDisplay display, EGLConf
         EGLContext context = egl->CreateContext(display, config, EGL_NO_CONTEXT, attributes);
         if (context != EGL_NO_CONTEXT) return context;
     }
-    /* EGL 1.4 without EGL_KHR_create_context knows only the major version. */
+    /* EGL 1.4 without EGL_KHR_create_context takes only the major version. */
     const EGLint attributes[] = { EGL_CONTEXT_CLIENT_VERSION, 3, EGL_NONE };
     return egl->CreateContext(display, config, EGL_NO_CONTEXT, attributes);
 }
@@ -183,7 +182,7 @@ static int try_display(attempt *at, EGLDisplay display, const char *way)
         return 0;
     }
     if (!at->egl.Initialize(display, NULL, NULL)) {
-        say(at, way, "eglInitialize fails");
+        say(at, way, "eglInitialize failed");
         return 0;
     }
     if (!at->egl.BindAPI(EGL_OPENGL_ES_API)) {
@@ -342,7 +341,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
 {
     const noh_platform_context *context = user;
     noh_gl_proc proc = (noh_gl_proc)context->egl.GetProcAddress(name);
-    /* Before EGL 1.5, eglGetProcAddress need not know core functions. */
+    /* Before EGL 1.5, eglGetProcAddress need not return core functions. */
     if (!proc && context->egl.gles) proc = noh_library_proc(context->egl.gles, name);
     return proc;
 }

@@ -1,8 +1,7 @@
 /* file_write.c: writing whole files.
  *
  * Replacing a file by rename is atomic, but it replaces the directory entry: a symbolic link would become a file, and a
- * device node would be lost. So links are followed by hand first, and what is not a regular file is written in place.
- */
+ * device node would be lost. So links are resolved first, and a file that is not regular is written in place. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "platform.h"
@@ -18,7 +17,7 @@
 #define LINKS_MAX 40 /* as many as Linux follows */
 #define ATTEMPTS 100 /* different names for the temporary file */
 
-/* 0, or the errno of what failed: as all below. */
+/* Returns 0 or the errno of a failure, as all functions below. */
 static int write_all(int descriptor, const void *data, size_t bytes)
 {
     const char *p = data;
@@ -48,7 +47,7 @@ static int follow(char path[PATH_BYTES], const char *link, size_t length)
     return 0;
 }
 
-/* The file that a path means once its symbolic links are followed, whether it exists or not. */
+/* Resolve the symbolic links of a path; the resulting file need not exist. */
 static int resolve(char path[PATH_BYTES])
 {
     char link[PATH_BYTES];
@@ -62,7 +61,7 @@ static int resolve(char path[PATH_BYTES])
     return ELOOP;
 }
 
-/* Where the path is this process's standard output or error: its descriptor, else -1. */
+/* The descriptor if the path is this process's standard output or error, else -1. */
 static int own_stream(const struct stat *file)
 {
     for (int descriptor = STDOUT_FILENO; descriptor <= STDERR_FILENO; descriptor++) {
@@ -81,7 +80,8 @@ static int write_in_place(const char *path, const void *data, size_t bytes)
     return code;
 }
 
-/* A new file in the folder. Its name does not contain the final one, which may already be as long as names can be. */
+/* Create a temporary file in the folder. Its name does not contain the final name, which may already have the maximum
+ * length. */
 static int open_temporary(int folder, char name[64], int *descriptor)
 {
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
@@ -93,7 +93,7 @@ static int open_temporary(int folder, char name[64], int *descriptor)
     return errno;
 }
 
-/* mode: the permissions of the file that is replaced; 0: there is none. */
+/* mode: permissions of the replaced file; 0: there is none. */
 static int replace_in(int folder, const char *name, mode_t mode, const void *data, size_t bytes)
 {
     char temporary[64];

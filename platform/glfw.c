@@ -1,5 +1,5 @@
-/* glfw.c: an OpenGL ES context in a GLFW window, shown or hidden. libglfw is opened when a context is made, so neither
- * its header nor its library is needed to build. */
+/* glfw.c: an OpenGL ES context in a GLFW window, shown or hidden. libglfw is opened when a context is created, so
+ * building needs neither its header nor its library. */
 #include "platforms.h"
 
 #include <stdlib.h>
@@ -71,7 +71,7 @@ static glfw_window *open_window(const noh_platform_context *c, const noh_platfor
                            desc->window ? desc->window : "noh", NULL, NULL);
 }
 
-/* EGL first, which gives the version that was asked for; then GLX or WGL. */
+/* EGL first, which returns the requested version; then GLX or WGL. */
 static int open_any(noh_platform_context *c, const noh_platform_desc *desc, char *message, size_t message_bytes)
 {
     static const int apis[] = { GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API };
@@ -127,7 +127,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return context->GetProcAddress(name);
 }
 
-/* glfwGetError also clears what was pending. */
+/* glfwGetError also clears a pending error. */
 static noh_result present(noh_platform_context *context)
 {
     context->GetError(NULL);

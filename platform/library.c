@@ -28,8 +28,8 @@ void *noh_library_open(const char *path, char *message, size_t message_bytes)
 
 noh_gl_proc noh_library_proc(void *library, const char *name)
 {
-    /* ISO C does not convert an object pointer to a function pointer; POSIX
-     * promises that the two have one representation. */
+    /* ISO C does not convert an object pointer to a function pointer; POSIX guarantees the same representation for
+     * both. */
     void *symbol = dlsym(library, name);
     noh_gl_proc proc = NULL;
     if (symbol) memcpy(&proc, &symbol, sizeof proc);

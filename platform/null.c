@@ -1,4 +1,4 @@
-/* null.c: no GL at all: the library's logic runs, and every call is counted and checked. */
+/* null.c: no GL: the library's logic runs, and every call is counted and checked. */
 #include "null_internal.h"
 
 #include "platforms.h"

@@ -11,7 +11,7 @@ static const null_object *attached(const noh_platform_context *c, const null_att
     return a->name && object->alive && object->ready ? object : NULL;
 }
 
-/* There is an attachment; all are live, have storage and are of one size. */
+/* Whether there is an attachment, and all attachments are live, have storage and have the same size. */
 int noh_null_complete(const noh_platform_context *c, GLuint framebuffer)
 {
     const null_object *f = &c->objects[NOH_NULL_FRAMEBUFFER][framebuffer];
@@ -44,7 +44,7 @@ static void attach(int call, GLenum target, GLenum at, GLuint name, int is_textu
     unsigned index = at == GL_DEPTH_ATTACHMENT ? 4u : (unsigned)(at - GL_COLOR_ATTACHMENT0);
     const null_object *object = NULL;
     if (name) object = noh_null_object(call, is_texture ? NOH_NULL_TEXTURE : NOH_NULL_RENDERBUFFER, name);
-    if (object && !object->ready) noh_null_wrong(call, "what is attached has no storage");
+    if (object && !object->ready) noh_null_wrong(call, "the attachment has no storage");
     if (object && is_texture && layer >= (object->layers ? object->layers : 1))
         noh_null_wrong(call, "no layer %d", layer);
     if (index >= NULL_ATTACHMENTS) {
@@ -216,8 +216,8 @@ static void GL_APIENTRY null_VertexAttribIPointer(GLuint index, GLint components
 
 /* --- draws --- */
 
-/* Each attribute's buffer is live and has as many elements as the draw is known to read: of instances all are known, of
- * vertices only in draws without indices (vertices 0: unknown). */
+/* Check that each attribute's buffer is live and has all elements that the draw reads: the number of instances is
+ * always known, the number of vertices only without indices (vertices 0: unknown). */
 static void check_attributes(int call, const null_object *array, uint64_t vertices, uint64_t instances)
 {
     for (unsigned i = 0; i < NULL_ATTRIBUTES; i++) {
@@ -231,7 +231,7 @@ static void check_attributes(int call, const null_object *array, uint64_t vertic
     }
 }
 
-/* A texture that is drawn to must not be bound where a shader could read it. */
+/* A render target must not be bound to a unit that a shader could read. */
 static void check_feedback(int call, const noh_platform_context *c)
 {
     const null_object *f = &c->objects[NOH_NULL_FRAMEBUFFER][c->draw_framebuffer];

@@ -5,7 +5,7 @@
 #include "null.h"
 #include "noh/gl_device.h"
 
-#define NULL_OBJECTS_MAX 4096 /* of one kind; names are never reused, so that a stale one is noticed */
+#define NULL_OBJECTS_MAX 4096 /* per kind; names are never reused, so that stale ones are detected */
 #define NULL_UNITS 32
 #define NULL_ATTRIBUTES 16
 #define NULL_ATTACHMENTS 5 /* four colours, depth */
@@ -25,7 +25,7 @@ typedef struct null_attachment {
 /* An object of any kind. Fields that a kind does not use stay zero. */
 typedef struct null_object {
     int alive, labelled;
-    int bound;   /* at least once; until then the name has no object */
+    int bound;   /* bound at least once; before, the name has no object */
     int ready;   /* has storage; compiled; linked */
     GLenum type; /* texture target or shader stage */
     uint64_t bytes;
@@ -42,7 +42,7 @@ typedef struct null_unit {
     GLuint flat, array, cube; /* GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP */
 } null_unit;
 
-/* Every function that the platform has: calls are counted by these. */
+/* Every function of the platform; calls are counted by these. */
 #define NULL_CALLS(X) NOH_GL_REQUIRED(X) NOH_GL_EXTRA(X)
 enum {
 #define NULL_CALL(field, result, parameters) NULL_##field,
@@ -63,9 +63,9 @@ struct noh_platform_context {
     uint32_t draws, outside, allocations, violations;
     char first[160];
     int refused_call;    /* -1: none */
-    uint32_t refused_in; /* calls of it before the one that fails */
+    uint32_t refused_in; /* calls before the one that fails */
     GLenum refused_error;
-    int refusing, refused; /* the present call fails; the call has been made */
+    int refusing, refused; /* the current call fails; the failing call was made */
     GLenum error;
     uint32_t groups;
     GLint viewport[4];
@@ -77,7 +77,7 @@ struct noh_platform_context {
     GLuint program, vertex_array, renderbuffer, draw_framebuffer, read_framebuffer;
 };
 
-/* The context that is current; NULL: none, and then no function may be called. */
+/* The current context; NULL: none, and no function may be called. */
 extern noh_platform_context *noh_null_current;
 
 /* ---- null.c: counts and violations ---- */
@@ -85,7 +85,7 @@ extern noh_platform_context *noh_null_current;
 /* Count a call of the current context. */
 noh_platform_context *noh_null_count(int call);
 
-/* A violation; format gives the text after the function's name. */
+/* Report a violation; format: the text after the function's name. */
 void noh_null_wrong(int call, const char *format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 2, 3)))
@@ -94,23 +94,23 @@ void noh_null_wrong(int call, const char *format, ...)
 
 /* ---- null_objects.c: names and their objects ---- */
 
-/* The live object of a name; a violation and NULL where there is none. */
+/* The live object of a name; a violation and NULL if there is none. */
 null_object *noh_null_object(int call, noh_null_kind kind, GLuint name);
 
-/* A new name of a kind; its deletion. */
+/* Create a name of a kind; delete it. */
 GLuint noh_null_make(int call, noh_null_kind kind);
 void noh_null_delete(int call, noh_null_kind kind, GLsizei count, const GLuint *names);
 
-/* The object bound to a target; a violation and NULL for none. */
+/* The object bound to a target; a violation and NULL if there is none. */
 null_object *noh_null_texture_at(int call, GLenum target);
 null_object *noh_null_buffer_at(int call, GLenum target);
 
 /* ---- null_draw.c ---- */
 
-/* 1 where the framebuffer could be drawn to or read; 0 is the default one. */
+/* 1 if the framebuffer is complete; framebuffer 0 is the default one. */
 int noh_null_complete(const noh_platform_context *c, GLuint framebuffer);
 
-/* ---- the tables of functions, one in each file; a {NULL, NULL} ends them ---- */
+/* ---- the tables of functions, one per file, each ended by {NULL, NULL} ---- */
 
 typedef struct null_entry {
     const char *name; /* "glBindBuffer" */

@@ -14,7 +14,7 @@ null_object *noh_null_object(int call, noh_null_kind kind, GLuint name)
 {
     noh_platform_context *c = noh_null_current;
     if (name == 0 || name >= c->next[kind]) {
-        noh_null_wrong(call, "%s %u was never made", kind_names[kind], (unsigned)name);
+        noh_null_wrong(call, "%s %u was never created", kind_names[kind], (unsigned)name);
         return NULL;
     }
     if (!c->objects[kind][name].alive) {
@@ -30,7 +30,7 @@ GLuint noh_null_make(int call, noh_null_kind kind)
     c->allocations++;
     if (c->refusing) return 0;
     if (c->next[kind] >= NULL_OBJECTS_MAX) {
-        noh_null_wrong(call, "more objects than the null platform keeps");
+        noh_null_wrong(call, "more objects than the limit of the null platform");
         return 0;
     }
     GLuint name = c->next[kind]++;
@@ -263,7 +263,7 @@ static void set_storage(int call, GLenum target, GLenum format, const GLsizei si
     desc.layers = target == GL_TEXTURE_CUBE_MAP ? NOH_GL_CUBE : (uint32_t)size[2];
     desc.levels = (uint32_t)levels;
     if (!object) return;
-    if (object->ready) noh_null_wrong(call, "the texture has its storage already");
+    if (object->ready) noh_null_wrong(call, "the texture already has storage");
     object->ready = 1;
     object->width = size[0];
     object->height = size[1];
@@ -329,9 +329,10 @@ static void GL_APIENTRY null_CompressedTexSubImage2D(GLenum target, GLint level,
     const noh_gl_texture_desc desc = { .format = format, .width = (uint32_t)width, .height = (uint32_t)height };
     (void)data;
     check_update(NULL_CompressedTexSubImage2D, target, level, at, count);
-    if ((x | y) & 3) noh_null_wrong(NULL_CompressedTexSubImage2D, "blocks begin at multiples of 4");
+    if ((x | y) & 3)
+        noh_null_wrong(NULL_CompressedTexSubImage2D, "the origin of compressed blocks is not a multiple of 4");
     if ((uint64_t)bytes != noh_gl_texture_bytes(&desc)) {
-        noh_null_wrong(NULL_CompressedTexSubImage2D, "%d bytes are not those of the blocks", (int)bytes);
+        noh_null_wrong(NULL_CompressedTexSubImage2D, "%d bytes do not match the size of the blocks", (int)bytes);
     }
 }
 

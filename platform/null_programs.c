@@ -32,7 +32,7 @@ static void GL_APIENTRY null_ShaderSource(GLuint shader, GLsizei count, const GL
         noh_null_wrong(NULL_ShaderSource, "the text does not begin with #version");
     } else if (object) {
         object->bytes = 0;
-        object->levels = count; /* it has a source */
+        object->levels = count; /* has a source */
     }
 }
 
@@ -123,7 +123,7 @@ static void GL_APIENTRY null_TransformFeedbackVaryings(GLuint program, GLsizei c
     (void)mode;
     noh_null_count(NULL_TransformFeedbackVaryings);
     const null_object *object = noh_null_object(NULL_TransformFeedbackVaryings, NOH_NULL_PROGRAM, program);
-    if (object && object->ready) noh_null_wrong(NULL_TransformFeedbackVaryings, "the program is linked already");
+    if (object && object->ready) noh_null_wrong(NULL_TransformFeedbackVaryings, "the program is already linked");
 }
 
 static void GL_APIENTRY null_GetActiveAttrib(GLuint program, GLuint index, GLsizei room, GLsizei *length, GLint *size,
@@ -134,11 +134,11 @@ static void GL_APIENTRY null_GetActiveAttrib(GLuint program, GLuint index, GLsiz
     (void)type;
     noh_null_count(NULL_GetActiveAttrib);
     noh_null_object(NULL_GetActiveAttrib, NOH_NULL_PROGRAM, program);
-    noh_null_wrong(NULL_GetActiveAttrib, "the null platform reads no shaders, and has no active attributes");
+    noh_null_wrong(NULL_GetActiveAttrib, "the null platform does not parse shaders and has no active attributes");
     empty_log(room, length, name);
 }
 
-/* Every name has a location: the null platform reads no shaders. */
+/* Every name has a location, because the null platform does not parse shaders. */
 static GLint find(int call, GLuint program)
 {
     noh_null_count(call);

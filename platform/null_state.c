@@ -117,7 +117,7 @@ static const GLubyte *GL_APIENTRY null_GetStringi(GLenum what, GLuint index)
     return NULL;
 }
 
-/* State is as in a new context, whatever was set. */
+/* Queries return the state of a new context, whatever was set. */
 static GLboolean GL_APIENTRY null_IsEnabled(GLenum what)
 {
     (void)what;
@@ -150,7 +150,7 @@ static int is_vector(GLenum what, GLint *value)
     return 1;
 }
 
-/* The minimum limits of ES 3.0; 2,048 where they are more than the tests need. */
+/* The minimum limits of ES 3.0; 2,048 if they exceed what the tests need. */
 static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
 {
     static const struct {

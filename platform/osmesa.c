@@ -1,6 +1,5 @@
-/* osmesa.c: a desktop GL context that draws into memory, through OSMesa. It compiles the ES shaders and has every
- * ES 3.2 function. libOSMesa is opened when a context is made, so neither its header nor its library is needed to
- * build. */
+/* osmesa.c: a desktop GL context that draws into memory, through OSMesa. It compiles the ES shaders and has every ES
+ * 3.2 function. libOSMesa is opened when a context is created, so building needs neither its header nor its library. */
 #include "platforms.h"
 
 #include <stdlib.h>
@@ -120,7 +119,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return context->get_proc(name);
 }
 
-/* There is no window: the pixels are in memory once GL has finished. */
+/* No window: the pixels are in memory once GL has finished. */
 static noh_result present(noh_platform_context *context)
 {
     finish_function finish = (finish_function)context->get_proc("glFinish");

@@ -1,8 +1,8 @@
-/* template.c: where a port begins.
+/* template.c: the starting point of a port.
  *
- * Copy this file, name it after your system, and replace the system_* functions by that system's own calls. Nothing
- * else in noh has to change: add the noh_platform at the end to platforms.h and platform.c if the tools should know it
- * by name, or use it alone. README.md says what each part must do. */
+ * Copy this file, name it after your system, and replace the system_* functions by its calls. Nothing else in noh has
+ * to change. Add the noh_platform at the end to platforms.h and platform.c to use it with the tools, or use it alone.
+ * README.md describes each part. */
 #include "platforms.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ typedef struct system_context system_context;
 system_context *system_context_open(int es_version, unsigned width, unsigned height, int samples, const char **why_not);
 int system_context_bind(system_context *context); /* 0: refused */
 void *system_context_window(system_context *context);
-int system_window_swap(void *window); /* 0: the surface or the context is gone */
+int system_window_swap(void *window); /* 0: the surface or the context is lost */
 void system_window_size(void *window, unsigned *width, unsigned *height);
 noh_gl_proc system_gl_lookup(const char *name);
 void system_context_close(system_context *context);
@@ -23,19 +23,19 @@ uint64_t system_clock_ns(void);
 
 /* ---- the context ---- */
 
-/* What your system needs to find the context again. One allocation, or a static where there is only one context. */
+/* Your system's handles of the context: one allocation, or a static if there is only one context. */
 struct noh_platform_context {
     system_context *context;
 };
 
-/* Make it current on this thread: noh's GL functions may then be called here, and on no other thread. */
+/* Make it current on this thread, which alone may then call noh's GL functions. */
 static noh_result make_current(noh_platform_context *c)
 {
     return system_context_bind(c->context) ? NOH_OK : NOH_ERR_GL;
 }
 
-/* Try the highest version of OpenGL ES first, down to 3.0, which is enough. Add a line to the message for each attempt
- * that fails: the user sees nothing else. */
+/* Try the highest version of OpenGL ES first, down to 3.0, which is enough. Add a line to the message for each failed
+ * attempt: the user sees nothing else. */
 static noh_result create(const noh_platform_desc *desc, noh_platform_context **out, char *message, size_t message_bytes)
 {
     static const noh_platform_desc defaults;
@@ -60,16 +60,16 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
     return NOH_ERR_UNSUPPORTED;
 }
 
-/* A function for a name such as "glDrawElements", NULL where there is none. Systems without
- * a lookup have a header instead: compare the name with the list in README.md and return the
- * address. Some lookups return a stub for any name: noh asks versions and extensions first. */
+/* A function for a name such as "glDrawElements", NULL if there is none. Systems without a lookup have a header
+ * instead: compare the name with the list in README.md and return the address. Some lookups return a stub for any name,
+ * so noh checks versions and extensions first. */
 static noh_gl_proc get_proc(void *user, const char *name)
 {
     (void)user;
     return system_gl_lookup(name);
 }
 
-/* NOH_ERR_GL tells the application to make a new context and to restore (gl_device.h). */
+/* On NOH_ERR_GL the application creates a new context and restores the objects (gl_device.h). */
 static noh_result present(noh_platform_context *c)
 {
     return system_window_swap(system_context_window(c->context)) ? NOH_OK : NOH_ERR_GL;
@@ -96,15 +96,15 @@ const noh_platform noh_platform_template = {
     "template", "what your system is", create, make_current, get_proc, present, size, destroy
 };
 
-/* ---- files and clocks: these take the place of file.c ---- */
+/* ---- files and clocks: they replace file.c ---- */
 
-/* The whole file, read only, at a multiple of 16 bytes, for as long as its pack is used. A mapping costs no memory; a
- * plain read into your own block will do. */
+/* The whole file, read only, aligned to 16 bytes, for as long as its pack is used. A mapping takes no memory, but a
+ * plain read into your own block works too. */
 noh_result noh_file_map(const char *path, noh_file *out, noh_error *error)
 {
     size_t bytes = 0;
     void *view = system_file_view(path, &bytes);
-    if (!view) return noh_fail(error, NOH_ERR_NOT_FOUND, "your system's own words", 0, 0);
+    if (!view) return noh_fail(error, NOH_ERR_NOT_FOUND, "your system's message", 0, 0);
     out->data = view;
     out->bytes = bytes;
     return NOH_OK;
@@ -121,7 +121,7 @@ void noh_file_unmap(noh_file *file)
     file->bytes = 0;
 }
 
-/* The library has no clock: you pass it the elapsed ticks. This one is for your frame loop. */
+/* For your frame loop. The library has no clock: pass it the elapsed ticks. */
 uint64_t noh_clock_ns(void)
 {
     return system_clock_ns();

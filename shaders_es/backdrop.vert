@@ -2,7 +2,7 @@
 /* backdrop.vert: one triangle over the whole picture, with rays from the eye. */
 precision highp float;
 
-uniform vec4 u_rays[3]; /* world: at the lower left corner, what a width adds, what a height adds */
+uniform vec4 u_rays[3]; /* world: ray at the lower left corner, difference over the width, difference over the height */
 
 out vec3 v_ray;
 

@@ -1,5 +1,5 @@
 #version 300 es
-/* blob.frag: how much of what is there a spot takes away, in alpha. */
+/* blob.frag: the darkness of a spot, in alpha. */
 precision highp float;
 
 in vec2 v_at;

@@ -15,6 +15,6 @@ void main()
     vec3 up = cross(across, along);
     v_at = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
     v_darkness = centre.w;
-    up *= (up.y < 0.0 ? -0.02 : 0.02) * inversesqrt(max(length(up), 1e-12)); /* above the ground, by 2 % of its size */
+    up *= (up.y < 0.0 ? -0.02 : 0.02) * inversesqrt(max(length(up), 1e-12)); /* above the ground by 2 % of its size */
     gl_Position = u_camera * vec4(centre.xyz + v_at.x * along + v_at.y * across + up, 1.0);
 }

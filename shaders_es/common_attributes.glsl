@@ -1,8 +1,8 @@
 /* common_attributes.glsl: normals and tangents from the pack's pairs of 16-bit integers.
  *
- * A direction is projected onto the octahedron |x| + |y| + |z| = 1, whose lower half is folded over the upper one, so
- * that two numbers in -1..1 are left (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
- * Vectors", 2014). They are integer attributes because drivers differ in how they convert normalised ones. */
+ * A direction is projected onto the octahedron |x| + |y| + |z| = 1, whose lower half is folded over the upper one,
+ * leaving two numbers in -1..1 (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+ * 2014). The attributes are integers because drivers differ in how they convert normalised ones. */
 vec3 noh_unfold(vec2 p)
 {
     vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));

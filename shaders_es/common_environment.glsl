@@ -1,6 +1,6 @@
-/* common_environment.glsl: light from all around, one key light and its shadow, a tone map: what noh_lighting of
- * noh_gl.h says. It goes behind common_material.glsl: noh_gl_shader_prefix puts them together. Nothing of it is there
- * with NOH_DEPTH_ONLY. Defines, which noh_gl_variant_defines writes:
+/* common_environment.glsl: ambient light, one key light and its shadow, a tone map: see noh_lighting in noh_gl.h. It
+ * follows common_material.glsl in noh_gl_shader_prefix. Empty with NOH_DEPTH_ONLY. Defines, written by
+ * noh_gl_variant_defines:
  *
  *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)
  *   NOH_SHADOW_TAPS  with it, 1 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
@@ -13,11 +13,11 @@ uniform vec4 noh_lighting[18];
 uniform mediump samplerCube noh_environment;
 uniform highp sampler2DShadow noh_shadow_map;
 
-#define noh_key_color noh_lighting[12].rgb /* what a white matte surface that faces it reflects */
-#define noh_key_gloss noh_lighting[12].w   /* share of it that glosses */
+#define noh_key_color noh_lighting[12].rgb /* the light reflected by a white matte surface that faces it */
+#define noh_key_gloss noh_lighting[12].w   /* share of it in highlights */
 
-/* What a white matte surface reflects of the light from all around, by its normal: spherical harmonics of order 3
- * (Ramamoorthi, Hanrahan: An efficient representation for irradiance environment maps, SIGGRAPH 2001). */
+/* The ambient light reflected by a white matte surface, by its normal: spherical harmonics of order 3 (Ramamoorthi,
+ * Hanrahan: An efficient representation for irradiance environment maps, SIGGRAPH 2001). */
 vec3 noh_ambient(vec3 n)
 {
     vec3 c = noh_lighting[0].rgb + noh_lighting[1].rgb * n.y + noh_lighting[2].rgb * n.z + noh_lighting[3].rgb * n.x;
@@ -26,7 +26,7 @@ vec3 noh_ambient(vec3 n)
     return max(c, vec3(0.0));
 }
 
-/* What a surface of this roughness mirrors from a direction. */
+/* The light mirrored from a direction by a surface of this roughness. */
 vec3 noh_mirror(vec3 r, float roughness)
 {
     vec3 d = vec3(dot(noh_lighting[9].xyz, r), dot(noh_lighting[10].xyz, r), dot(noh_lighting[11].xyz, r));
@@ -38,8 +38,8 @@ float noh_shadow_tap(vec3 at, float x, float y)
     return texture(noh_shadow_map, at + noh_lighting[13].w * vec3(x, y, 0.0)); /* w: three quarters of a texel */
 }
 
-/* 1: the key light reaches the point, 0: something is in its way. Taps that the hardware filters, about a circle. The
- * point is moved along the normal by as much as a texel of the map may hide of a slope. */
+/* 1: the key light reaches the point, 0: the point is in shadow. Hardware-filtered taps on a circle. The point is
+ * offset along the normal, by the depth that a texel of the map may span on a slope. */
 float noh_key_shadow(vec3 position, vec3 normal)
 {
     if (noh_lighting[13].z <= 0.0) {
@@ -60,7 +60,7 @@ float noh_key_shadow(vec3 position, vec3 normal)
     sum += noh_shadow_tap(at, 1.0, 0.4) + noh_shadow_tap(at, -0.4, 1.0);
 #endif
     vec2 edge = noh_lighting[13].w * 2.0 + abs(at.xy - 0.5);
-    bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map nothing is known to be in the way */
+    bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map there is no shadow */
     return inside ? sum / float(NOH_SHADOW_TAPS) : 1.0;
 }
 

@@ -1,27 +1,27 @@
-/* common_eye.glsl: eyes, a cornea in front of an iris, wet and below lids; and teeth. It goes behind
- * common_environment.glsl: noh_gl_shader_prefix puts them together. Nothing of it is there without NOH_EYE and
- * NOH_TEETH, or with NOH_DEPTH_ONLY.
+/* common_eye.glsl: eyes, wet, with a cornea over the iris and under lids; and teeth. It follows common_environment.glsl
+ * in noh_gl_shader_prefix. Empty without NOH_EYE and NOH_TEETH, or with NOH_DEPTH_ONLY.
  *
- * An eye is a ball whose front a smaller sphere makes bulge, the cornea: it mirrors as that sphere would, whatever the
- * mesh is, and bends the way of what is seen of the iris, a plane below it. Where no iris was found, it is a wet ball. */
+ * An eye is a ball with a bulge in front, the cornea, part of a smaller sphere. The cornea mirrors like this sphere,
+ * whatever the mesh is, and refracts the view of the iris, a plane below it. An eye without a detected iris is a wet
+ * ball. */
 #if defined(NOH_EYE) && !defined(NOH_DEPTH_ONLY)
 uniform vec4 noh_surface_values; /* noh_material.surface_values */
 uniform vec3 noh_surface_more[2]; /* upper lid, lower lid */
 
-in vec3 noh_v_gaze; /* where the eye looks, as long as its iris' radius; world */
-in vec3 noh_v_up;   /* about across it, upwards; world */
-in vec3 noh_v_out;  /* across both, from the nose; world */
+in vec3 noh_v_gaze; /* gaze direction, as long as the radius of the iris; world */
+in vec3 noh_v_up;   /* about perpendicular to it, upwards; world */
+in vec3 noh_v_out;  /* perpendicular to both, away from the nose; world */
 
-/* The radius of the cornea over that of the iris: 7.8 mm over 6 mm. */
+/* Radius of the cornea / radius of the iris: 7.8 mm / 6 mm. */
 const float noh_cornea_radius = 1.3;
-/* The way from the cornea's top down to the iris, over the iris' radius: 2.7 mm over 6 mm. */
+/* Depth of the iris below the top of the cornea / radius of the iris: 2.7 mm / 6 mm. */
 const float noh_iris_depth = 0.45;
 
-/* The part of a pixel of an eye. */
+/* A pixel of an eye. */
 struct noh_eye {
-    vec3 gaze;    /* unit; zero: not known */
-    vec3 side;    /* the normal's part across gaze */
-    float across; /* its length over that at the iris' rim */
+    vec3 gaze;    /* unit; zero: unknown */
+    vec3 side;    /* component of the normal perpendicular to gaze */
+    float across; /* its length, 1 at the rim of the iris */
 };
 
 noh_eye noh_eye_at(vec3 normal)
@@ -35,15 +35,15 @@ noh_eye noh_eye_at(vec3 normal)
     return e;
 }
 
-/* The normal of the cornea, unit: turned away from the gaze, back to the ball's own behind the rim. */
+/* The normal of the cornea, unit: bent away from the gaze, and equal to the ball's beyond the rim. */
 vec3 noh_cornea(noh_eye e, vec3 normal)
 {
-    float bend = 1.0 / (noh_cornea_radius * max(noh_surface_values.w, 0.2)); /* over that of the ball */
+    float bend = 1.0 / (noh_cornea_radius * max(noh_surface_values.w, 0.2)); /* relative to the ball */
     return normalize(normal + e.side * (max(bend - 1.0, 0.0) * (1.0 - smoothstep(0.85, 1.25, e.across))));
 }
 
-/* Where the eye's texture is read: where the refracted line of sight meets the iris, less deep towards its rim.
- * position, normal, uv: of the pixel */
+/* The texture coordinates of an eye: where the refracted view ray meets the iris, whose depth decreases towards its
+ * rim. position, normal, uv: of the pixel */
 vec2 noh_eye_uv(vec3 position, vec3 normal, vec2 uv)
 {
     vec3 n = normalize(normal), view = normalize(noh_camera - position);
@@ -63,30 +63,31 @@ vec2 noh_eye_uv(vec3 position, vec3 normal, vec2 uv)
     return uv + (ux * dot(shift, gx) + uy * dot(shift, gy)) / dot(px, gx);
 }
 
-/* How far a pixel is below the edge of the upper lid, above that of the lower one, and from the nose's side to the middle
- * of the eye, in radii of the ball. */
+/* Distances of a pixel below the edge of the upper lid, above the edge of the lower lid, and from the middle of the eye
+ * away from the nose, in radii of the ball. */
 vec3 noh_from_lids(noh_surface s)
 {
-    float a = dot(s.geometric, noh_v_out) * inversesqrt(max(dot(noh_v_out, noh_v_out), 1e-20)); /* zero where x = 0 */
+    float a = dot(s.geometric, noh_v_out) * inversesqrt(max(dot(noh_v_out, noh_v_out), 1e-20)); /* zero if x = 0 */
     float height = dot(s.geometric, normalize(noh_v_up));
     vec3 powers = vec3(1.0, a, a * a);
     return vec3(dot(noh_surface_more[0], powers) - height, height - dot(noh_surface_more[1], powers), a);
 }
 
-/* The share of light from all around that the lids let through: their edges darken the ball, the upper one more. */
+/* The share of ambient light that the lids let through: their edges darken the ball, the upper lid more. */
 float noh_lids(vec3 from)
 {
     return mix(0.75, 1.0, smoothstep(-0.02, 0.3, from.x)) * mix(0.85, 1.0, smoothstep(-0.02, 0.2, from.y));
 }
 
-/* Tears stand along the lower lid: there the film rises to it, least in the corners. The normal that mirrors, unit. */
+/* Tears along the lower lid: the film rises to it, least in the corners. Returns the normal for reflections, unit. */
 vec3 noh_wet_line(vec3 from, vec3 cornea)
 {
     float rise = (1.0 - smoothstep(0.0, 0.06, from.y)) * (1.0 - smoothstep(0.25, 0.5, abs(from.z)));
     return normalize(cornea + normalize(noh_v_up) * rise);
 }
 
-/* The iris is a bowl behind a lens: it is bright on the side away from the light. The normal that matte light takes. */
+/* The iris is a bowl behind a lens: it is bright on the side away from the light. Returns the normal for matte
+ * light. */
 vec3 noh_iris_normal(noh_surface s, noh_eye e)
 {
     return normalize(s.normal - e.side * (1.4 * (1.0 - smoothstep(0.75, 1.0, e.across))));
@@ -100,14 +101,15 @@ float noh_iris_rim(noh_eye e)
 
 float noh_on_cornea = 1.0; /* 1 on the cornea and on balls without an iris, 0 on the white: noh_eye_light sets it */
 
-/* The lamp in an eye: a disc of eleven degrees, over its solid angle. At the cornea's rim the normal turns back, and
- * would smear it over the white. nh: cosine between the normal and the half vector */
+/* The lamp's reflection in an eye: a disc of eleven degrees, divided by its solid angle. Limited to the cornea: at its
+ * rim the normal turns back and would smear the reflection over the white. nh: cosine between the normal and the half
+ * vector */
 float noh_lamp(float nh)
 {
     return 8.7 * smoothstep(0.977, 0.986, 2.0 * nh * nh - 1.0) * noh_on_cornea;
 }
 
-/* Make a surface that of an eye for matte light. Returns the normal that mirrors, unit. */
+/* Adapt a surface to an eye, for matte light. Returns the normal for reflections, unit. */
 vec3 noh_eye_light(inout noh_surface s)
 {
     noh_eye e = noh_eye_at(s.geometric);
@@ -122,7 +124,7 @@ vec3 noh_eye_light(inout noh_surface s)
     if (noh_surface_more[0].x > noh_surface_more[1].x) {
         vec3 from = noh_from_lids(s);
         mirror = noh_wet_line(from, mirror);
-#if NOH_TRANSFER == 0 /* else the transfer knows the lids */
+#if NOH_TRANSFER == 0 /* a transfer includes the lids */
         float lids = noh_lids(from);
         s.occlusion *= lids;
 #endif
@@ -132,5 +134,5 @@ vec3 noh_eye_light(inout noh_surface s)
 #endif
 
 #if defined(NOH_TEETH) && !defined(NOH_DEPTH_ONLY)
-in float noh_v_open; /* 0..1: how much of the light outside reaches the place */
+in float noh_v_open; /* 0..1: share of outside light that reaches the point */
 #endif

@@ -1,6 +1,5 @@
-/* common_face.glsl: what skin, eyes and teeth need of a vertex. It goes in front of common_vertex.glsl: noh_gl_shader_prefix
- * puts them together. Nothing of it is there without NOH_SKIN, NOH_EYE and NOH_TEETH, or with
- * NOH_DEPTH_ONLY. */
+/* common_face.glsl: vertex outputs of skin, eyes and teeth. It precedes common_vertex.glsl in noh_gl_shader_prefix.
+ * Empty without NOH_SKIN, NOH_EYE and NOH_TEETH, or with NOH_DEPTH_ONLY. */
 #ifndef NOH_DEPTH_ONLY
 #if defined(NOH_SKIN) || defined(NOH_EYE) || defined(NOH_TEETH)
 uniform vec4 noh_surface_values; /* noh_material.surface_values */
@@ -12,8 +11,9 @@ out vec3 noh_v_gaze;
 out vec3 noh_v_up;
 out vec3 noh_v_out;
 
-/* Where the vertex's eye looks, upwards, and outwards from the nose, turned as targets turn the normal and then as
- * joints turn the ball. rest, model: the place before and after targets; before, after: the normal, unit; x, y, z: rows to the world */
+/* Compute the eye's gaze, up direction, and direction away from the nose. They turn with the normal, by targets, and
+ * then with the ball, by joints. rest, model: position before and after targets; before, after: normal, unit; x, y, z:
+ * rows to the world */
 void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec4 y, vec4 z)
 {
     vec3 turn = cross(before, after), gaze = noh_surface_values.xyz, up = vec3(0.0, 1.0, 0.0);
@@ -30,12 +30,12 @@ void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec
 #endif
 
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
-out float noh_v_open; /* 0..1: how much of the light outside reaches the place */
+out float noh_v_open; /* 0..1: share of outside light that reaches the point */
 #endif
 
 #ifdef NOH_TEETH
-/* The farther behind the lips, the darker; what a target of the jaw moves away comes into the light.
- * rest, model: the place before and after targets */
+/* Teeth are darker the farther they are behind the lips, and brighter if a jaw target moves them. rest, model: position
+ * before and after targets */
 void noh_face_vertex(vec3 rest, vec3 model)
 {
     float open = dot(rest, noh_surface_values.xyz) + noh_surface_values.w + noh_surface_more[0].x * length(model - rest);
@@ -44,7 +44,7 @@ void noh_face_vertex(vec3 rest, vec3 model)
 #endif
 
 #ifdef NOH_SKIN
-/* The skin of a mouth's inside, all around the teeth, is as dark as they are. */
+/* The skin inside the mouth, around the teeth, is as dark as the teeth. */
 void noh_face_vertex(vec3 rest)
 {
     vec3 from = rest - noh_surface_values.yzw;

@@ -4,7 +4,7 @@
  * Each pixel has a number in [0, 1): x / p + y / p^2 modulo 1, p the plastic number (the sequence R2 of Roberts, "The
  * Unreasonable Effectiveness of Quasirandom Sequences", 2018). These numbers spread evenly over every small
  * neighbourhood, so a fade is a fine grain at every step. They are computed in integers, in units of 2^-32, so that
- * every driver and both draws of a fade have the same ones. */
+ * they are the same on every driver and in both draws of a fade. */
 precision highp int;
 
 highp float noh_fade_noise(highp vec2 pixel)

@@ -1,9 +1,8 @@
-/* common_fragment.glsl: what a fragment shader is given: the light, the camera, the material, and which of its pixels
- * are drawn. It goes behind common_fade.glsl: noh_gl_shader_prefix puts them together. Defines, which
- * noh_gl_variant_defines writes:
+/* common_fragment.glsl: inputs of a fragment shader: the light, the camera, the material, and the drawn pixels. It
+ * follows common_fade.glsl in noh_gl_shader_prefix. Defines, written by noh_gl_variant_defines:
  *
- *   NOH_DEPTH_ONLY    defined: depth alone is drawn; o_color is not wanted, discards are
- *   NOH_ALPHA_CUT     defined with it where the material cuts by alpha; elsewhere base colours are then white
+ *   NOH_DEPTH_ONLY    defined: only depth is drawn; o_color is unused, discards apply
+ *   NOH_ALPHA_CUT     defined with it if the material cuts by alpha; without, base colours are white
  *   NOH_FADE          defined: draw only some of the pixels (noh_gl_lod)
  *   NOH_ENCODE_SRGB   defined: the target does not encode to sRGB
  *   NOH_DEBUG_VIEW    a noh_debug_view */
@@ -12,12 +11,12 @@ uniform vec3 noh_key;                                /* unit, towards the light,
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
 uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit, -1: strands;
-                                                      * and 0.25 more where the texture's colours are premultiplied */
+                                                      * plus 0.25 if the texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
-/* Alpha of strands is painted to be blended in sRGB, as most programs do. Blended in linear light, dark strands on
- * light skin come out thin and pale. So much alpha leaves as much of them as they have there, over what is 0.75 in
- * sRGB; light strands keep theirs. */
+/* The alpha of strands is painted for blending in sRGB, as in most programs. Blended in linear light, dark strands on
+ * light skin look thin and pale. This alpha gives dark strands the result of sRGB blending over a background of 0.75 in
+ * sRGB; light strands keep their alpha. */
 float noh_strand_alpha(vec4 color)
 {
     float dark = max(0.75 - sqrt(dot(color.rgb, vec3(0.2126, 0.7152, 0.0722))), 0.0);
@@ -29,8 +28,8 @@ vec4 noh_base(vec2 uv, vec4 color)
 {
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     vec4 texel = texture(noh_base_color_texture, uv);
-    if (fract(noh_material.w) > 0.125) texel.rgb /= max(texel.a, 0.002); /* transparent texels are black: what is
-                                                                          * filtered is so much darker at an edge */
+    if (fract(noh_material.w) > 0.125) texel.rgb /= max(texel.a, 0.002); /* transparent texels are black, so filtering
+                                                                          * darkens edges by as much */
     vec4 base = noh_base_color * color * texel;
 #ifndef NOH_ENCODE_SRGB
     if (noh_material.w < -0.5) base.a = noh_strand_alpha(base);
@@ -41,7 +40,7 @@ vec4 noh_base(vec2 uv, vec4 color)
 #endif
 }
 
-/* Discard what an alpha-cut material leaves out. */
+/* Discard the pixels that an alpha-cut material does not draw. */
 void noh_cut(float alpha)
 {
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
@@ -51,8 +50,8 @@ void noh_cut(float alpha)
 #endif
 }
 
-/* Discard the pixels that another LOD level draws. Textures with mip levels are better read before: the level depends
- * on the neighbouring pixels. */
+/* Discard the pixels that another LOD level draws. Read textures with mip levels before: the mip level depends on the
+ * neighbouring pixels. */
 void noh_fade()
 {
 #ifdef NOH_FADE
@@ -63,8 +62,8 @@ void noh_fade()
 #endif
 }
 
-/* A linear colour as the target wants it. sRGB's power is our fit of two roots, off by a tenth of a byte at most and by
- * nothing at white: where no GPU draws, powers took a sixteenth of a frame. */
+/* A linear colour in the target's encoding. The power of sRGB is approximated by two roots, with an error of at most a
+ * tenth of a byte, and exact at white: in software rendering, powers took a sixteenth of a frame. */
 vec3 noh_encode(vec3 c)
 {
 #ifdef NOH_ENCODE_SRGB

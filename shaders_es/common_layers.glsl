@@ -1,7 +1,7 @@
 /* common_layers.glsl: the accumulated deltas of a vertex. noh_fetch of common_vertex.glsl adds them; without it, call
  * noh_morph_fetch, which adds them, and if it returns true noh_morph_frame (shaders_es/README.md). Define
  * NOH_LAYERS_UINT if noh_gl_morph_binding.is_uint is 1, NOH_TWO_LAYERS if its layer_count is 2, NOH_DEPTH_ONLY if
- * positions are enough, NOH_VERTICES if vertices come morphed: then there is nothing to add. */
+ * positions are enough, NOH_VERTICES if vertices are already morphed. */
 #if defined(NOH_VERTICES)
 /* no texture */
 #elif defined(NOH_LAYERS_UINT)
@@ -14,8 +14,8 @@ uniform highp sampler2DArray noh_layers;
 uniform highp ivec4 noh_morph; /* tile x, tile y, width log2, touched vertices */
 
 #ifdef NOH_STREAMS
-/* Deltas of up to four targets that come with the vertex, words as in common_delta.glsl, added in index order.
- * noh_streams: weight times scale of positions, normals and tangents; the widths of the fields */
+/* Deltas of up to four targets as vertex attributes, words as in common_delta.glsl, added in index order. noh_streams:
+ * weight times scale of positions, normals and tangents; the widths of the fields */
 uniform highp vec4 noh_streams[4];
 layout(location = 10) in highp uvec3 noh_a_stream_0;
 layout(location = 11) in highp uvec3 noh_a_stream_1;
@@ -47,15 +47,15 @@ void noh_add_streams(inout vec3 position, inout vec3 normal, inout vec3 tangent)
 }
 #endif
 
-/* Where accumulation texel i of a tile, as below, lies in the layers. */
+/* The position of accumulation texel i of a tile in the layers. */
 ivec2 noh_morph_texel(ivec4 tile, int i)
 {
     return tile.xy + ivec2(i & ((1 << tile.z) - 1), i >> tile.z);
 }
 
 /* Add a vertex's deltas from an instance's tile, given by the four numbers of noh_morph. Texel i of the tile belongs to
- * vertex i. The vertices that no target moves are the last ones of a mesh and have no texel: for them the result is
- * false, and noh_morph_frame is not needed. */
+ * vertex i. Vertices that no target moves are the last ones of a mesh and have no texel: for them the result is false,
+ * and noh_morph_frame is not needed. */
 bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec3 normal, inout vec3 tangent)
 {
 #ifdef NOH_VERTICES
@@ -85,7 +85,8 @@ bool noh_morph_fetch(int vertex, inout vec3 position, inout vec3 normal, inout v
     return noh_morph_fetch_tile(noh_morph, vertex, position, normal, tangent);
 }
 
-/* Sums of directions are not unit: make the normal unit, the tangent unit and perpendicular to it (Gram-Schmidt). */
+/* Sums of directions are not unit: normalise the normal, and make the tangent unit and perpendicular to it
+ * (Gram-Schmidt). */
 void noh_morph_frame(inout vec3 normal, inout vec3 tangent)
 {
 #ifndef NOH_DEPTH_ONLY

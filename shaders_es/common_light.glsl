@@ -1,5 +1,5 @@
-/* common_light.glsl: noh_light, the light that a surface sends to the eye. It goes behind common_environment.glsl:
- * noh_gl_shader_prefix puts them together. Nothing of it is there with NOH_DEPTH_ONLY.
+/* common_light.glsl: noh_light, the light from a surface to the eye. It follows common_environment.glsl in
+ * noh_gl_shader_prefix. Empty with NOH_DEPTH_ONLY.
  *
  *   NOH_LIT   defined: by the light of common_environment.glsl. Else one key light with a wrapped edge and a highlight,
  *             a fill from sky and ground, and a soft rim */
@@ -8,8 +8,8 @@
 uniform vec4 noh_surface_values; /* noh_material.surface_values */
 uniform vec3 noh_surface_more[2];
 
-/* The colour of a toon over that of the material: two tones and the edge between them, as VRMC_materials_mtoon 1.0 of
- * the VRM Consortium has it. lit: 0 where no light comes */
+/* The colour of a toon relative to the material: two tones and the edge between them, as in VRMC_materials_mtoon 1.0 of
+ * the VRM Consortium. lit: 0 in shadow */
 vec3 noh_toon(vec3 normal, float lit)
 {
     float hard = noh_surface_more[0].x, reach = dot(normal, noh_key) + noh_surface_values.w + 1.0 - hard;
@@ -18,7 +18,7 @@ vec3 noh_toon(vec3 normal, float lit)
 #endif
 #ifdef NOH_LIT
 /* The isotropic GGX distribution times Smith's visibility, correlated in height (Heitz: Understanding the
- * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), over 4 nl nv. */
+ * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv. */
 float noh_gloss(float nh, float nl, float nv, float roughness)
 {
     float a2 = roughness * roughness * roughness * roughness;
@@ -27,9 +27,9 @@ float noh_gloss(float nh, float nl, float nv, float roughness)
     return a2 / (3.14159265 * d * d) * 0.5 / max(v, 1e-5);
 }
 
-/* The part of an even light from all around that a surface of GGX reflects: x where its reflectance seen straight on is
- * 1; y what is added where it is 0. Polynomials fitted to our own integral, for roughness from 0.08: off by 0.03 at
- * most, by 0.011 on average (test_gl_light compares). */
+/* The share of uniform ambient light that a GGX surface reflects. x: at a reflectance of 1 at normal incidence; y: what
+ * is added at 0. Polynomials fitted to our own integral, for roughness from 0.08: errors at most 0.03, 0.011 on average
+ * (tested by test_gl_light). */
 vec2 noh_albedo_of(float roughness, float nv)
 {
     vec4 r = vec4(1.0, roughness, roughness * roughness, roughness * roughness * roughness);
@@ -40,18 +40,18 @@ vec2 noh_albedo_of(float roughness, float nv)
     return clamp(vec2(dot(all, p), dot(edge, p)), 0.0, 1.0);
 }
 
-/* The share of what is mirrored that occlusion lets through: less of it than of matte light, the rougher the surface.
- * S. Lagarde, C. de Rousiers: Moving Frostbite to physically based rendering, SIGGRAPH 2014, listing 26. */
+/* The share of mirrored light that occlusion lets through: the rougher the surface, the less, compared with matte
+ * light. S. Lagarde, C. de Rousiers: Moving Frostbite to physically based rendering, SIGGRAPH 2014, listing 26. */
 float noh_gloss_occlusion(float nv, float occlusion, float roughness)
 {
     if (occlusion >= 1.0) {
-        return 1.0; /* as below, without its powers */
+        return 1.0; /* as below, without the powers */
     }
     return clamp(pow(nv + occlusion, exp2(-16.0 * roughness * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 
-/* Of the key light, what a surface sends out again, by channel, over what makes white white.
- * shadow: of noh_key_shadow, which is asked once for matte light and gloss */
+/* The diffuse reflection of the key light, by channel, relative to white. shadow: from noh_key_shadow, computed once
+ * for matte light and gloss */
 vec3 noh_key_matte(noh_surface s, float shadow)
 {
 #ifdef NOH_SKIN
@@ -66,18 +66,18 @@ vec3 noh_key_matte(noh_surface s, float shadow)
 #if NOH_TRANSFER > 0
 in vec4 noh_v_transfer; /* common_transfer.glsl */
 
-/* Of the light from all around, what reaches a matte surface. Maps bend the vertices' light by what they would change
- * without a transfer, and darken it where they are darker than the mesh is already. */
+/* The ambient light that reaches a matte surface. Maps scale the vertices' light by the change that they make without a
+ * transfer, and darken it where they are darker than the mesh. */
 vec3 noh_rest_light(noh_surface s)
 {
     if (!gl_FrontFacing) {
-        return noh_ambient(s.normal) * s.occlusion; /* the transfer is of the other side */
+        return noh_ambient(s.normal) * s.occlusion; /* the transfer is for the other side */
     }
     vec3 bent = min(noh_ambient(s.normal) / max(noh_ambient(s.geometric), vec3(1e-3)), vec3(4.0));
     return max(noh_v_transfer.rgb, vec3(0.0)) * bent * min(1.0, s.occlusion / max(noh_v_transfer.a, 1e-3));
 }
 
-/* Of what is mirrored. */
+/* The occlusion of mirrored light. */
 float noh_rest_occlusion(noh_surface s)
 {
     return gl_FrontFacing ? min(s.occlusion, clamp(noh_v_transfer.a, 0.0, 1.0)) : s.occlusion;
@@ -94,8 +94,8 @@ float noh_rest_occlusion(noh_surface s)
 }
 #endif
 
-/* What reaches a matte surface, over what makes white white. In a mouth the key light is dimmed by the place, the rest
- * by the transfer where there is one. */
+/* The light that reaches a matte surface, relative to white. In a mouth the position dims the key light, and the
+ * transfer, if there is one, dims the rest. */
 vec3 noh_matte_light(noh_surface s, float shadow)
 {
     vec3 key = noh_key_color * noh_key_matte(s, shadow);
@@ -105,7 +105,7 @@ vec3 noh_matte_light(noh_surface s, float shadow)
     return noh_rest_light(s) + key;
 }
 
-/* What glosses of the key light, over its colour: no reflectance in it. normal: the one that mirrors */
+/* The highlight of the key light, divided by its colour, without reflectance. normal: for reflections */
 float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 {
     float nl = max(dot(normal, noh_key), 0.0), nh = clamp(dot(normal, h), 0.0, 1.0);
@@ -120,7 +120,7 @@ float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 }
 
 #ifdef NOH_TOON
-/* The light from all around is one for the whole figure: form is drawn by the edge alone. */
+/* Ambient light is the same for the whole figure: only the edge between the tones shows form. */
 vec3 noh_light(noh_surface s)
 {
     vec3 around = 0.5 * (noh_ambient(vec3(0.0, 1.0, 0.0)) + noh_ambient(vec3(0.0, -1.0, 0.0)));
@@ -130,7 +130,7 @@ vec3 noh_light(noh_surface s)
 #else
 vec3 noh_light(noh_surface s)
 {
-    vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
+    vec3 mirror = s.normal; /* normal for reflections; s.normal is for matte light */
 #ifdef NOH_SKIN
     s.roughness = noh_pore_roughness(s.roughness, s.normal);
 #endif
@@ -141,8 +141,8 @@ vec3 noh_light(noh_surface s)
     vec3 f0 = mix(s.f0, s.albedo, s.metallic), h = normalize(noh_key + s.view);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
-    vec3 gloss = f0 * (part.x - part.y) + f90 * part.y; /* reflected of an even light, once */
-    vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and by further bounces between the facets */
+    vec3 gloss = f0 * (part.x - part.y) + f90 * part.y; /* uniform light, reflected once */
+    vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and after further bounces between the facets */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
     vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
     float shadow = noh_key_shadow(s.position, s.geometric);
@@ -175,7 +175,7 @@ float noh_highlight(float nh, float nl, float nv, float roughness)
     return a2 / (3.14159265 * d * d) * visibility;
 }
 
-/* Of the key light, what glosses. normal: the one that mirrors */
+/* The highlight of the key light. normal: for reflections */
 float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 {
     float nl = max(dot(normal, noh_key), 0.0), nh = max(dot(normal, h), 0.0);
@@ -189,14 +189,14 @@ float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 #endif
 }
 
-/* The light from sky and ground. */
+/* Light from sky and ground. */
 vec3 noh_sky(float up)
 {
     return mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), up * 0.5 + 0.5);
 }
 
-/* Of the key light, what a surface sends out again, by channel. A plain ball sends out 1.18 / 3 of a lamp in all, where
- * cosines sum up to a half: skin is held to as much. */
+/* The diffuse reflection of the key light, by channel. A plain ball reflects 1.18 / 3 of a lamp in total, where cosines
+ * sum to a half: skin is scaled to the same total. */
 vec3 noh_key_matte(noh_surface s)
 {
 #ifdef NOH_SKIN
@@ -208,7 +208,7 @@ vec3 noh_key_matte(noh_surface s)
 }
 
 #ifdef NOH_TOON
-/* In light it is of its own colour. */
+/* In light a toon has its own colour. */
 vec3 noh_light(noh_surface s)
 {
     return s.albedo * (0.8 * noh_toon(s.normal, 1.0) + 0.2) + s.emissive;
@@ -216,7 +216,7 @@ vec3 noh_light(noh_surface s)
 #else
 vec3 noh_light(noh_surface s)
 {
-    vec3 mirror = s.normal; /* the normal that mirrors; s.normal is that of matte light */
+    vec3 mirror = s.normal; /* normal for reflections; s.normal is for matte light */
 #ifdef NOH_SKIN
     s.roughness = noh_pore_roughness(s.roughness, s.normal);
 #endif
@@ -228,7 +228,7 @@ vec3 noh_light(noh_surface s)
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec3 diffuse = s.albedo * (1.0 - s.metallic);
 #ifdef NOH_EYE
-    vec3 h = normalize(noh_key - 0.35 * normalize(noh_v_up) + s.view); /* low enough to be seen below the lid */
+    vec3 h = normalize(noh_key - 0.35 * normalize(noh_v_up) + s.view); /* low enough to be visible below the lid */
 #else
     vec3 h = normalize(noh_key + s.view);
 #endif
@@ -238,7 +238,7 @@ vec3 noh_light(noh_surface s)
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
     color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;
     color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic);
-    float rim = max(1.0 - nv, 0.0); /* nv may pass 1 by a rounding */
+    float rim = max(1.0 - nv, 0.0); /* nv may exceed 1 by rounding */
     color += 0.10 * sky * rim * rim * rim * (1.0 - 0.6 * roughness);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     color *= noh_v_open;

@@ -1,16 +1,15 @@
-/* common_material.glsl: noh_surface_of, what a pixel's material is, from its maps. It goes behind common_fragment.glsl:
- * noh_gl_shader_prefix puts them together. Nothing of it is there with NOH_DEPTH_ONLY. Defines, which
- * noh_gl_variant_defines writes:
+/* common_material.glsl: noh_surface_of, a pixel's material from its maps. It follows common_fragment.glsl in
+ * noh_gl_shader_prefix. Empty with NOH_DEPTH_ONLY. Defines, written by noh_gl_variant_defines:
  *
  *   NOH_NORMAL_MAP    defined: the material has a normal map, and the mesh tangents
  *   NOH_SURFACE_MAP   defined: it has a map of occlusion, roughness, metallic
- *   NOH_EMISSIVE      defined: it shines
- *   NOH_SPECULAR_MAP  defined: it has a map of what reflects straight on, which has its weight in alpha, or with
+ *   NOH_EMISSIVE      defined: it emits light
+ *   NOH_SPECULAR_MAP  defined: it has a map of the reflectance at normal incidence, with its weight in alpha, or with
  *                     NOH_SPECULAR_ROUGHNESS its roughness
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
 #ifndef NOH_DEPTH_ONLY
-uniform vec3 noh_f0;       /* reflectance of what is no metal, seen straight on; at most the other comes out */
+uniform vec3 noh_f0;       /* reflectance of non-metals at normal incidence; limited to noh_f90 */
 uniform float noh_f90;     /* and at grazing angles */
 #if defined(NOH_NORMAL_MAP) || defined(NOH_SURFACE_MAP)
 uniform vec4 noh_maps;     /* normal scale, occlusion strength */
@@ -29,21 +28,21 @@ uniform vec3 noh_emissive;
 uniform mediump sampler2D noh_emissive_texture;
 #endif
 
-/* A pixel of a surface, in the world, as the light needs it. */
+/* A pixel of a surface for lighting; in the world. */
 struct noh_surface {
     vec3 position;
     vec3 view;       /* unit, towards the eye */
-    vec3 normal;     /* unit, with the maps; on the side that is seen */
-    vec3 geometric;  /* unit, of the mesh alone; on the same side */
+    vec3 normal;     /* unit, with the maps; on the visible side */
+    vec3 geometric;  /* unit, of the mesh alone; on the visible side */
     vec3 albedo;     /* linear */
     float alpha;
     float metallic;  /* 0..1 */
     float roughness; /* 0..1, perceptual: its square is GGX's alpha */
-    vec3 f0;         /* of what is no metal */
+    vec3 f0;         /* of non-metals */
     float occlusion; /* 1: open */
     vec3 emissive;   /* linear */
     vec3 wrinkles;   /* 0..1 by area, regions, channels; the largest counts */
-    float f90;       /* of what is no metal, at grazing angles */
+    float f90;       /* of non-metals, at grazing angles */
 };
 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
@@ -54,8 +53,8 @@ vec3 noh_unpack_normal(vec3 texel, float scale)
     return normalize(vec3(v.xy * scale, max(v.z, 1e-3)));
 }
 
-/* From tangent space to the world. The frame is made orthogonal again at each pixel: neither targets nor joints nor
- * filtering leave the tangent at right angles to the normal. */
+/* From tangent space to the world. The frame is made orthogonal at each pixel, because targets, joints and filtering do
+ * not keep the tangent perpendicular to the normal. */
 vec3 noh_map_normal(vec3 v, vec3 normal, vec4 tangent)
 {
     vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
@@ -65,7 +64,7 @@ vec3 noh_map_normal(vec3 v, vec3 normal, vec4 tangent)
 }
 #endif
 
-/* base: of noh_base; normal, tangent: of noh_vertex, filtered */
+/* base: from noh_base; normal, tangent: of noh_vertex, filtered */
 noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, vec2 uv)
 {
     noh_surface s;

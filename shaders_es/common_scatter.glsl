@@ -1,16 +1,15 @@
-/* common_scatter.glsl: what skin does with light. It goes behind common_environment.glsl: noh_gl_shader_prefix puts
- * them together. Nothing of it is there without NOH_SKIN, or with NOH_DEPTH_ONLY. */
+/* common_scatter.glsl: scattering of light in skin. It follows common_environment.glsl in noh_gl_shader_prefix. Empty
+ * without NOH_SKIN, or with NOH_DEPTH_ONLY. */
 #if defined(NOH_SKIN) && !defined(NOH_DEPTH_ONLY)
 uniform vec4 noh_surface_values; /* x: millimetres in a unit of the world */
 
-in float noh_v_open; /* 0..1: how much of the light outside reaches the place */
+in float noh_v_open; /* 0..1: share of outside light that reaches the point */
 
-/* The light of a lamp at angle acos(nl) that skin sends out again, by channel: what enters nearby comes out here. It is
- * the integral of max(cos, 0) over a ring of that curvature, weighted by the diffusion profile of d'Eon and Luebke
- * (GPU Gems 3, chapter 14), which Penner tabulates (Pre-integrated skin shading, GPU Pro 2, 2011). In place of his
- * texture stands a fit: a line, and a hyperbola for |nl|, whose corner the curvature rounds. It is off by 0.006 at most
- * (test_gl_surfaces compares).
- * nl: a cosine for each channel; curvature: 1/mm; above 1 it counts as 1 */
+/* The light of a lamp at angle acos(nl) that skin scatters back, by channel: light that enters nearby leaves here. It
+ * is the integral of max(cos, 0) over a ring of this curvature, weighted by the diffusion profile of d'Eon and Luebke
+ * (GPU Gems 3, chapter 14), which Penner tabulates (Pre-integrated skin shading, GPU Pro 2, 2011). A fit replaces his
+ * texture: a line, and a hyperbola for |nl|, whose corner the curvature rounds. Its error is at most 0.006 (tested by
+ * test_gl_surfaces). nl: a cosine for each channel; curvature: 1/mm; above 1 it counts as 1 */
 vec3 noh_scatter(vec3 nl, float curvature)
 {
     float c = clamp(curvature, 0.0, 1.0);
@@ -21,8 +20,8 @@ vec3 noh_scatter(vec3 nl, float curvature)
     return max(level + line * nl + bend * sqrt(nl * nl + corner * corner), 0.0);
 }
 
-/* How much a surface bends, in 1/mm, from pixel to pixel. By the larger of two: pixels that lie one behind another say
- * little of how far they are apart. */
+/* The curvature of a surface, in 1/mm, from neighbouring pixels. Uses the larger distance of the two directions: at
+ * grazing angles the other one is unreliable. */
 float noh_curvature(vec3 position, vec3 geometric)
 {
     vec3 nx = dFdx(geometric), ny = dFdy(geometric), px = dFdx(position), py = dFdy(position);
@@ -30,14 +29,14 @@ float noh_curvature(vec3 position, vec3 geometric)
     return sqrt(turn / max(way, 1e-20)) / noh_surface_values.x;
 }
 
-/* Light scatters out of sight of the finest bumps, red the farthest: each channel has a normal of its own, between that
- * of the maps and that of the mesh (Jensen et al., as Penner has it). The cosines to the key light. */
+/* Light scatters farther than the finest bumps, red the farthest: each channel has a normal of its own, between the
+ * normal of the maps and the normal of the mesh (Jensen et al., as in Penner). Returns the cosines to the key light. */
 vec3 noh_scatter_cosines(noh_surface s, vec3 key)
 {
     return mix(vec3(dot(s.normal, key)), vec3(dot(s.geometric, key)), vec3(0.7, 0.4, 0.25));
 }
 
-/* Pores that are smaller than a pixel do not glitter: they make it rougher (Tokuyoshi, Kaplanyan: Improved geometric
+/* Pores smaller than a pixel do not glitter: they increase its roughness (Tokuyoshi, Kaplanyan: Improved geometric
  * specular antialiasing, I3D 2019). */
 float noh_pore_roughness(float roughness, vec3 normal)
 {
@@ -46,8 +45,8 @@ float noh_pore_roughness(float roughness, vec3 normal)
     return sqrt(sqrt(min(a * a + wider, 1.0)));
 }
 
-/* Skin shines in two lobes, those of its oil and of the skin below, narrower and wider than the map says; of each so
- * much: */
+/* Skin has two specular lobes, of its oil and of the skin below, narrower and wider than the map's roughness. Their
+ * factors and the share of the narrow one: */
 const vec2 noh_lobes = vec2(0.80, 1.30);
 const float noh_narrow_lobe = 0.45;
 #endif

@@ -1,19 +1,18 @@
 /* common_skin.glsl: vertices moved by the joints of a palette.
  *
- * It goes behind common_layers.glsl. noh_fetch of common_vertex.glsl does all of it; without it (shaders_es/README.md),
- * call noh_morph_vertex for the vertex whose deltas to fetch, add them in the bind pose, then call noh_skin_vertex,
- * whose result is still in the mesh's own space. Morphing comes before skinning, for normals and
- * tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, which
- * noh_gl_variant_defines writes:
+ * It follows common_layers.glsl. noh_fetch of common_vertex.glsl calls all of it; without noh_fetch
+ * (shaders_es/README.md), call noh_morph_vertex for the vertex whose deltas to fetch, add them in the bind pose, then
+ * call noh_skin_vertex, whose result is still in the mesh's own space. Morphing comes before skinning, for normals and
+ * tangents too (Granberg, Character Animation with Direct3D, 2009, ch. 8). Defines, written by noh_gl_variant_defines:
  *
- *   NOH_INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: nothing moves
- *   NOH_DRAWN             how many of them are used, the strongest, their weights scaled to a sum of 1
+ *   NOH_INFLUENCES        joints stored per vertex: 1, 2, 4 or 8; 0: not skinned
+ *   NOH_DRAWN             joints used, the strongest ones, with weights scaled to a sum of 1
  *   NOH_PALETTE_TEXTURE   defined: palettes are in a texture; else in a uniform block
  *   NOH_DUAL_QUATERNION   defined: a joint is 4 rows, a rotation, a dual part and a stretch in two; else
  *                         3 rows of a matrix
  *   NOH_MORPH_TEXELS      defined: the mesh has NOH_MESH_TEXELS, in which split vertices share an accumulation texel
  *   NOH_CROWD             defined: one draw has many instances; needs NOH_PALETTE_TEXTURE
- *   NOH_DEPTH_ONLY        defined: normals and tangents are left as they are */
+ *   NOH_DEPTH_ONLY        defined: normals and tangents are unchanged */
 #if NOH_INFLUENCES == 1
 layout(location = 5) in highp uint noh_a_influences;
 #elif NOH_INFLUENCES == 2
@@ -25,7 +24,7 @@ layout(location = 5) in highp uvec4 noh_a_influences;
 layout(location = 6) in highp uvec3 noh_a_more_influences;
 #endif
 
-/* ---- what is fetched ---- */
+/* ---- inputs ---- */
 
 #ifdef NOH_MORPH_TEXELS
 layout(location = 7) in highp uint noh_a_texel; /* the lowest 22 bits; above them, the vertex's palette */
@@ -74,7 +73,7 @@ vec4 noh_crowd_row(int i)
 
 #define NOH_JOINT_ROW(i) (noh_skin_instance() + noh_skin.w + NOH_JOINT_ROWS * (i))
 #define NOH_PALETTE_ROW(i) noh_skin_texel(i)
-#elif NOH_INFLUENCES > 0 /* else a std140 block would be active all the same, and WebGL wants active blocks bound */
+#elif NOH_INFLUENCES > 0 /* else a std140 block would stay active, and WebGL needs active blocks bound */
 layout(std140) uniform noh_palette_block {
     highp vec4 noh_palette[256 * NOH_JOINT_ROWS];
 };
@@ -82,13 +81,12 @@ layout(std140) uniform noh_palette_block {
 #define NOH_PALETTE_ROW(i) noh_palette[i]
 #endif
 
-/* ---- what a game says of an instance ---- */
+/* ---- the game's values of an instance ---- */
 
-/* A crowd's: x: which of its rows it is; 0: none. */
+/* In a crowd, x: its row in an instance; 0: none. */
 uniform highp vec4 noh_user_values;
 
-/* noh_look.user, noh_gl_skin_set_user or noh_gl_draw_user: four floats that mean nothing to the library; zeros where
- * there are none. */
+/* noh_look.user, noh_gl_skin_set_user or noh_gl_draw_user: four floats, unused by the library; zeros if not set. */
 vec4 noh_user()
 {
 #ifdef NOH_CROWD
@@ -119,7 +117,7 @@ int noh_joint_row(int i)
     return NOH_JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
 }
 
-/* All weights, in units of 2^-22. The first is not stored: it is what the others leave of 1, so they sum to 1. */
+/* All weights, in units of 2^-22. The first is not stored: it is 1 minus the others. */
 void noh_stored_weights(out float w[NOH_INFLUENCES])
 {
 #if NOH_INFLUENCES == 2
@@ -145,7 +143,7 @@ void noh_stored_weights(out float w[NOH_INFLUENCES])
     }
 }
 
-/* The weights of the joints that are used. The first is again what the others leave of 1. */
+/* The weights of the joints used. The first is again 1 minus the others. */
 void noh_drawn_weights(out float drawn[NOH_DRAWN])
 {
     float stored[NOH_INFLUENCES], sum = 4194304.0;
@@ -177,11 +175,11 @@ vec3 noh_rotate(vec4 q, vec3 v)
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
 }
 
-/* Dual quaternion blending (Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008) with
- * a stretch. Each joint is a stretch, the symmetric matrix xx yy zz xy xz yz, and then a rigid motion, a unit dual
- * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual
- * quaternion is added with the sign that puts it on the strongest joint's side of the sphere, so that the blend takes
- * the short way; the sum is made unit. Its translation is twice the vector part of dual * conjugate(rotation). */
+/* Dual quaternion blending (Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008) with a
+ * stretch. Each joint is a stretch, the symmetric matrix xx yy zz xy xz yz, and then a rigid motion, a unit dual
+ * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual quaternion
+ * is added with the sign that puts it in the strongest joint's hemisphere, so that the blend takes the shorter arc; the
+ * sum is normalised. Its translation is twice the vector part of dual * conjugate(rotation). */
 void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[NOH_DRAWN];

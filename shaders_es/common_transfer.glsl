@@ -1,20 +1,20 @@
-/* common_transfer.glsl: light from all around by a vertex's precomputed transfer, in the arithmetic of
- * light.h. It goes behind common_layers.glsl and in front of common_vertex.glsl: noh_gl_shader_prefix puts them together. Defines,
- * which noh_gl_variant_defines writes:
+/* common_transfer.glsl: ambient light by a vertex's precomputed transfer, with the arithmetic of light.h. It follows
+ * common_layers.glsl and precedes common_vertex.glsl in noh_gl_shader_prefix. Defines, written by
+ * noh_gl_variant_defines:
  *
- *   NOH_TRANSFER             the order of the mesh's transfer, 4 or 6; 0: there is none, or the renderer is not lit
- *   NOH_TRANSFER_ON_NORMAL   defined: lobes lie about the normals, records have no axis */
+ *   NOH_TRANSFER             the order of the mesh's transfer, 4 or 6; 0: none, or the renderer is not lit
+ *   NOH_TRANSFER_ON_NORMAL   defined: lobes are centred on the normals, records have no axis */
 #if NOH_TRANSFER > 0
-layout(location = 8) in highp ivec4 noh_a_lobe; /* occlusion, of which the sign bit is a bit, and shape of bands 1 to 3 */
+layout(location = 8) in highp ivec4 noh_a_lobe; /* occlusion, unsigned with all 8 bits, and shape of bands 1 to 3 */
 #if NOH_TRANSFER == 6 && !defined(NOH_TRANSFER_ON_NORMAL)
 layout(location = 9) in highp ivec4 noh_a_more_lobe; /* shape of bands 4 and 5, axis */
 #elif NOH_TRANSFER == 6 || !defined(NOH_TRANSFER_ON_NORMAL)
-layout(location = 9) in highp ivec2 noh_a_more_lobe; /* of them, those that are there */
+layout(location = 9) in highp ivec2 noh_a_more_lobe; /* shape of bands 4 and 5, or axis */
 #endif
 
 uniform vec4 noh_rest[NOH_TRANSFER * NOH_TRANSFER]; /* noh_lighting_pack_rest */
 
-out vec4 noh_v_transfer; /* what a white matte surface reflects of it; its occlusion */
+out vec4 noh_v_transfer; /* ambient light that a white matte surface reflects; occlusion */
 
 struct noh_lobe {
     float occlusion;
@@ -22,7 +22,7 @@ struct noh_lobe {
     float shape[NOH_TRANSFER];
 };
 
-/* What targets change of a vertex's occlusion: beside the positions that noh_morph_fetch_tile adds. */
+/* The change of a vertex's occlusion by targets, stored with the positions that noh_morph_fetch_tile adds. */
 float noh_fetch_occlusion(ivec4 tile, int vertex)
 {
 #ifdef NOH_VERTICES
@@ -40,8 +40,8 @@ float noh_fetch_occlusion(ivec4 tile, int vertex)
 #endif
 }
 
-/* Turned by the smallest rotation that takes `from` to `to`, both unit: Rodrigues' formula, with the sine in the length
- * of the cross product. Opposite directions turn nothing. */
+/* Rotate `axis` by the smallest rotation from `from` to `to`, both unit: Rodrigues' formula, with the sine as the
+ * length of the cross product. Opposite directions do not rotate. */
 vec3 noh_lobe_turn(vec3 axis, vec3 from, vec3 to)
 {
     vec3 across = cross(from, to);
@@ -76,8 +76,8 @@ noh_lobe noh_lobe_of(vec3 from, vec3 to)
     return lobe;
 }
 
-/* The light that the lobe receives and its occlusion. axis: the lobe's, in the world, unit. The basis is that of
- * noh_sh_basis, one m after another, without the factors that are in noh_rest. */
+/* The light received by the lobe, and its occlusion. axis: of the lobe, in the world, unit. The basis is noh_sh_basis,
+ * m by m, without the factors, which are in noh_rest. */
 vec4 noh_lobe_shade(noh_lobe lobe, vec3 axis)
 {
     vec3 sum = vec3(0.0);

@@ -1,11 +1,11 @@
 /* common_vertex.glsl: noh_fetch, a vertex of a noh_gl_mesh morphed, skinned and placed in the world.
  *
- * It goes behind common_layers.glsl, common_attributes.glsl, common_skin.glsl and common_transfer.glsl: noh_gl_shader_prefix puts them
- * together. Defines of its own, which noh_gl_variant_defines writes:
+ * It follows common_layers.glsl, common_attributes.glsl, common_skin.glsl and common_transfer.glsl in
+ * noh_gl_shader_prefix. Its own defines, written by noh_gl_variant_defines:
  *
- *   NOH_DEPTH_ONLY   defined: depth alone is drawn. Normals and tangents are neither fetched nor computed, their deltas
- *                    not either, and they are 0; nor are colours and uv, except with
- *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Without NOH_DEPTH_ONLY that needs no define
+ *   NOH_DEPTH_ONLY   defined: only depth is drawn. Normals, tangents and their deltas are neither fetched nor
+ *                    computed, and are 0; nor are colours and uv, except with
+ *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Needs no define without NOH_DEPTH_ONLY
  *   NOH_UV_TARGETS   defined: the mesh has NOH_MESH_UV_TARGETS, and its texture coordinates are fetched */
 uniform mat4 noh_view_projection;
 uniform vec4 noh_world[3];      /* rows of 3 x 4 */
@@ -30,7 +30,7 @@ layout(location = 14) in highp uint noh_a_uv_texel;
 #endif
 
 /* The bind pose. Where the CPU finishes vertices (noh_gl_morph_desc.vertices), noh_a_position and noh_a_normal are
- * morphed. A shader of your own that reads it defines NOH_REST. */
+ * morphed. A shader of your own that needs the bind pose defines NOH_REST. */
 #if defined(NOH_STREAMS)
 #define noh_a_rest noh_a_position
 #define noh_a_rest_normal noh_a_normal
@@ -41,7 +41,7 @@ layout(location = 11) in ivec2 noh_a_rest_normal;
 #endif
 
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-uniform vec3 noh_center; /* middle of the mesh's bounds: differences of small numbers keep their bits */
+uniform vec3 noh_center; /* middle of the mesh's bounds, to keep positions small and differences exact */
 uniform highp ivec2 noh_wrinkle_models; /* common_wrinkle.glsl; x with 8: row 4 of an instance has its regions */
 out vec3 noh_v_rest;
 out vec3 noh_v_moved;
@@ -56,7 +56,7 @@ flat out highp ivec4 noh_v_regions; /* three regions of 8 bits in each component
 #endif
 #endif
 
-/* A surface that two programs draw, one for depth and one for colour, has the same depth in both. */
+/* A surface drawn by two programs, one for depth and one for colour, has the same depth in both. */
 invariant gl_Position;
 
 struct noh_vertex {
@@ -65,13 +65,13 @@ struct noh_vertex {
     vec4 tangent;  /* world; not unit. w: handedness, 1 or -1 */
     vec2 uv;
     vec4 color;    /* linear; alpha last */
-    vec4 tint;     /* of the instance; linear. alpha: 1 where the material does not blend */
+    vec4 tint;     /* of the instance; linear. alpha: 1 if the material does not blend */
     vec3 model;    /* position in the mesh's own space: morphed and skinned, not placed */
 };
 
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
 #ifdef NOH_CROWD
-/* In a crowd's rows three regions of 8 bits are in each component. */
+/* A crowd's row has three regions of 8 bits in each component. */
 ivec4 noh_region_bits()
 {
     return (noh_wrinkle_models.x & 8) != 0 ? ivec4(noh_crowd_row(4)) : ivec4(0);
@@ -96,7 +96,7 @@ vec4 noh_regions_of(int map)
 #endif
 }
 
-/* How much a vertex is wrinkled by regions and by channels. */
+/* The wrinkle strength of a vertex by regions and by channels. */
 void noh_wrinkle_vertex(vec2 uv)
 {
     noh_v_wrinkles = vec2(0.0);
@@ -124,7 +124,8 @@ vec4 noh_world_row(int i)
 #endif
 }
 
-/* Normals in the world: by the cofactors of a crowd's rows, of which none is mirrored, else by rows of their own. */
+/* Transform a normal to the world: by the cofactors of a crowd's rows, which are never mirrored, else by the rows of
+ * noh_normal. */
 vec3 noh_world_normal(vec4 x, vec4 y, vec4 z, vec3 normal)
 {
 #ifdef NOH_CROWD
@@ -134,7 +135,7 @@ vec3 noh_world_normal(vec4 x, vec4 y, vec4 z, vec3 normal)
 #endif
 }
 
-/* The tile's numbers; in their high bits, what the tint leaves of white. */
+/* The tile's numbers, with white minus the tint in their high bits. */
 ivec4 noh_tile_row()
 {
 #ifdef NOH_CROWD
@@ -145,9 +146,9 @@ ivec4 noh_tile_row()
 }
 
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-uniform int noh_blends; /* 1: the material blends, so that a tint's alpha counts; 2: its colour does not */
+uniform int noh_blends; /* bits: 1: the material blends: the tint's alpha applies; 2: its colour does not */
 
-/* From 8 bits of sRGB, and of alpha. */
+/* Decode a tint of 8-bit sRGB and alpha. */
 vec4 noh_tint_of(ivec4 row)
 {
     ivec4 left = ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16);
@@ -163,7 +164,7 @@ vec4 noh_tint_of(ivec4 row)
 #endif
 
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-/* Texture coordinates, with what the targets change of them. */
+/* Texture coordinates, with the changes by targets. */
 vec2 noh_uv_of(ivec4 tile)
 {
 #ifdef NOH_UV_TARGETS
@@ -218,7 +219,7 @@ noh_vertex noh_fetch()
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_world_normal(x, y, z, v.normal);
     v.tangent.xyz = vec3(dot(x.xyz, v.tangent.xyz), dot(y.xyz, v.tangent.xyz), dot(z.xyz, v.tangent.xyz));
-    v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror turns the frame inside out */
+    v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror inverts the frame */
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.uv = noh_uv_of(tile);

@@ -1,15 +1,15 @@
-/* common_wrinkle.glsl: noh_map_vector, the vector of a normal map; with NOH_WRINKLES noh_wrinkle_by_model, how much a
- * pixel is wrinkled, and normals blended by it. It goes in front of common_material.glsl.
+/* common_wrinkle.glsl: noh_map_vector, the vector of a normal map; with NOH_WRINKLES noh_wrinkle_by_model, the wrinkle
+ * strength of a pixel, and normals blended by it. It precedes common_material.glsl.
  *
- * Three models, of which the largest counts. A material chooses by bits of noh_wrinkle_models:
- *   1  area: how far the surface has shrunk in the pose, by derivatives
- *   2  regions: twelve of them in three weight maps, each with the weight that the face's expression gives it
+ * Three models; the largest strength counts. A material selects them by bits of noh_wrinkle_models:
+ *   1  area: how much the surface has shrunk in the pose, by derivatives
+ *   2  regions: twelve, in three weight maps, each weighted by the face's expression
  *   4  channels: red of the first weight map always, green and blue by the weights of regions 3 and 6
  * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. With NOH_WRINKLE_PIXEL
  * each pixel reads a mask of codes instead, one texture, texel by texel. */
 #if (defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)) && !defined(NOH_DEPTH_ONLY)
-/* The vector of a normal map's texel. Bytes have no value for 0; 128 stands for it. A map of two channels has no blue:
- * z is what x and y leave of 1. */
+/* The vector of a normal map's texel. Bytes cannot represent 0 exactly; 128 stands for it. A map of two channels has no
+ * blue: z follows from x and y. */
 vec3 noh_map_vector(vec3 texel)
 {
     vec3 v = (texel * 255.0 - 128.0) / 127.0;
@@ -19,11 +19,11 @@ vec3 noh_map_vector(vec3 texel)
 #endif
 
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-uniform highp ivec2 noh_wrinkle_models; /* those that show; 255 times how strongly they do */
+uniform highp ivec2 noh_wrinkle_models; /* enabled models; 255 times their strength */
 uniform mediump sampler2D noh_wrinkle_texture;
 
-in vec3 noh_v_rest;     /* about the middle of the mesh, before targets and joints */
-in vec3 noh_v_moved;    /* what targets add to it */
+in vec3 noh_v_rest;     /* relative to the middle of the mesh, before targets and joints */
+in vec3 noh_v_moved;    /* displacement by targets */
 #ifndef NOH_WRINKLE_PIXEL
 in vec2 noh_v_wrinkles; /* 0..1 by regions and by channels */
 #else
@@ -44,8 +44,9 @@ vec4 noh_regions_of(int k)
 #endif
 }
 
-/* By regions and by channels. Of a channel's code, code / 90 is k of its region and the rest how much of it; a rest above
- * 75 is none ("character wrinkle", computeWeight, with the rest that its listing lacks). */
+/* The strength by regions and by channels. In a channel's code, code / 90 is k of its region and the remainder its
+ * strength; a remainder above 75 means none ("character wrinkle", computeWeight, with the remainder that its listing
+ * omits). */
 vec2 noh_wrinkles_at(vec2 uv)
 {
     ivec4 code = ivec4(textureLod(noh_wrinkle_weights_0, uv, 0.0) * 255.0 + 0.5), k = code / 90, rest = code - 90 * k;
@@ -59,8 +60,8 @@ vec2 noh_wrinkles_at(vec2 uv)
 }
 #endif
 
-/* Area in the pose over area at rest: of the triangle, in bind space, whatever the camera and the joints do. Both areas
- * are spanned by the same two pixels, so their ratio is exact for a plane triangle. */
+/* Area in the pose / area at rest, in bind space, independent of the camera and the joints. Both areas are spanned by
+ * the same two pixels, so their ratio is exact for a triangle. */
 float noh_area_ratio()
 {
     vec3 x = dFdx(noh_v_rest), y = dFdy(noh_v_rest);
@@ -70,14 +71,14 @@ float noh_area_ratio()
 }
 
 /* The response of the SparseMorphTargets sample: 0.3 at rest, more where the surface shrinks, hardly less where it
- * grows. Beside regions, which say where creases are at rest, the 0.3 is left out. */
+ * grows. With regions, which define the creases at rest, the 0.3 is omitted. */
 float noh_wrinkle_by_area(float ratio)
 {
     float shrunk = 1.0 - ratio;
     return clamp(((noh_wrinkle_models.x & 6) == 0 ? 0.3 : 0.0) + (shrunk < 0.0 ? 0.005 * shrunk : shrunk), 0.0, 1.0);
 }
 
-/* One value by each model: area, regions, channels. uv: for masks that pixels read */
+/* One value per model: area, regions, channels. uv: for masks read per pixel */
 vec3 noh_wrinkle_by_model(vec2 uv)
 {
 #ifdef NOH_WRINKLE_PIXEL
@@ -98,8 +99,8 @@ vec3 noh_wrinkle_by_model()
 }
 #endif
 
-/* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail turned as the base turns
- * its plane, so that neither flattens the other. Both unit, tangent space. */
+/* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail is rotated with the base
+ * normal, so that neither flattens the other. Both unit, tangent space. */
 vec3 noh_blend_normals(vec3 base, vec3 detail)
 {
     vec3 t = base + vec3(0.0, 0.0, 1.0), u = detail * vec3(-1.0, -1.0, 1.0);

@@ -1,13 +1,14 @@
-/* decal_fragment.glsl: the marks on a surface, looked up by where a pixel is at rest. Behind #version goes noh_gl_shader_prefix.
+/* decal_fragment.glsl: the marks on a surface, looked up by a pixel's position in the bind pose. After #version:
+ * noh_gl_shader_prefix.
  *
  * A mark is a row of u_decals: centre and size; right and tile; normal and alpha; sRGB colour and roughness. It is a
- * square about its centre, within a sphere, on what faces as it does. Later rows lie over earlier ones. With u_corners,
- * a mark is on its own triangles alone: those whose last corner is among its own there. */
+ * square around its centre, within a sphere, on surfaces that face its direction. Later rows cover earlier ones. With
+ * u_corners, a mark covers only its own triangles, whose last corners are listed there. */
 uniform highp sampler2D u_decals;
 uniform sampler2D u_picture;
-uniform highp usampler2D u_corners; /* where each mark's corners begin; each mark's corners, rising */
-uniform highp int u_corner_row;     /* of the first mark; -1: none, marks are wherever they are near */
-uniform highp vec3 u_marks; /* how many rows; columns and rows of tiles of the picture, 0: round spots */
+uniform highp usampler2D u_corners; /* where each mark's corners begin; each mark's corners, ascending */
+uniform highp int u_corner_row;     /* row of the first mark; -1: none, marks cover all surfaces near them */
+uniform highp vec3 u_marks; /* number of rows; columns and rows of tiles of the picture, 0: round spots */
 
 in vec3 v_world;
 in vec3 v_normal;

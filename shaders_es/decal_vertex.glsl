@@ -1,5 +1,5 @@
-/* decal_vertex.glsl: a mesh once more, with where its pixels are at rest, for decal_fragment.glsl. Behind #version goes
- * noh_gl_shader_prefix. */
+/* decal_vertex.glsl: draws a mesh again, with the positions of its pixels in the bind pose, for decal_fragment.glsl.
+ * After #version: noh_gl_shader_prefix. */
 out vec3 v_world;
 out vec3 v_normal;
 out vec4 v_tangent;
@@ -7,8 +7,8 @@ out vec2 v_uv;
 out vec4 v_color;
 out highp vec3 v_rest;
 out vec3 v_rest_normal;
-flat out highp int v_corner; /* the last of a triangle's */
-uniform highp vec4 u_towards; /* x: what brings depths nearer to the eye */
+flat out highp int v_corner; /* last corner of a triangle */
+uniform highp vec4 u_towards; /* x: offset that moves depths towards the eye */
 
 void main()
 {
@@ -26,5 +26,5 @@ void main()
     v_rest_normal = noh_direction_of_pair(noh_a_rest_normal);
 #endif
     gl_Position = noh_view_projection * vec4(v.position, 1.0);
-    gl_Position.z += u_towards.x * gl_Position.w; /* in front of the surface that it lies on */
+    gl_Position.z += u_towards.x * gl_Position.w; /* in front of the surface under the mark */
 }

@@ -1,6 +1,6 @@
 #version 300 es
-/* floor.frag: what a shadow leaves of the light on a level floor, by channel: whatever is there is multiplied by it. Behind
- * #version go the defines, common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
+/* floor.frag: the share of light that a shadow leaves on a level floor, by channel; the picture is multiplied by it.
+ * After #version: the defines, common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
 in vec3 v_position;
 in vec2 v_at;
 
@@ -12,7 +12,7 @@ void main()
     float taken = (1.0 - noh_key_shadow(v_position, up)) * (1.0 - smoothstep(0.5, 1.0, length(v_at)));
     vec3 left = 1.0 - key / max(rest + key, vec3(1e-6)) * taken;
 #ifdef NOH_ENCODE_SRGB
-    left = pow(left, vec3(1.0 / 2.2)); /* of values that are encoded */
+    left = pow(left, vec3(1.0 / 2.2)); /* for encoded values */
 #endif
     o_color = vec4(left, 1.0);
 }

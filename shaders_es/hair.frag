@@ -1,7 +1,7 @@
 #version 300 es
-/* hair.frag: light on a strip of hair, and what of its pixels a pass draws. Behind #version go the defines,
- * common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
-uniform vec4 u_alpha; /* from, up to */
+/* hair.frag: light on a strip of hair, and the choice of pixels by pass. After #version: the defines, common_fade.glsl,
+ * common_fragment.glsl and common_environment.glsl. */
+uniform vec4 u_alpha; /* range of alpha drawn: from, up to */
 uniform vec4 u_widths;
 uniform vec4 u_root, u_tip;
 uniform vec4 u_eye, u_light;
@@ -11,17 +11,17 @@ in vec3 v_tangent;
 in vec3 v_normal;
 in vec2 v_at;
 flat in float v_strip;
-flat in float v_fade; /* 0: what is painted on the head shows in its place */
+flat in float v_fade; /* 0: hidden, the hair painted on the head shows instead */
 
 out vec4 o_color;
 
-/* Strands side by side on a strip: how bright one is, and where it ends. */
+/* Brightness and end of a strand; strands lie side by side on a strip. */
 vec2 strand(float cell)
 {
     return fract(sin(vec2(cell * 12.9898 + v_strip * 78.233, cell * 39.346 + v_strip * 11.135)) * 43758.5453);
 }
 
-/* What a strand mirrors: a highlight about the cone of its tangent. */
+/* The specular reflection of a strand: a highlight around the cone of its tangent. */
 float lobe(vec3 tangent, vec3 h, float sharpness)
 {
     float c = dot(tangent, h);
@@ -35,7 +35,7 @@ void main()
     float between = fract(x) * 2.0 - 1.0;
     float edge = 1.0 - smoothstep(0.55, 1.0, abs(v_at.x));
     float end = mix(0.92, 0.72 + 0.28 * own.y, fine);
-    float begin = mix(0.012, 0.004 + 0.03 * own.x, fine); /* a hairline is no edge: strands begin one by one */
+    float begin = mix(0.012, 0.004 + 0.03 * own.x, fine); /* irregular, so the hairline is not sharp */
     float alpha = min(1.0, 1.6 * edge) * smoothstep(0.0, begin, v_at.y) * (1.0 - smoothstep(end - 0.12, end, v_at.y));
     if (alpha < u_alpha.x || alpha >= u_alpha.y || noh_fade_noise(gl_FragCoord.xy) >= v_fade) {
         discard;

@@ -1,25 +1,25 @@
 #version 300 es
-/* hair.vert: a strip of hair out of its number and four control hairs: noh_haircut_vertex in the vertex shader. */
+/* hair.vert: a strip of hair from its number and four control hairs: noh_haircut_vertex as a vertex shader. */
 precision highp float;
 precision highp int;
 
-uniform highp sampler2D u_points; /* rows of control hairs, then two texels a patch: its corners; then five a body */
+uniform highp sampler2D u_points; /* rows of control hairs, two texels per patch (its corners), five per body */
 uniform vec4 u_counts;            /* points of a hair, rows of hairs, patches, segments of a strip */
-uniform vec4 u_widths;            /* half of a strip's at root and tip, how far strips stray, gloss */
-uniform vec4 u_curl;              /* radius, turns, how much of a body fades in, hairs in a row of texels (0: 1) */
-uniform vec4 u_crowd;             /* strips drawn of each body, the first body, the row of bodies, all strips of one; zeros:
+uniform vec4 u_widths;            /* half width of a strip at root and tip, spread of strips, gloss */
+uniform vec4 u_curl;              /* radius, turns, fade of a body, hairs in a row of texels (0: 1) */
+uniform vec4 u_crowd;             /* strips drawn per body, first body, row of bodies, all strips of one; zeros:
                                    * one body, at u_world */
-uniform vec4 u_middle;            /* of the skull, head space */
-uniform vec4 u_world[3];          /* of one body: from head space */
+uniform vec4 u_middle;            /* middle of the skull, head space */
+uniform vec4 u_world[3];          /* of one body: head space to world */
 uniform mat4 u_view_projection;
-uniform vec4 u_eye;               /* world; w 0: the view is parallel */
+uniform vec4 u_eye;               /* world; w 0: parallel projection */
 uniform vec4 u_light;             /* unit, towards the light */
 
 out vec3 v_position;
 out vec3 v_tangent;
 out vec3 v_normal;
 out vec2 v_at;           /* across, -1 to 1; along, 0 to 1 */
-flat out float v_strip;  /* a number of the strip's own, 0 to 1 */
+flat out float v_strip;  /* random number of the strip, 0 to 1 */
 flat out float v_fade;
 
 float share_of(uint bits)
@@ -44,7 +44,7 @@ int hairs_in_row()
     return max(int(u_curl.w), 1);
 }
 
-/* The n-th texel from a row on. */
+/* The n-th texel from the start of a row. */
 vec3 fetch_from(int row, int n)
 {
     int width = int(u_counts.x) * hairs_in_row();
@@ -59,11 +59,11 @@ void add_hair(int hair, ivec4 at, vec4 place, vec4 slope, float share, inout vec
     tangent += share * (a * slope.x + b * slope.y + c * slope.z + d * slope.w);
 }
 
-/* What is drawn of the head that an instance belongs to. */
+/* The hair of the head that an instance belongs to. */
 struct head {
     vec4 x, y, z; /* rows from head space */
     uint strip;
-    int first; /* of its control hairs */
+    int first; /* index of its first control hair */
     float fade, widen;
     bool is_drawn;
 };
@@ -117,12 +117,12 @@ void main()
     t = dot(t, t) > 1e-30 ? normalize(t) : vec3(0.0, -1.0, 0.0);
     float a = share_of(mixed(strip * 3u + 1u)), b = share_of(mixed(strip * 3u + 2u));
     float angle = 6.2831853 * (u_curl.y * along + a);
-    float rise = 1.0 / max(1.0 - t.y, 1e-4); /* steady but straight up, where hardly any hair points */
+    float rise = 1.0 / max(1.0 - t.y, 1e-4); /* continuous except straight up, where hardly any hair points */
     vec3 side = vec3(1.0 - t.x * t.x * rise, t.x, -t.x * t.z * rise), across = vec3(-t.x * t.z * rise, t.z, 1.0 - t.z * t.z * rise);
     p += (u_widths.z * along * (2.0 * a - 1.0) + u_curl.x * along * cos(angle)) * side;
     p += (u_widths.z * along * (2.0 * b - 1.0) + u_curl.x * along * sin(angle)) * across;
     vec3 away = p - u_middle.xyz;
-    away.y = max(away.y, 0.0); /* below the skull's middle hair faces away from a line */
+    away.y = max(away.y, 0.0); /* below the middle of the skull, hair faces away from the vertical axis */
     float scale = length(vec3(h.x.x, h.y.x, h.z.x));
     v_position = to_world(h, p, 1.0);
     v_tangent = normalize(to_world(h, t, 0.0));

@@ -1,6 +1,5 @@
 #version 300 es
-/* mesh.frag: a surface and the light on it, or what a noh_debug_view shows. Behind #version goes noh_gl_shader_prefix,
- * as before a game's own. */
+/* mesh.frag: a lit surface, or a noh_debug_view. After #version: noh_gl_shader_prefix, as for a game's own shader. */
 uniform vec3 noh_bounds_min;     /* of the mesh, for NOH_VIEW_POSITION */
 uniform vec3 noh_bounds_size;
 
@@ -8,7 +7,7 @@ in vec3 v_world;
 in vec3 v_normal;
 in vec2 v_uv;
 in vec4 v_color;
-/* What is not read is not declared: then it is neither interpolated nor, with all that leads to it, computed. */
+/* Unused inputs are not declared, so they are neither interpolated nor computed. */
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES) || NOH_DEBUG_VIEW == 3
 in vec4 v_tangent;
 #define TANGENT v_tangent

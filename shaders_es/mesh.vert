@@ -1,5 +1,5 @@
 #version 300 es
-/* mesh.vert: the vertices of the plain renderer. Behind #version goes noh_gl_shader_prefix, as before a game's own. */
+/* mesh.vert: the vertices of the plain renderer. After #version: noh_gl_shader_prefix, as for a game's own shader. */
 out vec3 v_world;
 out vec3 v_normal;
 out vec4 v_tangent;

@@ -1,10 +1,10 @@
 #version 300 es
-/* morph_block.vert: with MORPH_POINTS a point over a block of 4 x 4 texels, else a corner of a quad over a strip of such
- * blocks, of one active target in the tile of one instance of a mesh. With MORPH_MRT, a fragment writes all layers; with
- * MORPH_LAYERED, the geometry shader says which layer; else u_layer does. */
+/* morph_block.vert: with MORPH_POINTS a point over a block of 4 x 4 texels, else a corner of a quad over a strip of
+ * such blocks, of one active target in the tile of one instance of a mesh. With MORPH_MRT, a fragment writes all
+ * layers; with MORPH_LAYERED, the geometry shader selects the layer; else u_layer does. */
 #include "common_delta.glsl"
 
-uniform usampler2D u_records; /* entries (common_delta.glsl) without a place */
+uniform usampler2D u_records; /* entries (common_delta.glsl) without a tile position */
 uniform ivec3 u_tables;       /* width log2 of records */
 uniform vec2 u_atlas;         /* 2 / size of the accumulation texture */
 uniform int u_layer;

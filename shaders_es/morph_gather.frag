@@ -1,10 +1,10 @@
 #version 300 es
-/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once, with
- * TWO_LAYERS two. It needs no blending, so any format that can be rendered to will do; with LAYERS_UINT it writes the
- * bits of the floats. All fragments of a block of 4 x 4 walk the same list: one entry for each active target. */
+/* morph_gather.frag: each fragment sums the deltas of its own vertex in registers and writes the three layers once,
+ * with TWO_LAYERS two. It needs no blending, so any renderable format works; with LAYERS_UINT it writes the bits of the
+ * floats. All fragments of a block of 4 x 4 read the same list: one entry per active target. */
 #include "common_delta.glsl"
 
-uniform usampler2D u_deltas;   /* delta words in tiles of 4 x 4; with OCCLUSION, what it changes of that, a float's bits */
+uniform usampler2D u_deltas;   /* delta words in tiles of 4 x 4; with OCCLUSION, its delta as float bits too */
 uniform usampler2D u_lists;    /* entries (common_delta.glsl); the top bit of a fourth word: the list ends here */
 uniform usampler2D u_starts;   /* where each block's list begins */
 #define WIDTH_LOG2 8           /* of both */
@@ -24,8 +24,8 @@ layout(location = 1) out LAYER o_normal;
 layout(location = 2) out LAYER o_tangent;
 #endif
 
-/* A product that was fused with the sum it goes into would be rounded once, not twice as on the CPU. So each passes
- * through an exclusive or with a bit that no entry has set, which a compiler cannot know. `precise` is for ES 3.2 alone. */
+/* A product fused with its sum would be rounded once, not twice as on the CPU. So each product passes through an
+ * exclusive or with a bit that is never set, which a compiler cannot know. `precise` needs ES 3.2. */
 #define NEVER_SET 0x40000000u
 #define UNFUSED(product) uintBitsToFloat(floatBitsToUint(product) ^ (entry.w & NEVER_SET))
 

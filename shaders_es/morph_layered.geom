@@ -1,6 +1,6 @@
 #version 320 es
-/* morph_layered.geom: one invocation per layer sends the triangle there by gl_Layer, as the geometry shader of
- * Microsoft's SparseMorphTargets sample (DirectX SDK) does for its three render targets. */
+/* morph_layered.geom: one invocation per layer sends the triangle to it by gl_Layer, like the geometry shader of
+ * Microsoft's SparseMorphTargets sample (DirectX SDK) for its three render targets. */
 #include "common_delta.glsl"
 
 #ifdef TWO_LAYERS

@@ -1,5 +1,5 @@
 #version 300 es
-/* morph_mrt.frag: one fragment gives the deltas of all layers, with TWO_LAYERS of two; blending adds them. */
+/* morph_mrt.frag: one fragment writes the deltas of all layers, or with TWO_LAYERS of two; blending adds them. */
 #include "common_delta.glsl"
 #include "common_place.glsl"
 

@@ -1,5 +1,5 @@
 #version 300 es
-/* morph_one.frag: one fragment gives the delta of one layer (per-layer passes, layered draws); blending adds it. */
+/* morph_one.frag: one fragment writes the delta of one layer (per-layer passes, layered draws); blending adds it. */
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
@@ -13,7 +13,7 @@ void main()
     uvec4 texel = delta_words(f_entry.x);
     float weight = uintBitsToFloat(f_entry.z), fourth = 0.0;
 #ifdef OCCLUSION
-    fourth = uintBitsToFloat(texel.w) * weight; /* in other layers than that of positions it is not read */
+    fourth = uintBitsToFloat(texel.w) * weight; /* read only in the layer of positions */
 #endif
     o_delta = vec4(delta_field(texel.xyz, shifts, weight), fourth);
 }

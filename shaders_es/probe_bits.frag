@@ -1,5 +1,5 @@
 #version 300 es
-// The same floats as in probe_floats.frag, their bits into integer layers.
+// Writes the bits of the floats of probe_floats.frag to integer layers.
 precision highp float;
 precision highp int;
 uniform highp sampler2D values; // 16 x 3

@@ -1,6 +1,6 @@
 #version 300 es
-// Known floats into three layers at once. Layer i gets the texel i to the right, so that
-// a layer that was mixed up or left out shows.
+// Writes known floats to three layers at once. Layer i gets the texel i to the right, which reveals swapped and missing
+// layers.
 precision highp float;
 precision highp int;
 uniform highp sampler2D values; // 16 x 3

@@ -1,5 +1,5 @@
 #version 320 es
-// The layer's index as a colour: 51, 102, 153 in eight bits.
+// Writes the layer's index as a colour: 51, 102, 153 in eight bits.
 flat in highp int layer;
 layout(location = 0) out highp vec4 color;
 

@@ -1,5 +1,5 @@
 #version 320 es
-// The triangle once for each of three layers.
+// Sends the triangle to each of three layers.
 layout(triangles, invocations = 3) in;
 layout(triangle_strip, max_vertices = 3) out;
 flat out highp int layer;

@@ -1,5 +1,5 @@
 #version 300 es
-// A fifth of white.
+// Writes a fifth of white.
 precision highp float;
 layout(location = 0) out vec4 color;
 

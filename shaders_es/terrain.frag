@@ -1,5 +1,5 @@
 #version 300 es
-/* terrain.frag: light on a height field, in one colour where it is flat and one where it is steep. Behind #version go the
+/* terrain.frag: light on a height field, in one colour where it is flat and one where it is steep. After #version: the
  * defines, common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
 uniform vec4 u_flat, u_steep; /* linear colours */
 uniform vec4 u_light;         /* without NOH_LIT: unit, towards the light */

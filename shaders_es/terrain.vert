@@ -1,13 +1,13 @@
 #version 300 es
-/* terrain.vert: a block of a height field, a strip of triangles for each of its rows: see noh_terrain_lod_block. */
+/* terrain.vert: a block of a height field, one triangle strip per row: see noh_terrain_lod_block. */
 precision highp float;
 precision highp int;
 
 uniform highp usampler2D u_heights;
-uniform ivec4 u_block;   /* its first height: column and row; cells to a side, heights to a cell */
-uniform ivec4 u_edges;   /* at -x, +x, -z, +z: every so-many-th vertex is used */
+uniform ivec4 u_block;   /* its first height: column and row; cells per side, heights per cell */
+uniform ivec4 u_edges;   /* at -x, +x, -z, +z: use every n-th vertex */
 uniform vec4 u_origin;   /* world; w: spacing */
-uniform vec4 u_scale;     /* x: of a height */
+uniform vec4 u_scale;     /* x: scale of a height */
 uniform mat4 u_view_projection;
 
 out vec3 v_position;

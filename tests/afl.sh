@@ -1,7 +1,7 @@
 #!/bin/sh
-# afl.sh: AFL++ on `noh build`, with AddressSanitizer: models (.glb), recordings (.bvh) and meshes (.obj) for AFL_SECONDS
-# (300) each, beside each other. Seeds are the demo's arm and what is below. Closes like run.sh; what crashed or hung
-# is in build/afl/out-*/default/. `make check-long` calls it.
+# afl.sh: AFL++ on `noh build`, with AddressSanitizer: models (.glb), recordings (.bvh) and meshes (.obj) for
+# AFL_SECONDS (300) each, in parallel. Seeds are the demo's arm and the files below. Ends like run.sh; crashes and hangs
+# are in build/afl/out-*/default/. Part of `make check-long`.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -16,7 +16,7 @@ fi
 rm -rf "$work/in-glb" "$work/in-bvh" "$work/in-obj" "$work/out-glb" "$work/out-bvh" "$work/out-obj"
 mkdir -p "$work/in-glb" "$work/in-bvh" "$work/in-obj"
 export AFL_USE_ASAN=1 AFL_SKIP_CPUFREQ=1 AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES=1 AFL_NO_UI=1 AFL_NO_AFFINITY=1 AFL_QUIET=1
-# An allocation that fails returns NULL, as in the build without sanitizers; leaks at the end of a program are none.
+# A failed allocation returns NULL, as in the build without sanitizers; leaks at the end of a program are ignored.
 export ASAN_OPTIONS=abort_on_error=1:symbolize=0:detect_leaks=0:allocator_may_return_null=1
 if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$work/build" CC=afl-clang-fast CXX=afl-clang-fast++ OPT='-O1 -g' WERROR= DEPS=0 \
     "$work/build/noh" >"$work/make.txt" 2>&1; then
@@ -26,7 +26,7 @@ if ! make --no-print-directory -j"${JOBS:-2}" BUILD="$work/build" CC=afl-clang-f
     exit 1
 fi
 
-# A triangle on two joints with a target and a clip, small enough to be bent everywhere.
+# A triangle on two joints with a target and a clip, small enough to be mutated everywhere.
 sh tests/support/small_glb.sh >"$work/in-glb/small.glb"
 cat >"$work/in-bvh/leg.bvh" <<'END'
 HIERARCHY

@@ -1,8 +1,8 @@
 #!/bin/sh
-# bare.sh [FOLDER]: the README's commands on a bare Debian, timed. debootstrap makes one in FOLDER (build/bare), with
-# what the README asks for (git, gcc and make) and nothing else; a clean clone of HEAD is put into it. While `make demo`
-# begins, another process holds the package manager's lock for a minute. NOH_BARE_CHECK=1: then `make check`, without
-# models of others. Needs root and debootstrap; packages come from where this machine has them from. Closes like run.sh.
+# bare.sh [FOLDER]: the README's commands on a minimal Debian, timed. debootstrap installs it in FOLDER (build/bare)
+# with only the README's prerequisites (git, gcc and make) and a clean clone of HEAD. During the first minute of `make
+# demo`, another process holds the package manager's lock. NOH_BARE_CHECK=1: then run `make check`, without NOH_ASSETS.
+# Needs root and debootstrap; uses this machine's package sources. Ends like run.sh.
 set -eu
 cd "$(dirname "$0")/.."
 build=${NOH_BUILD:-build}
@@ -35,7 +35,7 @@ if [ ! -e "$root/etc/debian_version" ]; then
         leave_out 'debootstrap failed'
     }
 fi
-# The same sources and proxies as here; the lists are not there yet.
+# The same sources and proxies as here; package lists are not downloaded yet.
 cp -r /etc/apt/sources.list* "$root/etc/apt/" 2>/dev/null || true
 cp -r /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
 cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
@@ -45,7 +45,7 @@ mount -t proc proc "$root/proc"
 rm -rf "$root/root/noh"
 git clone -q . "$root/root/noh"
 
-# fcntl's lock, as apt and dpkg take it; perl is in every Debian.
+# An fcntl lock, like apt's and dpkg's; every Debian has perl.
 inside perl -e '
     open my $f, ">>", "/var/lib/dpkg/lock-frontend" or die; my $l = pack("s s x![q] q q i", 1, 0, 0, 0, 0);
     fcntl($f, 6, $l) or die "lock: $!"; sleep $ARGV[0]' "$lock_s" &

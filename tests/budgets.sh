@@ -1,12 +1,12 @@
 #!/bin/sh
-# budgets.sh: what characters take, to the byte, part by part: of the demo's packs and of stages with each feature. A
-# byte more is a line that differs from tests/golden/budgets.txt, for a reviewer to see.
+# budgets.sh: the exact bytes of the demo's packs and of stages with each feature, part by part. Any change is a
+# difference to tests/golden/budgets.txt, visible in review.
 #
 #   budgets.sh           compare (in `make check`), TAP
-#   budgets.sh update    write the table anew (`make budgets-update`)
+#   budgets.sh update    rewrite the table (`make budgets-update`)
 #
-# The GPU is a nominal GLES 3.2 device, so that no driver counts. Rows hold for packs with the checksums in the table;
-# where a pack comes out otherwise its rows are skipped, and a line says so.
+# The GPU is a nominal GLES 3.2 device, so that no driver counts. Rows apply to packs with the checksums in the table;
+# rows of other packs are skipped with a message.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -62,7 +62,7 @@ if [ "${1:-}" = update ]; then
     ! grep 'failed:' "$work/now" && cp "$work/now" "$table" && echo "$table is written"
     exit
 fi
-# A pack and its checksum that the table has must have the same lines there.
+# If the table has a pack with this checksum, its lines must be equal.
 awk -F '\t' -v table="$table" '
     BEGIN { while ((getline line < table) > 0) { split(line, f, "\t"); known[f[1] FS f[2]] = 1; wanted[line] = 1; of[line] = f[1] FS f[2] } }
     { here[$1 FS $2] = 1; seen[$0] = 1

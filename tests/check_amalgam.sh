@@ -1,8 +1,8 @@
 #!/bin/sh
 # check_amalgam.sh: the library as one file.
 #   - noh.c compiles alone, as C99, with the project's warnings as errors, with gcc and clang, with and without GL
-#   - it has the names of libnoh.a, no more and no fewer, and asks for memcpy, memset and memcmp only
-#   - tests linked with it instead of libnoh.a pass; the README's program and the examples print what they print with libnoh.a
+#   - it has exactly the global names of libnoh.a, and needs only memcpy, memset and memcmp
+#   - tests linked with it instead of libnoh.a pass; the README's program and the examples print the same as with libnoh.a
 . tests/cli/lib.sh
 amalgam=$build/amalgam
 flags='-std=c99 -O2 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections'

@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_contraction.sh: built for a processor with fused multiply-add, the library uses none.
-# gcc 12 fuses alternating sums and differences of products in spite of -ffp-contract=off, and the results then differ
-# in bits from those of other processors.
+# check_contraction.sh: built for a processor with fused multiply-add, the library uses none. gcc 12 fuses alternating
+# sums and differences of products in spite of -ffp-contract=off, and the bits of the results then differ between
+# processors.
 . "$(dirname "$0")/cli/lib.sh"
 
 if [ -n "${NOH_SAN:-}" ]; then

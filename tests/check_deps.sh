@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_deps.sh: tools/deps.sh with an apt-get of the test's own, which installs nothing: another process that holds
-# apt's lock, packages that are not to be had, errors.
+# check_deps.sh: tools/deps.sh with a fake apt-get, which installs nothing: another process holds apt's lock,
+# unavailable packages, errors.
 . tests/cli/lib.sh
 
 # Each call is a line of $work/calls. While there are lines in $work/says, a call prints the first and fails.

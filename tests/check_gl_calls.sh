@@ -1,9 +1,9 @@
 #!/bin/sh
 # check_gl_calls.sh: the GL functions that a port has to provide.
-#   - NOH_GL_REQUIRED (runtime/gl/device/gl_api.h) is what runtime/ calls: no more, no less
+#   - NOH_GL_REQUIRED (runtime/gl/device/gl_api.h) lists exactly the functions that runtime/ calls
 #   - an optional function that runtime/ calls is compared with NULL somewhere
 #   - only code that creates programs calls GetUniformLocation: draws use the locations it found
-#   - the list in platform/README.md is that list, and the page has each of them (platform/web/package/gl.js)
+#   - platform/README.md has the same list, and the page implements each function (platform/web/package/gl.js)
 set -u
 . tests/cli/lib.sh
 header=$(find runtime -name gl_api.h)
@@ -52,7 +52,7 @@ check 'uniforms are found where programs are created, never in a draw' cmp "$wor
 awk '/^<!-- required -->/ { on = 1; next } /^<!-- end -->/ { on = 0 } on' platform/README.md |
     grep -oE 'gl[A-Z][A-Za-z0-9_]*' | sed 's/^gl//' | sort -u >"$work/documented"
 check 'platform/README.md lists them' cmp "$work/required" "$work/documented"
-# Gen and Delete of whole lists are made by name there: `glGen${what}`. Strings are C's.
+# Gen and Delete functions of lists are named by template there: `glGen${what}`. Strings are C's.
 grep -v '^ *//' platform/web/package/gl.js | cat - platform/web/context.c >"$work/page"
 while read -r name; do
     case $name in Gen*s) part=${name#Gen} ;; Delete*s) part=${name#Delete} ;; *) part=$name ;; esac

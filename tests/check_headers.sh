@@ -97,8 +97,8 @@ fi
 
 # ---- other headers of GL ----
 
-# NAME LANGUAGE FLAGS HEADER: a program that calls GL by that header, with noh_gl.h on each side of it. What the header
-# itself warns of is not ours.
+# NAME LANGUAGE FLAGS HEADER: a program that calls GL by that header, with noh_gl.h on each side of it. Warnings of the
+# header itself are ignored.
 with_header() {
     for order in before behind both; do
         {

@@ -1,10 +1,10 @@
 #!/bin/sh
-# check_install.sh: from a clean prefix, what a stranger gets.
-#   - make install, install-lib (without a C++ compiler) and uninstall, DESTDIR, a prefix that is moved
+# check_install.sh: the library installed into a clean prefix.
+#   - make install, install-lib (without a C++ compiler) and uninstall, DESTDIR, a moved prefix
 #   - every header alone
 #   - the README's program and the examples by pkg-config, by CMake and from the amalgam, as C99, C11 and C++17
-#   - the smallest program that morphs: how large
-#   - flags from outside are added to those that the library needs
+#   - the size of the smallest program that morphs
+#   - the user's flags are added to the library's required flags
 . tests/cli/lib.sh
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'installing' 'checked in the build without sanitizers'
@@ -87,7 +87,7 @@ alone() {
 headers() {
     if alone "$@"; then ok "each of $(wc -l <"$work/headers") headers alone: $1"; else not_ok "headers alone: $1"; head -n 10 "$work/err" | sed 's/^/#   /'; fi
 }
-# With other compilers check_headers.sh has them.
+# check_headers.sh tests other compilers.
 headers 'gcc, C99' gcc -std=c99
 
 # ---- programs ----
@@ -194,14 +194,14 @@ else
     skip '-m32' 'no 32-bit C library here (gcc-multilib)'
 fi
 
-# ---- what a program gets ----
+# ---- the size in a program ----
 
 readelf -sW "$prefix/lib/libnoh.a" | awk '$7 == "UND" && $8 != "" { print $8 }' | sort -u >"$work/asked"
 readelf -sW "$prefix/lib/libnoh.a" | awk '$7 != "UND" && $5 == "GLOBAL" { print $8 }' | sort -u >"$work/given"
 comm -23 "$work/asked" "$work/given" | tr '\n' ' ' >"$work/undefined"
 check 'the installed library asks for memcmp, memcpy and memset only' grep -qx '\(_GLOBAL_OFFSET_TABLE_ \)\?memcmp memcpy memset ' "$work/undefined"
 
-# The library's code and constants in the README's program, which opens a pack and morphs: what the linker left.
+# The library's code and constants linked into the README's program, which opens a pack and morphs.
 largest=34816
 gcc -std=gnu99 -O2 "$work/smile.c" "-I$prefix/include" "-L$prefix/lib" -lnoh -Wl,--gc-sections -Wl,-Map="$work/map" -o "$work/smallest"
 bytes=$(nm -S -t d "$work/smallest" | awk '$3 ~ /^[tTrRdD]$/ && $4 != "main" && $4 !~ /^_/ { sum += $2 } END { print sum + 0 }')
@@ -214,7 +214,7 @@ echo "# from the amalgam: $bytes bytes"
 # as one source it is inlined more
 check 'and hardly more from the amalgam' test "$bytes" -gt 4096 -a "$bytes" -le $((largest + 1024))
 
-# ---- flags from outside ----
+# ---- the user's flags ----
 
 make --no-print-directory -B -n BUILD="$work/flags" DEPS=0 V=1 lib CFLAGS=-Os CXXFLAGS=-Os LDFLAGS=-s CPPFLAGS=-DX OPT=-O1 2>/dev/null |
     grep ' -c runtime/' >"$work/commands"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_names.sh: every noh_ and NOH_ name in a comment or a document is one that the sources have: no text speaks of a
-# function that was renamed. A name that ends in _ stands for all that begin so; noh.h's noh_noun_verb and noh_x are
-# patterns. And the top level has no file that nobody meant to be there.
+# check_names.sh: every noh_ and NOH_ name in a comment or a document exists in the sources, so that no text mentions a
+# renamed function. A name that ends in _ stands for all names with this beginning; noh.h's noh_noun_verb and noh_x are
+# patterns. Also, the top level has no unexpected file.
 set -u
 . tests/cli/lib.sh
 
@@ -37,13 +37,13 @@ check 'names were found' test "$(wc -l <"$work/names")" -gt 1000
 grep -oE '\b(noh|NOH)_[A-Za-z0-9_]+' "$work/text" | sort -u |
     grep -vE '^(noh_noun.*|NOH_NOUN|noh_x_.*|noh_shader_.*)$' >"$work/spoken"
 check 'and spoken of' test "$(wc -l <"$work/spoken")" -gt 300
-# Known: the name itself, or a beginning of one.
+# Known: a name, or the beginning of one.
 awk 'NR == FNR { known[$0] = 1; all = all "\n" $0; next }
      !($0 in known) && !index(all, "\n" $0) { print }' "$work/names" "$work/spoken" >"$work/strange"
 while read -r name; do grep -m 1 -wF "$name" "$work/text"; done <"$work/strange" | sed 's/^/#   /'
 check 'no comment or document names what does not exist' test ! -s "$work/strange"
 
-# What a command left behind by mistake has been committed before.
+# Files left by a command were committed by mistake before.
 if git ls-files >"$work/files" 2>/dev/null && [ -s "$work/files" ]; then
     sed 's|/.*||' "$work/files" | sort -u |
         grep -vxE '\..+|CHANGELOG\.md|CONTRIBUTING\.md|LICENSE|Makefile|README\.md|platform|runtime|shaders_es|tests|tools' |

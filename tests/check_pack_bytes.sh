@@ -1,6 +1,6 @@
 #!/bin/sh
-# check_pack_bytes.sh: the demo's models and packs have the same bytes from every compiler. NOH_OTHER is another build
-# (build, where this is another folder: .ci/run builds with gcc there, and with clang under sanitizers).
+# check_pack_bytes.sh: the demo's models and packs have the same bytes from every compiler. NOH_OTHER is the other build
+# (default: build, if this build has another folder: .ci/run builds with gcc there, and with clang under sanitizers).
 build=${NOH_BUILD:-build}
 other=${NOH_OTHER:-$PWD/build}
 compared=0 failures=0

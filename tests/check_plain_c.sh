@@ -1,9 +1,9 @@
 #!/bin/sh
-# check_plain_c.sh: the library needs a C99 compiler and no more.
+# check_plain_c.sh: the library needs only a C99 compiler.
 #   - no builtin, attribute, pragma or compiler's macro outside three headers of base/
-#   - built without any of them (NOH_PLAIN_C) it passes the tests of bits: hashes, square roots, quaternions,
+#   - built without them (NOH_PLAIN_C) it passes the tests of bits: hashes, square roots, quaternions,
 #     trigonometry, meshes, bounds, poses, clips
-#   - on i386 without SSE it asks for nothing of libm
+#   - on i386 without SSE it needs nothing from libm
 . "$(dirname "$0")/cli/lib.sh"
 
 grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |

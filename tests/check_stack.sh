@@ -1,7 +1,7 @@
 #!/bin/sh
-# check_stack.sh: the deepest stack of any call of the library is at most NOH_STACK_BYTES, and nothing recurses, as
-# gcc's call graph tells. A call through a pointer counts 256 bytes: it is either a small callback of the library, or
-# the GL driver, whose stack is not ours.
+# check_stack.sh: by gcc's call graph, the deepest stack of any call of the library is at most NOH_STACK_BYTES, and
+# nothing recurses. A call through a pointer counts 256 bytes: it is either a small callback of the library, or a call
+# of the GL driver, whose stack is not counted.
 set -u
 build=${NOH_BUILD:-build}
 work=$build/stack

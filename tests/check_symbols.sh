@@ -1,8 +1,8 @@
 #!/bin/sh
-# check_symbols.sh: what the archive needs from outside, and that it has no state.
+# check_symbols.sh: the external symbols of the archive, and absence of global state.
 #   - undefined symbols: memcpy, memset, memcmp and nothing else
 #   - no writable and no uninitialised data: nothing mutable is global
-#   - asserts: none in libnoh.a, many in the library that the tests link
+#   - asserts: none in libnoh.a, many in the library linked by the tests
 #   - every global symbol begins with noh_
 set -u
 . tests/cli/lib.sh

@@ -1,12 +1,12 @@
 #!/bin/sh
-# check_table.sh: the table of techniques in tests/README.md tells the truth: every file, test, mutant and verb in it
-# exists, and every mutant still applies. `make mutants` (tests/mutants.sh) shows that the tests fail on them.
-# A row is `| source | technique | code | test | mutant | command |`. Names in backquotes are looked up:
+# check_table.sh: checks the table of techniques in tests/README.md: every file, test, mutant and verb exists, and every
+# mutant still applies. `make mutants` (tests/mutants.sh) shows that the tests detect the mutants. A row is `| source |
+# technique | code | test | mutant | command |`. Names in backquotes are checked:
 #   code     a file
 #   test     `test_NAME` `function`: a program's source below tests/ that lists this function; or a script, `DIR/NAME.sh`
-#   mutant   `NAME`: tests/mutants/NAME.patch, which edits that code and no test; or none: why there is none
-#   command  `noh VERB [--OPTION [VALUE]]`: the verb has a help, and the option in it; or `make TARGET`
-# A row whose code is "not yet" names neither a test nor a mutant nor a command.
+#   mutant   `NAME`: tests/mutants/NAME.patch, which edits this code and no test; or the reason why there is none
+#   command  `noh VERB [--OPTION [VALUE]]`: the verb has a help text with this option; or `make TARGET`
+# A row with code "not yet" names no test, mutant or command.
 set -u
 . tests/cli/lib.sh
 table=${1:-tests/README.md}

@@ -119,7 +119,7 @@ export WINEPREFIX
 target windows x86_64-w64-mingw32-gcc x86_64-w64-mingw32-ar '-Wno-format -Wno-float-conversion' '-static -pthread' wine
 ! command -v wineserver >/dev/null 2>&1 || wineserver -k 2>/dev/null
 
-# Ten seconds of the demo's packs, where `make check` has made them.
+# Ten seconds of the demo's packs, if `make check` has built them.
 if [ -f "$build/demo/puppet_levels.noh" ] && [ -f "$build/demo/puppet.noh" ] && [ -f "$build/mask_levels.noh" ]; then
     echo '== golden'
     make --no-print-directory BUILD="$build" DEPS=0 lib >"$build/golden.log" 2>&1

@@ -1,10 +1,9 @@
 #!/bin/sh
-# framac.sh: proofs by Frama-C's Eva that checkers of chunks read nothing outside of them and divide by nothing, whatever
-# is in them: every content of every length up to 512 bytes. Proven are those that look at their own chunk and the names
-# alone. Those that follow what the chunk says into other chunks (meshes, skins, clips, graphs, springs, transfers,
-# wrinkles, influences) or have several arrays (hair, nodes, skeletons, textures) are beyond it without annotations: what is between
-# two numbers is lost to intervals. Fuzzers and the flips and lies of the tests are for them. Closes like run.sh.
-# `make check-long` calls it.
+# framac.sh: proofs by Frama-C's Eva that chunk checkers never read out of bounds or divide by zero, for any content of
+# any length up to 512 bytes. It proves the checkers that read only their own chunk and the names. Checkers that follow
+# references to other chunks (meshes, skins, clips, graphs, springs, transfers, wrinkles, influences) or read several
+# arrays (hair, nodes, skeletons, textures) need annotations, because intervals lose the relations between numbers;
+# fuzzers and the bit flips of the tests cover these. Ends like run.sh. Part of `make check-long`.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -17,8 +16,8 @@ fi
 mkdir -p "$work"
 passed=0 failed=0
 
-# A count takes each value up to 69 by itself, and all others together; so does the offset of an array, at, before and
-# behind the only right place. Of memory Eva keeps no relation between two fields.
+# A count takes each value up to 69 separately, and all others together; likewise an array's offset at, before and after
+# the only valid one. Eva keeps no relation between two fields in memory.
 count_of() { # TYPE FIELD
     cat <<END
     uint32_t $2 = Frama_C_unsigned_int_interval(0, 0xffffffffu);
@@ -40,7 +39,7 @@ offset_of() { # TYPE FIELD PLACE
 END
 }
 
-# FUNCTION FILE, and on standard input what is known of the head.
+# FUNCTION FILE, and on standard input the known values of the header.
 prove() {
     {
         cat <<'END'

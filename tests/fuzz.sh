@@ -1,9 +1,9 @@
 #!/bin/sh
-# fuzz.sh: runs libFuzzer on the pack reader, the clip decoder and the wire form's unpacker, with AddressSanitizer, UBSan and all asserts on,
-# all at once for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus, clips and wires. Closes like run.sh. A crash
-# is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs) or found_clips/ or found_wires/, where `make check`
-# replays it. With NOH_LONG set also on what noh build reads (fuzz_import), from the files that the converter's tests
-# write; what is found there goes to tests/fuzz/found_imports.
+# fuzz.sh: runs libFuzzer on the pack reader, the clip decoder and the wire form's unpacker, with AddressSanitizer,
+# UBSan and all asserts on, in parallel for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus, clips and
+# wires. Ends like run.sh. A crash is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs),
+# found_clips/ or found_wires/, where `make check` replays it. With NOH_LONG set, also on the inputs of noh build
+# (fuzz_import), from files written by the converter's tests; findings go to tests/fuzz/found_imports.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -59,7 +59,7 @@ clips=$!
 fuzz fuzz_wire 16384 tests/fuzz/found_wires "$build/tests/fuzz/wires" &
 wires=$!
 
-# The converter on top of it: C and C++, with the libraries that it reads with.
+# Also the converter: C and C++, with its input libraries.
 link_import() {
     more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb"
     if pkg-config --exists draco; then more="$more -DNOH_DRACO" libraries="$libraries -ldraco"; fi
@@ -75,7 +75,7 @@ link_import() {
     "$clangxx" -fsanitize=fuzzer,address,undefined "$work"/import/*.o "$work"/objects/*.o -o "$work/fuzz_import" $libraries -ldl -lm
 }
 
-# Files of every kind, as the converter's tests write them.
+# Files of every kind, written by the converter's tests.
 import_seeds() {
     rm -rf "$work/imports"
     mkdir "$work/imports"
@@ -88,13 +88,13 @@ import_seeds() {
 
 imports=
 if [ -n "${NOH_LONG:-}" ]; then
-    # An allocation that fails gives NULL, as without sanitizers.
+    # A failed allocation returns NULL, as without sanitizers.
     (link_import && import_seeds && export ASAN_OPTIONS=allocator_may_return_null=1 && linked=1 &&
         fuzz fuzz_import 16384 tests/fuzz/found_imports "$work/imports") &
     imports=$!
 fi
 
-# told TARGET RESULT: prints what its log says
+# told TARGET RESULT: prints the result from its log
 passed=0 failed=0
 told() {
     echo "$1"

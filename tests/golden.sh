@@ -1,15 +1,15 @@
 #!/bin/sh
-# golden.sh: the same ten seconds on every compiler, optimisation and processor that is here: tests/golden/golden.c prints
-# hashes of states, callback keys, places, weights, joints, palettes, vertices and a crowd, and all must print what
-# tests/golden/golden.txt has.
+# golden.sh: the same ten seconds on every available compiler, optimisation and processor: tests/golden/golden.c prints
+# hashes of states, callback keys, places, weights, joints, palettes, vertices and a crowd, which must equal
+# tests/golden/golden.txt.
 #
 #   golden.sh            all of them (`make golden`)
 #   golden.sh short      what `make check` runs: gcc without and with optimisation
 #   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here
 #   golden.sh update     write golden.txt anew, after a change that is meant to change results
 #
-# The table holds for packs with the checksums that it names; where the demo's packs come out otherwise, builds are
-# compared with the first of them alone, and a line says so. Prints TAP.
+# The table applies to packs with the checksums in it; if the demo's packs differ, builds are only compared with the
+# first build, with a message. Prints TAP.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -73,7 +73,7 @@ variant() {
     fi
 }
 
-# The lines of the table whose pack is the one that is here must be there.
+# Lines of the table for the packs here must be equal.
 against_table() {
     awk 'NR == FNR { known[$1 " " $2 " " $3] = $4; next }
         { key = $1 " " $2 " " $3

@@ -1,20 +1,21 @@
 #!/bin/sh
-# mutants.sh: each test that tests/README.md names for a technique fails when the technique's error is in the code.
+# mutants.sh: each test named for a technique in tests/README.md fails if the technique's error is in the code.
 #
-# A row of the tables there names a mutant: tests/mutants/NAME.patch, an edit that puts the source's error into the code
-# or, where the source has none, breaks the technique. This script applies each to a copy of the tree, builds the row's
-# test there and demands that it fails by one of its own assertions: a mutant that does not compile, crashes or takes
-# too long shows nothing. Before that, the same test has to pass in the copy as it is. Ends with "N passed, N failed,
-# N skipped"; a test that is skipped here, for want of a model or a driver, skips its mutant.
+# A row of the tables names a mutant: tests/mutants/NAME.patch, an edit that puts the source's error into the code or,
+# if the source has no error, breaks the technique. This script applies each mutant to a copy of the tree and builds the
+# row's test there. The test must fail by one of its own assertions: a mutant that does not compile, crashes or takes
+# too long proves nothing. Without the mutant, the same test must pass in the copy. Ends with "N passed, N failed, N
+# skipped"; a test skipped for lack of a model or a driver skips its mutant.
 #
 #   NOH_BUILD   a build folder inside the tree (build); the tests are built there first
 #   NOH_ASSETS  as for tests/run.sh
-#   NOH_TEST    only rows whose mutant, test or code holds one of these words: NOH_TEST='ragdoll hair'
-#   JOBS        copies of the tree that work at a time (as many as there are processors)
-#   NOH_LIMIT_S seconds that one test may take (300)
+#   NOH_TEST    only rows whose mutant, test or code contains one of these words: NOH_TEST='ragdoll hair'
+#   JOBS        copies of the tree used in parallel (default: number of processors)
+#   NOH_LIMIT_S time limit of one test in seconds (300)
 #
-# Copies lie in NOH_BUILD/mutants and are removed at the end, interrupted or not. A mutant costs the objects that read
-# what it touches, one program, and one function of it: outputs come back from NOH_BUILD, with their times.
+# Copies are in NOH_BUILD/mutants and are always removed at the end. A mutant rebuilds only the objects that depend on
+# it and one program, and runs one function of this program: other outputs are restored from NOH_BUILD, with their
+# times.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -32,7 +33,7 @@ unset MAKEFLAGS MFLAGS MAKELEVEL
 
 # ---- one row ----
 
-# Runs a program in the background, so that a signal reaches it: timeout ends all that it started.
+# Runs a program in the background, so that a signal reaches it: timeout ends all its processes.
 child=
 limited() { # SECONDS COMMAND...
     timeout -k 5 "$@" &
@@ -40,7 +41,7 @@ limited() { # SECONDS COMMAND...
     wait $child
 }
 
-# Runs a row's test of the build in a folder and sets told: `passes`, `skips: REASON`, `fails`, or what else happened.
+# Runs a row's test of the build in a folder and sets told: `passes`, `skips: REASON`, `fails`, or another result.
 verdict() { # FOLDER PROGRAM FUNCTION LOG
     case $2 in *.sh) set -- "$1" "tests/$2" '.*' "$4" sh ;; *) set -- "$1" "$2" "$3" "$4" ;; esac
     # shellcheck disable=SC2086 # a word or none
@@ -73,7 +74,7 @@ goal() { # PROGRAM
     case $1 in *.sh) echo "$build/noh" ;; *) echo "$1" ;; esac
 }
 
-# Takes the mutant out: sources and outputs are again those of the tree, with their times.
+# Removes the mutant: restores the tree's sources and outputs, with their times.
 restore() { # NUMBER PATCH
     for file in $(edited "$2"); do
         cp -p "$file" "$work/$1/$file"
@@ -87,7 +88,7 @@ restore() { # NUMBER PATCH
     done <"$work/$1.new"
 }
 
-# The test passes in the copy without the mutant, or skips there: what it needs beside the program is there.
+# The test passes or is skipped in the copy without the mutant: the copy has everything that it needs.
 unmutated() { # NUMBER PROGRAM FUNCTION
     key=$work/log/$1.$(echo "$2 $3" | tr ' /' __)
     [ -f "$key.told" ] && told=$(cat "$key.told") && return
@@ -135,7 +136,7 @@ copy() { # FOLDER
         tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
 }
 
-# What is left of mutants in a copy would make the tests of others fail: outputs and sources are those of the tree.
+# Remains of a mutant in a copy would make other tests fail, so outputs and sources are restored from the tree.
 is_clean() { # NUMBER
     {
         diff -rq "$work/$1/$build" "$tree/$build" | grep ' differ$'

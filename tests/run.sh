@@ -1,18 +1,18 @@
 #!/bin/sh
-# run.sh: run every test and close with one line, "N passed, N failed, N skipped".
+# run.sh: runs every test and ends with the line "N passed, N failed, N skipped".
 #
-#   NOH_BUILD   where the programs are (build)
-#   NOH_ASSETS  models that are not ours to ship; tests that want them skip without
-#   NOH_ANGLE   where ANGLE's libraries are (NOH_BUILD/angle, where tools/angle.sh puts them)
-#   NOH_SAN     the sanitizers that the build has, if any
-#   NOH_TEST    only programs and scripts whose name holds this: NOH_TEST=morph
-#   NOH_JOBS    programs that run at a time (as many as there are processors); they share no file that they write
-#   NOH_LONG    1: also what takes long and says little (make check-long)
-#   NOH_LIMIT_S seconds that one program may take (900; 1800 with sanitizers)
+#   NOH_BUILD   folder of the programs (build)
+#   NOH_ASSETS  folder of models that may not be shipped; tests that need them are skipped without it
+#   NOH_ANGLE   folder of ANGLE's libraries (NOH_BUILD/angle, filled by tools/angle.sh)
+#   NOH_SAN     the sanitizers of the build, if any
+#   NOH_TEST    only programs and scripts whose names contain this: NOH_TEST=morph
+#   NOH_JOBS    programs run in parallel (default: number of processors); they share no output files
+#   NOH_LONG    1: also long tests (make check-long)
+#   NOH_LIMIT_S time limit of one program in seconds (900; 1800 with sanitizers)
 #
-# C programs are build/tests/**/test_*, scripts are tests/check_*.sh and tests/*/*.sh. All print TAP
-# ("ok 1 - name", "not ok 2 - name", "ok 3 - name # SKIP reason", "1..3"). A program that reports fewer results than it
-# planned, or that exits with an error but reports no failure, counts as one failure.
+# C programs are build/tests/**/test_*, scripts are tests/check_*.sh and tests/*/*.sh. All print TAP ("ok 1 - name",
+# "not ok 2 - name", "ok 3 - name # SKIP reason", "1..3"). A program that reports fewer results than planned, or exits
+# with an error but reports no failure, counts as one failure.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -26,19 +26,20 @@ logs=$build/tests/log
 limit=${NOH_LIMIT_S:-$([ -n "$NOH_SAN" ] && echo 1800 || echo 900)}
 jobs=${NOH_JOBS:-$(nproc 2>/dev/null || echo 2)}
 mkdir -p "$logs"
-# The reader's tests write hundreds of small files: in memory, where there is some in which programs may run.
+# The reader's tests write hundreds of small files: use a memory file system, if there is one that allows programs to
+# run.
 if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ] && [ "$(df -Pk /dev/shm | awk 'NR == 2 { print $4 }')" -gt 1000000 ]; then
     try=/dev/shm/noh_try_$$
     printf '#!/bin/sh\n' >"$try" && chmod +x "$try" && "$try" 2>/dev/null && export TMPDIR=/dev/shm
     rm -f "$try"
 fi
 
-# Graphics drivers free some memory only when the process ends. They are suppressed by name, so that our own leaks still
-# show. A failed allocation returns NULL, as it does without sanitizers.
+# Graphics drivers free some memory only when the process ends. Their leaks are suppressed by name, so that noh's leaks
+# are still reported. A failed allocation returns NULL, as without sanitizers.
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
 export ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"
 export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
-# The first GL error that a driver reports ends the program (tools/noh/gpu/gpu.c).
+# The first GL error reported by a driver ends the program (tools/noh/gpu/gpu.c).
 export NOH_GL_DEBUG=1
 
 # Reads one program's output; prints its counts and a line for each skip.
@@ -66,7 +67,7 @@ count='
         printf "C %d %d %d %d\n", passed, failed, skipped, seconds
     }'
 
-# These begin first where no times are known; without sanitizers they take most of all.
+# These start first if no times are known; without sanitizers they take longest.
 long='gl/view gl/view_figure gl/view_tools check_install gl/test_gl_load cli/graph cli/light check_stack check_headers cli/zoom cli/strip cli/lighting
     gl/verify gl/matrix check_amalgam check_plain_c cli/crowd cli/springs cli/wrinkles unit/motion/test_clip_codec
     unit/life/test_identity unit/stage/test_stage'
@@ -75,9 +76,9 @@ left_out_by_sanitizers() { # NAME
     case $1 in cli/* | gl/*) ! grep -qx -e "$1" tests/sanitized.txt ;; *) grep -qx -e "-$1" tests/sanitized.txt ;; esac
 }
 
-# ---- one program: run.sh --one NAME COMMAND..., as the loop below calls it ----
+# ---- one program: run.sh --one NAME COMMAND..., called by the loop below ----
 
-# Its log is NAME.txt; NAME.told holds "C passed failed skipped seconds" (those of processors) and an S line for each skip.
+# Its log is NAME.txt; NAME.told has "C passed failed skipped seconds" (processor seconds) and an S line for each skip.
 if [ "${1:-}" = --one ]; then
     name=$2
     shift 2
@@ -100,9 +101,9 @@ if [ "${1:-}" = --one ]; then
     exit 0
 fi
 
-# ---- all of them ----
+# ---- all programs ----
 
-# NAME and COMMAND of each, a line; names of files have no spaces.
+# NAME and COMMAND of each, one per line; file names have no spaces.
 programs() {
     find tests -name 'test_*.c' ! -path 'tests/cross/*' | sort | while read -r source; do
         name=${source#tests/}
@@ -115,7 +116,7 @@ programs() {
         echo "${name%.sh} sh $script"
     done
 }
-# Those that took long last time begin first, then those that have not run yet; the order is for speed alone.
+# The slowest of the last run start first, then programs that have not run yet; the order only affects speed.
 programs | while read -r name command; do
     case $name in *"${NOH_TEST:-}"*) ;; *) continue ;; esac
     log=$logs/$(echo "$name" | tr / _)

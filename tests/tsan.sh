@@ -1,11 +1,11 @@
 #!/bin/sh
 # tsan.sh [COMPILER...]: the library, tests/unit/motion/test_threads.c, tests/unit/stage/test_stage_threads.c and
 # tests/unit/stage/test_crowd_threads.c built with ThreadSanitizer by clang (with NOH_LONG set, by gcc, too), and run:
-# four threads pose the controllers of one clip bank, and run the jobs of one stage and of one crowd. Passes when every
-# test does and nothing is reported.
-# A compiler that is missing, or whose ThreadSanitizer does not run here, is skipped. Closes as tests/run.sh does.
+# four threads pose the controllers of one clip bank, and run the jobs of one stage and of one crowd. Passes if every
+# test passes and nothing is reported. A compiler that is missing, or whose ThreadSanitizer does not run here, is
+# skipped. Ends like tests/run.sh.
 #
-# Asserts of both tiers are on. It needs neither C++ nor GL: it is built as the cross tests are.
+# Asserts of both tiers are on. Built like the cross tests, without C++ and GL.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0 skipped=0

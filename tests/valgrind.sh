@@ -1,6 +1,6 @@
 #!/bin/sh
-# valgrind.sh: the CPU tests of the library under memcheck, which sees what sanitizers do not: bits that nobody wrote.
-# Packs and clips are those that the tests make themselves. Closes like run.sh. `make check-long` calls it.
+# valgrind.sh: the CPU tests of the library under memcheck, which finds what these sanitizers miss: uninitialised bits.
+# Uses only packs and clips made by the tests. Ends like run.sh. Part of `make check-long`.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -15,8 +15,8 @@ rm -rf "$work"
 mkdir -p "$work"
 export NOH_ASSETS=none NOH_EMULATED=1 NOH_BUILD="$build" CMOCKA_MESSAGE_OUTPUT=TAP
 
-# Not what plays or encodes for minutes; nor test_root_motion, whose reference is long double, of which valgrind has 64
-# bits, nor the bank's test_threads, which compares all bytes of a block with a copy, written or not.
+# Excluded: tests that play or encode for minutes; test_root_motion, whose reference is long double, which has only 64
+# bits in valgrind; and the bank's test_threads, which compares all bytes of a block with a copy, written or not.
 find tests/unit -name 'test_*.c' ! -path 'tests/unit/tools/*' ! -path 'tests/unit/convert/*' | sort |
     grep -v -e test_crowd_long -e test_stage_day -e test_clip_codec -e test_clip_bounds -e test_clip_packs -e test_ear -e test_root_motion -e 'bank/test_threads' |
     sed 's|^tests/\(.*\)\.c$|\1|' >"$work/programs"

@@ -1,9 +1,10 @@
 #!/bin/sh
-# validator_files.sh DIR: what noh build says to each file of the glTF validator's tests (KhronosGroup/glTF-Validator,
-# test/base/data), which are not here. Behind `make check-validator DIR=...`.
+# validator_files.sh DIR: runs noh build on each file of the glTF validator's tests (KhronosGroup/glTF-Validator,
+# test/base/data), which are not included. Run by `make check-validator DIR=...`.
 #
-# A line for each file: "refused", "warned" or "read", and the message. Fails where a file makes noh crash, hang, or
-# exit without a message; and where a file that the validator calls broken is read in silence, unless `harmless` says why.
+# Prints a line per file: "refused", "warned" or "read", and the message. Fails if noh crashes, hangs, or exits without
+# a message, and if a file that the validator reports as broken is read without a warning, unless `harmless` gives a
+# reason.
 set -eu
 
 dir=${1:?a folder of .gltf and .glb files is needed: make check-validator DIR=...}
@@ -12,8 +13,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 count=0 refused=0 warned=0 silent=0 failed=0
 
-# What the validator calls an error and noh reads in silence: bounds of accessors, which noh computes, and an extension
-# that is not called required but is used as if it were.
+# Errors of the validator that noh may ignore: bounds of accessors, which noh computes, and an extension that is used as
+# required but not declared so.
 harmless='no_bounds|KHR_mesh_quantization/'
 
 say() {

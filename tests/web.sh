@@ -1,10 +1,10 @@
 #!/bin/sh
 # web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js,
-# figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh). Its canvas is compared with
-# `noh render`, its bytes with the plan that sized its memory, and with `noh budget`. `make web-check` runs it;
-# NOH_WEB_ONLY=lights,hair runs these parts alone, without a comparison; with NOH_WEB_TIMES=1 each part says what it took
-# (tests/web/harness.js). The last line is as that of tests/run.sh. Skipped with the reason if emscripten, Chromium or
-# playwright cannot be had.
+# figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh). Its canvas is compared
+# with `noh render`, and its bytes with the plan that sized its memory and with `noh budget`. `make web-check` runs it;
+# NOH_WEB_ONLY=lights,hair runs only these parts, without a comparison; with NOH_WEB_TIMES=1 each part prints its time
+# (tests/web/harness.js). Ends like tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright is not
+# available.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -28,15 +28,15 @@ not_ok() {
     echo "$name: $1"
 }
 
-# The limits are those of tests/gl/matrix.sh for rasterisers other than llvmpipe. A canvas averages samples after their
-# encoding, `noh render` before it, so edges differ: hence a large picture, of which edges are a smaller share.
+# The limits are as in tests/gl/matrix.sh for rasterisers other than llvmpipe. A canvas averages samples after encoding,
+# `noh render` before, so edges differ: a large picture has a smaller share of edges.
 size=1024
 compare() {
     if said=$("$build/tests/gl/picture_diff" "$out/native.png" "$out/$1.png" 0.25 0.01); then ok; else not_ok "$1 is not the native picture"; fi
     echo "$name $1: $said"
 }
 
-# What the page asks of the stage (platform/web/cast.c), as a text.
+# The page's stage desc (platform/web/cast.c) as a text.
 describe() { # FLOATS still|alive
     falls=
     [ -z "$(echo "$plan" | grep '^falls')" ] || falls='ragdolls 1'
@@ -54,8 +54,8 @@ END
     [ "$2" = still ] || echo "face $eyes" >>"$out/page.txt"
 }
 
-# In the browser the stage takes the bytes of the plan that was made under node. `noh budget` plans as many on the GPU,
-# where that is a software rasteriser too, and on the CPU more: its pointers are larger.
+# In the browser the stage takes the bytes planned under node. `noh budget` plans the same GPU bytes if its device is
+# also a software rasteriser, and more CPU bytes, because its pointers are larger.
 budget_of() { # PATH plain|lit still|alive CPU GPU
     planned=$(echo "$plan" | sed -n "s/^$1 $2 $3 //p")
     if [ "$planned" = "$4 $5" ]; then ok; else not_ok "$1 $2 $3 takes $4 $5 bytes, planned are $planned"; fi
@@ -63,7 +63,7 @@ budget_of() { # PATH plain|lit still|alive CPU GPU
     said=$("$build/noh" budget --desc "$out/page.txt" --path "$1" --json)
     cpu=$(echo "$said" | sed -n 's/^  "cpu_bytes": \([0-9]*\).*/\1/p')
     gpu=$(echo "$said" | sed -n 's/^  "gpu_bytes": \([0-9]*\).*/\1/p')
-    # the stage has one actor's hair, which is drawn beside it
+    # the stage has one actor's hair state, which is drawn separately
     set -- "$@" $(echo "$plan" | sed -n 's/^hair //p')
     cpu=$((cpu + ${6:-0} + ${7:-0})) gpu=$((gpu + ${8:-0}))
     # a cube of 64 x 64 with its levels, and a shadow map
@@ -72,7 +72,7 @@ budget_of() { # PATH plain|lit still|alive CPU GPU
     if [ "$4" -le $((cpu + 1024)) ] && [ "$4" -ge $((cpu * 3 / 4)) ]; then ok; else not_ok "$1 $2 $3 takes $4 bytes, noh budget says $cpu"; fi
 }
 
-# The checks of a log, and what it says beside them.
+# The checks of a log, and its other lines.
 count() { # CODE LOG
     good=$(grep -c '^ok ' "$2") bad=$(grep -c '^not ok ' "$2")
     [ "$1" = 0 ] || [ "$bad" != 0 ] || bad=1
@@ -85,7 +85,7 @@ check_pack() {
     mkdir -p "$out"
     rm -f "$out"/*.png
     : >"$out/log.txt"
-    # a pack for a part of the page alone
+    # a pack for one part of the page
     [ "$all" = 0 ] || timeout -k 5 1500 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size "$paths" >"$out/log.txt" 2>&1
     code=$?
     [ "$all" = 0 ] || count $code "$out/log.txt"
@@ -127,7 +127,7 @@ END
     compare level
 }
 
-# A script that counts as this one does.
+# A script with a summary line like this one's.
 add() {
     said=$(NOH_BUILD="$build" sh "$@")
     echo "$said" | sed '$d'
@@ -150,7 +150,7 @@ for pack in "$@"; do
     [ "$name" != mask ] || add tests/web_package.sh "$pack"
 done
 add tests/web_convert.sh
-# How much of a figure is in the picture while clips play.
+# The share of a figure in the picture while clips play.
 assets=${NOH_ASSETS:-../shared/assets}
 inside() { # NAME RATE CLIP...
     name=$1 out=$build/web-check/$1

@@ -1,7 +1,7 @@
 #!/bin/sh
-# web_bench.sh ASSET: a frame of the page beside those of three.js and Babylon.js, in one browser and one run. Prints what
-# they cost, and keeps and compares the pictures. `make web-bench` runs it; NOH_PATHS=cpu measures one path. It is no test:
-# slowness is no failure.
+# web_bench.sh ASSET: compares frames of the page, three.js and Babylon.js in one browser and one run. Prints their
+# cost, and saves and compares the pictures. `make web-bench` runs it; NOH_PATHS=cpu measures one path. It is not a
+# test: slowness is no failure.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

@@ -1,6 +1,6 @@
 #!/bin/sh
-# web_bench_pack.sh ASSET OUT: the pack of `make web-bench`: every material plain, as three.js and Babylon.js draw it, so that
-# frames compare.
+# web_bench_pack.sh ASSET OUT: the pack of `make web-bench`: all materials are plain, as drawn by three.js and
+# Babylon.js, so that frames are comparable.
 set -eu
 noh=${NOH_BUILD:-build}/noh
 "$noh" build "$1" -o "$2" --quiet

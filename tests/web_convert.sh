@@ -1,6 +1,6 @@
 #!/bin/sh
-# web_convert.sh: the page's converter, under node, makes the bytes that `noh build` makes, and says what is wrong in the
-# same words. NOH_LONG=1: larger models, too. Part of tests/web.sh; its last line is as that of tests/run.sh.
+# web_convert.sh: the page's converter, under node, gives the same bytes and messages as `noh build`. NOH_LONG=1: also
+# larger models. Part of tests/web.sh; ends like tests/run.sh.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -28,7 +28,7 @@ same() { # NAME FILE... OPTION...
     if cmp -s "$out/$name.noh" "$out/$name.web.noh"; then ok; else not_ok "$name: other bytes than those of noh build"; fi
 }
 
-# The same words but for the folder.
+# The same messages except for the folder.
 refuses() { # NAME FILE WORDS
     "$build/noh" build "$2" -o "$out/$1.noh" --quiet 2>&1 | sed "s,$out,," >"$out/$1.native.txt"
     web build "$2" -o "$out/$1.web.noh" --quiet >"$out/$1.txt" 2>&1 && not_ok "$1: is not refused"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# web_firefox.sh FOLDER: the page of FOLDER, with its pack, in a stock Firefox (tests/web/firefox.js), which puppeteer-core
-# drives, on a virtual display. Part of tests/web.sh by NOH_LONG=1; its last line is as that of tests/run.sh. Skipped with the
-# reason if Firefox, Xvfb or puppeteer-core cannot be had.
+# web_firefox.sh FOLDER: the page of FOLDER, with its pack, in a stock Firefox (tests/web/firefox.js), driven by
+# puppeteer-core on a virtual display. Part of tests/web.sh with NOH_LONG=1; ends like tests/run.sh. Skipped with the
+# reason if Firefox, Xvfb or puppeteer-core is not available.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -19,7 +19,7 @@ command -v Xvfb >/dev/null 2>&1 || leave_out 'no display for Firefox (xvfb)'
 mkdir -p "$out"
 find_packages "$out" puppeteer-core
 
-# Without a display Firefox finds no GL of a software rasteriser.
+# Without a display Firefox finds no software GL.
 Xvfb -displayfd 3 -screen 0 1280x900x24 3>"$out/display" >"$out/xvfb.txt" 2>&1 &
 xvfb=$!
 trap 'kill $xvfb 2>/dev/null' EXIT

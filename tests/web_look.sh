@@ -1,6 +1,6 @@
 #!/bin/sh
-# web_look.sh ASSET...: each model by noh in the light of a room, beside three.js's standard materials in the light of its
-# own, with the same camera. `make look-compare` runs it. It is no test: whoever looks at the pictures judges.
+# web_look.sh ASSET...: draws each model with noh in the light of a room, and with three.js's standard materials in
+# three.js's room light, with the same camera. `make look-compare` runs it. It is not a test: judge the pictures by eye.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

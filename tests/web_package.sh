@@ -1,7 +1,7 @@
 #!/bin/sh
-# web_package.sh PACK: the npm package of `make npm`, installed into an empty project beside PACK, as it is and in the wire
-# form: what is in the tarball, its types, the page of its README and the element in Chromium (tests/web/package.js). Part of
-# tests/web.sh; its last line is as that of tests/run.sh.
+# web_package.sh PACK: the npm package of `make npm`, installed into an empty project with PACK, plain and in the wire
+# form: the contents of the tarball, its types, the page of its README and the element in Chromium
+# (tests/web/package.js). Part of tests/web.sh; ends like tests/run.sh.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

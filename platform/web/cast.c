@@ -8,7 +8,7 @@ static const noh_layer_desc layers[WEB_LAYERS] = {
     { .name = "face", .mode = NOH_LAYER_OVER, .joints = "" },
 };
 
-/* Whether a skeleton moves a node's mesh, or in a pack without nodes a mesh. */
+/* Whether a skeleton moves the mesh of a node, or in a pack without nodes, a mesh. */
 static int moves(const noh_pack *pack, uint32_t skeleton, uint32_t node)
 {
     noh_mesh mesh;
@@ -35,7 +35,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
     k.mesh = pack;
     k.skeleton = skeleton;
     k.actor_count = wants->actors;
-    k.without_springs = !wants->alive; /* what swings depends on what was before */
+    k.without_springs = !wants->alive; /* springs depend on earlier frames */
     k.layers = layers;
     k.layer_count = WEB_LAYERS;
     k.root_axes = NOH_ROOT_GROUND;
@@ -44,7 +44,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
     return k;
 }
 
-/* The first kind has what no joint moves, too. */
+/* The first kind also has the meshes that no joint moves. */
 static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
     uint32_t count = 0;
@@ -53,7 +53,7 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
         const uint32_t node_count = list_nodes(pack, i, nodes);
         if (!node_count) continue;
         if (count == NOH_STAGE_KINDS_MAX) {
-            return noh_fail(error, NOH_ERR_LIMIT, "more skeletons than a stage has kinds", i, count);
+            return noh_fail(error, NOH_ERR_LIMIT, "the pack has more skeletons than a stage can have kinds", i, count);
         }
         cast->kinds[count] = kind_of(pack, i, &cast->wants);
         cast->kinds[count].nodes = count ? nodes : NULL;
@@ -66,7 +66,7 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
     return NOH_OK;
 }
 
-/* The first kind that has the joint which carries it. */
+/* Hair goes to the first kind with the joint that carries it. */
 static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
     cast->hair_kind = NOH_NONE;
@@ -82,7 +82,7 @@ static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *erro
     return NOH_OK;
 }
 
-/* On a floor at a height of 0, as `noh render --push` has it. */
+/* The floor is at height 0, as in `noh render --push`. */
 static void add_fall(web_cast *cast)
 {
     static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
@@ -144,7 +144,7 @@ static void place_rest(web_cast *cast, const noh_pack *pack)
     cast->bytes = cast->scratch_at + cast->scratch_bytes + (size_t)cast->plan.state_bytes;
 }
 
-/* With the hair of all actors. */
+/* Sum the bytes of the stage and of the hair of all actors. */
 static void add_up(web_cast *cast)
 {
     cast->cpu_bytes = cast->plan.cpu_bytes;
@@ -180,7 +180,7 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     if (!result) add_fall(cast);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
-    for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the floats are counted by now */
+    for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the plan has counted the floats */
         const uint32_t floats = cast->plan.kinds[i].float_count;
         cast->kinds[i].held_float_count = floats ? floats : NOH_NONE;
     }

@@ -1,5 +1,4 @@
-/* cast.h: what the page asks of a stage. The planner asks it when the page is built, to size the page's memory, and the
- * page when it runs. */
+/* cast.h: the stage of a page. plan.c uses it when the page is built, to size its memory, and the page when it runs. */
 #ifndef NOH_PLATFORM_WEB_CAST_H
 #define NOH_PLATFORM_WEB_CAST_H
 
@@ -14,16 +13,16 @@
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 
-#define WEB_SHADOW_PX 1024u /* as `noh render` has it */
+#define WEB_SHADOW_PX 1024u /* as in `noh render` */
 
-/* What is to be there. */
+/* Options of the stage. */
 typedef struct web_wants {
-    uint32_t actors; /* of each kind */
+    uint32_t actors; /* per kind */
     noh_morph_path path;
-    int lit;              /* 1: by an environment, with a shadow map */
-    int alive;            /* 1: faces, where eyes are found, and springs */
-    int without_transfer; /* 1: light that was worked out for each vertex is left out */
-    int elsewhere;        /* 1: another renderer draws: no shaders, no light and no hair of ours */
+    int lit;              /* 1: lit by an environment, with a shadow map */
+    int alive;            /* 1: faces, if eyes are found, and springs */
+    int without_transfer; /* 1: ignore precomputed light of vertices */
+    int elsewhere;        /* 1: another renderer draws: no shaders, light or hair of noh */
 } web_wants;
 
 typedef struct web_cast {
@@ -32,26 +31,26 @@ typedef struct web_cast {
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found;      /* a bit for each kind */
-    noh_reflection reflection; /* without its texels, which nothing asks for before the stage is made */
+    noh_reflection reflection; /* without texels: not needed before the stage is created */
     noh_gl_light_desc light;
     noh_haircut cut;
     noh_wig wig;
     noh_stage_part hair_part;
-    uint32_t hair_kind;                                         /* whose actors wear it; NOH_NONE: the pack has none */
-    noh_error cannot_fall;                                      /* OK: actors of the first kind can */
-    uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */
+    uint32_t hair_kind;                                         /* kind with hair; NOH_NONE: the pack has none */
+    noh_error cannot_fall;                                      /* OK: actors of the first kind can fall */
+    uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds except the first */
     noh_stage_plan plan;
-    /* What else the page keeps, behind the stage: the matrices that web_bounds works on, the texels of a reflection,
-     * where hair is, what is needed while a reflection is made or faces are found, and the state that another stage
-     * goes on with */
+    /* Offsets of the page's other data, after the stage: matrices for web_bounds, texels of a reflection, hair, and
+     * scratch memory for baking reflections and finding faces; then the state handed from one stage to the next */
     size_t matrices_at, texels_at, hair_at, scratch_at, scratch_bytes;
-    size_t hair_bytes;             /* of one actor's; 0: none */
-    size_t bytes;                  /* of all of it */
-    uint64_t cpu_bytes, gpu_bytes; /* of the stage and its hair */
+    size_t hair_bytes;             /* per actor; 0: none */
+    size_t bytes;                  /* of everything */
+    uint64_t cpu_bytes, gpu_bytes; /* stage and hair */
 } web_cast;
 
-/* A kind for each skeleton of the pack that moves a mesh; every float may be held. Must not be moved afterwards.
- * scratch  [scratch_bytes] to find faces in; web_cast_scratch tells how much is enough. With less there are none
+/* Plan a kind for each skeleton of the pack that moves a mesh; every float can be held. The cast must not be moved
+ * afterwards.
+ * scratch  [scratch_bytes] to find faces; web_cast_scratch returns the size needed. With less, no faces are found
  * errors   LIMIT more skeletons than kinds; as noh_stage_plan_make */
 noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *wants, void *scratch,
                          size_t scratch_bytes, const noh_gl_caps *caps, noh_error *error);

@@ -1,11 +1,11 @@
-/* context.c: a WebGL 2 context, which gl.js reaches for this program. WebGL has no lookup by name, so a table of the
- * functions that the library calls stands in for one; no other is imported. */
+/* context.c: a WebGL 2 context, accessed through gl.js. WebGL has no lookup by name, so a table lists the functions
+ * that the library calls; no others are imported. */
 #define GL_GLES_PROTOTYPES 1
 #include "context.h"
 
 #include <string.h>
 
-/* What GL does not have. Strings are written with their zero, cut to fit. */
+/* Functions beyond GL. Strings are cut to fit and written with their terminating zero. */
 #define NAMED(what) __attribute__((import_module("noh"), import_name(what)))
 NAMED("string") void web_gl_string(GLenum what, char *text, uint32_t room);
 NAMED("extension") void web_gl_extension(GLuint index, char *text, uint32_t room);
@@ -18,9 +18,9 @@ struct noh_platform_context {
     int unused;
 };
 
-static noh_platform_context only; /* gl.js has the context itself */
+static noh_platform_context only; /* gl.js holds the context */
 
-/* GL_RENDERER is the driver's own name, which quirks are matched with, where the browser gives it. */
+/* GL_RENDERER is the driver's name, used to match quirks, if the browser reveals it. */
 static const GLubyte *GL_APIENTRY get_string(GLenum what)
 {
     static char text[256];
@@ -31,7 +31,7 @@ static const GLubyte *GL_APIENTRY get_string(GLenum what)
 static const GLubyte *GL_APIENTRY get_string_i(GLenum what, GLuint index)
 {
     static char text[64];
-    (void)what; /* extensions are all that there is */
+    (void)what; /* only extensions exist */
     web_gl_extension(index, text, sizeof text);
     return (const GLubyte *)text;
 }
@@ -79,7 +79,7 @@ static noh_gl_proc get_proc(void *user, const char *name)
     return NULL;
 }
 
-/* The browser itself shows the canvas when the event handler or animation frame returns. */
+/* The browser shows the canvas when the event handler or animation frame returns. */
 static noh_result present(noh_platform_context *context)
 {
     (void)context;

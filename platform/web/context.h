@@ -6,7 +6,7 @@
 
 extern const noh_platform noh_platform_web;
 
-/* Enable the extensions again: a context that was lost and restored has none. */
+/* Enable the extensions again: a restored context has none enabled. */
 void noh_web_enable_extensions(noh_platform_context *context);
 
 #endif

@@ -1,4 +1,4 @@
-/* faces.c: the figures' faces: they blink, breathe, look at the pointer, feel, and show what is said. */
+/* faces.c: the figures' faces: blinks, breath, gaze at the pointer, emotions, and mouth shapes of speech. */
 #include <emscripten.h>
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "web.h"
 
 #define LINKS_MAX 1024u
-#define REACH 0.4f /* of the way from the camera to a face: there the pointer hangs in the air */
+#define REACH 0.4f /* position of the pointer in space, as a share of the distance from the camera to a face */
 
 static int has_face(uint32_t figure)
 {
@@ -18,8 +18,8 @@ static uint32_t find(const void *user, const char *name, uint32_t nth)
     return nth ? NOH_NONE : noh_stage_find(web.stage, *(const uint32_t *)user, NOH_NAME_FLOAT, name);
 }
 
-/* Whether a face has a target for any of these channels: by the pack's recipe and those that are built in, as the stage
- * binds them. */
+/* Whether a face has a target for any of these channels, by the pack's and the built-in recipes, as bound by the
+ * stage. */
 static int shows(uint32_t first, uint32_t count)
 {
     static noh_face_link links[LINKS_MAX];
@@ -37,12 +37,12 @@ static int shows(uint32_t first, uint32_t count)
     return 0;
 }
 
-/* 1: some figure has a face that lives. */
+/* 1: some figure has an animated face. */
 EMSCRIPTEN_KEEPALIVE int web_alive(void)
 {
     return web.cast.faces_found != 0;
 }
-/* What faces have targets for: 1 emotions, 2 mouth shapes of speech. */
+/* Bits of the channels with targets: 1 emotions, 2 mouth shapes of speech. */
 EMSCRIPTEN_KEEPALIVE int web_face_shows(void)
 {
     return shows(NOH_CHANNEL_UPPER, 2u * NOH_EMOTION_COUNT) + 2 * shows(NOH_CHANNEL_VISEMES, NOH_VISEME_COUNT);
@@ -53,7 +53,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_emotion_name(uint32_t i) /* NULL past the l
     return noh_emotion_name((noh_emotion)i);
 }
 
-/* From now on, until it is changed. The one before goes. */
+/* Set an emotion in place of the previous one. */
 EMSCRIPTEN_KEEPALIVE void web_feel(int emotion, float amount)
 {
     for (uint32_t i = 0; i < web.figure_count; i++) {
@@ -78,7 +78,7 @@ EMSCRIPTEN_KEEPALIVE void web_set_calm(int calm)
     }
 }
 
-/* Look at a pixel of the canvas, as if it hung in the air before the figure; or ahead. */
+/* on 1: look at a pixel of the canvas, taken as a point in space before the figure; 0: look ahead. */
 EMSCRIPTEN_KEEPALIVE void web_look(float x, float y, int on)
 {
     float origin[3], way[3];
@@ -105,7 +105,7 @@ void web_say(const float *visemes)
     }
 }
 
-/* 1: it talks, 0: it rests. */
+/* 1: talking; 0: resting. */
 EMSCRIPTEN_KEEPALIVE void web_set_talking(int talks)
 {
     for (uint32_t i = 0; i < web.figure_count; i++) {

@@ -1,5 +1,5 @@
-// faces.js: faces that live: they blink, breathe, look at the pointer or the finger, and feel. ?alive=off leaves them out,
-// ?emotion=joy begins with one, ?wrinkles=0.5 with wrinkles half as strong.
+// faces.js: animated faces: they blink, breathe, look at the pointer or the finger, and show emotions. ?alive=off turns
+// them off, ?emotion=joy starts with an emotion, ?wrinkles=0.5 with wrinkles half as strong.
 'use strict';
 
 function feel() {
@@ -7,7 +7,7 @@ function feel() {
     character.feel(named(byId('emotion')), Number(byId('amount').value));
 }
 
-// 0 smooths the wrinkles out.
+// 0: no wrinkles.
 function smooth() {
     const strength = Number(byId('wrinkles').value);
     byId('wrinkles-text').textContent = strength.toFixed(2);

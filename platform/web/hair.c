@@ -1,23 +1,23 @@
-/* hair.c: the hair of the page's characters: it is drawn, hangs in the wind, and swings when heads are shaken. */
+/* hair.c: the hair of the page's characters, with wind, and with swing when heads are shaken. */
 #include <emscripten.h>
 #include <math.h>
 #include <string.h>
 
 #include "web.h"
 
-#define SHAKE_S 1.6  /* for so long a head is shaken, */
-#define SHAKE_HZ 1.5 /* so often a second, */
+#define SHAKE_S 1.6  /* duration of a head shake */
+#define SHAKE_HZ 1.5 /* its frequency */
 #define SHAKE_RAD 0.6
 #define TURN 6.283185307179586
 
-/* ---- made ---- */
+/* ---- create and delete ---- */
 
 static int is_worn(void)
 {
     return web.cast.hair_kind != NOH_NONE;
 }
 
-/* Of the kind that wears it: the figure of a character. */
+/* The figure of a character that has the hair. */
 static const web_figure *figure_of(uint32_t character)
 {
     for (uint32_t i = 0; i < web.figure_count; i++) {
@@ -59,7 +59,7 @@ noh_result web_hair_restore(void)
 
 /* ---- a frame ---- */
 
-/* The n-th character's, where that is there and shows it. */
+/* The hair of a character; NULL: none, or hidden. */
 static noh_stage_hair *shown(uint32_t character)
 {
     return is_worn() && !web.hair.off && figure_of(character) ? &web.hair.drawn[character] : NULL;
@@ -88,7 +88,7 @@ static void draw_half(noh_pass pass)
     }
 }
 
-/* What is opaque, hair on it, then what blends and shows them. */
+/* Draw opaque surfaces, opaque hair, blended surfaces, blended hair. */
 noh_result web_hair_draw(void)
 {
     noh_result result;
@@ -100,14 +100,14 @@ noh_result web_hair_draw(void)
     return result;
 }
 
-/* ---- what the page asks for ---- */
+/* ---- calls from the page ---- */
 
 EMSCRIPTEN_KEEPALIVE int web_has_hair(void)
 {
     return is_worn();
 }
 
-/* shows: 0, 1; wind: metres a second, from the right. */
+/* shows: 0 or 1; wind: metres per second, from the right. */
 EMSCRIPTEN_KEEPALIVE void web_set_hair(int shows, float wind)
 {
     web.hair.off = !shows;
@@ -115,7 +115,7 @@ EMSCRIPTEN_KEEPALIVE void web_set_hair(int shows, float wind)
     memcpy(web.cast.wig.wind, web.hair.wind, sizeof web.hair.wind);
 }
 
-/* Characters turn to and fro for a while. */
+/* Shake the heads: characters turn left and right for SHAKE_S seconds. */
 EMSCRIPTEN_KEEPALIVE void web_shake(void)
 {
     if (web.hair.shake_s <= 0.0) web.hair.shake_s = SHAKE_S;
@@ -124,7 +124,7 @@ EMSCRIPTEN_KEEPALIVE int web_shakes(void)
 {
     return web.hair.shake_s > 0.0;
 }
-/* How far the first one is turned, sine of half the angle. */
+/* The turn of the first character: sine of half the angle. */
 EMSCRIPTEN_KEEPALIVE float web_shaken(void)
 {
     noh_place place;
@@ -132,14 +132,14 @@ EMSCRIPTEN_KEEPALIVE float web_shaken(void)
     return place.rotation[1];
 }
 
-/* The angle when so much of it is left: 0 at both ends. */
+/* The angle at a remaining time of the shake: 0 at both ends. */
 static double angle_at(double left_s)
 {
     const double gone = SHAKE_S - left_s;
     return SHAKE_RAD * sin(TURN * SHAKE_HZ * gone) * sin(0.5 * TURN * gone / SHAKE_S);
 }
 
-/* About the vertical axis. */
+/* Turn a place about the vertical axis. */
 static void turn(noh_place *place, double angle)
 {
     const float s = (float)sin(0.5 * angle), c = (float)cos(0.5 * angle);

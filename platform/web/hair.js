@@ -1,5 +1,5 @@
-// hair.js: hair that hangs in the wind and swings when a head is shaken: ?hair=off leaves it out, ?wind=3 begins with
-// wind of so many metres a second.
+// hair.js: hair in wind, which swings when a head is shaken: ?hair=off hides it, ?wind=3 starts with wind of 3 metres
+// per second.
 'use strict';
 
 const hairAsked = () => ({ hair: query.get('hair') !== 'off', wind: Number(query.get('wind') || 0) });

@@ -1,4 +1,4 @@
-/* keys.c: the callback keys that the last step has passed. */
+/* keys.c: the callback keys passed in the last step. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -24,12 +24,12 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_key_layer(uint32_t i)
 {
     return key(i)->layer;
 }
-/* Of the track that played it. */
+/* The weight of the key's track. */
 EMSCRIPTEN_KEEPALIVE float web_key_weight(uint32_t i)
 {
     return key(i)->weight;
 }
-/* Of which character, and by which skeleton of the pack. */
+/* The figure of a key: its character and skeleton. */
 static const web_figure *figure_of(uint32_t i)
 {
     for (uint32_t f = 0; f < web.figure_count; f++) {

@@ -1,4 +1,4 @@
-/* light.c: the light that the page's figures stand in, by the words of `noh render --light`. */
+/* light.c: the light of the page, with the names of `noh render --light`. */
 #include <emscripten.h>
 #include <math.h>
 #include <string.h>
@@ -28,7 +28,7 @@ noh_result web_light_bake(void)
                                web.cast.scratch_bytes, &desc, &web.cast.reflection, &web.error);
 }
 
-/* Without a shadow all of the light stays around. */
+/* Pass the lighting to the stage. Without a shadow map no key light is split off. */
 static void tell(void)
 {
     const float s = (float)sin((double)web.light.degrees * RADIANS),
@@ -47,11 +47,12 @@ noh_result web_light_open(void)
     if (!is_lit()) return NOH_OK;
     tell();
     for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
-        (void)noh_blob_rig_make(&web.cast.kinds[k], &web.light.rigs[k], NULL); /* draws nothing: no spots */
+        (void)noh_blob_rig_make(&web.cast.kinds[k], &web.light.rigs[k],
+                                NULL); /* a kind that draws nothing has no spots */
     }
     result = noh_backdrop_create(&device, 1, &web.light.backdrop, &web.error);
     if (!result) result = noh_stage_blob_create(&device, &web.light.blob, &web.error);
-    if (result || !web_joint_count()) return result; /* what has no joints stands on no floor */
+    if (result || !web_joint_count()) return result; /* a figure without joints has no floor */
     return noh_stage_floor_create(&device, 1, &web.light.ground, &web.error);
 }
 
@@ -103,8 +104,8 @@ void web_light_backdrop(void)
                       &web.light.told, &web.view);
 }
 
-#define FLOOR_REACHES 3.0f /* radii of what casts a shadow on it */
-#define LEVEL 0.05f        /* of their height: a floor so near to 0 is there */
+#define FLOOR_REACHES 3.0f /* in radii of the shadow casters */
+#define LEVEL 0.05f        /* share of the figures' height: nearer to 0, the floor is at 0 */
 
 void web_light_find_floor(void)
 {
@@ -119,7 +120,7 @@ void web_light_floor(void)
     noh_stage_floor_draw(&web.light.ground, noh_stage_light_of(web.stage), &web.light.told, &web.view, disc);
 }
 
-/* Behind the figures. */
+/* Soft spots under the figures. */
 void web_light_spots(void)
 {
     const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, web.light.floor };
@@ -134,7 +135,7 @@ void web_light_spots(void)
     }
 }
 
-/* ---- what the page asks for ---- */
+/* ---- calls from the page ---- */
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_light_count(void)
 {
@@ -146,7 +147,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_light_name(uint32_t i)
 }
 
 /* degrees about the vertical axis; shadow: a web_shadow; tonemap: a noh_tonemap; background: 0 plain, 1 a gradient, 2
- * the light, blurred. Before web_open, too. */
+ * the light, blurred. May be called before web_open. */
 EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonemap, int background)
 {
     web.light.degrees = degrees;
@@ -156,13 +157,14 @@ EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonema
     if (web.stage) tell();
 }
 
-/* 1: the shadow falls on the floor, too. Before web_open, too. */
+/* 1: the shadow also falls on the floor. May be called before web_open. */
 EMSCRIPTEN_KEEPALIVE void web_set_floor(int on)
 {
     web.light.on_floor = on;
 }
 
-/* An environment, or -1: the plain renderer's own light, for which the stage is made anew. Before web_open, too. */
+/* Set an environment, or -1: the plain renderer's light. Changing between the two recreates the stage. May be called
+ * before web_open. */
 EMSCRIPTEN_KEEPALIVE int web_set_light(int environment)
 {
     const int was_lit = is_lit();
@@ -181,7 +183,7 @@ EMSCRIPTEN_KEEPALIVE int web_set_light(int environment)
     return (int)result;
 }
 
-/* 1: the pack has light that was worked out for each vertex. */
+/* 1: the pack has precomputed light of vertices. */
 EMSCRIPTEN_KEEPALIVE int web_has_transfer(void)
 {
     for (uint32_t i = 0; i < web.pack.mesh_count; i++) {
@@ -191,7 +193,7 @@ EMSCRIPTEN_KEEPALIVE int web_has_transfer(void)
     return 0;
 }
 
-/* Whether that is used; the stage is made anew for it. */
+/* Use precomputed light (1) or not (0). Recreates the stage. */
 EMSCRIPTEN_KEEPALIVE int web_set_transfer(int on)
 {
     web_wants wants = web.cast.wants;

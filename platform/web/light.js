@@ -1,8 +1,9 @@
-// light.js: the light that the figures stand in, by the words of `noh render`: ?light=none|white|studio|room|sky,
-// ?rotate=DEGREES, ?shadow=on|off|blob, ?floor=off (it falls on the figure alone), ?tonemap=none, ?transfer=off, ?background=light|gradient|plain.
+// light.js: the light of the page, with the names of `noh render`: ?light=none|white|studio|room|sky, ?rotate=DEGREES,
+// ?shadow=on|off|blob, ?floor=off (the shadow falls only on the figure), ?tonemap=none, ?transfer=off,
+// ?background=light|gradient|plain.
 'use strict';
 
-const firstLight = 'studio'; // as pictures of `noh render` have it
+const firstLight = 'studio'; // as in `noh render`
 const ofLight = ['rotate', 'shadow', 'tonemap', 'background'];
 const plainLight = 'plain'; // no environment
 
@@ -14,7 +15,7 @@ function lightAsked() {
     };
 }
 
-// Plain light has nothing to turn, no shadow and no tones.
+// Plain light has no rotation, shadow or tone map.
 function showLight({ light, degrees, shadow, tonemap, background, transfer }) {
     const plain = !character.lights.includes(light), select = byId('light');
     if (select.options.length === 1) for (const name of character.lights) select.add(new Option(name, name));
@@ -36,14 +37,14 @@ function chooseLight() {
     showMemory();
 }
 
-// Spots lie under feet: what has no joints has none, and hangs over a floor that is not there. Who asks for them gets them.
+// Spots lie under feet, so a figure without joints has none, unless the query asks for them.
 function offerSpots() {
     const spots = byId('shadow').querySelector('[value=blob]');
     spots.disabled = spots.hidden = !Module._web_joint_count() && query.get('shadow') !== 'blob';
     if (spots.disabled && character.chosen.shadow === 'blob') character.setLight({ shadow: 'on' });
 }
 
-// Whether meshes shade themselves by what was worked out when the pack was built. It is told in words of a pack without.
+// Whether meshes use the light precomputed for the pack. For a pack without it, a text says so.
 function beginTransfer() {
     const has = Module._web_has_transfer();
     byId('transfer-row').hidden = !has;

@@ -1,9 +1,9 @@
-/* load.c: the pack arrives: as it is, or in the wire form, which is unpacked piece by piece; and what memory a stage
- * for it takes.
+/* load.c: receives the pack, plain or in the wire form, which is unpacked piece by piece, and plans the memory of its
+ * stage.
  *
- * A program's memory is: static data and stack, which the linker lays out; the pack; the block of the stage. The page
- * runs the program twice: first in memory that may grow, to take the pack in and to plan, then in memory of what the
- * plan says, which cannot. */
+ * A program's memory has three parts: static data and stack, laid out by the linker; the pack; the block of the stage.
+ * The page runs the program twice: first in growable memory, to load the pack and to plan, then in memory of exactly
+ * the planned size, which cannot grow. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -11,14 +11,14 @@
 #define PIECE_BYTES 16384u
 #define PACK_ALIGN 64u
 
-extern uint8_t __heap_base; /* by the linker: the first byte behind static data and stack */
+extern uint8_t __heap_base; /* set by the linker: the first byte after static data and stack */
 
 static uint8_t head[NOH_WIRE_HEAD_BYTES] __attribute__((aligned(16)));
 static struct {
-    uint8_t *pack; /* the file, or the block that the wire form is unpacked in */
+    uint8_t *pack; /* the file, or the block of the unpacked wire form */
     uint32_t bytes;
     uint8_t *piece;
-    noh_wire *wire; /* NULL: a pack as it is */
+    noh_wire *wire; /* NULL: a plain pack */
 } in;
 
 static size_t aligned(size_t at)
@@ -36,15 +36,15 @@ static size_t memory_bytes(void)
     return __builtin_wasm_memory_size(0) * 65536u;
 }
 
-/* ---- a pack as it is ---- */
+/* ---- a plain pack ---- */
 
-/* What memory a pack of so many bytes and a block of so many behind it take in all. */
+/* The memory size for a pack and a block after it. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_memory_for(uint32_t pack_bytes, uint32_t block_bytes)
 {
     return (uint32_t)(first_byte() + aligned(pack_bytes) + block_bytes);
 }
 
-/* Where the pack is to be written. NULL: the memory has no room for it. */
+/* Where the page writes the pack. NULL: the memory is too small. */
 EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 {
     in.pack = (uint8_t *)first_byte();
@@ -55,7 +55,7 @@ EMSCRIPTEN_KEEPALIVE void *web_pack(uint32_t bytes)
 
 /* ---- the wire form ---- */
 
-/* Where the page is to write the first web_head_bytes of the file. */
+/* Where the page writes the first web_head_bytes of the file. */
 EMSCRIPTEN_KEEPALIVE void *web_head(void)
 {
     return head;
@@ -64,7 +64,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_head_bytes(void)
 {
     return sizeof head;
 }
-/* What memory it takes to unpack what begins so; 0: see web_error. */
+/* The memory size to unpack the file with this head; 0: see web_error. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_wire_memory(void)
 {
     noh_wire_info info;
@@ -73,8 +73,8 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_wire_memory(void)
     return (uint32_t)(web_memory_for(info.block_bytes, NOH_WIRE_STATE_BYTES) + PIECE_BYTES);
 }
 
-/* Begin, in that memory: where the page is to write pieces, web_piece_bytes at most, the head among them. NULL: see
- * web_error. */
+/* Begin to unpack in memory of this size. Returns where the page writes pieces of at most web_piece_bytes, starting
+ * with the head. NULL: see web_error. */
 EMSCRIPTEN_KEEPALIVE void *web_wire(void)
 {
     uint8_t *state = (uint8_t *)first_byte() + aligned(in.bytes);
@@ -89,12 +89,12 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_piece_bytes(void)
 {
     return PIECE_BYTES;
 }
-/* So many bytes were written there. */
+/* Unpack a piece of this many bytes. */
 EMSCRIPTEN_KEEPALIVE int web_wire_push(uint32_t bytes)
 {
     return (int)noh_wire_push(in.wire, in.piece, bytes, &web.error);
 }
-/* 0: nothing can be shown yet; 1: the coarsest levels can; 2: all of it. */
+/* 0: nothing to show yet; 1: the coarsest levels; 2: the whole pack. */
 EMSCRIPTEN_KEEPALIVE int web_wire_shows(void)
 {
     noh_pack pack;
@@ -115,7 +115,7 @@ noh_result web_load(noh_pack *pack)
     return result;
 }
 
-/* Open what has arrived; web_loaded_at and web_loaded_bytes tell where it then lies. */
+/* Open the received pack; web_loaded_at and web_loaded_bytes then return its address and size. */
 EMSCRIPTEN_KEEPALIVE int web_loaded(void)
 {
     return (int)web_load(&web.pack);
@@ -129,19 +129,19 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_loaded_bytes(void)
     return web.pack.byte_count;
 }
 
-/* By how much the memory is to grow before web_plan. */
+/* The number of bytes by which the memory must grow before web_plan. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_plan_grows(void)
 {
     const size_t bytes = web_cast_scratch(&web.pack);
     return bytes > web.block_bytes ? (uint32_t)(bytes - web.block_bytes) : 0u;
 }
 
-/* The bytes of the block that shows what was loaded, in whatever light, for good; 0: see web_error. As web_open. */
+/* The bytes of a block that is enough for the loaded pack in any light; 0: see web_error. Arguments as for web_open. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive)
 {
     size_t most = 0;
     if (characters < 1u || characters > WEB_CHARACTERS_MAX) {
-        (void)noh_fail(&web.error, NOH_ERR_ARG, "characters: 1 to 16", characters, WEB_CHARACTERS_MAX);
+        (void)noh_fail(&web.error, NOH_ERR_ARG, "characters must be 1 to 16", characters, WEB_CHARACTERS_MAX);
         return 0;
     }
     if (web_open_context()) return 0;
@@ -154,7 +154,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive)
     return (uint32_t)most;
 }
 
-/* What a context can do, which is asked once: a program tells it to the next one of the same context. */
+/* The capabilities of a context. They are probed once and copied to the next program on the same context. */
 EMSCRIPTEN_KEEPALIVE void *web_caps(void)
 {
     return &web.caps;

@@ -1,10 +1,10 @@
-// load.js: the pack, which index.html asks for while the program still arrives (?pack=NAME: another one than page.nohz), and
-// files of the visitor's own.
+// load.js: the pack, which index.html requests while the program is loading (?pack=NAME: instead of page.nohz), and the
+// visitor's files.
 'use strict';
 
 const ownText = byId('file-text').textContent;
 
-// What has arrived, in words and as a bar. Without a length that the server tells, only in words.
+// Progress of loading, as text and as a bar; only as text if the server sends no length.
 function showProgress({ taken, all, shows }) {
     const bar = byId('progress-bar'), kilobytes = (bytes) => Math.round(bytes / 1000).toLocaleString('en');
     byId('progress').hidden = shows === 2;
@@ -24,11 +24,12 @@ async function load(source) {
     byId('progress').hidden = true;
 }
 
-// ---- a file of the visitor's own ----
+// ---- the visitor's files ----
 
-// What is shown stays until there is something of it to show. If that turns out to be broken, the page's own pack is again.
+// The present character stays until the new one can be shown. If the file is damaged, the page's own pack is shown
+// again.
 let opening = false, visitor = null;
-let again = () => fetch(ownPack); // what is shown, once more
+let again = () => fetch(ownPack); // the shown pack, again
 async function openFiles(list) {
     const files = [...list], { name } = files[0];
     if (opening || !window.noh.whole || character.lost) return;

@@ -1,6 +1,6 @@
-/* main.c: the program behind a canvas. It shows the characters of one pack, whose targets and clips are given by index,
- * on a stage in memory that was made for this pack and cannot grow. program.js makes that memory and calls the web_*
- * functions. Those that return an int return 0 or a noh_result; web_error then says what is wrong. */
+/* main.c: the program behind a canvas. It shows the characters of one pack on a stage, in memory that was sized for
+ * this pack and cannot grow; targets and clips are given by index. program.js creates the memory and calls the web_*
+ * functions. Functions that return an int return 0 or a noh_result; web_error returns the message. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -21,11 +21,12 @@ struct web web = { .light = { .environment = WEB_PLAIN } };
 noh_result web_open_context(void)
 {
     if (noh_platform_web.create(NULL, &web.context, NULL, 0)) {
-        return noh_fail(&web.error, NOH_ERR_UNSUPPORTED, "this browser gives no WebGL 2 context", 0, 0);
+        return noh_fail(&web.error, NOH_ERR_UNSUPPORTED, "cannot create a WebGL 2 context: use a browser with WebGL 2",
+                        0, 0);
     }
     noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
     web.gl.decode = noh_etc2_decode;
-    if (result || web.caps.version) return result; /* another program probed the same context */
+    if (result || web.caps.version) return result; /* probed by another program on this context */
     return noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
 }
 
@@ -39,7 +40,7 @@ static noh_result make_stage(const web_wants *wants)
     const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
     noh_result result = web_cast_plan(&web.cast, &web.pack, wants, web.block, web.block_bytes, &web.caps, &web.error);
     if (!result && web.cast.bytes > web.block_bytes) {
-        return noh_fail(&web.error, NOH_ERR_MEMORY, "less memory than was planned", 0, web.cast.bytes);
+        return noh_fail(&web.error, NOH_ERR_MEMORY, "the memory is smaller than planned", 0, web.cast.bytes);
     }
     if (!result) result = web_light_bake();
     if (!result) {
@@ -58,7 +59,7 @@ static void close_stage(void)
     web.stage = NULL;
 }
 
-/* The state goes over at the end of the block, behind all that either stage and its light work on. */
+/* The state is kept at the end of the block, after everything that the stages and their light use. */
 noh_result web_open_stage(const web_wants *wants)
 {
     size_t bytes = 0;
@@ -82,7 +83,7 @@ noh_result web_open_stage(const web_wants *wants)
     return NOH_OK;
 }
 
-/* The first character stands in the middle, the others by turns at its right and left. */
+/* The first character stands in the middle, the others alternate to its right and left. */
 static void go_home(void)
 {
     for (uint32_t i = 0; i < web.figure_count; i++) {
@@ -114,7 +115,7 @@ static void add_target(const char *name)
     for (uint32_t i = 0; i < web.target_count; i++) {
         if (strcmp(web.targets[i].name, name) == 0) return;
     }
-    for (uint32_t k = 0; k < web.cast.desc.kind_count && t.index == NOH_NONE; k++) { /* figure k is of kind k */
+    for (uint32_t k = 0; k < web.cast.desc.kind_count && t.index == NOH_NONE; k++) { /* figure k has kind k */
         t.figure = k;
         t.index = noh_stage_find(web.stage, k, NOH_NAME_FLOAT, name);
     }
@@ -132,7 +133,7 @@ static void list_targets(void)
     }
 }
 
-/* Its stage, with the characters on it, as they begin. */
+/* Create the stage with its characters in their initial state. */
 static noh_result begin(const web_wants *wants)
 {
     noh_result result = web_open_stage(wants);
@@ -146,14 +147,14 @@ static noh_result begin(const web_wants *wants)
     return result;
 }
 
-/* Before web_plan and web_open. 1: another renderer draws what vertices.c writes, and web_draw is not called. */
+/* Call before web_plan and web_open. 1: another renderer draws the output of vertices.c, and web_draw is not called. */
 EMSCRIPTEN_KEEPALIVE void web_set_elsewhere(int on)
 {
     web.elsewhere = on;
 }
 
-/* Open the pack that was loaded. path: a noh_morph_path. characters: on stage. alive: 0: without faces. All as they
- * were when its memory was planned. */
+/* Open the loaded pack. path: a noh_morph_path; characters: their number; alive 0: without faces. All as in
+ * web_plan. */
 EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
 {
     const web_wants wants = { characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive,
@@ -164,13 +165,13 @@ EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
     return (int)(result ? result : begin(&wants));
 }
 
-/* All GL objects go. Nothing may follow. */
+/* Delete all GL objects. No call may follow. */
 EMSCRIPTEN_KEEPALIVE void web_close(void)
 {
     close_stage();
 }
 
-/* Make every GL object again from the pack, after the browser restored a lost context. */
+/* Restore every GL object from the pack after the browser restored a lost context. */
 EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
@@ -191,7 +192,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_renderer(void)
 {
     return web.caps.renderer;
 }
-/* "" where the pack has no targets. */
+/* "" if the pack has no targets. */
 EMSCRIPTEN_KEEPALIVE const char *web_path(void)
 {
     const uint32_t path = web.cast.plan.morph_path;
@@ -230,13 +231,13 @@ EMSCRIPTEN_KEEPALIVE const char *web_target_name(uint32_t i)
 {
     return web.targets[i].name;
 }
-/* As the last frame showed it, where that showed the figure. */
+/* The weight of the last frame, if it showed the figure. */
 EMSCRIPTEN_KEEPALIVE float web_weight(uint32_t i)
 {
     const float *floats = noh_actor_floats(web.stage, web.figures[web.targets[i].figure].actor);
     return floats ? floats[web.targets[i].index] : 0.0f;
 }
-/* Hold a target at a weight, or let go: it then shows what clips say. */
+/* Hold a target at a weight, or release it to the clips. */
 EMSCRIPTEN_KEEPALIVE void web_hold(uint32_t i, float weight, int holds)
 {
     for (uint32_t f = 0; f < web.figure_count; f++) {
@@ -249,7 +250,7 @@ EMSCRIPTEN_KEEPALIVE void web_hold(uint32_t i, float weight, int holds)
 
 /* ---- clips ---- */
 
-/* Of the skeleton that clips move; 0: they move faces alone. */
+/* Joints of the skeleton that clips move; 0: clips move only faces. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_joint_count(void)
 {
     return web.cast.plan.kinds[0].joint_count;
@@ -264,7 +265,7 @@ EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
     noh_pack_clip clip;
     return noh_pack_clip_at(&web.pack, i, &clip, NULL) == NOH_OK ? clip.name : "";
 }
-/* Negative if it moves nothing here. */
+/* Negative if the clip moves nothing here. */
 EMSCRIPTEN_KEEPALIVE double web_clip_seconds(uint32_t i)
 {
     for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
@@ -290,14 +291,15 @@ static void set_all_speeds(int32_t body, int32_t rest)
     for (uint32_t i = 0; i < web.figure_count; i++) set_speeds(&web.figures[i], body, rest);
 }
 
-/* 1 as made; 0 stands still. */
+/* 1: original speed; 0: paused. */
 EMSCRIPTEN_KEEPALIVE void web_set_speed(float speed)
 {
     web.speed = (int32_t)(speed * (float)SPEED_ONE);
     set_all_speeds(web.speed, web.speed);
 }
 
-/* A clip of that name, or none, on a figure's layer. The body goes over by inertia, so that it does not slow down. */
+/* Play a clip by name, or none, on a figure's layer. The body uses inertial transitions, so that it does not slow
+ * down. */
 static noh_result play(const web_figure *f, uint32_t layer, const char *clip, uint32_t fade_ticks)
 {
     noh_play how;
@@ -311,22 +313,22 @@ static noh_result play(const web_figure *f, uint32_t layer, const char *clip, ui
     return noh_actor_play(web.stage, f->actor, layer, clip, &how, &web.error);
 }
 
-/* Go to a time of what plays on the bodies, from where they began: root motion takes them along. */
+/* Seek the body clips to a time, from the start positions: root motion moves the bodies. */
 static noh_result seek(double time_s)
 {
     const int64_t ticks = noh_ticks_from_seconds(time_s);
     noh_result result;
     go_home();
     set_all_speeds(0, 0);
-    result = noh_stage_step(web.stage, 1, NULL, NULL, &web.error); /* what faded out at once is gone */
+    result = noh_stage_step(web.stage, 1, NULL, NULL, &web.error); /* removes clips faded out at once */
     set_all_speeds(SPEED_ONE, 0);
     if (!result && ticks > 0) result = noh_stage_step(web.stage, (uint32_t)ticks, NULL, NULL, &web.error);
     web.view.cut = 1;
     return result;
 }
 
-/* Play a clip on a layer, -1: none. With a transition in seconds it goes on from what is shown; else the bodies begin
- * at a time in seconds. */
+/* Play a clip on a layer, -1: none. With a transition in seconds it starts from the shown pose; without, the bodies
+ * start at a time in seconds. */
 EMSCRIPTEN_KEEPALIVE int web_play(uint32_t layer, int clip, double time_s, double transition_s)
 {
     const uint32_t fade_ticks = transition_s > 0.0 ? (uint32_t)noh_ticks_from_seconds(transition_s) : 1u;
@@ -339,7 +341,7 @@ EMSCRIPTEN_KEEPALIVE int web_play(uint32_t layer, int clip, double time_s, doubl
     return (int)result;
 }
 
-/* The position of the clip that plays on the body, in seconds. */
+/* The position of the body clip, in seconds. */
 EMSCRIPTEN_KEEPALIVE double web_time(void)
 {
     for (uint32_t k = 0; k < web.cast.desc.kind_count; k++) {
@@ -351,7 +353,7 @@ EMSCRIPTEN_KEEPALIVE double web_time(void)
     return 0.0;
 }
 
-/* ---- looks: LOD levels, wrinkles ---- */
+/* ---- appearance: LOD levels, wrinkles ---- */
 
 static void set_looks(int posed)
 {
@@ -365,21 +367,21 @@ static void set_looks(int posed)
     }
 }
 
-/* 1: something wrinkles. */
+/* 1: some material has wrinkles. */
 EMSCRIPTEN_KEEPALIVE int web_wrinkles(void)
 {
     int any = 0;
     for (uint32_t i = 0; i < web.pack.material_count; i++) any |= web.pack.materials[i].wrinkle_models != 0;
     return any;
 }
-/* How strong they are: 1 as they are, 0 smoothed out. */
+/* Strength: 1: unchanged, 0: smooth. */
 EMSCRIPTEN_KEEPALIVE void web_set_wrinkles(float strength)
 {
     web.smoothed = (uint8_t)(255.0f - 255.0f * strength + 0.5f);
     set_looks(0);
 }
 
-/* The most that any kind has. */
+/* The largest number of levels of any kind. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
 {
     uint32_t most = 0;
@@ -389,7 +391,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_level_count(void)
     }
     return most;
 }
-/* An LOD level, or -1: the coarsest that an error of one pixel allows. */
+/* An LOD level, or -1: the coarsest level within one pixel. */
 EMSCRIPTEN_KEEPALIVE void web_set_level(int level)
 {
     web.level = (uint32_t)(level + 1);
@@ -414,7 +416,7 @@ EMSCRIPTEN_KEEPALIVE int web_fades(void)
 
 /* ---- a frame ---- */
 
-/* Where the first character has walked to: 3 floats, what the camera follows. Valid until the next call. */
+/* The position of the first character, which the camera follows: 3 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_walked(void)
 {
     static noh_place place;
@@ -422,7 +424,7 @@ EMSCRIPTEN_KEEPALIVE float *web_walked(void)
     return place.position;
 }
 
-/* The box of all figures in their present pose: 6 floats, valid until the next call. */
+/* The box of all figures in their current pose: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     set_looks(1);
@@ -436,7 +438,7 @@ EMSCRIPTEN_KEEPALIVE float *web_measure(void)
     return web.bounds;
 }
 
-/* Pose a clip on the bodies at even times, and measure each pose as from where the first character then is. */
+/* Pose a clip on the bodies at regular times, and measure each pose relative to the first character. */
 static void grow_by_clip(int clip, double seconds, uint32_t poses, float box[6])
 {
     for (uint32_t i = 0; i < poses && !web_play(WEB_BODY, clip, seconds * i / poses, 0.0); i++) {
@@ -449,14 +451,14 @@ static void grow_by_clip(int clip, double seconds, uint32_t poses, float box[6])
     }
 }
 
-/* The box of all figures over a clip of the body, at so many of its poses, at where the first character is now: as
- * web_measure. What plays goes on as before. */
+/* The box of all figures over `poses` poses of a body clip, at the first character's current position; as web_measure.
+ * Playback is unchanged. */
 EMSCRIPTEN_KEEPALIVE float *web_measure_clip(int clip, double seconds, uint32_t poses)
 {
     size_t bytes;
     float box[6];
     const void *state = noh_stage_state(web.stage, &bytes);
-    uint8_t *kept = web.block + web.block_bytes - bytes; /* as web_open_stage has it */
+    uint8_t *kept = web.block + web.block_bytes - bytes; /* as in web_open_stage */
     memcpy(kept, state, bytes);
     noh_box_empty(box);
     grow_by_clip(clip, seconds, poses, box);
@@ -466,20 +468,20 @@ EMSCRIPTEN_KEEPALIVE float *web_measure_clip(int clip, double seconds, uint32_t 
     return web.bounds;
 }
 
-/* Stand the characters side by side, so far apart. */
+/* Place the characters side by side at this distance. */
 EMSCRIPTEN_KEEPALIVE void web_set_spacing(float spacing)
 {
     web.spacing = spacing;
     go_home();
 }
 
-/* The matrix, eye and light of the noh_stage_view that the page is to fill in: 22 floats. */
+/* The matrix, eye and light of the noh_stage_view, filled in by the page: 22 floats. */
 EMSCRIPTEN_KEEPALIVE float *web_view(void)
 {
     return web.view.view_projection;
 }
 
-/* Move time on. In a lost context it goes on, too. */
+/* Advance time, also in a lost context. */
 EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 {
     const uint32_t ticks = noh_frame_clock_advance(&web.clock, seconds);
@@ -501,7 +503,7 @@ static void begin_frame(uint32_t width, uint32_t height)
     web_light_spots();
 }
 
-/* Draw a frame. In a lost context nothing is drawn, which is no error. */
+/* Draw a frame. In a lost context, draw nothing and return 0. */
 EMSCRIPTEN_KEEPALIVE int web_draw(void)
 {
     noh_stage_view views[2];
@@ -528,5 +530,5 @@ EMSCRIPTEN_KEEPALIVE int web_draw(void)
 EMSCRIPTEN_KEEPALIVE int web_check(void)
 {
     GLenum code = noh_gl_error_take(&web.gl);
-    return code ? (int)noh_fail(&web.error, NOH_ERR_GL, "a GL error in a frame", code, 0) : 0;
+    return code ? (int)noh_fail(&web.error, NOH_ERR_GL, "GL raised an error in a frame", code, 0) : 0;
 }

@@ -1,18 +1,17 @@
-// page.js: panels around a character (package/character.js): clips, sliders, the table of memory.
-// The query: ?path=gather forces a path; ?clip=NAME begins with that
-// clip, or with none; ?face=NAME has that clip's face over it; ?detail=0 begins with that LOD level; ?camera=fixed leaves
-// the camera where it is; ?actors=3 shows so many characters; ?size=512 draws a canvas of so many pixels across;
-// ?pixels=all draws all pixels, however long frames take. load.js,
-// light.js, hair.js, faces.js, speech.js and tabs.js have parts of the query of their own.
+// page.js: panels around a character (package/character.js): clips, sliders, the table of memory. The query:
+// ?path=gather forces a path; ?clip=NAME starts with this clip, or with none; ?face=NAME plays this clip on the face;
+// ?detail=0 starts with this LOD level; ?camera=fixed keeps the camera in place; ?actors=3 shows three characters;
+// ?size=512 draws a canvas 512 pixels wide; ?pixels=all always draws at full resolution. load.js, light.js, hair.js,
+// faces.js, speech.js and tabs.js read other parts of the query.
 'use strict';
 
 const query = new URLSearchParams(location.search);
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
-const arriving = import('./package/page.js'); // Character and what it needs, joined (tools/web_join.sh)
+const arriving = import('./package/page.js'); // Character and its modules, joined (tools/web_join.sh)
 let character = null;
 let Module = null; // its program
-let fresh = true; // the next pack begins anew, else it goes on
+let fresh = true; // the next pack starts afresh, else it continues
 
 // Tests wait for these.
 window.noh = { ready: false, whole: false, coarse: 0, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
@@ -23,11 +22,11 @@ function fail(text) {
     throw new Error(text);
 }
 
-// What is not as the query asks, beside the picture.
+// Parts of the query that are not possible, shown next to the picture.
 const say = (words) => { byId('message').textContent = words; };
 const text = (pointer) => Module.text(pointer);
 
-// ---- the camera, pushes, what is picked ----
+// ---- camera, pushes, picks ----
 
 function showPush({ error }) {
     byId('push-text').hidden = !error;
@@ -55,7 +54,7 @@ function showDetail() {
 
 byId('detail').addEventListener('change', () => { character.level = Number(byId('detail').value); });
 
-// By pixels, or at the level that was chosen, as far as there is one.
+// By pixels, or at the chosen level if it exists.
 function listDetail() {
     const count = Module._web_level_count();
     byId('detail').length = 2; // by pixels, full
@@ -75,7 +74,7 @@ byId('sparing').addEventListener('change', () => { character.sparing = byId('spa
 
 // ---- clips ----
 
-const nameOf = (option) => option.dataset.name || option.text; // as the pack has it
+const nameOf = (option) => option.dataset.name || option.text; // as in the pack
 const named = (select) => (Number(select.value) < 0 ? null : nameOf(select.selectedOptions[0]));
 
 function showTime() {
@@ -111,19 +110,19 @@ function listClips(select) {
     }
 }
 
-// The clip of the query; without one the option that is given, or none.
+// The clip of the query; without one, the given option, or none.
 function begin(select, name, otherwise) {
     const options = [...select.options], asked = query.get(name);
     const first = asked ? options.find((o) => nameOf(o) === asked) : options[otherwise];
     select.value = first ? first.value : -1;
 }
 
-// What the button does, not what is.
+// The action of the button, not the state.
 function showPaused() {
     byId('play').textContent = character.paused ? 'play' : 'pause';
 }
 
-// A face is offered where clips may move a body beside it.
+// Face clips are offered if clips may also move a body.
 function beginClips() {
     const moves = Module._web_joint_count() > 0;
     listClips(byId('clips'));
@@ -150,7 +149,7 @@ function addRow(cells, tag) {
     }
 }
 
-// What each part of noh takes, and what its pack gave it.
+// The memory of each part of noh and of the pack.
 function showMemory() {
     const { memory } = character;
     window.noh.memory = memory;
@@ -164,7 +163,7 @@ function showMemory() {
     byId('device').textContent = `${window.noh.path ? `Targets are added by path ${window.noh.path}. ` : ''}Drawn by ${window.noh.renderer}${window.noh.software ? ', without a GPU' : ''}.`;
 }
 
-// A pack as it begins.
+// A new pack.
 function showPack() {
     fresh = false;
     character.releaseWeights();
@@ -185,7 +184,7 @@ function showLoaded({ whole }) {
     window.noh.path = text(Module._web_path());
     listDetail();
     if (fresh) showPack();
-    else listTargets(); // all levels in place of the coarsest: what was chosen and held meanwhile stays
+    else listTargets(); // all levels replace the coarsest: choices and held weights stay
     character.draw();
     window.noh.ready = true;
     if (!whole) window.noh.coarse = character.frames;
@@ -237,5 +236,5 @@ async function start() {
     await load(asked);
 }
 
-// Once the other scripts are there.
+// After the other scripts are loaded.
 document.addEventListener('DOMContentLoaded', () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }));

@@ -1,11 +1,11 @@
-/* plan.c: what a page for a pack takes: run under node when the page is built, for pointers have another size there.
+/* plan.c: plans the memory of a pack's page. It runs under node when the page is built, because pointers have another
+ * size there.
  *
  *   plan PACK ACTORS [WIRE]
  *
- * Prints the bytes of the stage by each path, plain and lit, with faces that live and without; how many floats may be
- * held, which kinds have a face (a bit for each), whether the first falls, what hair takes (an actor's, on the CPU, on
- * the GPU), where the first face's eyes are; the bytes of the page's block, and of that in which the wire form is
- * unpacked. */
+ * Prints the bytes of the stage for each path, plain and lit, with and without faces; the number of held floats, the
+ * kinds with a face (a bit each), whether the first kind can fall, the bytes of hair (per actor, CPU, GPU), the eyes of
+ * the first face; the bytes of the page's block, and of the block to unpack the wire form. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +18,8 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 
-/* A device that does all that any path needs, and draws in software as that of the tests does: which one it will be is
- * found in the browser. */
+/* A device with the capabilities for every path, and with software rendering, as in the tests. The browser's device is
+ * probed at run time. */
 static noh_gl_caps browser_device(void)
 {
     noh_gl_caps caps;
@@ -37,7 +37,7 @@ static noh_gl_caps browser_device(void)
     return caps;
 }
 
-/* One line, and the most of all. */
+/* Print one line; *most: the largest block. */
 static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_error *error)
 {
     static web_cast cast;
@@ -84,7 +84,7 @@ static int plan_wire(const char *path, noh_error *error)
     return 0;
 }
 
-/* As it is, or out of its wire form, as the page has it. */
+/* Open the pack, plain or unpacked from its wire form as on the page. */
 static int open_pack(const char *path, noh_pack *pack, noh_error *error)
 {
     static uint8_t state[NOH_WIRE_STATE_BYTES] __attribute__((aligned(16)));
@@ -96,14 +96,14 @@ static int open_pack(const char *path, noh_pack *pack, noh_error *error)
     if (noh_wire_info_read(file.data, file.bytes, &info, NULL))
         return noh_pack_open(file.data, file.bytes, pack, error);
     desc.block_bytes = (info.block_bytes + 63u) / 64u * 64u;
-    desc.block = aligned_alloc(64, desc.block_bytes); /* stays, as the pack lies in it */
+    desc.block = aligned_alloc(64, desc.block_bytes); /* not freed: contains the pack */
     return !desc.block || noh_wire_init(state, sizeof state, &desc, &wire, error) ||
            noh_wire_push(wire, file.data, file.bytes, error) || noh_wire_pack(wire, pack, error);
 }
 
 int main(int argc, char **argv)
 {
-    noh_error error = { NOH_OK, "give a pack and a number of actors", 0, 0 };
+    noh_error error = { NOH_OK, "usage: plan PACK ACTORS [WIRE]", 0, 0 };
     noh_pack pack;
     if (argc < 3 || open_pack(argv[1], &pack, &error) ||
         plan_all(&pack, (uint32_t)strtoul(argv[2], NULL, 10), &error) || (argc > 3 && plan_wire(argv[3], &error))) {

@@ -1,11 +1,11 @@
-/* sound.c: from what is heard, or typed, to mouth shapes. */
+/* sound.c: mouth shapes from sound or text. */
 #include <emscripten.h>
 #include <string.h>
 
 #include "web.h"
 
-#define SAMPLES 2048u /* at one time: 256 ms at 8 kHz */
-#define FRAMES 32u    /* that they may make */
+#define SAMPLES 2048u /* per call: 256 ms at 8 kHz */
+#define FRAMES 32u    /* most frames of a call */
 #define PHONES 1024u
 
 static float samples[SAMPLES];
@@ -18,12 +18,12 @@ static float shapes[NOH_VISEME_COUNT];
 
 /* ---- the ear ---- */
 
-/* Hz: an ear that has heard nothing yet. */
+/* Start a new ear. rate: Hz. */
 EMSCRIPTEN_KEEPALIVE int web_ear_open(uint32_t rate)
 {
     return (int)noh_ear_init(&ear, rate, &web.error);
 }
-/* The same sound from its beginning, by an ear that knows the speaker and the room. */
+/* Restart the sound; the ear keeps its adaptation to the speaker and the room. */
 EMSCRIPTEN_KEEPALIVE void web_ear_restart(void)
 {
     noh_ear_restart(&ear);
@@ -32,7 +32,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_ear_latency(void) /* ms */
 {
     return NOH_EAR_LATENCY_MS;
 }
-/* Where the page is to write samples, -1..1, and how many at a time. */
+/* Where the page writes samples, -1..1, and how many per call. */
 EMSCRIPTEN_KEEPALIVE float *web_ear_samples(void)
 {
     return samples;
@@ -48,7 +48,7 @@ static int16_t integer_of(float sample)
     return s >= 32767.0f ? 32767 : s <= -32768.0f ? -32768 : s == s ? (int16_t)s : 0;
 }
 
-/* Hear so many samples. Returns how many frames that made. */
+/* Hear `count` samples. Returns the number of new frames. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_ear_hear(uint32_t count)
 {
     uint32_t made = 0;
@@ -59,7 +59,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_ear_hear(uint32_t count)
     }
     return made;
 }
-/* Of these frames: the fifteen weights, and how far the jaw is open. */
+/* Of a new frame: the fifteen weights, and the opening of the jaw. */
 EMSCRIPTEN_KEEPALIVE const float *web_ear_shapes(uint32_t frame)
 {
     return frames[frame].visemes;
@@ -69,14 +69,14 @@ EMSCRIPTEN_KEEPALIVE float web_ear_open_by(uint32_t frame)
     return frames[frame].open;
 }
 
-/* ---- what the mouths show ---- */
+/* ---- mouth shapes ---- */
 
-/* Where the page is to write the fifteen weights. */
+/* Where the page writes the fifteen weights. */
 EMSCRIPTEN_KEEPALIVE float *web_shapes(void)
 {
     return shapes;
 }
-/* 1: the weights; 0: nothing is said. */
+/* 1: show the weights; 0: silence. */
 EMSCRIPTEN_KEEPALIVE void web_show_shapes(int says)
 {
     web_say(says ? shapes : NULL);
@@ -84,7 +84,7 @@ EMSCRIPTEN_KEEPALIVE void web_show_shapes(int says)
 
 /* ---- phones at their times ---- */
 
-/* Where the page is to write phones: start in ticks and shape (noh_phone); and how many at most. */
+/* Where the page writes phones, each with start in ticks and shape (noh_phone), and their largest number. */
 EMSCRIPTEN_KEEPALIVE uint32_t *web_phones(void)
 {
     return &phones[0].start;
@@ -94,7 +94,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_phone_room(void)
     return PHONES;
 }
 
-/* Begin to speak so many of them, the last one up to a tick. */
+/* Start to speak `count` phones; the last one lasts until tick `end`. */
 EMSCRIPTEN_KEEPALIVE int web_speak(uint32_t count, uint32_t end)
 {
     speech.phones = phones;
@@ -103,7 +103,7 @@ EMSCRIPTEN_KEEPALIVE int web_speak(uint32_t count, uint32_t end)
     return (int)noh_speech_check(&speech, &web.error);
 }
 
-/* The weights at a tick of it. */
+/* Compute the weights at a tick of the speech. */
 EMSCRIPTEN_KEEPALIVE void web_speak_at(double tick)
 {
     noh_speech_visemes(&speech, (int64_t)tick, shapes);

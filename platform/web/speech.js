@@ -1,10 +1,10 @@
-// speech.js: what the faces say (package/speech.js): the microphone, a sound file, or a typed sentence that the browser
-// speaks.
+// speech.js: speech of the faces (package/speech.js): from the microphone, a sound file, or a typed sentence that the
+// browser speaks.
 'use strict';
 
 const said = (words) => { byId('speech-text').textContent = words; };
 
-// Tests look at what is said just now.
+// Read by tests: the current speech.
 Object.defineProperty(window.noh, 'said', { get: () => character.speech.now });
 
 function showSaid({ words, speaks, source }) {
@@ -35,7 +35,7 @@ byId('say').addEventListener('submit', (event) => {
     return said('Type a sentence first.');
 });
 
-// Nothing without a face that has mouth shapes. Some browsers list their voices only after they were asked once.
+// Hidden without a face with mouth shapes. Some browsers list their voices only after a first request.
 function beginSpeech() {
     byId('speech').hidden = !(Module._web_face_shows() & 2);
     if (window.speechSynthesis) window.speechSynthesis.getVoices();

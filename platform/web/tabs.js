@@ -1,6 +1,6 @@
-// tabs.js: what can be done with a character, a tab for each: its panel is a group of controls. A tab is there where its
-// panel has something for the pack. ?tab=speech begins with that one; ?tab=all shows all panels one below the other,
-// without tabs. And how many characters are shown, and the way to the crowd.
+// tabs.js: the tabs; the panel of each is a group of controls. A tab is shown if its panel has something for the pack.
+// ?tab=speech opens a tab; ?tab=all shows all panels one below the other, without tabs. Also the number of characters,
+// and the link to the crowd.
 'use strict';
 
 const tabs = [...document.querySelectorAll('[role=tab]')];
@@ -15,7 +15,7 @@ function showTab(chosen) {
     }
 }
 
-// After a pack has come.
+// After a pack is loaded.
 function listTabs() {
     if (byId('tabs').hidden) return;
     for (const tab of tabs) tab.hidden = !has(tab);
@@ -38,9 +38,9 @@ for (const tab of tabs) tab.addEventListener('click', () => showTab(tab));
 byId('tabs').hidden = query.get('tab') === 'all';
 if (!byId('tabs').hidden) showTab(byId(`tab-${query.get('tab')}`) || tabs[0]);
 
-// ---- several ----
+// ---- several characters ----
 
-// Their memory is planned for so many: the pack is opened anew.
+// Memory is planned for their number, so the pack is opened again.
 async function showSeveral() {
     if (opening || !window.noh.whole || character.lost) return;
     opening = fresh = true;

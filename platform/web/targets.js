@@ -1,9 +1,9 @@
-// targets.js: a slider for each target, in groups by name. One that was moved holds its target, whatever plays, until the
-// reset.
+// targets.js: a slider for each target, in groups by name. A moved slider holds its target, whatever clip plays, until
+// the reset.
 'use strict';
 
 const sliders = [];
-const groups = [ // the first that fits
+const groups = [ // the first match
     ['brows', /brow/i],
     ['eyes', /eye|blink|lid|look|squint|wink/i],
     ['jaw and tongue', /jaw|tongue|chin/i],
@@ -13,7 +13,7 @@ const groups = [ // the first that fits
     ['others', /./],
 ];
 
-// A name as words: browInnerUp is "brow inner up", eyeBlinkLeft "eye blink, left". What the pack says is its tooltip.
+// A name as words: browInnerUp is "brow inner up", eyeBlinkLeft "eye blink, left". The pack's name is the tooltip.
 function wordsOf(name) {
     const words = name.replace(/([a-z\d])([A-Z])/g, '$1 $2').replace(/[_\-.\s]+/g, ' ').trim().toLowerCase();
     return words.replace(/^(.+) (left|right|l|r)$/, (all, what, side) => `${what}, ${{ l: 'left', r: 'right' }[side] || side}`) || name;
@@ -33,7 +33,7 @@ function hold(s, weight) {
     s.label.classList.add('held');
 }
 
-// A target is not shown at the left end, and whole at the right one; or it goes beyond both.
+// The left end of a slider is weight 0, the right end 1; or its range extends beyond both.
 function setRange(s) {
     const beyond = byId('beyond').checked;
     Object.assign(s.slider, { min: beyond ? -1 : 0, max: beyond ? 2 : 1 });

@@ -1,4 +1,4 @@
-/* touch.c: what a click or a tap does: it tells what is there, or pushes it, so that it falls and gets up. */
+/* touch.c: clicks and taps: they pick a figure, or push it so that it falls and gets up. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -16,13 +16,13 @@ EMSCRIPTEN_KEEPALIVE int web_pick(float x, float y)
     return noh_view_ray(&web.view, x, y, width, height, origin, direction) &&
            noh_stage_pick(web.stage, origin, direction, PICK_M, &web.hit, NULL) == NOH_OK;
 }
-/* Of what was picked last. */
+/* The mesh of the last pick. */
 EMSCRIPTEN_KEEPALIVE const char *web_picked_mesh(void)
 {
     noh_mesh mesh;
     return noh_pack_mesh_at(&web.pack, web.hit.mesh, &mesh, NULL) == NOH_OK ? mesh.name : "";
 }
-/* "" for a mesh that no joint moves. */
+/* The joint of the last pick; "" for a mesh that no joint moves. */
 EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
 {
     for (uint32_t i = 0; i < web.figure_count && web.hit.joint != NOH_NONE; i++) {
@@ -34,13 +34,13 @@ EMSCRIPTEN_KEEPALIVE const char *web_picked_joint(void)
 
 /* ---- pushing ---- */
 
-/* "": the first characters can fall; else why not. */
+/* "": figures of the first skeleton can fall; else the reason why not. */
 EMSCRIPTEN_KEEPALIVE const char *web_cannot_fall(void)
 {
     return web.cast.cannot_fall.result ? web.cast.cannot_fall.what : "";
 }
 
-/* point: where it is hit; NULL: at its chest, as seen from its place */
+/* point: where the figure is hit; NULL: at its chest, with a direction computed from its place */
 static noh_result push(const web_figure *f, const float point[3], float strength)
 {
     float impulse[3];
@@ -55,7 +55,8 @@ static noh_result push(const web_figure *f, const float point[3], float strength
     return noh_actor_push(web.stage, f->actor, point, impulse, &web.error);
 }
 
-/* Push what is under a pixel away from the camera, level, by so many newton seconds. Nothing there is no error. */
+/* Push the figure under a pixel horizontally away from the camera. strength: newton seconds. Returns 0 if there is
+ * none. */
 EMSCRIPTEN_KEEPALIVE int web_push_at(float x, float y, float strength)
 {
     if (!web_pick(x, y)) return 0;
@@ -67,13 +68,13 @@ EMSCRIPTEN_KEEPALIVE int web_push_at(float x, float y, float strength)
     return 0;
 }
 
-/* The first character, at its chest. */
+/* Push the first character at its chest. */
 EMSCRIPTEN_KEEPALIVE int web_push(float strength)
 {
     return (int)push(&web.figures[0], NULL, strength);
 }
 
-/* How many figures fall, lie or get up. */
+/* The number of figures that fall, lie or get up. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_fallen(void)
 {
     uint32_t count = 0;

@@ -1,6 +1,6 @@
-/* vertices.c: the deformed vertices of each mesh, in buffers that another renderer on the same context draws
- * (package/three.js). A point is drawn for each vertex, nothing is rasterised, and transform feedback writes what the
- * vertex shader makes of it. Colours, which never change, are written once. */
+/* vertices.c: writes the deformed vertices of each mesh to buffers for another renderer on the same context
+ * (package/three.js). Each vertex is drawn as a point without rasterisation, and transform feedback writes the output
+ * of the vertex shader. Constant attributes are written once. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ __attribute__((import_module("noh"), import_name("feedback"))) void web_gl_feedb
 
 enum { OUT_POSITION, OUT_NORMAL, OUT_TANGENT, OUT_UV, OUT_COLOR, OUT_COUNT };
 
-#define MOVING 4u /* of the outputs: those before OUT_COLOR; WebGL has at least four */
+#define MOVING 4u /* outputs written in each frame; WebGL guarantees at least four */
 #define DRAWN_MAX 64u
 #define VARIANTS_MAX 16u
 
@@ -35,15 +35,15 @@ static const char fragment_text[] = "out vec4 noh_out;\nvoid main()\n{\n    noh_
 
 /* A mesh of a figure. */
 typedef struct web_drawn {
-    uint32_t figure, index; /* of noh_actor_mesh_at */
-    uint32_t mesh, level;   /* of the pack; the level that was written last */
+    uint32_t figure, index; /* index for noh_actor_mesh_at */
+    uint32_t mesh, level;   /* mesh of the pack; last written level */
     int is_written;
     noh_gl_buffer outs[OUT_COUNT];
 } web_drawn;
 
 typedef struct web_program {
     noh_gl_variant variant;
-    int moving; /* 1: writes what moves, 0: what does not */
+    int moving; /* 1: writes moving outputs, 0: constant ones */
 } web_program;
 
 static struct {
@@ -54,9 +54,9 @@ static struct {
     const noh_gl_texture *pictures;
 } all;
 
-/* ---- making them ---- */
+/* ---- create and delete ---- */
 
-/* three.js wants a buffer for each attribute. */
+/* three.js needs a separate buffer for each attribute. */
 static void GL_APIENTRY separate(GLuint program, GLsizei count, const GLchar *const *varyings, GLenum mode)
 {
     (void)mode;
@@ -81,7 +81,8 @@ static const noh_gl_variant *program_of(noh_gl_variant_key key, int moving)
         if (p->moving == moving && memcmp(&p->variant.key, &key, sizeof key) == 0) return &p->variant;
     }
     if (all.program_count == VARIANTS_MAX) {
-        (void)noh_fail(&web.error, NOH_ERR_LIMIT, "the meshes need more programs than the limit", VARIANTS_MAX, 0);
+        (void)noh_fail(&web.error, NOH_ERR_LIMIT, "the meshes need more shader variants than the limit", VARIANTS_MAX,
+                       0);
         return NULL;
     }
     if (create_program(key, moving, &all.programs[all.program_count])) return NULL;
@@ -101,7 +102,7 @@ static noh_result create_buffers(web_drawn *d)
     return result;
 }
 
-/* List the meshes of all figures, and make their buffers. Returns 0 or a noh_result. */
+/* List the meshes of all figures and create their buffers. Returns 0 or a noh_result. */
 EMSCRIPTEN_KEEPALIVE int web_vertices_open(void)
 {
     noh_result result = NOH_OK;
@@ -113,8 +114,8 @@ EMSCRIPTEN_KEEPALIVE int web_vertices_open(void)
         for (uint32_t m = 0;
              !result && noh_actor_mesh_at(web.stage, web.figures[f].actor, m, &mesh, NULL, NULL) == NOH_OK; m++) {
             if (all.count == DRAWN_MAX) {
-                return (int)noh_fail(&web.error, NOH_ERR_LIMIT, "more meshes than another renderer is given", DRAWN_MAX,
-                                     0);
+                return (int)noh_fail(&web.error, NOH_ERR_LIMIT,
+                                     "the figures have more meshes than the limit for another renderer", DRAWN_MAX, 0);
             }
             all.drawn[all.count] = (web_drawn){ .figure = f, .index = m, .mesh = mesh.mesh };
             result = create_buffers(&all.drawn[all.count++]);
@@ -135,8 +136,8 @@ EMSCRIPTEN_KEEPALIVE void web_vertices_close(void)
     all.pictures = NULL;
 }
 
-/* After web_restore: everything anew, under other names; what the lost context had is deleted in vain. Returns 0 or a
- * noh_result. */
+/* Call after web_restore: recreate everything, under new names; deleting the objects of the lost context has no effect.
+ * Returns 0 or a noh_result. */
 EMSCRIPTEN_KEEPALIVE int web_vertices_restore(void)
 {
     noh_result result = NOH_OK;
@@ -146,12 +147,12 @@ EMSCRIPTEN_KEEPALIVE int web_vertices_restore(void)
     return (int)result;
 }
 
-/* ---- writing them ---- */
+/* ---- write ---- */
 
-/* What one pass over a mesh needs. */
+/* The arguments of a pass over a mesh. */
 typedef struct web_pass {
     web_drawn *d;
-    noh_mesh mesh; /* at the level that is shown */
+    noh_mesh mesh; /* at the shown level */
     noh_stage_drawn on_gl;
     float world[12];
 } web_pass;
@@ -178,7 +179,7 @@ static void set_uniforms(const web_pass *p, const noh_gl_variant *v)
     noh_gl_mesh_bind(gl, p->on_gl.mesh, p->on_gl.is_morphed ? morph : NULL);
 }
 
-/* Each vertex belongs to one submesh, and with it to a palette. */
+/* Each vertex belongs to one submesh, and so to one palette. */
 static void write_submesh(const web_pass *p, const noh_submesh *s, uint32_t first, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -213,7 +214,7 @@ static noh_result write(const web_pass *p, int moving)
     return NOH_OK;
 }
 
-/* 0: no view sees it, and what was written before stays. */
+/* Returns 0 if no view sees the mesh: then its buffers stay unchanged. */
 static int look_at(web_drawn *d, web_pass *p)
 {
     noh_actor_mesh shown;
@@ -229,13 +230,12 @@ static int look_at(web_drawn *d, web_pass *p)
     return 1;
 }
 
-/* A frame as web_view sees it, in a picture of so many pixels: everything is posed, and its vertices are written.
- * Returns 0 or a noh_result. */
+/* Pose a frame for web_view and write its vertices. height_px: height of the picture. Returns 0 or a noh_result. */
 EMSCRIPTEN_KEEPALIVE int web_vertices(uint32_t height_px)
 {
     noh_result result;
     web.view.height_px = height_px;
-    web.view.cut = 1; /* another renderer has no fades */
+    web.view.cut = 1; /* fades are not supported */
     result = noh_stage_frame_begin(web.stage, &web.view, 1, &web.error);
     if (!result) result = noh_stage_frame_end(web.stage, &web.error);
     for (uint32_t i = 0; i < all.count && !result; i++) {
@@ -244,7 +244,7 @@ EMSCRIPTEN_KEEPALIVE int web_vertices(uint32_t height_px)
         size_t first;
         if (!look_at(d, &p)) continue;
         result = write(&p, 1);
-        p.mesh = noh_gl_mesh_lod(p.on_gl.mesh, 0, &first); /* of all levels */
+        p.mesh = noh_gl_mesh_lod(p.on_gl.mesh, 0, &first); /* vertices of all levels */
         if (!result && !d->is_written) result = write(&p, 0);
         d->is_written = 1;
     }
@@ -252,7 +252,7 @@ EMSCRIPTEN_KEEPALIVE int web_vertices(uint32_t height_px)
     return (int)result;
 }
 
-/* ---- what another renderer asks ---- */
+/* ---- queries of another renderer ---- */
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_count(void)
 {
@@ -268,17 +268,17 @@ EMSCRIPTEN_KEEPALIVE const char *web_drawn_name(uint32_t i)
 {
     return mesh_of(i, 0).name;
 }
-/* Of the finest level; buffers are as long. */
+/* Vertices of the finest level; buffers have the same length. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_vertices(uint32_t i)
 {
     return mesh_of(i, 0).header->vertex_count;
 }
-/* 1: tangents, 2: texture coordinates, 4: colours. */
+/* Bits: 1 tangents, 2 texture coordinates, 4 colours. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_has(uint32_t i)
 {
     return mesh_of(i, 0).header->flags & (NOH_MESH_TANGENTS | NOH_MESH_UVS | NOH_MESH_COLORS);
 }
-/* The level that was written last. */
+/* The last written level. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_level(uint32_t i)
 {
     return all.drawn[i].level;
@@ -293,7 +293,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_buffer(uint32_t i, uint32_t out)
 {
     return all.drawn[i].outs[out].name;
 }
-/* A level's indices, and how many bytes each has. */
+/* A level's indices, and the bytes of each. */
 EMSCRIPTEN_KEEPALIVE const void *web_drawn_indices(uint32_t i, uint32_t level)
 {
     return mesh_of(i, level).indices;
@@ -306,7 +306,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_index_bytes(uint32_t i)
 {
     return mesh_of(i, 0).header->index_bytes;
 }
-/* A level's submeshes: uint32_t [count][6], of which the first three are the first index, how many, the material. */
+/* A level's submeshes: uint32_t [count][6], whose first three values are the first index, the count, the material. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_drawn_part_count(uint32_t i, uint32_t level)
 {
     return mesh_of(i, level).header->submesh_count;
@@ -347,8 +347,8 @@ EMSCRIPTEN_KEEPALIVE const float *web_material(uint32_t m)
     }
     return told;
 }
-/* The name of a texture of it, once a frame was written; 0: none. which: 0 base colour, 1 normals, 2 occlusion,
- * roughness and metallic, 3 what it emits. */
+/* The name of a material's texture, after the first frame; 0: none. which: 0 base colour, 1 normals, 2 occlusion,
+ * roughness and metallic, 3 emissive. */
 EMSCRIPTEN_KEEPALIVE uint32_t web_material_picture(uint32_t m, uint32_t which)
 {
     const noh_material *of = &web.pack.materials[m];
@@ -357,8 +357,8 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_material_picture(uint32_t m, uint32_t which)
     return all.pictures && textures[which] != NOH_NONE ? all.pictures[textures[which]].name : 0u;
 }
 
-/* What a ray hits: its distance; negative: nothing. The place is in web_hit_point, the names are those of
- * web_picked_mesh and web_picked_joint. */
+/* The distance of a ray's hit; negative: none. web_hit_point returns the point, web_picked_mesh and web_picked_joint
+ * the names. */
 EMSCRIPTEN_KEEPALIVE float web_pick_ray(float x, float y, float z, float dx, float dy, float dz, float most)
 {
     const float origin[3] = { x, y, z }, direction[3] = { dx, dy, dz };

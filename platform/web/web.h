@@ -1,4 +1,4 @@
-/* web.h: what the files of the page's program share. */
+/* web.h: shared by the files of the page's program. */
 #ifndef NOH_PLATFORM_WEB_WEB_H
 #define NOH_PLATFORM_WEB_WEB_H
 
@@ -25,39 +25,39 @@ typedef struct web_figure {
     uint32_t kind, character;
 } web_figure;
 
-/* What a slider moves: the floats of a name. */
+/* The floats of a name, moved by a slider. */
 typedef struct web_target {
     const char *name;
-    uint32_t figure, index; /* the first figure that has it */
+    uint32_t figure, index; /* the first figure that has the float */
 } web_target;
 
 typedef enum web_shadow { WEB_SHADOW_OFF, WEB_SHADOW_MAP, WEB_SHADOW_SPOTS } web_shadow;
 
 typedef struct web_light {
     int environment;                 /* WEB_PLAIN, or an index of noh_environment_at */
-    float degrees;                   /* that it is turned by */
+    float degrees;                   /* rotation of the environment */
     int shadow, tonemap, background; /* a web_shadow; a noh_tonemap; 1 + a noh_backdrop_kind, 0: plain */
     noh_light all;                   /* not turned */
     noh_lighting told;
     noh_backdrop backdrop;
     noh_stage_blob blob;    /* spots on the floor */
-    noh_stage_floor ground; /* the shadow on it */
-    int on_floor;           /* 1: it falls there */
-    float sphere[4];        /* what casts it */
+    noh_stage_floor ground; /* the shadow on the floor */
+    int on_floor;           /* 1: the shadow falls on the floor */
+    float sphere[4];        /* bounds of the shadow casters */
     noh_blob_rig rigs[NOH_STAGE_KINDS_MAX];
-    float floor; /* its height */
+    float floor; /* height of the floor */
 } web_light;
 
 typedef struct web_hair {
-    noh_stage_hair drawn[WEB_CHARACTERS_MAX]; /* of each character */
-    int off;                                  /* 1: not shown */
+    noh_stage_hair drawn[WEB_CHARACTERS_MAX]; /* per character */
+    int off;                                  /* 1: hidden */
     float wind[3];
-    double shake_s; /* how long heads are still shaken */
+    double shake_s; /* remaining time of the head shake */
 } web_hair;
 
 struct web {
     noh_platform_context *context;
-    uint8_t *block; /* what is behind the pack */
+    uint8_t *block; /* the memory after the pack */
     size_t block_bytes;
     noh_gl_api gl;
     noh_gl_caps caps;
@@ -66,7 +66,7 @@ struct web {
     noh_pack pack;
     web_cast cast;
     noh_stage *stage;
-    noh_frame_clock clock; /* of its steps */
+    noh_frame_clock clock; /* clock of the stage's steps */
     noh_stage_bytes parts[WEB_PARTS_MAX];
     uint32_t part_count;
     web_figure figures[WEB_ACTORS_MAX];
@@ -78,57 +78,58 @@ struct web {
     web_light light;
     web_hair hair;
     noh_fall falls[WEB_ACTORS_MAX];
-    float bounds[6], from[3], spacing; /* from: where the first character was when they were measured */
-    int32_t speed;                     /* 1/65,536, of what plays */
-    uint8_t smoothed;                  /* noh_look.smoothed of all */
+    float bounds[6], from[3], spacing; /* from: position of the first character when bounds were measured */
+    int32_t speed;                     /* playback speed, 1/65,536 */
+    uint8_t smoothed;                  /* noh_look.smoothed of all figures */
     int elsewhere;                     /* 1: another renderer draws (vertices.c) */
-    uint32_t level;                    /* 1 + the LOD level that is shown; 0: by pixels */
+    uint32_t level;                    /* 1 + the shown LOD level; 0: chosen by pixels */
 };
 
 extern struct web web;
 
-/* The block's part at an offset of web.cast. */
+/* The address at an offset of web.cast in the block. */
 void *web_block(size_t at);
 
 /* Load and probe the canvas's context. */
 noh_result web_open_context(void);
 
-/* Open the best pack that has arrived, and give what is behind it to the block. */
+/* Open the most complete pack received so far, and use the memory after it as the block. */
 noh_result web_load(noh_pack *pack);
 
-/* Make the stage for what is wanted, in place of another one, whose state it then goes on with. */
+/* Create a stage. It replaces the previous one and continues its state. */
 noh_result web_open_stage(const web_wants *wants);
 
-/* Bake the environment into the block, before a stage is made that is lit by it. */
+/* Bake the environment into the block, before creating a stage lit by it. */
 noh_result web_light_bake(void);
-noh_result web_light_open(void); /* what is behind, once the stage is there; web_light_close before it goes */
+noh_result web_light_open(
+    void); /* backdrop, spots and floor, after the stage is created; call web_light_close before it is deleted */
 void web_light_close(void);
 noh_result web_light_restore(void);
-/* The second view of a frame, which sees the shadows; 0: there are none. */
+/* Set the second view of a frame, for the shadow map. Returns 0 if there are no shadows. */
 int web_light_shadow(noh_stage_view *view);
 void web_light_backdrop(void);
 void web_light_spots(void);
 void web_light_floor(void);      /* the shadow on the floor */
-void web_light_find_floor(void); /* after the figures were measured at rest */
+void web_light_find_floor(void); /* after measuring the figures at rest */
 
-/* The hair of all characters, if the pack has some: made with the stage, closed before it goes. */
+/* The hair of all characters, if the pack has hair: created after the stage, closed before it is deleted. */
 noh_result web_hair_open(void);
 void web_hair_close(void);
 noh_result web_hair_restore(void);
 noh_result web_hair_update(void); /* after a frame */
 void web_hair_shadow(void);
-noh_result web_hair_draw(void); /* with all that is drawn beside it */
+noh_result web_hair_draw(void); /* with the stage's color passes */
 void web_hair_shake(double seconds);
 
-/* Who fell and lies gets up; so many seconds have passed. */
+/* Advance falls: fallen figures get up. */
 noh_result web_rise(uint32_t ticks);
 
-/* What main.c and touch.c tell the page, too. */
+/* Shared functions of main.c and touch.c, also called by the page. */
 uint32_t web_joint_count(void);
 float *web_measure(void);
 int web_pick(float x, float y);
 
-/* What mouths show, [NOH_VISEME_COUNT]; NULL: nothing is said. */
+/* Mouth shapes, [NOH_VISEME_COUNT]; NULL: silence. */
 void web_say(const float *visemes);
 
 #endif

@@ -1,6 +1,6 @@
 #!/bin/sh
-# demo_assets --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: what the pack
-# says about it, and where the vertices are when it bends and twists.
+# demo_assets --arm: every kind of skinning on the same arm (Direct3D 9, "Geometry Blending") and two streams: info of
+# the packs, and positions of vertices when the arm bends and twists.
 . "$(dirname "$0")/lib.sh"
 
 check 'the arm is made' "$build/demo_assets" --arm "$work/arm.glb"
@@ -87,8 +87,8 @@ is_ring 'twisted by half a turn, linear blending has collapsed there' 'high < 0.
 is_ring 'dual quaternions keep the radius' 'low > 0.95 && high < 1.05' twisted_dual -0.45 0.75 twisted
 is_ring 'beyond the wrist both keep it' 'low > 0.95 && high < 1.05' twisted_linear -1.05 1 twisted
 
-# By how much the edges of object $1 grow at most when it bends: rigid parts keep theirs, a blended one stretches about
-# the outside of the elbow.
+# The largest stretch of an edge of object $1 when it bends: rigid parts do not stretch, a blended arm stretches at the
+# outside of the elbow.
 stretch() {
     awk -v want="$1" '
         function far(x, y, z, a, b) { return sqrt((x[a] - x[b]) ^ 2 + (y[a] - y[b]) ^ 2 + (z[a] - z[b]) ^ 2) }
@@ -141,7 +141,7 @@ fi
 expect 0 'a sheet of a target at two weights'
 noh sheet "$work/arm.noh" -o "$work/full.png" --target stream_b --target stream_b --columns 3 --tile 64
 check 'whose weights show' sh -c '! cmp -s "$1" "$2"' - "$work/streams.png" "$work/full.png"
-# The source's demo: a weight that time drives there and back.
+# The source's demo: a weight that goes up and down with time.
 noh sheet "$work/arm.noh" -o "$work/pong.png" --target stream_b --ping-pong 0.5 --tiles 4 --columns 4 --tile 64
 expect 0 'a ping-pong'
 noh sheet "$work/arm.noh" -o "$work/held.png" --target stream_b=0.5 --target stream_b --target stream_b=0.5 --columns 4 --tile 64

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Files that are missing, cut, damaged or of another kind: exit code 1, one line that says what is wrong and where, and no
-# output file, not even a part of one.
+# Missing, truncated, damaged files and files of another kind: exit code 1, a one-line message with the error and its
+# place, and no output file, not even a partial one.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -94,7 +94,7 @@ says "noh: $work/nowhere/out.png: "
 noh dump "$pack" -o "$work/nowhere/out.obj"
 expect 1 'dump into a folder that is not there'
 
-# A failed build leaves the older pack as it was.
+# A failed build leaves the older pack unchanged.
 echo old >"$work/folder/out.noh"
 noh build "$work/cut.glb" -o "$work/folder/out.noh" --quiet
 expect 1 'a failed build over an older file'

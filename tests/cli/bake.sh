@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh bake: a normal map out of heights, and out of a model on itself; --json; what is refused.
+# noh bake: a normal map from heights, and from a model onto itself; --json; refused input.
 . "$(dirname "$0")/lib.sh"
 mask=$build/mask.glb
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh budget of a stage: sums are those of the parts, bounds are kept and what was given up is told, --desc, JSON, what is
-# refused. Without --actors and --desc it is the budget of a load, which json.sh looks at.
+# noh budget of a stage: sums of parts, limits and reported concessions, --desc, JSON, refused input. json.sh tests the
+# budget of a load, without --actors and --desc.
 . "$(dirname "$0")/lib.sh"
 
 puppet=$build/demo/puppet_levels.noh
@@ -8,7 +8,7 @@ mask=$build/mask_levels.noh
 
 # ---- a kind ----
 
-# The rows between the head and "sum" add up to it, CPU and GPU, and there are some.
+# The rows between the head and "sum" exist and add up to it, CPU and GPU.
 adds_up() {
     awk 'NR > 1 && $1 == "sum" { exit !(cpu == $2 && gpu == $3 && cpu > 0 && NR > 5) }
          NR > 1 { cpu += $(NF - 1); gpu += $NF }' "$1"
@@ -22,7 +22,7 @@ expect 0 'a mask'
 check 'what a material has and costs' grep -q "^material 'paint': plain, 4 textures of 152940 bytes, a pixel makes 2 fetches, 7 under a light with a shadow" "$work/out"
 noh budget "$build/mask.noh" --nominal --why
 expect 0 'why this path'
-# The nominal device is no software rasteriser: the least of mrt and gather is taken.
+# The nominal device is no software rasteriser: the cheaper of mrt and gather is used.
 check 'the path named is the cheaper one' awk '
     /^why: / { taken = $2; sub(":", "", taken) } $1 == "mrt" { mrt = $2 } $1 == "gather" { gather = $2 }
     END { exit !(mrt > 0 && gather > 0 && taken == (gather <= mrt ? "gather" : "mrt")) }' "$work/out"
@@ -164,7 +164,7 @@ refused 2 "$work/cast/cut.noh: "
 noh budget --desc "$work/cast/none.txt"
 expect 1 'a text that is not there'
 says none.txt
-# The text of the help is one that it reads.
+# The example in the help is valid input.
 noh help FORMATS
 sed -n '/^stages (/,/^error bounds/{/^     bytes_max 2097152/,/^     layer face joints/p}' "$work/out" |
     sed 's/body\.noh/puppet.noh/; s/waves\.noh/puppet.noh/' >"$work/cast/help.txt"

@@ -1,6 +1,5 @@
 #!/bin/sh
-# noh build: the same bytes every time, in whatever form the same targets are stored; the requested error; what info says
-# about it.
+# noh build: the same bytes every time and for every form of the same targets; the requested error; info.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb

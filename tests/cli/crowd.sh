@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh crowd, agents in its scenes, and the rows of a crowd and of a stage in noh bench: what they refuse, draw and measure.
+# noh crowd, agents in its scenes, and the crowd and stage rows of noh bench: refused input, pictures, measurements.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -24,7 +24,7 @@ noh bench "$pack" --only crwod
 expect 2 'an unknown group of rows'
 says "did you mean 'crowd'"
 
-# ---- scenes of agents, which need neither a pack nor a GL ----
+# ---- scenes of agents, without a pack or GL ----
 
 for refused in '--test circel250' '--test door200 --agents 0.5' '--test door200 --seconds -1' '--test door200 --seed 1e10' '--agents 10'; do
     # shellcheck disable=SC2086 # words

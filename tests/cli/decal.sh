@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh render --decal: marks show, and stay through a pose and a level; what is refused.
+# noh render --decal: marks are visible and stay in place in other poses and LOD levels; refused input.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask_levels.noh

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh lab drop: what it prints, how well dolls fall, the files it writes, what it refuses.
+# noh lab drop: output, quality of falls, written files, refused input.
 . "$(dirname "$0")/lib.sh"
 
 noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --quiet
@@ -30,7 +30,7 @@ check 'falls otherwise' sh -c '! grep -q "$(sed -n "s/.*\"hash\": \"\(.*\)\".*/\
 
 # an artist's own bodies, in any order
 cat >"$work/puppet.ragdoll" <<'END'
-# less than names would give
+# fewer than by names
 shin.L hinge backward bend 0 140 friction 5
 "hips"
 thigh.L forward bend -20 95 side 40 twist 30 friction 5   # as names have it

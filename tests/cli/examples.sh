@@ -1,6 +1,6 @@
 #!/bin/sh
-# The examples: they run, and their pictures show what they should. Pictures are .ppm files of known size: a figure in
-# front of a plain background, lit, and different when the face or the time is.
+# The examples run, and their pictures are right. Pictures are .ppm files of known size: a lit figure in front of a
+# plain background, which differs for another face or time.
 . tests/cli/lib.sh
 examples=$build/examples
 

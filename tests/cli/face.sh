@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh face and noh build --recipe: an artist's recipe goes first, what it lacks falls back, and bad lines are named.
+# noh face and noh build --recipe: an artist's recipe has priority over the built-in ones; bad lines are reported.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb

@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh build of an .fbx file, by Assimp: axes, unit, skin, shape and animation of a strip written here, against what the
-# numbers mean; files that are cut or are something else.
+# noh build of an .fbx file, by Assimp: axes, unit, skin, shape and animation of a strip written here, compared with
+# expected values; truncated files and files of another kind.
 . "$(dirname "$0")/lib.sh"
 
 # A strip of two quads, two inches tall in a file whose Z is up: the lower joint holds its foot, the upper one, at half
@@ -257,8 +257,8 @@ noh build "$work/nowhere.fbx" -o "$work/x.noh"
 expect 1 'a file that is not there'
 check 'and no pack' test ! -f "$work/x.noh"
 
-# Bytes that are changed, and files that are cut, give a pack or a message, whatever Assimp makes of them: in the short
-# form twelve, with NOH_LONG=1 thirty of each file of Assimp's tests, too.
+# Changed and truncated files give a pack or a message: in the short form twelve, with NOH_LONG=1 also thirty of each of
+# Assimp's test files.
 models=/usr/share/assimp/models/FBX
 seed=1 broken=0 tried=0
 next_random() { # BELOW: $random

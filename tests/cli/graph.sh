@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh build --graph, and what info and dump show of it: messages with file and line, the same bytes every time, the text
-# that dump writes builds to the same pack.
+# noh build --graph, info and dump of graphs: messages with file and line, the same bytes every time; the text written
+# by dump builds the same pack.
 . "$(dirname "$0")/lib.sh"
 
 puppet=$build/demo/puppet.glb

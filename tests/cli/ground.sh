@@ -1,6 +1,7 @@
 #!/bin/sh
-# --look-at and --ground of `noh render` and `noh sheet`: pictures differ with the point and the ground, and what cannot
-# look or stand says why not. That soles meet the ground and looks their points is test_stage_feet and test_stage_gaze.
+# --look-at and --ground of `noh render` and `noh sheet`: pictures differ with the point and the ground; models without
+# eyes or feet are refused with a reason. test_stage_feet and test_stage_gaze test that soles meet the ground and gazes
+# their points.
 . "$(dirname "$0")/lib.sh"
 
 puppet=$build/demo/puppet_levels.noh

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build --hair: a haircut in a pack, what it says, what it draws, what it refuses.
+# noh build --hair: a haircut in a pack, info, pictures, refused input.
 . "$(dirname "$0")/lib.sh"
 
 # a head of hair on the arm: any mesh will do

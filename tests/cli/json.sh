@@ -1,5 +1,6 @@
 #!/bin/sh
-# --json: it parses, and has the keys that users' scripts rely on; what budget predicts is what verify finds used.
+# --json: the output parses and has the keys that users' scripts rely on; the budget's prediction equals the use found
+# by verify.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -19,7 +20,7 @@ fi
 holds() {
     check "$1: $2" sh -c '. "$0"; "$1" "$2" <"$3"' "$work/json.sh" $json "$2" "$work/$1.json"
 }
-# the functions of lib.sh, without its set-up
+# the functions of lib.sh, without its setup
 sed -n '/^json_node()/,/^}/p; /^json_python()/,/^}/p' tests/cli/lib.sh >"$work/json.sh"
 
 holds info 'j.version === 5'

@@ -1,9 +1,9 @@
-# lib.sh: what the test scripts share; each begins with `. "$(dirname "$0")/lib.sh"` or
-# `. tests/cli/lib.sh`, reports its results with these functions and ends with `finish`.
+# lib.sh: shared by the test scripts. Each begins with `. "$(dirname "$0")/lib.sh"` or `. tests/cli/lib.sh`, reports its
+# results with these functions and ends with `finish`.
 #
 #   noh ARGUMENTS        run the program: $code, $work/out, $work/err
-#   expect CODE NAME     the last run ended so, and gave no sanitizer report
-#   says TEXT            ... and its stderr holds TEXT (fixed string), in one line from `noh: `
+#   expect CODE NAME     the last run had this exit code and no sanitizer report
+#   says TEXT            ... and its stderr contains TEXT (fixed string), in one line from `noh: `
 #   check NAME COMMAND   the command succeeds
 #   skip NAME REASON
 set -u
@@ -68,8 +68,8 @@ check() {
     fi
 }
 
-# Sets $json to what can read JSON here, a command that evaluates an expression on the object j
-# read from stdin and succeeds when it is true. Empty where there is neither.
+# Set $json to a command that reads an object j from stdin as JSON, evaluates an expression on it and succeeds if it is
+# true. Empty if no such command is available.
 json=
 if command -v node >/dev/null 2>&1; then
     json=json_node
@@ -79,7 +79,7 @@ fi
 json_node() {
     node -e 'const j = JSON.parse(require("fs").readFileSync(0, "utf8")); process.exit(eval(process.argv[1]) ? 0 : 1)' "$1"
 }
-# The same expressions, as far as the scripts use them: j.a.b, j.a[0].b, ===, !==, &&, null
+# The subset of expressions used by the scripts: j.a.b, j.a[0].b, ===, !==, &&, null
 json_python() {
     python3 -c '
 import json, sys

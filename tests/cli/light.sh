@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh lab light and noh build --transfer: figures and their order, JSON, what is refused, strip and info.
+# noh lab light and noh build --transfer: figures and their order, JSON, refused input, strip and info.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb

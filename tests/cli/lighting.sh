@@ -1,5 +1,5 @@
 #!/bin/sh
-# --light, --rotate, --tonemap, --shadow, --background of noh render and noh sheet: pictures, files, what is refused.
+# --light, --rotate, --tonemap, --shadow, --background of noh render and noh sheet: pictures, files, refused input.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh

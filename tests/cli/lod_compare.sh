@@ -1,6 +1,6 @@
 #!/bin/sh
-# lod_compare: what goes to the peer of npm and comes back, with a package of the test's own in its place, so that
-# neither the network nor the real one is needed; that one, too, where `make bench-lod` left it.
+# lod_compare: data sent to and returned by the npm simplifier, with a fake package, so that neither the network nor the
+# real package is needed; also with the real one, if `make bench-lod` installed it.
 . "$(dirname "$0")/lib.sh"
 
 script=$PWD/tools/lod_compare/meshopt.mjs
@@ -99,7 +99,7 @@ check 'with which nothing is lost' sh -c \
 check 'its attributes hold nearly all of the targets' sh -c \
     'sed -n "s/.*attributes hold \([0-9.]*\) .*/\1/p" "$1" | awk "{ exit !(\$1 > 90 && \$1 <= 100) }"' - "$work/out"
 
-# ---- levels that are not ----
+# ---- invalid levels ----
 
 cat >"$work/broken.mjs" <<'END'
 import { readFileSync, writeFileSync } from 'node:fs';

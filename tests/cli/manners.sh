@@ -1,5 +1,5 @@
 #!/bin/sh
-# Help, version, options without effect, JSON on errors, JSON beside --dump.
+# Help, version, options without effect, JSON on errors, JSON together with --dump.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -27,7 +27,7 @@ for verb in $verbs; do
     noh help $verb
     expect 0 "help $verb"
     check 'says the same' cmp "$work/out" "$work/help"
-    # Every option that the help lists is one that the parser takes.
+    # The parser accepts every option in the help.
     options=$(sed -n 's/^  \(-[-a-z0-9]*\).*/\1/p' "$work/help" | grep -v '^-h$')
     for option in $options; do
         noh $verb $option

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh mask: a clean and a damaged region mask, the repair, the picture, --json, what is refused, outputs that cannot be
+# noh mask: a clean and a damaged region mask, the repair, the picture, --json, refused input, outputs that cannot be
 # written.
 . "$(dirname "$0")/lib.sh"
 

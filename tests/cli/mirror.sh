@@ -1,5 +1,5 @@
 #!/bin/sh
-# dump of nodes that mirror: triangles face as their normals do, and normals as the node turns them.
+# dump of mirroring nodes: triangles face in the direction of their normals, and normals follow the node.
 . "$(dirname "$0")/lib.sh"
 
 # A triangle that faces +z, drawn by a node as it is and by one that mirrors.

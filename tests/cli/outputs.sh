@@ -1,5 +1,5 @@
 #!/bin/sh
-# render, sheet and dump: files of the right kind and size, which change with the weights and not with the path.
+# render, sheet and dump: files of the right kind and size, which depend on the weights but not on the path.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -24,7 +24,7 @@ check 'another picture' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/smi
 noh render "$pack" -o "$work/zero.png" --size 96x64 --weight smile=1 --weight smile=0
 check 'the last weight of a name counts' cmp "$work/rest.png" "$work/zero.png"
 
-# What the plain renderer can show instead: each another picture.
+# Debug views of the plain renderer: each gives a different picture.
 for view in none position normal tangent lod; do
     noh render "$pack" -o "$work/view_$view.png" --size 96x64 --debug $view
     expect 0 "render --debug $view"

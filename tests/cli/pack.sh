@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh pack: packs come back through it, other verbs read it, what is rounded looks the same, what is refused, outputs
-# that cannot be written.
+# noh pack: packs survive the round trip, other verbs read the wire form, rounded packs look the same, refused input,
+# outputs that cannot be written.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh full=$build/mask_levels.noh

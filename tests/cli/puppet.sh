@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo_assets --puppet: the same bytes every time, converted without a warning; and the errors of demo_assets.
+# demo_assets --puppet: the same bytes every time, no warning in conversion; errors of demo_assets.
 . "$(dirname "$0")/lib.sh"
 
 check 'the puppet is made' "$build/demo_assets" --puppet "$work/puppet.glb"

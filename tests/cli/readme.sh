@@ -1,6 +1,6 @@
 #!/bin/sh
-# The README's table of bytes is what `noh budget` prints. Its program compiles, links against the library only, and runs.
-# On a pack without what it needs it says so.
+# The README's table of bytes equals the output of `noh budget`. Its program compiles, links only the library, and runs;
+# with an unsuitable pack it prints an error.
 . "$(dirname "$0")/lib.sh"
 flags=
 [ -z "${NOH_SAN:-}" ] || flags="-fsanitize=$NOH_SAN"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh lab replay and noh lab bisect: the same inputs give the same hashes; a change is found in its frame and part; broken
+# noh lab replay and noh lab bisect: the same inputs give the same hashes; a change is located by frame and part; broken
 # sessions.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# build of clips of things of all sizes: a warning where the tolerance does not go with the size, and a usual unit slip.
+# build of clips of objects of all sizes: a warning if the tolerance does not fit the size, and for a common unit
+# mistake.
 . "$(dirname "$0")/lib.sh"
 
 cat >"$work/leg.bvh" <<BVH

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh speak: phones in order and to the sample, lips that meet, a clip that plays on a face beside others.
+# noh speak: phones in order with exact times, closed lips, a clip that plays on a face together with others.
 . "$(dirname "$0")/lib.sh"
 
 noh speak

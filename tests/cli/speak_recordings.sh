@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh speak on recordings: words found by a warp, measured against phones that are known; sound files of every kind.
+# noh speak on recordings: words found by time warping, compared with known phones; sound files of every kind.
 . "$(dirname "$0")/lib.sh"
 
 if [ -n "${NOH_SAN:-}" ]; then

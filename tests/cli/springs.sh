@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh build --springs and --spring, what info and budget show of them, render and sheet with --springs on and off; what
-# is refused.
+# noh build --springs and --spring, info and budget of springs, render and sheet with --springs on and off; refused
+# input.
 . "$(dirname "$0")/lib.sh"
 
 puppet=$build/demo/puppet.glb

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh strip: pictures and dumps of what is left, its figures, --from-level by mesh, build --lod-from, what is refused,
+# noh strip: pictures and dumps of the result, its figures, --from-level by mesh, build --lod-from, refused input,
 # outputs that cannot be written.
 . "$(dirname "$0")/lib.sh"
 

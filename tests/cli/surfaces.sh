@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build --surface: what materials are drawn as, told by name, extras and option; what is refused; what is drawn.
+# noh build --surface: surface types of materials by name, extras and option; refused input; pictures.
 . "$(dirname "$0")/lib.sh"
 
 mask=$build/mask.glb

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh build --terrain: pictures and models as the ground, in packs of their own and with others, and what is refused.
+# noh build --terrain: pictures and models as terrain, in packs of their own and with others; refused input.
 . "$(dirname "$0")/lib.sh"
 
 # 5 x 3 heights, 16 bits of grey: 0, 16384, 32768, 49152, 65535 in each row.

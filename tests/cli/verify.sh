@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh verify of a skinned mesh that is small and far from the origin, as eyes are: its bound follows from the distance,
-# not from its own box. What a failure says; a driver that draws nothing is refused.
+# noh verify of a skinned mesh that is small and far from the origin, like eyes: its bound follows from the distance,
+# not from its own box. Messages of failures; a driver that draws nothing is refused.
 . "$(dirname "$0")/lib.sh"
 
 # 32-bit floats as octal escapes for printf, from decimal numbers, one a line.
@@ -79,7 +79,7 @@ done
 
 # ---- a driver that draws nothing ----
 
-# Budgets need no more than its limits; a picture or a comparison of nothing would be a false result.
+# Budgets need only its limits; a picture or a comparison would be a false result.
 for path in '' "$build/mask.noh"; do
     pack=${path:-$work/ball.noh}
     noh verify "$pack" --driver null
@@ -112,7 +112,7 @@ else
     check 'failures names them' grep -q '"what": "position error, um"' "$work/out"
 fi
 
-# Bounds of half floats say something: they hold, and are at most three times what is there.
+# Bounds of half floats are useful: they hold, and are at most three times the real error.
 noh verify "$build/mask.noh"
 expect 0 'the mask'
 check 'half floats are within their bounds, which are tight' \

@@ -1,5 +1,5 @@
 #!/bin/sh
-# noh as it is built where Draco, Assimp and the libraries of the viewer are missing: it says so, and does all else.
+# noh built without Draco, Assimp and the viewer's libraries: it reports what is missing, and everything else works.
 . "$(dirname "$0")/lib.sh"
 
 if [ ! -x "$build/noh_without" ]; then

@@ -1,6 +1,6 @@
 #!/bin/sh
-# noh build --wrinkles, --wrinkle-map, --region-mask: deterministic bytes, painted files in place of generated ones, what
-# is refused.
+# noh build --wrinkles, --wrinkle-map, --region-mask: deterministic bytes, painted files instead of generated ones,
+# refused input.
 . "$(dirname "$0")/lib.sh"
 
 noh build "$build/mask.glb" -o "$work/auto.noh" --wrinkles auto --only mesh

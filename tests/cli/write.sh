@@ -1,6 +1,6 @@
 #!/bin/sh
-# Where -o leads: regular files, long names, symbolic links, FIFOs, devices, standard output; inputs are never overwritten;
-# and a full standard output is an error.
+# Targets of -o: regular files, long names, symbolic links, FIFOs, devices, standard output; inputs are never
+# overwritten; a full standard output is an error.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh

@@ -1,7 +1,8 @@
 #!/bin/sh
-# A slow zoom shows nothing of the LOD levels: silhouettes, surfaces, pops, flicker (tools/noh/zoom/zoom.h has the bounds);
-# and what a level costs falls as its vertices do. NOH_ZOOM_FULL=1: 600 frames of every model, and silhouettes in each;
-# else in some frames and where a level changes, and without the body. Sanitized programs zoom only for a moment.
+# LOD levels are not noticeable in a slow zoom: silhouettes, surfaces, pops, flicker (tools/noh/zoom/zoom.h has the
+# bounds); the cost of a level decreases with its vertices. NOH_ZOOM_FULL=1: 600 frames of every model, with silhouettes
+# in each; otherwise only in some frames and at level changes, and without the body. Sanitized programs zoom only
+# briefly.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask_levels.noh
@@ -35,7 +36,7 @@ if [ -n "${NOH_SAN:-}" ]; then
     finish
 fi
 
-# ---- what has to hold ----
+# ---- requirements ----
 
 # NAME, LEVELS, PACK, OPTIONS: every level is entered once on each way, and what the runtime claims of the error is so
 zooms() {
@@ -78,11 +79,11 @@ for model in $models; do
     expect 0 "build of $model"
     [ $model = head ] && pose=$face || pose="--clip walk --time 0.5 --weight mouth-corner-puller=1"
     zooms $model 4 "$work/$model.noh" $few $every $pose
-    # more is kept of a face that targets move than of what they do not
+    # a face moved by targets keeps more than the rest
     costs $model "$work/$model.noh" 1.25
 done
 
-# ---- what is measured can fail ----
+# ---- the measurements can fail ----
 
 last="--frames 100 --near 3 --far 6 --every 100" # where the mask's last level is chosen
 noh lab zoom "$pack" $last $mask --json

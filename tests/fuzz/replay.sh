@@ -1,6 +1,5 @@
 #!/bin/sh
-# replay.sh: the fuzzers' seeds, and whatever they once found (tests/fuzz/found, found_clips, found_wires),
-# without libFuzzer.
+# replay.sh: replays the fuzzers' seeds and findings (tests/fuzz/found, found_clips, found_wires) without libFuzzer.
 build=${NOH_BUILD:-build}
 failed=0
 set -- "$build/tests/fuzz/corpus"

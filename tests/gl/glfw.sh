@@ -1,6 +1,6 @@
 #!/bin/sh
-# Windows on a virtual display: the driver glfw draws the picture of EGL, byte for byte, and windows
-# of glfw and of EGL are shown, read and measured.
+# Windows on a virtual display: the driver glfw draws the same picture as EGL, byte for byte, and windows of glfw and of
+# EGL are shown, read and measured.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 

@@ -1,9 +1,9 @@
 #!/bin/sh
-# `noh verify`: every path and format against the CPU, on every model, and with capabilities
-# taken away: whatever can run must not differ in any value. For drivers see matrix.sh.
+# `noh verify`: every path and format against the CPU, on every model, and with capabilities disabled: every path that
+# runs must give equal values. For drivers see matrix.sh.
 . tests/cli/lib.sh
 
-# Runs under `env VARIABLE=VALUE... noh verify PACK`; tells the result.
+# Run `env VARIABLE=VALUE... noh verify PACK` and report the result.
 verify() { # NAME PACK ENVIRONMENT...
     name=$1 pack=$2
     shift 2
@@ -76,7 +76,7 @@ skinned hero/body.glb --palette 12
 skinned hero/body.glb --dual-quaternion all
 skinned khronos/SimpleSkin.gltf --influences 1 --dual-quaternion all
 
-# ---- capabilities taken away ----
+# ---- disabled capabilities ----
 
 missing() { # the last run's JSON tells of a path that is not here, for this reason
     check "and tells that $1 is missing" sh -c 'grep -A1 "\"available\": false" "$1" | grep -F -q "$2"' - "$work/out" "$1"

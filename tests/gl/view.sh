@@ -1,6 +1,6 @@
 #!/bin/sh
-# `noh view` on a virtual display: its options, then real key, mouse and drop events, as a window system has them; what
-# it does with them is view_figure.sh's and view_tools.sh's. Every run fails on any GL error that KHR_debug reports.
+# `noh view` on a virtual display: its options, then real key, mouse and drop events of a window system; view_figure.sh
+# and view_tools.sh test their effects. Every run fails on any GL error reported by KHR_debug.
 . tests/cli/lib.sh
 . tests/support/view.sh
 mask=$build/mask.noh
@@ -26,7 +26,7 @@ expect 2 'so are more LOD levels than there can be'
 
 start_display
 
-# ---- without a hand ----
+# ---- without input ----
 
 noh view "$mask" --frames 2 --size 900x600 --screenshot "$work/shot.png"
 expect 0 'some frames and a screenshot'
@@ -72,7 +72,7 @@ BVH
 noh view "$work/leg.bvh" --frames 2 --size 700x400
 expect 0 'a clip is converted and its bones are shown'
 check 'without a complaint' test ! -s "$work/err"
-# The leg runs off; the camera goes with it, unless it is told to stay. Only the times in the panels change then.
+# The leg runs away and the camera follows, unless it is fixed: then only the times in the panels change.
 sed 's/^Frames: .*/Frames: 3/; s/^Frame Time: .*/Frame Time: 0.5/; /^Frame Time/q' "$work/leg.bvh" >"$work/run.bvh"
 printf '0 0 0 0 0 0 0 0 0\n0 0 100 0 0 0 0 0 0\n100 0 0 0 0 0 0 0 0\n' >>"$work/run.bvh"
 run_for() { # FRAMES OUT ARGUMENTS...
@@ -99,7 +99,7 @@ says "no clip named 'jump'"
 noh view "$work/xvfb" --frames 2
 expect 1 'a file that is no pack'
 
-# ---- by hand ----
+# ---- with input ----
 
 # Each picture is a file noh-figure-N.png, written at once.
 shots=0
@@ -135,7 +135,7 @@ find_window() {
     window=$(timeout 60 xdotool search --sync --onlyvisible --pid $viewer 2>/dev/null | tail -n 1)
     [ -z "$window" ] || timeout 20 xdotool windowfocus --sync "$window"
 }
-# F10 throws the context away, as a driver may: all of it is made again, in another window.
+# F10 discards the context, as a driver may: everything is restored in another window.
 lose() {
     lost=$window
     xdotool key F10
@@ -202,7 +202,7 @@ else
 fi
 close_viewer 'Escape and Enter end it'
 
-# ---- twice as many pixels in a point ----
+# ---- two pixels per point ----
 
 if ! command -v xprop >/dev/null 2>&1; then
     skip 'a dense screen' 'xprop is not installed'

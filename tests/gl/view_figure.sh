@@ -1,6 +1,6 @@
 #!/bin/sh
-# What `noh view` shows, by a scripted hand: the figure as noh render draws it, sliders, clips on layers, a blend space,
-# a graph, root motion, pushes, LOD levels, light; and that all of it survives a lost context.
+# The display of `noh view`, by scripted input: the figure as in noh render, sliders, clips on layers, a blend space, a
+# graph, root motion, pushes, LOD levels, light; all of it survives a lost context.
 . tests/cli/lib.sh
 . tests/support/view.sh
 case $build in /*) ;; *) build=$PWD/$build ;; esac

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What an artist does with `noh view`, by a scripted hand: opens playing, undo, copy and paste, presets, what is drawn
-# over the mesh, two figures side by side, films, conversion beside the window, a file that changes on disk; and the
-# figure stays in the picture.
+# The artist's tools of `noh view`, by scripted input: opening while playing, undo, copy and paste, presets, overlays,
+# two figures side by side, films, background conversion, a file that changes on disk; and the figure stays in the
+# picture.
 . tests/cli/lib.sh
 . tests/support/view.sh
 case $build in /*) ;; *) build=$PWD/$build ;; esac
@@ -241,7 +241,7 @@ says 'broken.glb: '
 noh view "$work/arm.glb" --lod 3 --frames 2 --size 700x400 --screenshot "$work/opened.png"
 expect 0 'a model is converted with levels when it is opened'
 
-# The script's end is not reached before the file has changed: a reload keeps what was set.
+# The script ends only after the file has changed: a reload keeps the settings.
 cp "$mask" "$work/changes.noh"
 (
     tries=0

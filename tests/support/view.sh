@@ -1,12 +1,12 @@
-# view.sh: what the tests of `noh view` share: a virtual display, and a hand that does what a script says. Each begins
-# with `. tests/cli/lib.sh` and `. tests/support/view.sh`.
+# view.sh: shared by the tests of `noh view`: a virtual display and scripted input. Each test begins with `.
+# tests/cli/lib.sh` and `. tests/support/view.sh`.
 #
-#   start_display            ends the test, as skipped, where there is none
-#   hand NAME ARGUMENTS <<.. noh view with a script (tools/noh/view/view_script.h) in $work, where it saves pictures;
-#                            what it expects and what it finds is checked frame by frame, whatever time that takes
-#   last STATE-LINE          what follows these words in the last state that was printed
-#   same, differ, alike A B  pictures, in $work where no folder is named
-#   check_near A B WITHIN    numbers
+#   start_display            ends the test as skipped if there is no display
+#   hand NAME ARGUMENTS <<.. run noh view with a script (tools/noh/view/view_script.h) in $work, where it saves pictures;
+#                            expectations are checked frame by frame, independent of time
+#   last STATE-LINE          text after these words in the last printed state
+#   same, differ, alike A B  compare pictures, in $work if no folder is given
+#   check_near A B WITHIN    compare numbers
 
 start_display() {
     for program in Xvfb xdotool; do
@@ -14,7 +14,7 @@ start_display() {
         skip 'windows' "$program is not installed"
         finish
     done
-    # -noreset: else it resets between two programs, and refuses one that connects meanwhile.
+    # -noreset: otherwise it resets between two programs and refuses connections meanwhile.
     Xvfb -noreset -displayfd 3 -screen 0 1800x1000x24 3>"$work/display" >"$work/xvfb" 2>&1 &
     xvfb=$!
     trap 'kill $xvfb 2>/dev/null; rm -rf "$work"' EXIT
@@ -49,7 +49,7 @@ last() {
 path_of() { case $1 in /*) echo "$1" ;; *) echo "$work/$1" ;; esac; }
 same() { cmp -s "$(path_of "$1")" "$(path_of "$2")"; }
 differ() { [ -f "$(path_of "$1")" ] && [ -f "$(path_of "$2")" ] && ! same "$1" "$2"; }
-# But for a rounding: creases and skin are lit by derivatives, and other programs round them otherwise.
+# Equal except for rounding: creases and skin are lit by derivatives, which different programs round differently.
 alike() { "$build/tests/gl/picture_diff" "$(path_of "$1")" "$(path_of "$2")" "${3:-0.02}" "${4:-0.01}"; }
 check_near() {
     awk -v a="$1" -v b="$2" -v most="$3" 'BEGIN { exit !(a != "" && b != "" && a - b <= most && b - a <= most) }'

@@ -1,6 +1,6 @@
-# find_browser.sh, to be sourced. find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH so that node finds the npm
-# packages; those that are missing are installed into FOLDER alone. find_packages does the latter alone. If something cannot be
-# had, leave_out is called with the reason.
+# find_browser.sh, to be sourced. find_browser FOLDER PACKAGE... sets $chromium, and NODE_PATH so that node finds the
+# npm packages; missing packages are installed into FOLDER. find_packages only sets NODE_PATH. If something is not
+# available, leave_out is called with the reason.
 find_browser() {
     chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || leave_out 'no chromium here'
     find_packages "$@"

@@ -1,6 +1,6 @@
-/* cast.c: twenty figures of two kinds in 2 MiB walk, speak, each in a tint of its own, and are lit by a shader of the
- * game's own, with a shadow map; who is in the middle of the picture bows. The game steps 30 times a second and draws
- * 60 frames. Prints a line of JSON, and saves the last frame.
+/* cast.c: twenty figures of two kinds in 2 MiB walk and speak, each with its own tint, lit by the game's own shader
+ * with a shadow map. The figure in the middle of the picture bows. The game steps 30 times a second and draws 60
+ * frames. Prints a line of JSON and saves the last frame.
  *
  *   cast PACK [CLIPPACK] [--seconds S] [--bytes N] [--json] [-o OUT.png]
  *
@@ -62,7 +62,7 @@ static int open_shader(cast *c)
                : 0;
 }
 
-/* Everything that is asked for, in one place: two kinds of the same figure, within so many bytes. */
+/* The whole request in one place: two kinds of the same figure, within a limit of bytes. */
 static int open_stage(cast *c, const noh_pack *mesh, const noh_pack *const *clips, uint32_t clip_count, uint64_t bytes)
 {
     noh_kind_desc kinds[2] = { { .name = "hero", .actor_count = HEROES },
@@ -86,7 +86,7 @@ static int open_stage(cast *c, const noh_pack *mesh, const noh_pack *const *clip
                 (unsigned long long)(g->cpu_bytes + g->gpu_bytes));
     }
     c->cpu_bytes = c->plan.cpu_bytes;
-    memory = malloc((size_t)c->cpu_bytes); /* nothing is allocated from here on but the shader */
+    memory = malloc((size_t)c->cpu_bytes); /* from here on only the shader allocates */
     if (!memory || noh_stage_init(memory, (size_t)c->cpu_bytes, &gl.device, &desc, &c->plan, &c->stage, &e))
         return start_fail(&gl, "stage", &e);
     return open_shader(c);
@@ -104,12 +104,12 @@ static int enter(cast *c)
             noh_actor_play(c->stage, c->actors[i], 0, "walk", &walk, &e) ||
             noh_actor_set_look(c->stage, c->actors[i], &look, &e))
             return start_fail(&gl, "actor", &e);
-        (void)noh_actor_play(c->stage, c->actors[i], 1, "speak", NULL, NULL); /* where there is such a clip */
+        (void)noh_actor_play(c->stage, c->actors[i], 1, "speak", NULL, NULL); /* if the pack has this clip */
     }
     return 0;
 }
 
-/* Who is under the middle of the picture bows. */
+/* Let the figure in the middle of the picture bow. */
 static void pick(cast *c)
 {
     float origin[3], direction[3];
@@ -135,7 +135,7 @@ static int frame(cast *c, uint32_t number)
         return start_fail(&gl, "step", &e);
     if (noh_stage_frame_between(c->stage, c->views, 2, number % 2u ? 1.0f : 0.5f, &e))
         return start_fail(&gl, "frame", &e);
-    while ((count = noh_stage_jobs(c->stage)) > 0) { /* each phase on as many threads as you like */
+    while ((count = noh_stage_jobs(c->stage)) > 0) { /* each phase may run on any number of threads */
         for (uint32_t i = 0; i < count; i++) noh_stage_job(c->stage, i);
     }
     c->ns += measure_ns();
@@ -189,7 +189,7 @@ int main(int argc, char **argv)
     target_make(&gl.api, WIDTH, HEIGHT, 0, &c.picture);
     target_make(&gl.api, SHADOW, SHADOW, 1, &c.shadow);
     if (open_stage(&c, &packs[0], clips, pack_count, bytes)) return 1;
-    before = measure_allocations; /* those of the packs and the stage */
+    before = measure_allocations; /* allocations of the packs and the stage */
     if (!before) return fprintf(stderr, "allocations are not counted: see measure.h\n"), 1;
     if (enter(&c)) return 1;
     for (uint32_t i = 0; i < frames; i++) {

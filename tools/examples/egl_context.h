@@ -1,5 +1,5 @@
-/* egl_context.h: a context of OpenGL ES 3 without a window: on a surfaceless display where EGL has one, else on the
- * default display. It stays until the program ends. Link EGL. */
+/* egl_context.h: an OpenGL ES 3 context without a window: on a surfaceless display if EGL has one, else on the default
+ * display. It lasts until the program ends. Link EGL. */
 #ifndef NOH_EXAMPLES_EGL_CONTEXT_H
 #define NOH_EXAMPLES_EGL_CONTEXT_H
 

@@ -1,4 +1,4 @@
-/* face_cpu.c: a face smiles, without a GPU. Reads a pack, sums morph targets with SIMD, draws what came out.
+/* face_cpu.c: a face smiles, without a GPU. Reads a pack, sums morph targets with SIMD, and draws the result.
  *
  *   face_cpu PACK [TARGET=WEIGHT]... [-o OUT.ppm]        default: smile=1, face.ppm
  *
@@ -13,7 +13,7 @@
 #include "picture.h"
 
 static unsigned char file[8u << 20] ALIGNED_16;
-static unsigned char memory[1u << 20] ALIGNED_16; /* all that noh may use */
+static unsigned char memory[1u << 20] ALIGNED_16; /* all memory for noh */
 static picture image;
 
 static int fail(const char *what, const noh_error *error)
@@ -23,7 +23,7 @@ static int fail(const char *what, const noh_error *error)
     return 1;
 }
 
-/* "smile=0.5" into the weights. */
+/* Parse "smile=0.5" into the weights. */
 static int set_weight(const noh_mesh *mesh, const char *text, float *weights)
 {
     char name[NOH_NAME_BYTES_MAX];

@@ -2,7 +2,7 @@
  *
  *   face_gl PACK [TARGET] [-o OUT.ppm]        default: smile, face_gl.ppm
  *
- * Links EGL. What a game brings of its own is the context and the blocks of memory. */
+ * Links EGL. A game provides the context and the blocks of memory. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@
 #include "noh/pack.h"
 
 #define SIZE 512
-#define ALIGNED_16 __attribute__((aligned(16))) /* as every block for noh has to be */
+#define ALIGNED_16 __attribute__((aligned(16))) /* required of every block for noh */
 
 typedef struct face {
     noh_gl_api gl;
@@ -59,7 +59,7 @@ static void open_target(const noh_gl_api *gl)
     gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
 }
 
-/* Along -z, without perspective, the mesh's box in the middle of the picture; lit from the upper left. */
+/* View along -z, without perspective, with the mesh's box in the middle of the picture, lit from the upper left. */
 static noh_gl_camera look_at(const noh_mesh *mesh)
 {
     const float *low = mesh->header->bounds_min, *high = mesh->header->bounds_max;
@@ -76,7 +76,7 @@ static noh_gl_camera look_at(const noh_mesh *mesh)
     return camera;
 }
 
-/* All GL objects of a mesh with morph targets; noh_gl_morph chooses a path by itself. */
+/* All GL objects of a mesh with morph targets; noh_gl_morph chooses a path. */
 static int open_face(face *f)
 {
     noh_gl_device device = { &f->gl, &f->caps, &f->ledger, shader_log, sizeof shader_log };
@@ -138,7 +138,7 @@ int main(int argc, char **argv)
         return fail("face_gl PACK", &error);
     index = noh_mesh_find_target(&f.mesh, target);
     if (index == NOH_NONE) return fprintf(stderr, "no target '%s'\n", target), 1;
-    if (egl_context_open()) return fprintf(stderr, "EGL gives no context of OpenGL ES 3\n"), 1;
+    if (egl_context_open()) return fprintf(stderr, "cannot create an OpenGL ES 3 context with EGL\n"), 1;
     if (noh_gl_api_load(&f.gl, egl_context_get, NULL, &error) || noh_gl_caps_probe(&f.gl, &f.caps, &error))
         return fail("GL", &error);
     if (open_face(&f)) return 1;

@@ -1,5 +1,5 @@
-/* measure.h: the time, and how often the program and what is linked into it (the library, not the driver) has
- * allocated. Link with -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc. */
+/* measure.h: the time, and the number of allocations by the program and the libraries linked into it (noh, not the
+ * driver). Link with -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc. */
 #ifndef NOH_EXAMPLES_MEASURE_H
 #define NOH_EXAMPLES_MEASURE_H
 

@@ -1,17 +1,17 @@
-/* picture.h: how the examples read a file and look at a character without a GPU: triangles with a depth buffer into a
- * .ppm file. It keeps the examples short; nothing of it is in the library. */
+/* picture.h: reads a file, and draws a character without a GPU for the examples: triangles with a depth buffer, saved
+ * as .ppm. It keeps the examples short; it is not part of the library. */
 #ifndef NOH_EXAMPLES_PICTURE_H
 #define NOH_EXAMPLES_PICTURE_H
 
 #include <stdio.h>
 
-#define ALIGNED_16 __attribute__((aligned(16))) /* as every block for noh has to be */
+#define ALIGNED_16 __attribute__((aligned(16))) /* required of every block for noh */
 
 #define PICTURE_WIDTH 480
 #define PICTURE_HEIGHT 540
 
 typedef struct picture {
-    float centre[3], height; /* what is looked at along -z: a point, and the height of the view around it */
+    float centre[3], height; /* the view along -z: a centre, and the height of the view around it */
     float corners[3][3], colors[3][3];
     float depth[PICTURE_HEIGHT][PICTURE_WIDTH];
     unsigned char rgb[PICTURE_HEIGHT][PICTURE_WIDTH][3];
@@ -19,12 +19,12 @@ typedef struct picture {
 
 static const float picture_white[4] = { 1.0f, 1.0f, 1.0f, 1.0f };
 
-/* The bytes of a file; 0 when it cannot be read, or has more than that. */
+/* Read a file; returns its size, 0 if it cannot be read or is too large. */
 static size_t picture_read(const char *path, void *bytes, size_t bytes_max)
 {
     FILE *in = fopen(path, "rb");
     size_t count = in ? fread(bytes, 1, bytes_max, in) : 0;
-    if (!in) fprintf(stderr, "%s: cannot be opened\n", path);
+    if (!in) fprintf(stderr, "%s: cannot open\n", path);
     if (in && (fgetc(in) != EOF || fclose(in) != 0)) count = 0;
     return count;
 }
@@ -88,7 +88,7 @@ static void picture_triangle(picture *p)
     }
 }
 
-/* The k-th corner of a triangle, lit from the upper left; the third one draws it, both sides of it. */
+/* Set the k-th corner of a triangle, lit from the upper left; the third corner draws the triangle, from both sides. */
 static void picture_corner(picture *p, unsigned k, const float at[3], const float normal[3], const float *color,
                            const float *tint)
 {
@@ -111,7 +111,7 @@ static int picture_save(const picture *p, const char *path)
         written = fwrite(p->rgb, sizeof p->rgb, 1, out);
         if (fclose(out) != 0) written = 0;
     }
-    if (!written) fprintf(stderr, "%s: cannot be written\n", path);
+    if (!written) fprintf(stderr, "%s: cannot write\n", path);
     return written ? 0 : 1;
 }
 

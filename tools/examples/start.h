@@ -1,4 +1,4 @@
-/* start.h: what the programs of the stage begin with: a message, a pack, a context of GL. Link EGL. */
+/* start.h: the start of the stage's example programs: error messages, a pack, a GL context. Link EGL. */
 #ifndef NOH_EXAMPLES_START_H
 #define NOH_EXAMPLES_START_H
 
@@ -17,7 +17,7 @@ static int start_fail(const noh_gl *gl, const char *what, const noh_error *e)
     return 1;
 }
 
-/* A pack, in memory that stays; 0 on success. */
+/* Read a pack into memory that is never freed; 0 on success. */
 static int start_pack(const noh_gl *gl, const char *path, noh_pack *pack)
 {
     FILE *in = fopen(path, "rb");
@@ -29,10 +29,10 @@ static int start_pack(const noh_gl *gl, const char *path, noh_pack *pack)
     return noh_pack_open(data, bytes, pack, &e) ? start_fail(gl, path, &e) : 0;
 }
 
-/* A context without a window, and GL's functions in it; 0 on success. */
+/* Create a context without a window and load its GL functions; 0 on success. */
 static int start_gl(noh_gl *gl)
 {
-    noh_error e = { NOH_ERR_GL, "there is no context of OpenGL ES 3", 0, 0 };
+    noh_error e = { NOH_ERR_GL, "cannot create an OpenGL ES 3 context", 0, 0 };
     return egl_context_open() || noh_gl_open(gl, egl_context_get, NULL, &e) ? start_fail(gl, "GL", &e) : 0;
 }
 

@@ -21,7 +21,7 @@ static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
     if (event->weight > 0.5f) printf("%5.2f s  %s\n", (double)event->clock / NOH_TICKS_PER_SECOND, event->name);
 }
 
-/* It stands, walks off, hurries, comes to rest and bows. */
+/* The figure stands, walks off, hurries, comes to rest and bows. */
 static float speed_at(int frame)
 {
     return frame < 60 ? 0.0f : frame < 150 ? 0.5f : frame < 240 ? 0.9f : 0.0f;
@@ -59,7 +59,7 @@ int main(int argc, char **argv)
     target_make(&gl.api, 960, 720, 0, &picture);
     for (int i = 0; i < 400; i++) {
         noh_stage_view view;
-        now += (speed_at(i) - now) * 0.08f; /* no one starts at full speed */
+        now += (speed_at(i) - now) * 0.08f; /* accelerate smoothly */
         if (noh_actor_set_parameter(stage, actor, speed, now, &e) ||
             (i == 300 && noh_actor_set_parameter(stage, actor, bow, 1.0f, &e)))
             return start_fail(&gl, "parameter", &e);
@@ -68,7 +68,7 @@ int main(int argc, char **argv)
         noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 960, 720);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
-        target_clear(&gl.api, &picture); /* after the frame, which draws into textures of its own */
+        target_clear(&gl.api, &picture); /* after the frame, which draws into the library's textures */
         if (noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e)) return start_fail(&gl, "draw", &e);
         is = noh_actor_state(stage, actor, bows);
         if (is && strcmp(is, was) != 0) printf("%5.2f s  %s\n", i / 60.0, is);

@@ -1,5 +1,5 @@
-/* target.h: where the examples draw to without a window: a framebuffer with colour, or with a depth texture for
- * shadows; and its picture as PNG. Nothing of it is in the library. */
+/* target.h: a render target for examples without a window: a framebuffer with colour, or with a depth texture for
+ * shadows; saved as PNG. It is not part of the library. */
 #ifndef NOH_EXAMPLES_TARGET_H
 #define NOH_EXAMPLES_TARGET_H
 
@@ -15,7 +15,7 @@
 #include <stb/stb_image_write.h>
 
 typedef struct target {
-    GLuint framebuffer, depth; /* depth: a texture that a sampler2DShadow reads, for shadows */
+    GLuint framebuffer, depth; /* depth: a texture for a sampler2DShadow */
     GLsizei width, height;
 } target;
 

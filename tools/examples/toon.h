@@ -1,5 +1,5 @@
-/* toon.h: a shader of the game's own for cast.c: light in steps, through a shadow map. noh_fetch gives the vertex
- * morphed and skinned. */
+/* toon.h: the game's own shader of cast.c: stepped light with a shadow map. noh_fetch returns the morphed and skinned
+ * vertex. */
 #ifndef NOH_EXAMPLES_TOON_H
 #define NOH_EXAMPLES_TOON_H
 

@@ -41,7 +41,7 @@ int main(int argc, char **argv)
         return start_fail(&gl, "stage", &e);
     if (noh_stage_spawn(stage, 0, NULL, &actor, &e) || noh_actor_play(stage, actor, 0, "walk", NULL, &e))
         return start_fail(&gl, "actor", &e);
-    (void)noh_actor_play(stage, actor, 1, "speak", NULL, NULL); /* where there is such a clip */
+    (void)noh_actor_play(stage, actor, 1, "speak", NULL, NULL); /* if the pack has this clip */
     target_make(&gl.api, 960, 720, 0, &picture);
     for (int i = 0; i < 120; i++) {
         noh_stage_view view;
@@ -50,7 +50,7 @@ int main(int argc, char **argv)
         noh_view_orbit(&view, place.position, 0.6f, 0.1f, 3.0f, 960, 720);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
-        target_clear(&gl.api, &picture); /* after the frame, which draws into textures of its own */
+        target_clear(&gl.api, &picture); /* after the frame, which draws into the library's textures */
         if (noh_stage_draw(stage, NOH_PASS_COLOR, 0, NULL, &e)) return start_fail(&gl, "draw", &e);
     }
     (void)noh_actor_place(stage, actor, &place, NULL);

@@ -3,7 +3,7 @@
  *
  *   walker_cpu PACK [SECONDS] [-o OUT.ppm]        default: 2 seconds, walker_cpu.ppm
  *
- * What a game does once is in open_walker, what it does in each frame in frame. */
+ * open_walker has the calls that a game makes once, frame the calls of each frame. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,12 +26,12 @@ typedef struct walker {
     noh_pose_scratch scratch;
     noh_transform *pose;            /* [joint_count] */
     float *floats;                  /* [float_count] morph weights and named floats */
-    float *model, *matrices, *sums; /* of the skeleton, of one skin, of one mesh's targets */
-    noh_root_pose root;             /* where the clips have carried it */
+    float *model, *matrices, *sums; /* of the skeleton, of a skin, of a mesh's targets */
+    noh_root_pose root;             /* root motion of the clips */
 } walker;
 
 static unsigned char file[8u << 20] ALIGNED_16;
-static unsigned char memory[4u << 20] ALIGNED_16; /* all that noh may use */
+static unsigned char memory[4u << 20] ALIGNED_16; /* all memory for noh */
 static picture image;
 
 static int fail(const char *what, const noh_error *error)
@@ -51,7 +51,7 @@ static void on_key(void *user, const noh_event *event)
     }
 }
 
-/* A pack without the clip does without it. */
+/* Play a clip if the pack has it. */
 static int start(walker *w, uint32_t track, const char *name)
 {
     noh_track_desc desc;
@@ -62,7 +62,7 @@ static int start(walker *w, uint32_t track, const char *name)
     return noh_controller_start(w->controller, &w->bank->clips, track, &desc, &error) ? fail(name, &error) : 0;
 }
 
-/* Everything that moves it, out of one block. */
+/* Create the objects that move the figure, from one block. */
 static int open_walker(walker *w)
 {
     noh_arena arena = noh_arena_over(memory, sizeof memory);

@@ -1,6 +1,6 @@
-/* festival.c: the page's crowd: a place that lives (crowd/place_scene.h), drawn on a canvas. festival.js calls the
- * festival_* functions; those that return an int return 0, or else festival_error says what is wrong. What is shown is
- * the tool's `noh crowd --place`, in memory that was taken when the page began and does not grow. */
+/* festival.c: the page's crowd: the scene of `noh crowd --place` (crowd/place_scene.h) on a canvas, in memory taken
+ * when the page starts, which does not grow. festival.js calls the festival_* functions; if one returns an int other
+ * than 0, festival_error returns the message. */
 #include <emscripten.h>
 #include <string.h>
 
@@ -29,7 +29,7 @@ static int open_context(gpu *g)
     noh_error error = { NOH_OK, "", 0, 0 };
     g->platform = &noh_platform_web;
     if (noh_platform_web.create(NULL, &g->context, NULL, 0)) {
-        return tool_fail("canvas", "this browser gives no WebGL 2 context");
+        return tool_fail("canvas", "cannot create a WebGL 2 context: use a browser with WebGL 2");
     }
     if (noh_gl_api_load(&g->gl, noh_platform_web.get_proc, g->context, &error) ||
         noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
@@ -39,8 +39,8 @@ static int open_context(gpu *g)
     return 0;
 }
 
-/* The files people.nohz, festival.nohz and festival.place are there. shadow: 1: everybody has one; pixels: the largest
- * error of levels of detail; plain_sky: a gradient, which costs less than the light itself */
+/* Open the files people.nohz, festival.nohz and festival.place. shadow 1: everybody casts one; pixels: largest error of
+ * LOD levels; plain_sky 1: a gradient, which costs less than the environment. */
 EMSCRIPTEN_KEEPALIVE int festival_open(uint32_t agents, uint32_t width, uint32_t height, int shadow, float pixels,
                                        int plain_sky)
 {
@@ -54,7 +54,7 @@ EMSCRIPTEN_KEEPALIVE int festival_open(uint32_t agents, uint32_t width, uint32_t
     o->light = (light_options){ "sky", NULL, shadow ? "on" : "off", NULL, plain_sky ? "gradient" : "light", 0.0 };
     o->width = width;
     o->height = height;
-    o->encode_srgb = 1; /* a canvas does not */
+    o->encode_srgb = 1; /* a canvas does not encode */
     if (!status) status = pack_file_open(&festival.people, "people.nohz");
     if (!status) status = place_read("festival.place", &festival.place);
     if (!status) status = place_scene_open(&festival.scene, &festival.g, &festival.people, festival.place, o);
@@ -66,13 +66,13 @@ EMSCRIPTEN_KEEPALIVE const char *festival_error(void)
     return tool_last_failure();
 }
 
-/* So many thirtieths of a second pass. */
+/* Advance by a number of steps of 1/30 s. */
 EMSCRIPTEN_KEEPALIVE void festival_step(uint32_t steps)
 {
     for (uint32_t i = 0; i < steps; i++) place_scene_step(&festival.scene);
 }
 
-/* Radians, metres; about x, z. */
+/* Move the camera: radians, metres; about x, z. */
 EMSCRIPTEN_KEEPALIVE void festival_look(float azimuth, float elevation, float distance, float x, float z,
                                         uint32_t width, uint32_t height)
 {
@@ -92,7 +92,7 @@ static void begin(uint32_t width, uint32_t height)
     gl->ClearBufferfv(GL_DEPTH, 0, &far);
 }
 
-/* A frame of what festival_look looks at. In a lost context nothing is drawn. */
+/* Draw a frame from the camera of festival_look. Draws nothing in a lost context. */
 EMSCRIPTEN_KEEPALIVE int festival_draw(void)
 {
     uint32_t width, height;
@@ -105,7 +105,7 @@ EMSCRIPTEN_KEEPALIVE int festival_draw(void)
     return status ? status : place_scene_draw(&festival.scene, &festival.view);
 }
 
-/* Of the last frame: how many were seen; the figures at a level. */
+/* Of the last frame: visible figures; figures at a level. */
 EMSCRIPTEN_KEEPALIVE uint32_t festival_seen(void)
 {
     return noh_stage_stats_of(festival.scene.stage)->seen;
@@ -120,7 +120,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t festival_stage_bytes(void)
                       place_life_bytes(festival.scene.life));
 }
 
-/* Make every GL object again, after the browser restored a lost context. */
+/* Restore every GL object after the browser restored a lost context. */
 EMSCRIPTEN_KEEPALIVE int festival_restore(void)
 {
     noh_error error = { NOH_OK, "", 0, 0 };

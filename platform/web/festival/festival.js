@@ -1,7 +1,7 @@
-// festival.js: the page around the crowd's program (festival.c). Where no GPU draws there are fewer people, without samples,
-// coarser figures, a plain sky, and fewer pixels while frames take long. The query: ?agents=600; ?shadow=on; ?size=640x360 draws a
-// canvas of so many pixels; ?still=30 shows that second and stops; ?antialias=on|off, else off where no GPU draws; ?error=8:
-// levels of detail may be off by so many pixels.
+// festival.js: the page around the crowd's program (festival.c). Without a GPU there are fewer people, no antialiasing,
+// coarser figures, a plain sky, and a lower resolution while frames are slow. The query: ?agents=600; ?shadow=on;
+// ?size=640x360: size of the canvas; ?still=30: shows this second and stops; ?antialias=on|off, default off without a
+// GPU; ?error=8: largest LOD error in pixels.
 'use strict';
 
 const query = new URLSearchParams(location.search), byId = (id) => document.getElementById(id), canvas = byId('canvas');
@@ -10,7 +10,7 @@ const counts = [100, 200, 300, 400, 600, 1000];
 const home = { azimuth: 0.31, elevation: 0.23, distance: 24, x: 0, z: 0 };
 const orbit = { ...home };
 const step = 1 / 30; // seconds
-let pixels = null; // how many are drawn (package/pixels.js)
+let pixels = null; // resolution (package/pixels.js)
 let Module = null, software = false, playing = true, lost = false, wanted = false, before = 0, owed = 0;
 const times = []; // of the last frames, ms
 
@@ -35,7 +35,7 @@ function advance(steps) {
     window.noh.steps += steps;
 }
 
-// Time goes on in whole steps, at most four a frame: a page that cannot keep up is slow, not jerky.
+// Time advances in whole steps, at most four per frame: a page that cannot keep up is slow, not jerky.
 function draw(now) {
     wanted = false;
     if (lost) return;
@@ -114,12 +114,12 @@ function setPlaying(on) {
     before = 0;
     times.length = 0;
     byId('play').textContent = on ? 'pause' : 'play';
-    if (Module) resize(); // at rest with all pixels
+    if (Module) resize(); // full resolution at rest
     redraw();
 }
 byId('play').addEventListener('click', () => setPlaying(!playing));
 
-// How many there are, and whether they cast shadows, is planned before they come: the page begins anew.
+// The number of people and their shadows are planned before the start, so the page is reloaded.
 function beginAnew() {
     query.set('agents', byId('agents').value);
     query.set('shadow', byId('shadow').checked ? 'on' : 'off');
@@ -151,9 +151,9 @@ async function fetched(name) {
     if (!answer.ok) throw new Error(`${name}: the server says ${answer.status}`);
     return new Uint8Array(await answer.arrayBuffer());
 }
-const asked = Promise.all(files.map(fetched)); // beside the program
+const asked = Promise.all(files.map(fetched)); // in parallel with the program
 
-// Who draws, which only a context tells.
+// The renderer, which only a context reveals.
 function findRenderer() {
     const gl = document.createElement('canvas').getContext('webgl2');
     if (!gl) return '';
@@ -166,7 +166,7 @@ function findRenderer() {
 async function program() {
     const smooths = query.has('antialias') ? query.get('antialias') !== 'off' : !software; // a frame takes nearly twice as long with samples
     const gl = canvas.getContext('webgl2', { antialias: smooths, depth: true, alpha: false, preserveDrawingBuffer: true });
-    if (!gl) throw new Error('this browser gives no WebGL 2 context');
+    if (!gl) throw new Error('cannot create a WebGL 2 context: use a browser with WebGL 2');
     const { importsOf } = await import('../package/gl.js'), heap = {}, { imports } = importsOf(gl, heap);
     return nohFestival({
         instantiateWasm(given, done) {
@@ -186,7 +186,7 @@ async function start() {
     const { Pixels, isSoftware } = await import('../package/pixels.js');
     software = isSoftware(findRenderer());
     Module = window.Module = await program();
-    const error = Math.max(0.1, Number(query.get('error')) || (software ? 8 : 1)); // of levels of detail, pixels
+    const error = Math.max(0.1, Number(query.get('error')) || (software ? 8 : 1)); // LOD error, pixels
     const asksFor = Number(query.get('agents') || (software ? 10 : 300));
     const agents = Math.min(1000, Math.max(1, Number.isFinite(asksFor) ? Math.floor(asksFor) : 300));
     if (!query.has('size')) pixels = new Pixels();
@@ -194,7 +194,7 @@ async function start() {
     byId('shadow').checked = query.get('shadow') === 'on';
     (await asked).forEach((bytes, i) => Module.FS.writeFile(files[i], bytes));
     say('people arrive');
-    await new Promise((resolve) => setTimeout(resolve)); // so that this is seen
+    await new Promise((resolve) => setTimeout(resolve)); // lets the browser show the text
     resize();
     check(Module._festival_open(agents, canvas.width, canvas.height, byId('shadow').checked ? 1 : 0, error, software ? 1 : 0));
     const still = Number(query.get('still'));

@@ -1,4 +1,4 @@
-// camera.js: a camera that turns about the figures, as `noh render` has it: 30 degrees high.
+// camera.js: a camera that orbits the figures, with the vertical field of view of `noh render`, 30 degrees.
 
 export const front = { azimuth: 0, elevation: 0.05 };
 
@@ -11,12 +11,12 @@ function product(a, b, out) {
 
 export class Camera {
     constructor() {
-        // distance: 1 frames the figures; pixel: what one of the page's is there, in world units
+        // distance: 1 frames the figures; pixel: size of a page pixel at the figures, in world units
         Object.assign(this, front, { distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
         this.matrix = new Float32Array(16);
     }
 
-    // Come as near as a box allows, that was measured where the figures were.
+    // Frame a box, measured at the figures' position, as near as possible.
     fit(box, from) {
         Object.assign(this, { box, from, distance: 0, offset: [0, 0, 0], byHand: false });
     }
@@ -31,13 +31,13 @@ export class Camera {
         this.elevation = Math.min(1.5, Math.max(-1.5, this.elevation + elevation));
     }
 
-    // By pixels of the page: what is under a finger stays there.
+    // Move by pixels of the page: the point under a finger stays there.
     pan(x, y) {
         this.byHand = true;
         this.offset = this.offset.map((o, i) => o + (y * this.up[i] - x * this.right[i]) * this.pixel);
     }
 
-    // Into 22 floats: matrix, eye, light. walked: where the figures are now; height: of the canvas on the page.
+    // Into 22 floats: matrix, eye, light. walked: present position of the figures; height: of the canvas on the page.
     write(out, walked, aspect, height) {
         const b = this.box, to = this.follows ? walked : this.from;
         const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - this.from[c] + this.offset[c]);

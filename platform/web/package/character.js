@@ -1,5 +1,5 @@
-// character.js: a character on a canvas: its pack arrives, is drawn, plays clips, looks, feels and speaks. What is chosen
-// is kept here, so that it holds for the coarsest levels of a pack, for the whole of it, and for another pack.
+// character.js: a character on a canvas: loading its pack, drawing, clips, gaze, emotions and speech. Settings are
+// stored here, so that they apply to the coarsest levels of a pack, to the whole pack, and to another pack.
 import { Camera, front } from './camera.js';
 import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
@@ -8,17 +8,17 @@ import { Speech } from './speech.js';
 export const layers = ['body', 'face'];
 export const backgrounds = ['plain', 'gradient', 'light'];
 export const shadows = ['off', 'on', 'blob'];
-const transition = 0.3; // seconds from one clip into another
-const mostPixels = 2; // of the canvas to one of the page
-const restsAfter = 300; // ms without a frame, after which one is drawn with all pixels
-const longest = 4000; // of a frame, ms: what takes longer was not drawn meanwhile
-const settles = 2500; // ms in which a gaze and a feeling arrive
-const swings = 2000; // in which hair comes to rest
+const transition = 0.3; // seconds between two clips
+const mostPixels = 2; // canvas pixels per page pixel
+const restsAfter = 300; // ms without a frame, after which a frame is drawn at full resolution
+const longest = 4000; // of a frame, ms; longer gaps were not drawn
+const settles = 2500; // ms in which gaze and emotion settle
+const swings = 2000; // ms in which hair comes to rest
 const shakes = 4000;
 const strength = 90; // of a push, newton seconds
 const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
 
-// How a character is shown, where nothing else was asked for.
+// The default settings of a character.
 const asMade = { light: 'studio', degrees: 0, shadow: 'on', floor: true, tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
     emotion: null, amount: 1, hair: true, wind: 0, speed: 1, paused: false };
 
@@ -35,11 +35,11 @@ export class Character extends EventTarget {
         this.speech = new Speech(this);
         this.camera.follows = follows;
         this.ended = new AbortController();
-        this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // so that the canvas can be saved
+        this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // to allow saving the canvas
         this.watch();
     }
 
-    // Calls of GL by the library, all together: for who shares the context.
+    // Runs GL calls of the library together, for users of a shared context.
     around(call) { return call(); }
 
     emit(type, detail) {
@@ -49,7 +49,7 @@ export class Character extends EventTarget {
     watch() {
         const { signal } = this.ended;
         this.canvas.addEventListener('webglcontextlost', (event) => {
-            event.preventDefault(); // else the browser never restores it
+            event.preventDefault(); // otherwise the browser never restores the context
             this.lost = true;
             if (!signal.aborted) this.emit('lost');
         }, { signal });
@@ -66,14 +66,14 @@ export class Character extends EventTarget {
         this.draw();
     }
 
-    // ---- the pack arrives ----
+    // ---- loading ----
 
-    // source: an address, a Response, a File or Blob, or bytes. What is shown stays until there is something to show.
-    // Resolves when the pack is there as a whole.
+    // source: an address, a Response, a File or Blob, or bytes. The present character stays until the new one can be
+    // shown. Resolves when the whole pack is loaded.
     async load(source) {
         const number = this.loads = (this.loads || 0) + 1, was = this.whole;
         const mine = () => this.loads === number && !this.ended.signal.aborted;
-        if (!this.gl) throw new Error('this browser gives no WebGL 2 context');
+        if (!this.gl) throw new Error('cannot create a WebGL 2 context: use a browser with WebGL 2');
         this.whole = false;
         let shown = 0;
         const show = async (arrival) => {
@@ -106,7 +106,7 @@ export class Character extends EventTarget {
         if (shown() < 2) await show(arrival);
     }
 
-    // Another program shows the character. first: of another pack.
+    // Switch to another program. first: the first one of a pack.
     use(program, first) {
         const time = this.program && !first ? this.time : 0;
         this.close();
@@ -123,7 +123,7 @@ export class Character extends EventTarget {
         program.check(program._web_check());
     }
 
-    // What the pack has.
+    // Read the contents of the pack.
     list() {
         const p = this.program, names = (count, name) => Array.from({ length: count }, (_, i) => p.text(name(i)));
         this.lights = names(p._web_light_count(), p._web_light_name);
@@ -131,7 +131,7 @@ export class Character extends EventTarget {
         for (let i = 0; p._web_emotion_name(i); i++) this.emotions.push(p.text(p._web_emotion_name(i)));
     }
 
-    // Before the stage is made, so that it is made once.
+    // Apply settings before the stage is created, so that it is created only once.
     beginLight() {
         const { light } = this.chosen;
         this.tellLighting();
@@ -175,7 +175,7 @@ export class Character extends EventTarget {
         this.resizeCanvas();
         try {
             this.advance(seconds);
-        } catch (error) { // nobody waits for a frame
+        } catch (error) { // no caller waits for a frame
             this.ready = false;
             this.emit('fault', { message: String(error.message || error) });
             return;
@@ -185,7 +185,7 @@ export class Character extends EventTarget {
         else this.rest();
     }
 
-    // With all pixels, once nothing moves.
+    // Draw at full resolution once nothing moves.
     rest() {
         clearTimeout(this.resting);
         if (this.share === 1) return;
@@ -197,10 +197,10 @@ export class Character extends EventTarget {
         }, restsAfter);
     }
 
-    // Of the pixels across, with which the next frame is drawn.
+    // Resolution of the next frame, as a share of the full width.
     get share() { return this.sharp || !this.spares || this.size ? 1 : this.pixels.share; }
 
-    // Whether fewer pixels are drawn while it moves and frames take long.
+    // Whether the resolution is reduced while the figure moves and frames are slow.
     get sparing() { return this.spares; }
     set sparing(on) {
         this.spares = on;
@@ -208,7 +208,7 @@ export class Character extends EventTarget {
         this.redraw();
     }
 
-    // Move time on.
+    // Advance time.
     step(seconds) {
         const p = this.program;
         this.speech.frame();
@@ -217,7 +217,7 @@ export class Character extends EventTarget {
         this.watchFall();
     }
 
-    // Move time on, and draw.
+    // Advance time and draw.
     advance(seconds) {
         const p = this.program;
         this.step(seconds);
@@ -233,7 +233,7 @@ export class Character extends EventTarget {
             character: p._web_key_character(i) });
     }
 
-    // Whether there is something to draw after a frame.
+    // Whether another frame must follow.
     moves(now) {
         const p = this.program, hair = p._web_has_hair() && this.chosen.hair && (this.chosen.wind > 0 || p._web_shakes());
         return !this.stopped && (this.runs || now < this.busy || p._web_fades() > 0 || this.lives || this.speech.speaks || this.fallen > 0 || hair);
@@ -248,7 +248,7 @@ export class Character extends EventTarget {
         this.wanted = true;
     }
 
-    // A pose is not made anew in every frame, and what is calm moves when it is told to.
+    // Poses are not updated in every frame, and calm faces still move on request.
     settle(ms = settles) {
         this.busy = Math.max(this.busy, performance.now() + ms);
         this.redraw();
@@ -259,26 +259,26 @@ export class Character extends EventTarget {
         const [width, height] = size ? [size, size] : [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, Math.round(n * scale)));
         const changes = width !== canvas.width || height !== canvas.height;
         if (changes) Object.assign(canvas, { width, height });
-        canvas.style.objectFit = size ? 'contain' : ''; // its picture keeps its proportions, in the middle
+        canvas.style.objectFit = size ? 'contain' : ''; // keeps the picture's proportions, centred
         return changes;
     }
 
-    // Of the picture on the page: of a `size` of its own, as much as fits.
+    // The size of the picture on the page: with a `size` of its own, as much as fits.
     shownHeight() {
         const { canvas, size } = this, height = canvas.clientHeight || canvas.height;
         return size && canvas.clientWidth ? Math.min(height, canvas.clientWidth * canvas.height / canvas.width) : height;
     }
 
     resize() {
-        if (this.resizeCanvas() && this.ready) this.draw(); // at once, because resizing clears a canvas
+        if (this.resizeCanvas() && this.ready) this.draw(); // immediately, because resizing clears a canvas
     }
 
     // ---- the camera ----
 
-    // Where the first character has walked to.
+    // The position of the first character.
     get walked() { return Array.from(this.program.floats(this.program._web_walked(), 3)); }
 
-    // Come as near as all figures allow, in their present pose or, of a clip that runs, in all of its.
+    // Frame all figures as near as possible, in their present pose or in all poses of a running clip.
     fit() {
         const p = this.program, clip = this.runs && this.playing[0].clip !== null ? this.clipNamed(this.playing[0].clip) : null;
         const poses = clip ? Math.min(mostPoses, Math.max(4, Math.ceil(clip.seconds * posesASecond))) : 0;
@@ -296,34 +296,34 @@ export class Character extends EventTarget {
 
     clipNamed(name) { return this.clips.find((clip) => clip.name === name); }
 
-    // A clip by its name, null: none. With a fade in seconds it goes on from what is shown; with 0 the body begins at a
-    // time in seconds.
+    // Play a clip by name, null: none. With a fade in seconds it starts from the shown pose; with 0 the body starts at
+    // a time in seconds.
     play(name, { layer = 'body', fade = transition, time = 0 } = {}) {
         const clip = name === null ? null : this.clipNamed(name), at = Math.max(0, layers.indexOf(layer));
         if (clip === undefined) throw new Error(`the pack has no clip '${name}' that moves it`);
         this.playing[at].clip = name;
         this.program.check(this.program._web_play(at, clip ? clip.index : -1, time, fade));
         this.settle(1000 * fade + 100);
-        if (at === 0 && clip && this.camera.box && !this.camera.byHand && !this.paused) this.fit(); // it may reach further
+        if (at === 0 && clip && this.camera.box && !this.camera.byHand && !this.paused) this.fit(); // the clip may need more space
     }
 
-    // Of what plays on the body, in seconds.
+    // The time of the body clip, in seconds.
     get time() { return this.program._web_time(); }
     set time(seconds) {
         const { byHand } = this.camera;
-        this.camera.byHand = true; // the same clip needs no other picture
+        this.camera.byHand = true; // the same clip needs no new framing
         this.play(this.playing[0].clip, { fade: 0, time: seconds });
         this.camera.byHand = byHand;
     }
 
-    // 1: as it was made.
+    // 1: original speed.
     get speed() { return this.chosen.speed; }
     set speed(speed) {
         this.chosen.speed = speed;
         this.tellSpeed();
     }
 
-    // Whether clips stand still.
+    // Whether clips are paused.
     get paused() { return this.chosen.paused; }
     set paused(on) {
         if (this.paused === Boolean(on)) return;
@@ -340,7 +340,7 @@ export class Character extends EventTarget {
 
     // ---- targets ----
 
-    // Held at a weight, whatever plays, until it is released.
+    // Hold a target at a weight, whatever clip plays, until it is released.
     setWeight(name, weight) {
         this.weights.set(name, weight);
         const at = this.targets.indexOf(name);
@@ -359,7 +359,7 @@ export class Character extends EventTarget {
 
     releaseWeights() { for (const name of this.targets) this.releaseWeight(name); }
 
-    // As the last frame showed it.
+    // The weight in the last frame.
     weight(name) {
         const at = this.targets.indexOf(name);
         return at < 0 ? 0 : this.program._web_weight(at);
@@ -373,8 +373,8 @@ export class Character extends EventTarget {
         this.program._web_set_floor(c.floor ? 1 : 0);
     }
 
-    // { light, degrees, shadow, floor, tonemap, background, transfer }, or some of them. In a lost context nothing is made: it
-    // is, once that is back.
+    // { light, degrees, shadow, floor, tonemap, background, transfer }, or some of them. In a lost context, changes are
+    // applied after it is restored.
     setLight(what) {
         const { transfer: before, light, shadow } = this.chosen;
         Object.assign(this.chosen, what);
@@ -392,7 +392,7 @@ export class Character extends EventTarget {
         if (this.lights.includes(this.chosen.light)) this.setLight({ degrees: (this.chosen.degrees + degrees + 540) % 360 - 180 });
     }
 
-    // -1: the coarsest that an error of one pixel allows.
+    // -1: the coarsest level with an error of at most one pixel.
     get level() { return this.chosen.level; }
     set level(level) {
         this.chosen.level = level;
@@ -407,7 +407,7 @@ export class Character extends EventTarget {
         this.redraw();
     }
 
-    // wind: metres a second, from the right.
+    // wind: metres per second, from the right.
     setHair(shown, wind) {
         Object.assign(this.chosen, { hair: shown, wind });
         this.program._web_set_hair(shown ? 1 : 0, wind);
@@ -421,7 +421,7 @@ export class Character extends EventTarget {
 
     // ---- the face ----
 
-    // Whether it blinks, breathes and looks about by itself.
+    // Whether the face blinks, breathes and looks around by itself.
     get alive() { return !this.chosen.calm; }
     set alive(on) {
         this.chosen.calm = !on;
@@ -436,7 +436,7 @@ export class Character extends EventTarget {
         return [width / 2 + (x - r.left - r.width / 2) * each[0], height / 2 + (y - r.top - r.height / 2) * each[1]];
     }
 
-    // At a point of the page, as if it hung in the air before the figure.
+    // Look at a point of the page, taken as a point in space before the figure.
     lookAt(x, y) {
         if (this.lost || !this.ready) return;
         this.program._web_look(...this.pixelOf(x, y), 1);
@@ -449,7 +449,7 @@ export class Character extends EventTarget {
         this.settle();
     }
 
-    // An emotion by its name, null: none; in place of the one before.
+    // Set an emotion by name, null: none; replaces the previous one.
     feel(name, amount = 1) {
         const emotion = name === null ? -1 : this.emotions.indexOf(name);
         if (name !== null && emotion < 0) throw new Error(`there is no emotion '${name}': ${this.emotions.join(', ')}`);
@@ -458,7 +458,7 @@ export class Character extends EventTarget {
         if (this.program._web_alive()) this.settle();
     }
 
-    // Fifteen weights of mouth shapes, in the order of noh_viseme; null: nothing is said.
+    // Fifteen weights of mouth shapes, in the order of noh_viseme; null: silence.
     setMouth(weights) {
         this.speech.stop();
         this.speech.show(weights);
@@ -478,7 +478,8 @@ export class Character extends EventTarget {
         this.emit('pick', { mesh: names[0], joint: names[1] });
     }
 
-    // At a pixel of the canvas, or at the chest. Who lies gets up, and goes on with the clip. Returns 0, or why not.
+    // Push at a pixel of the canvas, or at the chest. A fallen figure gets up and continues its clip. Returns 0 or an
+    // error message.
     push(x, y) {
         if (this.lost || !this.ready) return '';
         const p = this.program, failed = x === undefined ? p._web_push(strength) : p._web_push_at(x, y, strength);
@@ -495,11 +496,11 @@ export class Character extends EventTarget {
 
     // ---- memory ----
 
-    // In bytes: pack; stage: what the plan says, of which parts tell; block: what the stage has to itself; all: the
-    // WebAssembly memory, which cannot grow; gpu.
+    // In bytes: pack; stage: as planned, detailed in parts; block: the stage's block; all: the WebAssembly memory,
+    // which cannot grow; gpu.
     get memory() {
         const p = this.program, byName = new Map();
-        for (let i = 0; i < p._web_part_count(); i++) { // those of several skeletons in one row
+        for (let i = 0; i < p._web_part_count(); i++) { // several skeletons in one row
             const name = p.text(p._web_part_name(i)), row = byName.get(name) || { name, cpu: 0, gpu: 0 };
             row.cpu += p._web_part_cpu_bytes(i);
             row.gpu += p._web_part_gpu_bytes(i);
@@ -517,7 +518,7 @@ export class Character extends EventTarget {
         this.ready = false;
     }
 
-    // The context is released, memory dropped; nothing may follow.
+    // Releases the context and drops the memory. No call may follow.
     dispose() {
         if (this.ended.signal.aborted) return;
         this.speech.stop();
@@ -534,7 +535,7 @@ export class Character extends EventTarget {
     }
 }
 
-// What a source is, as an answer with a stream.
+// A source as a Response with a stream.
 async function responseOf(source) {
     const given = await source;
     if (given instanceof Response) return given;

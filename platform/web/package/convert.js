@@ -1,13 +1,12 @@
-// convert.js: files of a visitor's own as packs. Models go through the converter, which is asked for when it is first
-// needed and runs in a worker of its own (tools/web_convert): the page goes on meanwhile. As `noh build` makes them, byte
-// for byte.
+// convert.js: converts a visitor's files to packs. Models go through the converter, which is loaded when first needed
+// and runs in a worker (tools/web_convert), without blocking the page. Packs equal those of `noh build`, byte for byte.
 
 const packs = /\.nohz?$/i;
 const figures = /\.(glb|gltf|vrm|obj)$/i;
 const motions = /\.bvh$/i;
 export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.obj', '.bvh'];
 
-// What cannot be shown, before anything is asked for. names: of files that are given together.
+// Detect files that cannot be shown, before loading anything. names: of files given together.
 export function refusal(names) {
     const count = (pattern) => names.filter((name) => pattern.test(name)).length;
     if (count(packs) === 1 && names.length === 1) return '';
@@ -17,8 +16,8 @@ export function refusal(names) {
     return count(figures) + count(motions) ? '' : `it is none of ${kinds.join(', ')}`;
 }
 
-// files: File objects, a model and what it names (.bin, pictures), or clips. tell(words) is called as it goes on.
-// options: as those of `noh build`. Resolves to the pack's bytes.
+// files: File objects: a model and the files it refers to (.bin, pictures), or clips. tell(words) reports progress.
+// options: as for `noh build`. Resolves to the pack's bytes.
 export async function convert(files, { tell = () => {}, options = [], base = new URL('convert/', import.meta.url) } = {}) {
     const refused = refusal(files.map(({ name }) => name));
     if (refused) throw new Error(refused);
@@ -41,13 +40,13 @@ export async function convert(files, { tell = () => {}, options = [], base = new
     }
 }
 
-// What a visitor gives, one time after another: a .bvh alone belongs to the model before it.
+// A visitor's files, one set after another: a .bvh alone belongs to the previous model.
 export class Visitor {
     constructor() {
-        this.model = []; // the files of the last model that was converted
+        this.model = []; // the files of the last converted model
     }
 
-    // Resolves to what Character.load takes.
+    // Resolves to a source for Character.load.
     async pack(files, settings) {
         const has = (pattern) => files.some(({ name }) => pattern.test(name)), refused = refusal(files.map(({ name }) => name));
         if (refused) throw new Error(refused);

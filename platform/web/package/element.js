@@ -28,7 +28,7 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
-// Its own class where there is no page (a server that renders).
+// A plain class if there is no page (rendering on a server).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
     static observedAttributes = ['src', 'clip', 'face', 'light', 'degrees', 'shadow', 'floor', 'tonemap', 'background', 'level', 'speed', 'emotion', 'alt', 'aria-label',
         'camera-orbit', 'auto-life', 'paused'];
@@ -42,12 +42,12 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.visitor = new Visitor();
     }
 
-    // ---- in the page, and out of it ----
+    // ---- added to and removed from the page ----
 
     connectedCallback() {
         if (this.character) return; // it was moved
         this.ended = new AbortController();
-        this.canvas = document.createElement('canvas'); // a context that was released does not come back
+        this.canvas = document.createElement('canvas'); // a released context cannot be restored
         this.canvas.part = 'canvas';
         this.inside('.poster').before(this.canvas);
         this.character = new Character(this.canvas, this.wishes());
@@ -56,12 +56,12 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         if (this.src) this.load(this.src);
     }
 
-    // One that is only moved is in the page again before this is over.
+    // A moved element is in the page again before this ends.
     disconnectedCallback() {
         queueMicrotask(() => { if (!this.isConnected) this.dispose(); });
     }
 
-    // The context is released, memory dropped. In the page again, it begins anew.
+    // Releases the context and drops the memory. Added to the page again, the element restarts.
     dispose() {
         if (!this.character) return;
         this.ended.abort();
@@ -90,14 +90,14 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.addEventListener('dragover', (event) => { if (this.hasAttribute('drop')) event.preventDefault(); }, { signal });
         this.addEventListener('drop', (event) => this.dropped(event), { signal });
         this.endPointers = this.addPointers();
-        this.sees = new IntersectionObserver(([entry]) => { // what nobody sees is not drawn
+        this.sees = new IntersectionObserver(([entry]) => { // draw only while visible
             character.stopped = !entry.isIntersecting;
             if (!character.stopped) character.redraw();
         });
         this.sees.observe(this);
     }
 
-    // The wheel scrolls the page until the figure was chosen.
+    // The wheel scrolls the page until the figure is clicked.
     addPointers() {
         const orbits = () => this.hasAttribute('camera-orbit');
         const ends = [addPointers(this.canvas, this.character, (event) => event.ctrlKey || this.shadowRoot.activeElement === this.canvas, orbits),
@@ -107,7 +107,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // ---- the pack ----
 
-    // What the attributes ask for.
+    // The attributes as options.
     wishes() {
         const text = (name, otherwise) => this.getAttribute(name) ?? otherwise;
         return {
@@ -117,8 +117,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         };
     }
 
-    // An address, a Response, a File or Blob, or bytes. Resolves when it is shown as a whole; what is wrong is an event
-    // and a text, and rejects nothing.
+    // An address, a Response, a File or Blob, or bytes. Resolves when the whole pack is shown; an error is shown as an
+    // event and a text, and rejects nothing.
     async load(source) {
         const { character } = this;
         if (!character) return false;
@@ -161,7 +161,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.open(event.dataTransfer.files);
     }
 
-    // Files of the visitor's own: a pack, or a model with what it names and clips, which is converted. As load.
+    // The visitor's files: a pack, or a model with its files and clips, which is converted. As load.
     async open(list) {
         const files = [...list], { character } = this;
         if (!character) return false;
@@ -221,7 +221,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         }
     }
 
-    // A clip, a face or an emotion that is there by name.
+    // A clip, a face or an emotion by name, if it exists.
     apply(name) {
         const { character } = this, value = this.getAttribute(name) || null;
         if (!character.ready) return;
@@ -264,7 +264,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     push() { return this.character.push(); }
     fit() { if (this.ready) this.character.fit(); }
 
-    // What it says: a sentence, the microphone, a sound file, or fifteen weights of mouth shapes.
+    // Speech: a sentence, the microphone, a sound file, or fifteen weights of mouth shapes.
     say(words) { this.character.speech.say(words); }
     listen() { return this.character.speech.listen(); }
     playSound(file) { return this.character.speech.play(file); }

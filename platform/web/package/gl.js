@@ -1,14 +1,14 @@
-// gl.js: the functions of OpenGL ES 3.0 that the program imports, on a WebGL 2 context. GL has numbers where WebGL has
-// objects, and addresses where WebGL has views of memory. Nothing is allocated in a frame: views are given with offsets.
+// gl.js: the functions of OpenGL ES 3.0 that the program imports, on a WebGL 2 context. GL uses numbers for WebGL's
+// objects, and addresses for WebGL's memory views. A frame allocates nothing: views are passed with offsets.
 
-// Without objects or addresses: the same function by the same name.
+// Functions without objects or addresses have the same name in WebGL.
 const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEquation', 'BlendEquationSeparate', 'Viewport', 'Scissor', 'DepthFunc', 'DepthMask', 'ColorMask',
     'FrontFace', 'IsEnabled', 'GetError', 'EnableVertexAttribArray', 'VertexAttribPointer', 'VertexAttribIPointer', 'VertexAttribDivisor', 'VertexAttrib4f',
     'VertexAttribI4i', 'ActiveTexture', 'TexStorage2D', 'TexStorage3D', 'TexParameteri', 'PixelStorei', 'CheckFramebufferStatus', 'ReadBuffer',
     'RenderbufferStorageMultisample', 'DrawElements', 'DrawElementsInstanced', 'DrawArraysInstanced', 'Flush'];
 
-// By letter: what a number stands for. s: a shader, p: a program, u: where a uniform is, b, v, t, f, r, m: a buffer, a vertex
-// array, a texture, a framebuffer, a renderbuffer, a sampler; n: a number.
+// The meaning of a number, by letter. s: a shader, p: a program, u: a uniform location, b, v, t, f, r, m: a buffer, a
+// vertex array, a texture, a framebuffer, a renderbuffer, a sampler; n: a number.
 const mapped = {
     AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform1f: 'un', Uniform2i: 'unn',
     Uniform3i: 'unnn', Uniform4i: 'unnnn', Uniform2f: 'unn', Uniform3f: 'unnn', Uniform4f: 'unnnn', BindBuffer: 'nb', BindBufferBase: 'nnb',
@@ -19,7 +19,7 @@ const mapped = {
 const COMPRESSED_ETC = 'WEBGL_compressed_texture_etc';
 const extensions = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float', 'EXT_float_blend', COMPRESSED_ETC];
 
-// What texels of a type are read and written through, and how many bytes an element has as a shift.
+// The memory view for texels of a type, and the bytes per element as a shift.
 function viewOf(gl, type) {
     switch (type) {
         case gl.UNSIGNED_BYTE: return ['U8', 0];
@@ -56,14 +56,14 @@ class Names {
 
 const decoder = new TextDecoder(), encoder = new TextEncoder();
 
-// The texts of C in a heap, whose views are U8, U32 and so on.
+// C strings in a heap, whose views are U8, U32 and so on.
 export function textAt(heap, at, length) {
     let end = at;
     if (length === undefined) while (heap.U8[end]) end++;
     return decoder.decode(heap.U8.subarray(at, length === undefined ? end : at + length));
 }
 
-// Returns how many bytes were written, without the zero.
+// Returns the number of bytes written, without the zero.
 function writeText(heap, text, at, room) {
     if (!room) return 0;
     const bytes = encoder.encode(text).subarray(0, room - 1);
@@ -86,7 +86,7 @@ function addMapped(out, gl, kinds) {
     }
 }
 
-// Gen and Delete, each of n names.
+// Gen and Delete, of n names each.
 function addNamed(out, gl, heap, what, names, make, remove) {
     out[`glGen${what}`] = (n, at) => {
         for (let i = 0; i < n; i++) heap.U32[(at >> 2) + i] = names.add(make.call(gl));
@@ -100,7 +100,7 @@ function addNamed(out, gl, heap, what, names, make, remove) {
 }
 
 function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
-    const ofProgram = new Map(); // the uniforms of each, which go with it
+    const ofProgram = new Map(); // the uniforms of each program, deleted with it
     const tell = (value, at) => { heap.I32[at >> 2] = value; };
     const log = (text, room, length, at) => {
         const written = writeText(heap, text || '', at, room);
@@ -158,7 +158,7 @@ function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     };
 }
 
-// The number of an object that is bound; one that others made gets a number, so that it can be bound again.
+// The number of a bound object; an object created by others gets a number, so that it can be bound again.
 function nameOf(object, kinds) {
     const names = object instanceof WebGLFramebuffer ? kinds.framebuffers : object instanceof WebGLBuffer ? kinds.buffers
         : object instanceof WebGLTexture ? kinds.textures : object instanceof WebGLProgram ? kinds.programs
@@ -199,7 +199,7 @@ function addData(out, gl, heap, kinds) {
     out.glDrawBuffers = (count, at) => gl.drawBuffers(Array.from(heap.U32.subarray(at >> 2, (at >> 2) + count)));
 }
 
-// What GL lacks (context.c).
+// Functions beyond GL (context.c).
 function addOthers(gl, heap) {
     const renderer = () => {
         const info = gl.getExtension('WEBGL_debug_renderer_info');
@@ -219,8 +219,8 @@ function addOthers(gl, heap) {
     };
 }
 
-// heap: { U8, I8, U16, I16, U32, I32, F32 }, whose views may be replaced. Returns { imports, textures, buffers }: what the
-// program imports, and the objects by their numbers.
+// heap: { U8, I8, U16, I16, U32, I32, F32 }, whose views may be replaced. Returns { imports, textures, buffers }: the
+// program's imports, and the objects by number.
 export function importsOf(gl, heap) {
     const kinds = Object.fromEntries(['shaders', 'programs', 'uniforms', 'buffers', 'arrays', 'textures', 'framebuffers', 'renderbuffers', 'samplers'].map((kind) => [kind, new Names()]));
     const out = {};

@@ -1,18 +1,18 @@
 // Types of noh-character.
 
-/** A pack, `.noh`, or its wire form, `.nohz`: an address, an answer of fetch, a file, or bytes. */
+/** A pack, `.noh`, or its wire form, `.nohz`: an address, a Response, a file, or bytes. */
 export type PackSource = string | URL | Response | Promise<Response> | Blob | ArrayBuffer | ArrayBufferView;
 
 export type Layer = 'body' | 'face';
 export type Shadow = 'on' | 'off' | 'blob';
 export type Background = 'light' | 'gradient' | 'plain';
-/** How targets are added up: `auto` is what this context does best. */
+/** The accumulation path of targets: `auto` selects the best for this context. */
 export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'cpu' | 'blend';
 
 export interface Clip { readonly name: string; readonly seconds: number }
 export interface PlayOptions {
     layer?: Layer;
-    /** Seconds of transition from what is shown; default 0.3. With 0 the clip begins at `time`. */
+    /** Seconds of transition from the shown pose; default 0.3. With 0 the clip starts at `time`. */
     fade?: number;
     /** Seconds into the clip. */
     time?: number;
@@ -20,14 +20,14 @@ export interface PlayOptions {
 export interface Light {
     /** `plain`, `white`, `studio`, `room` or `sky`. */
     light: string;
-    /** How far it is turned, -180 to 180. */
+    /** Rotation, -180 to 180. */
     degrees: number;
     shadow: Shadow;
-    /** Whether a shadow falls on a floor under a body, too; default true. */
+    /** Whether a shadow also falls on a floor under a body; default true. */
     floor: boolean;
     tonemap: boolean;
     background: Background;
-    /** Light that was worked out for each vertex when the pack was built. */
+    /** Use the light precomputed for each vertex when the pack was built. */
     transfer: boolean;
 }
 /** In bytes. */
@@ -37,7 +37,7 @@ export interface Memory {
     readonly pack: number;
     /** The block of the stage. */
     readonly room: number;
-    /** What of it is used. */
+    /** The used part of the block. */
     readonly cpu: number;
     readonly gpu: number;
     readonly parts: readonly { readonly name: string; readonly cpu: number; readonly gpu: number }[];
@@ -45,7 +45,7 @@ export interface Memory {
 
 /** A callback key that a clip has passed. */
 export interface KeyDetail { readonly name: string; readonly clip: string; readonly layer: Layer; readonly weight: number; readonly character: number }
-/** `all`: 0 where the server tells no length. `shows`: 0 nothing yet, 1 the coarsest levels, 2 everything. */
+/** `all`: 0 if the server sends no length. `shows`: 0 nothing yet, 1 the coarsest levels, 2 everything. */
 export interface ProgressDetail { readonly taken: number; readonly all: number; readonly shows: 0 | 1 | 2 }
 export interface CharacterEvents {
     load: CustomEvent<{ whole: boolean }>;
@@ -62,18 +62,19 @@ export interface CharacterEvents {
 }
 
 export interface CharacterOptions extends Partial<Light> {
-    /** Where noh.wasm is; default: beside this module. */
+    /** Address of noh.wasm; default: in the folder of this module. */
     program?: string | URL;
     path?: MorphPath;
-    /** How many are shown beside each other, 1 to 16. */
+    /** Number of characters side by side, 1 to 16. */
     characters?: number;
     /** Whether faces and springs get memory of their own. */
     alive?: boolean;
     /** Pixels across, instead of the canvas's own size. */
     size?: number;
-    /** `auto`, the default: fewer pixels while it moves and frames take long, and all of them at rest. Not with `size`. */
+    /** `auto`, the default: reduced resolution while the figure moves and frames are slow, full resolution at rest. Not
+     * with `size`. */
     pixels?: 'auto' | 'all';
-    /** Whether the camera follows who walks. */
+    /** Whether the camera follows a walking figure. */
     follows?: boolean;
     level?: number;
     speed?: number;
@@ -104,9 +105,9 @@ export class Character extends EventTarget {
     paused: boolean;
     level: number;
     alive: boolean;
-    /** Whether fewer pixels are drawn while it moves and frames take long. */
+    /** Whether the resolution is reduced while the figure moves and frames are slow. */
     sparing: boolean;
-    /** Of the pixels across, with which the next frame is drawn. */
+    /** Resolution of the next frame, as a share of the full width. */
     readonly share: number;
     load(source: PackSource): Promise<void>;
     play(name: string | null, options?: PlayOptions): void;
@@ -119,11 +120,11 @@ export class Character extends EventTarget {
     setWrinkles(amount: number): void;
     setHair(shown: boolean, wind: number): void;
     shake(): void;
-    /** At a point of the page, in its pixels. */
+    /** A point of the page, in pixels. */
     lookAt(x: number, y: number): void;
     lookAhead(): void;
     feel(emotion: string | null, amount?: number): void;
-    /** Fifteen weights of mouth shapes, in the order of noh_viseme; null: nothing is said. */
+    /** Fifteen weights of mouth shapes, in the order of noh_viseme; null: silence. */
     setMouth(weights: ArrayLike<number> | null): void;
     push(x?: number, y?: number): string;
     fit(): void;
@@ -131,7 +132,7 @@ export class Character extends EventTarget {
     zoom(by: number): void;
     turn(azimuth: number, elevation: number): void;
     pan(x: number, y: number): void;
-    /** Move time on by seconds, and draw at once. */
+    /** Advance time by seconds and draw immediately. */
     advance(seconds: number): void;
     redraw(): void;
     dispose(): void;
@@ -149,9 +150,9 @@ export class NohCharacter extends HTMLElement {
     light: string;
     paused: boolean;
     time: number;
-    /** Where noh.wasm is, if not beside this module; set it before the element is in the page. */
+    /** Address of noh.wasm, if not in the folder of this module; set it before the element is added to the page. */
     program?: string | URL;
-    /** What is wrong, in words; '' if nothing. */
+    /** Error message; '' if there is none. */
     readonly error: string;
     readonly ready: boolean;
     readonly whole: boolean;
@@ -161,9 +162,9 @@ export class NohCharacter extends HTMLElement {
     readonly memory: Memory | null;
     /** null while the element is not in a page. */
     readonly character: Character | null;
-    /** Resolves to whether it is shown. */
+    /** Resolves to whether the pack is shown. */
     load(source: PackSource): Promise<boolean>;
-    /** A pack, or a model (.glb, .gltf, .vrm, .obj) with what it names and clips (.bvh), which is converted in a worker. */
+    /** A pack, or a model (.glb, .gltf, .vrm, .obj) with its files and clips (.bvh), converted in a worker. */
     open(files: Iterable<File>): Promise<boolean>;
     play(name: string | null, options?: PlayOptions): void;
     setWeight(target: string, weight: number): void;
@@ -186,13 +187,14 @@ export class NohCharacter extends HTMLElement {
     addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
 
-/** The canvas moves the camera from now on. Returns a function that ends it. */
+/** Let the canvas move the camera. Returns a function that ends it. */
 export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;
 /** The faces look at the pointer while it is over the canvas. Returns a function that ends it. */
 export function addGaze(canvas: HTMLCanvasElement, character: Character, asked?: () => boolean): () => void;
-/** A model (.glb, .gltf, .vrm, .obj) with what it names and clips (.bvh) as a pack, made in a worker. `options` are those of `noh build`. */
+/** Convert a model (.glb, .gltf, .vrm, .obj) with its files and clips (.bvh) to a pack, in a worker. `options`: as for
+ * `noh build`. */
 export function convert(files: readonly File[], settings?: { tell?: (words: string) => void; options?: readonly string[]; base?: URL }): Promise<Uint8Array>;
-/** What a mouth shows of a text, letter by letter. */
+/** Mouth shapes of a text, letter by letter. */
 export function shapesOfText(words: string, rate: number): { at: number; ms: number; shape: number }[];
 
 declare global {

@@ -1,4 +1,4 @@
-// index.js: characters of noh on a page: the element <noh-character>, and the Character behind it for a canvas of one's own.
+// index.js: characters of noh on a page: the element <noh-character>, and its Character for a canvas of your own.
 export { NohCharacter } from './element.js';
 export { Character } from './character.js';
 export { convert } from './convert.js';

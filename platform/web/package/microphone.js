@@ -1,4 +1,4 @@
-// microphone.js: runs beside the page (AudioWorklet): passes on what the microphone hears, 10 ms at a time.
+// microphone.js: an AudioWorklet that passes the microphone's samples to the page, 10 ms at a time.
 'use strict';
 
 registerProcessor('microphone', class extends AudioWorkletProcessor {
@@ -8,7 +8,7 @@ registerProcessor('microphone', class extends AudioWorkletProcessor {
         this.count = 0;
     }
 
-    // The channels are mixed into one. Returns true: go on.
+    // Mix the channels into one. Returns true: continue.
     process([channels]) {
         for (let i = 0; channels.length && i < channels[0].length; i++) {
             let sum = 0;

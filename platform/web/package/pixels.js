@@ -1,27 +1,27 @@
-// pixels.js: how many pixels a character is drawn with: all of them, or fewer across while it moves and frames take long, as
-// they do where no GPU draws; and whether one does.
+// pixels.js: the resolution of a character: full, or reduced while it moves and frames are slow, as without a GPU; and
+// whether there is a GPU.
 
-const looksAt = 16, atLeast = 5, enough = 1200; // frames whose mean counts; fewer, if they took so many ms: browsers ask for several at once
-const underWay = 5; // frames after a change, which may be of what was before
-const tooLong = 50, aim = 36; // ms of a frame
-const drop = 0.4, rise = 1.25; // at once
-const fewest = 0.4; // of the pixels across
-const helps = 0.9; // of a frame's time: what fewer pixels must bring it down to
-const waits = 20000; // ms until what did not work is tried again
+const looksAt = 16, atLeast = 5, enough = 1200; // frames to average; at least this many after so many ms, because browsers request several at once
+const underWay = 5; // frames ignored after a change, because they may be older
+const tooLong = 50, aim = 36; // ms per frame
+const drop = 0.4, rise = 1.25; // per change
+const fewest = 0.4; // share of the full width
+const helps = 0.9; // a lower resolution must reduce a frame's time to this share
+const waits = 20000; // ms before a failed change is tried again
 
-// Whether a renderer is a program, by the name that a context gives it.
+// Whether a renderer is software, by its name in a context.
 export const isSoftware = (renderer) => /swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 
 export class Pixels {
     constructor() {
-        // most: what was too many, until then; vain: fewer were no help, until then
+        // most: too high a resolution, and until when; vain: until when a lower one is known not to help
         Object.assign(this, { share: 1, frames: -underWay, sum: 0, before: null, most: Infinity, until: 0, vain: 0 });
     }
 
-    // Another canvas, or another scene: what was learnt no longer holds.
+    // Another canvas or scene: measurements are no longer valid.
     forget() { Object.assign(this, new Pixels()); }
 
-    // A frame that followed another at once did so after so many ms. Returns whether the share has changed.
+    // Report the ms between two consecutive frames. Returns whether the share has changed.
     tell(ms, now) {
         if (++this.frames <= 0) return false;
         this.sum += ms;
@@ -36,7 +36,7 @@ export class Pixels {
     judge(mean, now) {
         const { share, before } = this, more = Math.min(1, share * rise);
         this.before = null;
-        if (before && mean > before.mean * helps && mean > tooLong) { // it is not the pixels that take long
+        if (before && mean > before.mean * helps && mean > tooLong) { // the time does not depend on pixels
             this.vain = now + waits;
             return before.share;
         }

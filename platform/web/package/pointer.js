@@ -1,10 +1,10 @@
-// pointer.js: a character by mouse, fingers and keys. One finger or the mouse turns the figure; two fingers or the wheel
-// zoom; two fingers that go the same way, or a drag with the right button, move the picture; a drag with shift turns the
-// light; a tap or a click picks, with Alt it pushes. Keys do as a drag does, to the same side.
+// pointer.js: mouse, touch and keys. One finger or the mouse turns the figure; two fingers or the wheel zoom; two
+// fingers in the same direction, or a drag with the right button, move the picture; a drag with shift turns the light;
+// a tap or a click picks, with Alt it pushes. Arrow keys act like a drag in their direction.
 
-const step = 0.1; // radians that a key turns
-const pixels = 30; // that it moves
-const wobble = 6; // pixels that a tap may move
+const step = 0.1; // radians per key
+const pixels = 30; // pixels per key
+const wobble = 6; // pixels: a tap moves less
 
 const keys = {
     ArrowLeft: (c, shift) => (shift ? c.pan(-pixels, 0) : c.turn(step, 0)),
@@ -60,8 +60,8 @@ class Pointers {
     }
 }
 
-// The canvas moves the camera from now on, while `asked` says so. wheel: whether the wheel zooms just now. Returns a
-// function that ends it.
+// Let the canvas move the camera while `asked` returns true. wheel: whether the wheel zooms now. Returns a function
+// that ends it.
 export function addPointers(canvas, character, wheel = () => true, asked = () => true) {
     const pointers = new Pointers(canvas, character), ended = new AbortController(), { signal } = ended;
     const on = (type, call, more) => canvas.addEventListener(type, (event) => { if (asked()) call(event); }, { signal, ...more });
@@ -76,13 +76,13 @@ export function addPointers(canvas, character, wheel = () => true, asked = () =>
     }, { passive: false });
     on('keydown', (event) => {
         if (!keys[event.key] || event.ctrlKey || event.altKey || event.metaKey || !character.ready) return;
-        event.preventDefault(); // else the page scrolls
+        event.preventDefault(); // otherwise the page scrolls
         keys[event.key](character, event.shiftKey);
     });
     return () => ended.abort();
 }
 
-// The faces look at the pointer or the finger while it is over the canvas. asked: whether they do just now.
+// The faces look at the pointer or the finger while it is over the canvas. asked: whether they do now.
 export function addGaze(canvas, character, asked = () => true) {
     const ended = new AbortController(), { signal } = ended;
     const look = (event) => { if (asked()) character.lookAt(event.clientX, event.clientY); };

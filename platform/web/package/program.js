@@ -1,29 +1,29 @@
-// program.js: the WebAssembly program in memory of its own, which is made for one pack and cannot grow.
+// program.js: the WebAssembly program in its own memory, which is sized for one pack and cannot grow.
 import { importsOf, textAt } from './gl.js';
 
 const PAGE = 65536;
-const UNPACKING = 16; // pages that a program which plans begins with: static data and stack; it may grow
+const UNPACKING = 16; // first pages of a planning program: static data and stack; its memory may grow
 const MOST = 32768; // 2 GiB
 export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
 
 const compiled = new Map(); // by address
 
-// The program, compiled once for all characters. address: where noh.wasm is.
+// The program, compiled once for all characters. address: of noh.wasm.
 export function compile(address = new URL('noh.wasm', import.meta.url)) {
     const key = String(address);
     if (!compiled.has(key)) {
         const module = WebAssembly.compileStreaming(fetch(key)).catch(async (error) => {
-            const answer = await fetch(key); // a server that does not know the type
+            const answer = await fetch(key); // the server may send another type
             if (!answer.ok) throw new Error(`no program: ${key}: the server says ${answer.status}`);
             return WebAssembly.compile(await answer.arrayBuffer()).catch(() => { throw error; });
         });
-        module.catch(() => compiled.delete(key)); // the next one tries again
+        module.catch(() => compiled.delete(key)); // the next call tries again
         compiled.set(key, module);
     }
     return compiled.get(key);
 }
 
-// Its functions begin with an underscore, as C has them in an object of JavaScript: program._web_step(0.1).
+// C functions are methods with an underscore before the name: program._web_step(0.1).
 export class Program {
     constructor(memory) {
         this.memory = memory;
@@ -31,7 +31,7 @@ export class Program {
         this.look();
     }
 
-    // In memory that is there; caps: of another program on the same context.
+    // Starts in existing memory. caps: of another program on the same context.
     static async start(module, gl, memory, caps) {
         const program = new Program(memory);
         const { imports, textures, buffers } = importsOf(gl, program.heap);
@@ -58,7 +58,7 @@ export class Program {
     floats(at, count) { return this.heap.F32.subarray(at >> 2, (at >> 2) + count); }
     words() { return this.text(this._web_error()); }
 
-    // A noh_result of the program; an error is thrown in words.
+    // Check a noh_result; throws an error with its message.
     check(result) { if (result) throw new Error(this.words()); }
 
     reserve(bytes) {
@@ -73,7 +73,7 @@ export class Program {
     }
 }
 
-// Takes a pack in, a piece at a time, and makes the program that shows it.
+// Loads a pack, a piece at a time, and creates the program that shows it.
 export class Arrival {
     static async begin(module, gl, caps) {
         const arrival = new Arrival();
@@ -82,13 +82,13 @@ export class Arrival {
         return arrival;
     }
 
-    // More of the file. Returns 0: nothing can be shown yet, 1: the coarsest levels can, 2: all of it (the wire form).
+    // Add a piece of the file. Returns 0: nothing to show yet, 1: the coarsest levels, 2: the whole pack (wire form).
     push(bytes) {
         this.bytes += bytes.length;
         if (this.place) return this.unpack(bytes);
         this.parts.push(bytes);
         const head = this.program._web_head_bytes();
-        if (this.bytes < head || (this.bytes - bytes.length >= head)) return this.shows; // a pack as it is, or too little
+        if (this.bytes < head || (this.bytes - bytes.length >= head)) return this.shows; // a plain pack, or not enough yet
         const all = joined(this.parts);
         if (String.fromCharCode(...all.subarray(0, 4)) !== 'NOHZ') return this.shows;
         this.program.HEAPU8.set(all.subarray(0, head), this.program._web_head());
@@ -112,7 +112,7 @@ export class Arrival {
         return this.shows;
     }
 
-    // Nothing more comes.
+    // The end of the file.
     end() {
         if (this.place) {
             if (this.shows < 2) throw new Error(`the pack was cut short: ${kilobytes(this.bytes)} kB came`);
@@ -126,7 +126,8 @@ export class Arrival {
         this.shows = 2;
     }
 
-    // The best pack that is there, in a program whose memory is what it takes: { path, characters, alive, elsewhere }.
+    // Create a program for the most complete pack so far, with exactly the memory it needs: { path, characters, alive,
+    // elsewhere }.
     async open(wants) {
         const planner = this.program, path = Math.max(0, paths.indexOf(wants.path || 'auto'));
         planner.check(planner._web_loaded());
@@ -143,7 +144,7 @@ export class Arrival {
         return Object.assign(program, { packBytes: bytes, open: () => program.check(program._web_open(path, wants.characters, wants.alive ? 1 : 0)) });
     }
 
-    // What the context can do, once it was asked.
+    // The capabilities of the context, once probed.
     caps() {
         const at = this.program._web_caps();
         return this.program.HEAPU8.slice(at, at + this.program._web_caps_bytes());
@@ -158,28 +159,28 @@ function joined(parts) {
     return out;
 }
 
-// The first bytes of a pack are asked for alone, so that while the program arrives beside them no others come: the coarsest
-// levels of most are among them.
+// The first bytes of a pack are requested separately, so that no others compete with the loading program: they contain
+// the coarsest levels of most packs.
 const FIRST = 131072;
 export const fetchFirst = (address) => fetch(address, { headers: { Range: `bytes=0-${FIRST - 1}` } });
 
-// What an answer holds of a file: { from, all }. A server that does not know ranges sends the whole.
+// The part of a file in a response: { from, all }. A server without range requests sends the whole file.
 function extent(answer) {
     if (!answer.ok) throw new Error(`no pack: the server says ${answer.status}`);
     const range = answer.status === 206 && /^bytes (\d+)-\d+\/(\d+)$/.exec(answer.headers.get('Content-Range') || '');
-    const coded = answer.headers.get('Content-Encoding'); // then the length is that of what was sent
+    const coded = answer.headers.get('Content-Encoding'); // then the length is of the encoded data
     return range ? { from: Number(range[1]), all: Number(range[2]) } : { from: 0, all: coded ? 0 : Number(answer.headers.get('Content-Length')) };
 }
 
-// The rest of a file behind its first bytes, of the same version.
+// The rest of a file after its first bytes, of the same version.
 async function fetchRest(first, taken) {
     const rest = await fetch(first.url, { headers: { Range: `bytes=${taken}-` } }), same = (name) => rest.headers.get(name) === first.headers.get(name);
     if (extent(rest).from === taken && same('ETag') && same('Last-Modified')) return rest;
     throw new Error('the pack has changed while it arrived');
 }
 
-// The bytes of an answer to a fetch, as they come: push(piece) for each, tell(taken, all) of how far it is. Without a
-// length that the server tells, all is 0. If the answer is the first of a file, the rest is asked for.
+// Read a response in pieces: push(piece) for each, tell(taken, all) for progress; all is 0 if the server sends no
+// length. If the response has only the first bytes of a file, the rest is requested.
 export async function receive(answer, push, tell, signal) {
     const { all } = extent(answer), ended = () => signal && signal.aborted;
     let taken = 0;

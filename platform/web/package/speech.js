@@ -1,6 +1,6 @@
-// speech.js: what the faces say: what the microphone hears, a sound file, or a sentence that the browser speaks. The first
-// two go through the library's ear (sound.c). A browser tells of a sentence only where its words begin: the mouth then
-// follows the letters, roughly.
+// speech.js: speech from the microphone, a sound file, or a sentence that the browser speaks. The first two go through
+// the library's ear (sound.c). For a sentence, a browser reports only the starts of words, so the mouth roughly follows
+// the letters.
 
 const earRates = [8000, 48000]; // Hz
 const ticksPerMs = 48;
@@ -26,14 +26,14 @@ const letters = { th: 3, sch: 6, ch: 6, sh: 6, ph: 2, ck: 5, ng: 5, qu: 5, oo: 1
     a: 10, h: 10, e: 11, i: 12, y: 12, o: 13, u: 14, w: 14 };
 const vowelMs = 95, consonantMs = 65, pauseMs = 60, stopMs = 280;
 
-// [{ at, ms, shape }]: of each letter or group where it begins in the text, and how long it lasts.
+// [{ at, ms, shape }]: the position in the text and the duration of each letter or group.
 export function shapesOfText(words, rate) {
     const plain = words.normalize('NFD').replace(/[\u0300-\u036f]/g, '').toLowerCase(), out = [];
-    // a text that decomposes into more letters is taken as it is, so that places agree with the browser's
+    // a text that changes its length when decomposed is kept unchanged, so that positions agree with the browser's
     const line = plain.length === words.length ? plain : words.toLowerCase();
     for (let at = 0; at < line.length;) {
         const group = [3, 2, 1].map((n) => line.substr(at, n)).find((part) => letters[part] !== undefined) || line[at];
-        const shape = letters[group] || (/\p{L}|\p{N}/u.test(group) ? 11 : 0); // other scripts open and shut the mouth
+        const shape = letters[group] || (/\p{L}|\p{N}/u.test(group) ? 11 : 0); // other scripts only open and shut the mouth
         const long = shape ? (shape > 9 ? vowelMs : consonantMs) : /[.,;:!?]/.test(group) ? stopMs : pauseMs;
         out.push({ at, ms: long / rate, shape });
         at += group.length;
@@ -41,7 +41,7 @@ export function shapesOfText(words, rate) {
     return out;
 }
 
-// The channels of a decoded sound as one.
+// Mix the channels of a decoded sound into one.
 function mixed(buffer) {
     const sum = new Float32Array(buffer.length);
     for (let c = 0; c < buffer.numberOfChannels; c++) {
@@ -50,10 +50,10 @@ function mixed(buffer) {
     return sum;
 }
 
-// What a character says. Its words about it, for the user, come by the character's event "speech".
+// The speech of a character. Messages for the user are sent as the character's event "speech".
 export class Speech {
     constructor(character) {
-        Object.assign(this, { character, speaker: null, newest: 0 }); // newest counts speakers, so that a late one is not heard
+        Object.assign(this, { character, speaker: null, newest: 0 }); // newest counts speakers, so that a late one is ignored
         this.now = { open: 0, source: '' };
     }
 
@@ -73,7 +73,7 @@ export class Speech {
         this.show(frame.shapes);
     }
 
-    // Fifteen weights, or null: nothing is said.
+    // Fifteen weights, or null: silence.
     show(shapes) {
         if (shapes) this.program.floats(this.program._web_shapes(), shapeCount).set(shapes);
         this.program._web_show_shapes(shapes ? 1 : 0);
@@ -92,7 +92,7 @@ export class Speech {
         if (was) this.tell('');
     }
 
-    // which: { stop(), frame(now) }, of which frame gives { open, shapes }, or null at its end.
+    // which: { stop(), frame(now) }; frame returns { open, shapes }, or null at the end.
     speakBy(source, which) {
         this.speaker = which;
         this.now.source = source;
@@ -108,7 +108,7 @@ export class Speech {
         this.program.check(this.program._web_ear_open(rate));
     }
 
-    // Another program shows the character from now on.
+    // Continue with another program of the character.
     moved() {
         if (!this.speaker) return;
         if (this.now.source === 'microphone') this.openEar(this.rate);
@@ -151,7 +151,7 @@ export class Speech {
             close();
             return;
         }
-        const context = new AudioContext(); // as it is, unless it is faster than the ear
+        const context = new AudioContext(); // at its own rate, unless it is above the ear's limit
         const slower = context.sampleRate > earRates[1] ? new AudioContext({ sampleRate: earRates[1] }) : context;
         if (slower !== context) context.close();
         const stop = () => { close(); slower.close(); };
@@ -184,8 +184,8 @@ export class Speech {
         this.tell(`Listening. The mouth is ${this.program._web_ear_latency()} ms late by the ear, 10 by the page${device}, and a picture. Nothing is kept.`);
     }
 
-    // A sound file. The whole of it is heard first, so that its mouth is not late: twice, as `noh speak` does, so that the
-    // ear knows the speaker and the room.
+    // A sound file. It is heard completely before it plays, so that the mouth has no latency, and twice, as in `noh
+    // speak`, so that the ear adapts to the speaker and the room.
     async play(file) {
         this.stop();
         const number = this.newest, context = new AudioContext(), rate = Math.min(context.sampleRate, earRates[1]);
@@ -223,7 +223,7 @@ export class Speech {
 
     // ---- a sentence that the browser speaks ----
 
-    // Phones for the library: start in ticks, shape. Returns the time at which each begins, in ms.
+    // Phones for the library: start in ticks, shape. Returns the start of each in ms.
     writePhones(shapes) {
         const { program } = this, room = Math.min(shapes.length, program._web_phone_room());
         const at = program._web_phones() >> 2, phones = program.HEAPU32.subarray(at, at + 2 * room), times = [];
@@ -255,7 +255,7 @@ export class Speech {
             began = performance.now();
             this.character.redraw();
         };
-        // A word begins: its first letter is said now.
+        // A word begins: continue with its first letter.
         utterance.onboundary = ({ charIndex }) => {
             const i = shapes.findIndex((s) => s.at >= charIndex);
             if (i >= 0 && i < times.length) began = performance.now() - times[i];
@@ -270,7 +270,7 @@ export class Speech {
         };
         this.speakBy('text', {
             stop: () => window.speechSynthesis.cancel(),
-            // past the estimated end, until the browser says that it ended: silence
+            // silence between the estimated end and the browser's end event
             frame: (now) => {
                 const ms = began ? now - began : -1, said = ms >= 0 && ms < end ? this.shapesAt(ms) : null;
                 return { open: said ? 1 - said[0] - said[1] : 0, shapes: said };

@@ -8,14 +8,15 @@ export class NohObject3D extends Group {
     readonly isNohObject3D: true;
     /** Clips, targets, gaze, speech, memory. */
     readonly character: Character;
-    /** One for each mesh of the pack; each has all of `materials`. */
+    /** One per mesh of the pack; each has all of `materials`. */
     readonly meshes: Mesh[];
-    /** Those of the pack, as MeshStandardMaterial or MeshBasicMaterial: change them, or put others of yours into the meshes. */
+    /** The pack's materials, as MeshStandardMaterial or MeshBasicMaterial: change them, or assign your own to the
+     * meshes. */
     readonly materials: Material[];
-    /** Resolves when the pack is there as a whole. */
+    /** Resolves when the whole pack is loaded. */
     load(source: PackSource): Promise<this>;
-    /** Before each renderer.render: move time on by seconds, and deform what the camera is to see. */
+    /** Call before each renderer.render: advances time by seconds and deforms the character for the camera. */
     update(seconds: number, camera: Camera): void;
-    /** Its GL objects and memory go; the context stays. */
+    /** Frees its GL objects and memory; the context stays. */
     dispose(): void;
 }

@@ -1,5 +1,5 @@
-// three.js: a character in a scene of three.js: deformed by noh, on the context of three's renderer, into buffers that
-// three's own materials draw. A scene, its lights and shadows treat it as any other object.
+// three.js: a character in a three.js scene: noh deforms it on the context of three's renderer, into buffers that
+// three's own materials draw. The scene, its lights and shadows treat it like any other object.
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, ExternalTexture, FrontSide, GLBufferAttribute, Group, Matrix4, Mesh, MeshBasicMaterial,
     MeshStandardMaterial, Sphere, Vector3 } from 'three';
 import { Character } from './character.js';
@@ -8,14 +8,14 @@ const attributes = [['position', 3], ['normal', 3], ['tangent', 4], ['uv', 2], [
 const maps = ['map', 'normalMap', 'surface', 'emissiveMap'];
 const FAR = 1e6;
 
-// Of textures with one bit of alpha, transparent texels are black, and what is filtered is as much darker as it is
-// transparent.
+// In textures with one bit of alpha, transparent texels are black, so filtered texels are darkened by their
+// transparency.
 function divided(shader) {
     shader.fragmentShader = shader.fragmentShader.replace('#include <map_fragment>',
         '#include <map_fragment>\n#ifdef USE_MAP\n\tdiffuseColor.rgb /= max(sampledDiffuseColor.a, 0.002);\n#endif');
 }
 
-// A character without frames of its own: three's renderer asks for them.
+// A character without a frame loop: three's renderer requests frames.
 class Guest extends Character {
     constructor(object, options) {
         super(object.renderer.domElement, { ...options, light: 'plain', elsewhere: true });
@@ -29,7 +29,7 @@ class Guest extends Character {
     redraw() {}
     resize() {}
     fit() {}
-    releaseContext() {} // it is three's
+    releaseContext() {} // it belongs to three
 
     close() {
         if (this.program && !this.lost) this.program._web_vertices_close();
@@ -42,13 +42,13 @@ class Guest extends Character {
     }
 }
 
-// A mesh whose vertices are on the GPU alone: what a ray meets, the library tells.
+// A mesh with vertices only on the GPU: the library computes hits of rays.
 class NohMesh extends Mesh {
     raycast(raycaster, found) { this.parent.pick(this, raycaster, found); }
 }
 
 export class NohObject3D extends Group {
-    // renderer: a WebGLRenderer. options: those of Character; what is about light and canvas has no effect.
+    // renderer: a WebGLRenderer. options: as for Character; options for light and canvas have no effect.
     constructor(renderer, options = {}) {
         super();
         this.isNohObject3D = true;
@@ -61,7 +61,7 @@ export class NohObject3D extends Group {
         this.character.addEventListener('load', () => this.begin());
     }
 
-    // An address, a Response, a File or Blob, or bytes of a pack. Resolves when all of it is there.
+    // An address, a Response, a File or Blob, or bytes of a pack. Resolves when the whole pack is loaded.
     async load(source) {
         await this.character.load(source);
         return this;
@@ -69,7 +69,7 @@ export class NohObject3D extends Group {
 
     get program() { return this.character.program; }
 
-    // ---- what the pack has ----
+    // ---- contents of the pack ----
 
     begin() {
         const p = this.program;
@@ -79,7 +79,7 @@ export class NohObject3D extends Group {
         });
         this.clear();
         for (const mesh of this.meshes) mesh.geometry.dispose();
-        const kept = new Map(this.materials.map((material) => [material.name, material])); // of the coarsest levels: what was changed stays
+        const kept = new Map(this.materials.map((material) => [material.name, material])); // of the coarsest levels: changes stay
         this.materials = Array.from({ length: p._web_material_count() }, (_, i) => kept.get(p.text(p._web_material_name(i))) || this.materialOf(i));
         this.pictured = false;
         this.meshes = Array.from({ length: p._web_drawn_count() }, (_, i) => this.meshOf(i));
@@ -109,11 +109,11 @@ export class NohObject3D extends Group {
         const { box } = this, middle = new Vector3(box[0] + box[3], box[1] + box[4], box[2] + box[5]).multiplyScalar(0.5);
         geometry.boundingSphere = new Sphere(middle, middle.distanceTo(new Vector3(box[3], box[4], box[5])));
         const mesh = new NohMesh(geometry, this.materials.length ? this.materials : new MeshStandardMaterial());
-        Object.assign(mesh, { name: p.text(p._web_drawn_name(i)), frustumCulled: false, levels, level: -1 }); // it moves: noh knows where it is
+        Object.assign(mesh, { name: p.text(p._web_drawn_name(i)), frustumCulled: false, levels, level: -1 }); // it moves: only noh knows its bounds
         return mesh;
     }
 
-    // Indices of a level, and which material has which of them.
+    // Indices of a level, and their ranges by material.
     levelOf(i, level) {
         const p = this.program, count = p._web_drawn_index_count(i, level), at = p._web_drawn_indices(i, level);
         const Indices = p._web_drawn_index_bytes(i) === 4 ? Uint32Array : Uint16Array, parts = p._web_drawn_part_count(i, level);
@@ -137,7 +137,7 @@ export class NohObject3D extends Group {
         for (const { start, count, material } of groups) mesh.geometry.addGroup(start, count, material < this.materials.length ? material : 0);
     }
 
-    // The library's textures, once it has made them.
+    // The library's textures, once created.
     picture() {
         const p = this.program, lent = new Map();
         const borrow = (name) => {
@@ -156,7 +156,7 @@ export class NohObject3D extends Group {
 
     // ---- frames ----
 
-    // Calls of the library between three's: neither knows the other's state.
+    // Calls of the library between three's, which do not know each other's GL state.
     apart(call) {
         const { renderer } = this, gl = renderer.getContext();
         renderer.resetState();
@@ -170,7 +170,7 @@ export class NohObject3D extends Group {
         }
     }
 
-    // Move time on, and deform what a camera is to see: before renderer.render.
+    // Advance time and deform the character for a camera. Call before renderer.render.
     update(seconds, camera) {
         const { character, renderer } = this;
         if (!character.ready || character.lost) return;
@@ -192,7 +192,7 @@ export class NohObject3D extends Group {
         character.emit('frame', { seconds });
     }
 
-    // The buffers of a new context.
+    // Recreate the buffers in a new context.
     restore() {
         const p = this.program, { gl } = this.character;
         if (!p) return;

@@ -1,5 +1,5 @@
-/* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Every product and every sum is made in
- * the order of the shaders, so equal inputs give equal bits. */
+/* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Products and sums have the same order as
+ * in the shaders, so equal inputs give equal bits. */
 #include "core/base/assert.h"
 #include "core/base/compiler.h"
 #include "deform/morph/morph.h"
@@ -81,8 +81,8 @@ static void accumulate_some_scalar(const noh_mesh *mesh, const float *weights, c
 
 /* ---- kernels by name ---- */
 
-/* Functions of this file that call functions of other files: in position-independent code, the address of a function in
- * another file is looked up in a table that the linker must be able to write. */
+/* Wrappers in this file: in position-independent code, the address of a function in another file is read from a table
+ * that the linker must be able to write. */
 
 static void finish(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out)
 {
@@ -253,7 +253,7 @@ void noh_morph_position(const noh_mesh *mesh, const noh_morph_layers *layers, ui
     }
 }
 
-/* The words of a target's delta at a texel; NULL if it does not move it. */
+/* The words of a target's delta at a texel; NULL if the target does not move the texel. */
 static const uint32_t *delta_at(const noh_mesh *mesh, const noh_target *t, uint32_t x, uint32_t y)
 {
     const noh_rect *rect = mesh->rects + t->first_rect;

@@ -1,6 +1,6 @@
 /* morph_accumulate_internal.h (private to deform/): the loops over targets, rectangles and rows, around a kernel that
- * adds one run of texels. They are inlined into one function for each kernel: called through a pointer for each row, a
- * kernel takes up to twice as long. */
+ * adds one run of texels. They are inlined into one function per kernel: a call through a pointer for each row takes up
+ * to twice as long. */
 #ifndef NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 #define NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 
@@ -19,9 +19,9 @@ static inline morph_field noh_make_field(unsigned before, unsigned bits, float w
 }
 
 /* A delta texel is three words, one for each axis; each word holds the position, the normal and the tangent difference
- * of that axis as two's complement integers, from the top bit down. Shifted left to the top and then right
- * arithmetically, a field is its integer; scale and weight make one factor, as on the GPU, so that CPU and GPU round
- * the same products. */
+ * of that axis as two's complement integers, from the top bit down. A left shift to the top and an arithmetic right
+ * shift extract a field's integer. Scale and weight are multiplied first, as on the GPU, so that CPU and GPU round the
+ * same products. */
 static inline void noh_target_fields(const noh_target *t, float weight, morph_field f[3])
 {
     f[0] = noh_make_field(0, t->position_bits, t->position_scale * weight);
@@ -31,7 +31,7 @@ static inline void noh_target_fields(const noh_target *t, float weight, morph_fi
 
 typedef void (*noh_rows_function)(const noh_morph_rows *rows, const morph_field f[3], float *const layers[3]);
 
-/* Whether any of the groups of NOH_MORPH_GROUP texels that a run lies in is wanted. groups NULL: all are */
+/* Whether any group of NOH_MORPH_GROUP texels that a run overlaps is wanted. groups NULL: all are */
 static inline int noh_is_wanted(const uint8_t *groups, size_t texel, size_t count)
 {
     int wanted = !groups;
@@ -41,13 +41,13 @@ static inline int noh_is_wanted(const uint8_t *groups, size_t texel, size_t coun
     return wanted;
 }
 
-/* What is accumulated, and into what. */
+/* Input and output of an accumulation. */
 typedef struct noh_morph_job {
     const noh_mesh *mesh;
     const noh_morph_layers *layers;
     const uint8_t *groups; /* NULL: all */
-    size_t stride, floats; /* of a row, of a layer */
-    size_t words;          /* from mesh->texels on there are at least so many */
+    size_t stride, floats; /* floats per row, floats per layer */
+    size_t words;          /* least number of words from mesh->texels on */
 } noh_morph_job;
 
 static inline noh_morph_job noh_morph_job_of(const noh_mesh *mesh, const noh_morph_layers *layers,
@@ -63,7 +63,7 @@ static inline noh_morph_job noh_morph_job_of(const noh_mesh *mesh, const noh_mor
     return j;
 }
 
-/* How many rows of `count` it takes to make up for what `have` lacks: three at most. */
+/* Rows of `count` floats needed to raise `have` to at least `need`: three at most. */
 static inline size_t noh_rows_short(size_t have, size_t need, size_t count)
 {
     size_t rows = 0;
@@ -71,8 +71,8 @@ static inline size_t noh_rows_short(size_t have, size_t need, size_t count)
     return rows;
 }
 
-/* `rows` rows of a rectangle, the first of which has its texels from float `at` of each layer and `word` on. Rows are
- * alone where what a vector has before or behind them is not of the layers or not of the words. */
+/* Add `rows` rows of a rectangle; the first row begins at float `at` of each layer and at `word`. Rows are added with
+ * NOH_MORPH_ALONE if a vector would begin or end outside the layers or the words. */
 NOH_ALWAYS_INLINE void noh_accumulate_rows(const noh_morph_job *j, const noh_rect *rect, size_t at, size_t word,
                                            size_t rows, const morph_field f[3], noh_rows_function add)
 {
@@ -97,8 +97,8 @@ NOH_ALWAYS_INLINE void noh_accumulate_rows(const noh_morph_job *j, const noh_rec
     }
 }
 
-/* Every rectangle of one target. Its delta texels lie in the order of its rectangles, row by row, so that a row is one
- * run of words in the pack and one run of floats in each layer: the inner loop only streams. */
+/* Add every rectangle of one target. Its delta texels are stored in the order of its rectangles, row by row, so a row
+ * is one run of words in the pack and one run of floats in each layer: the inner loop only streams. */
 NOH_ALWAYS_INLINE void noh_accumulate_target(const noh_morph_job *j, const noh_target *t, const morph_field f[3],
                                              noh_rows_function add)
 {

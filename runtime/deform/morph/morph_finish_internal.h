@@ -1,4 +1,4 @@
-/* morph_finish_internal.h (private to deform/): what the kernels that finish vertices share. */
+/* morph_finish_internal.h (private to deform/): shared by the kernels that finish vertices. */
 #ifndef NOH_DEFORM_MORPH_FINISH_INTERNAL_H
 #define NOH_DEFORM_MORPH_FINISH_INTERNAL_H
 
@@ -7,16 +7,16 @@
 #include "noh/deform.h"
 #include "noh/pack.h"
 
-/* Added to a number below 2^22 it leaves the nearest integer, of two the even one, in the lowest bits. */
+/* Adding it to a number below 2^22 rounds to the nearest integer, ties to even, in the lowest bits. */
 #define NOH_ROUNDER 12582912.0f
 
-/* A direction whose square is no more has none: noh_normalize3. Nor has one whose square is as large as this, with which
- * products overflow. */
+/* A vector has a direction only if its square is above NOH_VANISHES (as in noh_normalize3) and below NOH_OVERFLOWS,
+ * where products overflow. */
 #define NOH_VANISHES 1e-30f
 #define NOH_OVERFLOWS 1e30f
 
-/* Blocks that go through each half of the kernel together: the chain of one is some 200 cycles long, and a processor
- * looks ahead by about as many instructions as a block has, so that it would wait. */
+/* Blocks that run through each half of the kernel together. The dependency chain of one block takes about 200 cycles,
+ * and a processor looks ahead by about as many instructions as a block has: with one block it would stall. */
 #define NOH_FINISH_BLOCKS 4u
 
 #ifdef NOH_AVX2_AT_RUN_TIME

@@ -1,9 +1,9 @@
-/* morph_finish_template.h (private to deform/): the kernel that finishes vertices, for lanes of any width; included once
- * for each. Names and types are those of simd_internal.h behind LANES(); LANES_COUNT of them are side by side, in
- * functions marked by LANES_INLINE.
+/* morph_finish_template.h (private to deform/): the kernel that finishes vertices, for any number of lanes; included
+ * once per width. LANES() gives names and LANES_TYPE the type of simd_internal.h, LANES_COUNT the number of lanes,
+ * LANES_INLINE the attributes of functions.
  *
- * One vertex is in each lane. Of a record four words are loaded, which may be more than it has: the last vertices of a
- * mesh are left to plain C, and so are blocks in which a direction vanishes or overflows. */
+ * Each lane has one vertex. Four words are loaded per record, which may be more than it has, so plain C finishes the
+ * last vertices of a mesh. It also finishes blocks in which a direction vanishes or overflows. */
 #include <string.h>
 
 #include "deform/morph/morph_finish_internal.h"
@@ -56,18 +56,18 @@ LANES_INLINE LANES_TYPE LANES(normal_words)(const LANES_TYPE v[3])
     return LANES(halves)(LANES(rounded)(pair[0], 32767.0f), LANES(rounded)(pair[1], 32767.0f));
 }
 
-/* The second number is twice the steps, and one more where the handedness bit is set. */
+/* The second number is twice the steps, plus 1 if the handedness bit is set. */
 LANES_INLINE LANES_TYPE LANES(tangent_words)(const LANES_TYPE v[3], LANES_TYPE word)
 {
     const LANES_TYPE rounder = LANES(set)(NOH_ROUNDER);
     LANES_TYPE pair[2], y;
     LANES(fold)(v, pair);
     y = LANES(sub)(LANES(rounded)(pair[1], 16383.0f), rounder);
-    y = LANES(sub)(LANES(add)(y, y), LANES(field)(word, 15, 31)); /* -1 where it is set */
+    y = LANES(sub)(LANES(add)(y, y), LANES(field)(word, 15, 31)); /* -1 if the bit is set */
     return LANES(halves)(LANES(rounded)(pair[0], 32767.0f), LANES(add)(y, rounder));
 }
 
-/* A direction of the pack with its deltas, times the length that the pack's has. */
+/* Add deltas to a direction of the pack, scaled by the direction's length. */
 LANES_INLINE void LANES(move)(LANES_TYPE out[3], const float *deltas)
 {
     const LANES_TYPE length = LANES(sqrt)(LANES(dot3)(out, out));
@@ -82,22 +82,22 @@ LANES_INLINE void LANES(move)(LANES_TYPE out[3], const float *deltas)
     for (int i = 0; i < 3; i++) out[i] = LANES(add)(out[i], LANES(mul)(delta[i], length));
 }
 
-/* Whether all are squares of directions. Not a number is none. */
+/* Whether all lanes are squares of directions. NaN is not. */
 LANES_INLINE int LANES(are_directions)(LANES_TYPE square)
 {
-    const LANES_TYPE no = LANES(set)(-1.0f); /* with a sign, which is what a mask has */
+    const LANES_TYPE no = LANES(set)(-1.0f); /* a set sign bit, as in a mask */
     const LANES_TYPE small = LANES(choose)(LANES(less)(square, LANES(set)(NOH_OVERFLOWS)), LANES(set)(0.0f), no);
     return !LANES(any)(LANES(choose)(LANES(less)(LANES(set)(NOH_VANISHES), square), small, no));
 }
 
-/* One block, between its two halves. */
+/* One block, between the two halves of the kernel. */
 typedef struct LANES(moved) {
-    LANES_TYPE n[3], t[3]; /* with their deltas */
-    LANES_TYPE tangent;    /* of the pack */
+    LANES_TYPE n[3], t[3]; /* with deltas */
+    LANES_TYPE tangent;    /* the pack's words */
     uint32_t v, texel;     /* of the first lane */
 } LANES(moved);
 
-/* The first half: the directions of the vertices from b->v on, with the deltas of as many texels from b->texel on. */
+/* First half: the directions of the vertices from b->v on, with the deltas of the texels from b->texel on. */
 LANES_INLINE void LANES(move_block)(const noh_mesh *mesh, const noh_morph_layers *layers, int has_tangents,
                                     LANES(moved) * b)
 {
@@ -112,8 +112,8 @@ LANES_INLINE void LANES(move_block)(const noh_mesh *mesh, const noh_morph_layers
     LANES(move)(b->t, layers->tangent ? layers->tangent + at : NULL);
 }
 
-/* The second: folded, and written with the positions. Returns 0, and has written nothing, where a lane has no direction.
- */
+/* Second half: fold the directions and write them with the positions. Returns 0 and writes nothing if a lane has no
+ * direction. */
 LANES_INLINE int LANES(write_block)(const noh_mesh *mesh, const noh_morph_layers *layers, int has_tangents,
                                     const LANES(moved) * b, float *out)
 {
@@ -139,8 +139,8 @@ LANES_INLINE int LANES(write_block)(const noh_mesh *mesh, const noh_morph_layers
     return 1;
 }
 
-/* The first texel of a block whose texels follow each other and all have deltas; NOH_NONE: they do not, or a lane would
- * read past the last layer or the last record, of which up to three words of what follows are loaded. */
+/* The first texel of a block whose texels are consecutive and all have deltas. NOH_NONE: they are not, or a lane would
+ * read past the last layer or the last record (loads extend up to three words beyond a record). */
 LANES_INLINE uint32_t LANES(texel_of_block)(const noh_mesh *mesh, uint32_t v)
 {
     const noh_mesh_header *h = mesh->header;

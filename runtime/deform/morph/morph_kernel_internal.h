@@ -15,20 +15,20 @@
 #include "core/base/simd_internal.h"
 #include "core/base/compiler.h"
 
-/* Where a field lies in a word, and the weight of one unit of it. The left shift drops the bits above the field, the
- * arithmetic right shift those below it, and extends the sign. */
+/* The position of a field in a word, and the weight of one unit. The left shift drops the bits above the field; the
+ * arithmetic right shift drops the bits below it and extends the sign. */
 typedef struct morph_field {
     uint32_t left, right;
     float weight;
 } morph_field;
 
 #define NOH_MORPH_LANES 8u    /* of the widest vectors */
-#define NOH_MORPH_ALONE 0xffu /* in place of a lead: nothing beside the run may be touched */
+#define NOH_MORPH_ALONE 0xffu /* in place of a lead: nothing outside the run may be touched */
 
 static inline float noh_field_value(uint32_t word, morph_field f)
 {
-    /* C99 leaves the right shift of a negative value to the compiler; all known ones shift in the sign, and a test says
-     * so */
+    /* C99 leaves the right shift of a negative value to the compiler; all known compilers shift in the sign, and a test
+     * checks it */
     return (float)((int32_t)(word << f.left) >> f.right) * f.weight;
 }
 
@@ -39,13 +39,13 @@ static inline void noh_add_run_scalar(const uint32_t *words, size_t count, morph
     }
 }
 
-/* Rows of a rectangle: one behind another in the words, `stride` floats apart in the layers. */
+/* Rows of a rectangle: contiguous in the words, `stride` floats apart in the layers. */
 typedef struct noh_morph_rows {
     const uint32_t *words;
     size_t count; /* words of a row, and floats in each layer */
     size_t rows, stride;
-    size_t lead; /* below NOH_MORPH_LANES: vectors may begin so many words and floats before a row, and end at the next
-                  * multiple of NOH_MORPH_LANES behind it; or NOH_MORPH_ALONE */
+    size_t lead; /* below NOH_MORPH_LANES: vectors may begin `lead` words and floats before a row, and end at the next
+                  * multiple of NOH_MORPH_LANES after it; or NOH_MORPH_ALONE */
 } noh_morph_rows;
 
 typedef void (*noh_row_function)(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3]);
@@ -67,7 +67,7 @@ static inline void noh_add_row_scalar(const uint32_t *words, size_t count, const
     for (int l = 0; l < 3 && layers[l]; l++) noh_add_run_scalar(words, count, f[l], layers[l]);
 }
 
-/* Called, since it is rare: inlined into each kernel it would be a quarter of them. */
+/* Not inlined: it is rare, and would be a quarter of each kernel. */
 NOH_NEVER_INLINE static void noh_add_rows_scalar(const noh_morph_rows *r, const morph_field f[3],
                                                  float *const layers[3])
 {
@@ -89,7 +89,7 @@ NOH_NEVER_INLINE static void noh_add_rows_scalar(const noh_morph_rows *r, const 
 #include "deform/morph/morph_rows_template.h"
 #endif
 
-/* By the widest vectors that the whole library is compiled for. */
+/* Add rows with the widest vectors that the whole library is compiled for. */
 NOH_ALWAYS_INLINE void noh_add_rows(const noh_morph_rows *r, const morph_field f[3], float *const layers[3])
 {
 #if NOH_LANES == 8

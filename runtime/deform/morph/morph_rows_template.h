@@ -1,15 +1,15 @@
 /* morph_rows_template.h (private to deform/): the kernel that adds rows of words to the layers, for vectors of any
- * width; included once for each, by morph_kernel_internal.h.
+ * width; included once per width, by morph_kernel_internal.h.
  *
- * Vectors are stored where a layer has their alignment, since one that crosses a cache line takes as long as two. So the
- * first one begins `lead` words before its row, and the last one ends behind it. Of these two only the row's lanes
- * change; the other floats are read, and written as they were.
+ * Vectors are stored at aligned positions of a layer, because a store that crosses a cache line takes as long as two.
+ * So the first vector begins `lead` words before its row, and the last one ends after the row. In these two only the
+ * row's lanes change; the other floats are written back unchanged.
  *
- * The layers are written out: in a loop over them gcc would look shifts and weights up in every step, which takes up to
- * twice as long. Nor can it know that no layer lies over the words or the fields, so the words of a step are loaded once
- * for all layers by hand, and the fields are copied. */
+ * There is no loop over the layers: in a loop gcc reads shifts and weights from memory in every step, which takes up to
+ * twice as long. As gcc cannot know that layers do not alias the words or the fields, the code loads the words of a
+ * step once for all layers and copies the fields. */
 
-/* A layer and what words add to it. */
+/* A layer and the field that is added to it. */
 LANES_INLINE LANES_TYPE LANES(with_field)(LANES_TYPE words, morph_field f, LANES_TYPE layer)
 {
     const LANES_TYPE value = LANES(field)(words, (int)f.left, (int)f.right);

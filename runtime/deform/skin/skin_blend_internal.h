@@ -5,8 +5,8 @@
 #include "noh/deform.h"
 #include "noh/pack.h"
 
-/* c[3][3] rows: the cofactors of a matrix of 3 rows of 4, which turn normals as the matrix turns points, times its
- * determinant. Returns the determinant's sign: a mirror's cofactors point inward. */
+/* c[3][3] rows: the cofactors of a matrix of 3 rows of 4, which transform normals as the matrix transforms points,
+ * times its determinant. Returns the determinant's sign: a mirror's cofactors point inward. */
 static inline float noh_cofactors(const float m[12], float c[9])
 {
     float determinant;
@@ -23,13 +23,13 @@ static inline float noh_cofactors(const float m[12], float c[9])
     return determinant < 0.0f ? -1.0f : 1.0f;
 }
 
-/* A place of the morphed surface, moved as a vertex's joints say: in the bits of noh_skin_position, and of
+/* Move a point of the morphed surface by a vertex's joints, with the same bits as noh_skin_position and
  * noh_skin_position_dual. */
 void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index, const float p[3], float out[3]);
 void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
                          float out[3]);
 
-/* A vertex as it is before its joints move it: morphed where targets reach it. layers NULL: no morph targets. */
+/* Get a vertex before its joints move it, with morph targets applied. layers NULL: no morph targets. */
 void noh_skin_rest(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t index, noh_vertex *out);
 
 /* Move a vertex by a matrix: position, normal, tangent. */

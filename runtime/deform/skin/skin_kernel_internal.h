@@ -1,10 +1,10 @@
 /* skin_kernel_internal.h (private to deform/): a block of NOH_LANES vertices, moved side by side.
  *
  * Each vertex has joints of its own, so matrices are gathered and blended vertex by vertex, with the rows of a matrix
- * in the vector. All else is the same for every vertex and runs with one vertex in each lane: the block's matrices,
- * positions and directions are transposed (lanes_columns), moved, and transposed back (lanes_rows). Every operation is
- * that of noh_mesh_directions, noh_morph_vertex and noh_skin_apply, in their order, and lanes never mix: the same bits.
- */
+ * in the vector. Everything else is the same for every vertex and runs with one vertex per lane: the block's matrices,
+ * positions and directions are transposed (lanes_columns), moved, and transposed back (lanes_rows). The operations are
+ * the same, in the same order, as in noh_mesh_directions, noh_morph_vertex and noh_skin_apply, and lanes never mix, so
+ * the bits are the same. */
 #ifndef NOH_DEFORM_SKIN_KERNEL_INTERNAL_H
 #define NOH_DEFORM_SKIN_KERNEL_INTERNAL_H
 
@@ -17,7 +17,7 @@
 #include "noh/format.h"
 #include "noh/pack.h"
 
-/* The arguments of a call. `joints`, filled for meshes of one palette, gives the matrix of a place in it directly. */
+/* The arguments of a call. joints: for meshes with one palette, the matrix of each palette entry. */
 typedef struct skin_job {
     const noh_mesh *mesh;
     const float *matrices;
@@ -32,7 +32,7 @@ typedef struct skin_job {
 /* ---- one matrix per vertex ---- */
 
 #if NOH_LANES == 8
-/* Two rows in one register, the third in half of one. */
+/* Two rows in one register, the third in half a register. */
 static inline void blend_rows(const float *const *from, const float *weights, uint32_t count, float m[12])
 {
     noh_v8 w = noh_v8_set(weights[0]), ab = noh_v8_mul(w, noh_v8_load(from[0]));
@@ -64,8 +64,8 @@ static inline void blend_rows(const float *const *from, const float *weights, ui
 }
 #endif
 
-/* The weights of noh_mesh_influences, for a count that the compiler knows: it then unrolls the loop, and all positions
- * of bits are constants. The first weight is not stored: it is what the others leave of 1. */
+/* The weights of noh_mesh_influences, for a count known at compile time: the loop is unrolled, and all bit positions
+ * are constants. The first weight is not stored: it is 1 minus the others. */
 static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *weights)
 {
     const float unit = 1.0f / (float)NOH_WEIGHT_ONE;
@@ -84,7 +84,7 @@ static inline void unpack_weights(const uint32_t *bits, uint32_t count, float *w
     weights[0] = (float)(int32_t)rest * unit;
 }
 
-/* A vertex's texel reference and palette, of a mesh with texel references. */
+/* A vertex's texel reference and palette, for a mesh with texel references. */
 static inline uint32_t texel_word(const skin_job *job, uint32_t vertex)
 {
     const size_t stride = job->mesh->header->attribute_stride;
@@ -116,8 +116,7 @@ static inline void blend_vertex(const skin_job *job, uint32_t vertex, uint32_t c
     blend_rows(from, weights, count, m);
 }
 
-/* The matrices of a block. Lanes past `count` repeat the last vertex: they cost nothing more, and no lane is undefined.
- */
+/* The matrices of a block. Lanes past `count` repeat the last vertex: this costs nothing, and no lane is undefined. */
 static inline void blend_block_of(const skin_job *job, uint32_t first, uint32_t count, uint32_t influences,
                                   float m[NOH_LANES][12])
 {
@@ -138,9 +137,9 @@ static inline void blend_block(const skin_job *job, uint32_t first, uint32_t cou
 
 /* ---- a block ---- */
 
-/* Positions, and the first four words of the attribute records. A load of four words reads past the three of a position
- * and past short records, but not past the pack: other arrays follow both. Blocks that are not full are copied first.
- */
+/* Positions, and the first four words of the attribute records. A load of four words reads beyond the three words of a
+ * position and beyond short records, but not beyond the pack: other arrays follow both. Incomplete blocks are copied
+ * first. */
 static inline void load_block(const skin_job *job, uint32_t first, uint32_t count, lanes p[4], lanes words[4])
 {
     const size_t stride = job->mesh->header->attribute_stride;
@@ -162,8 +161,8 @@ static inline void load_block(const skin_job *job, uint32_t first, uint32_t coun
     }
 }
 
-/* Octahedral directions, unnormalised: z is what |x| + |y| leave of 1; where that is negative, x and y are folded over
- * the diagonal. (Q. Meyer et al., "On floating-point normal vectors", 2010) */
+/* Octahedral directions, unnormalised: z = 1 - |x| - |y|; where z is negative, x and y are folded over the diagonal.
+ * (Q. Meyer et al., "On floating-point normal vectors", 2010) */
 static inline void unfold_lanes(lanes x, lanes y, lanes out[3])
 {
     const lanes zero = lanes_set(0.0f);
@@ -191,7 +190,7 @@ static inline void make_unit(lanes v[3])
     lanes_normalize3(v, up);
 }
 
-/* Make a moved direction unit; one without length becomes the rest direction. */
+/* Normalise a moved direction; one of length 0 becomes the rest direction. */
 static inline void make_unit_or_rest(lanes v[3], const lanes rest[3])
 {
     lanes short_ones = lanes_less(lanes_dot3(v, v), lanes_set(2e-30f));
@@ -200,11 +199,11 @@ static inline void make_unit_or_rest(lanes v[3], const lanes rest[3])
         make_unit(unit);
         lanes_normalize3(v, unit);
     } else {
-        lanes_normalize3(v, rest); /* none is short: `rest` is never chosen */
+        lanes_normalize3(v, rest); /* all have a length: `rest` is never chosen */
     }
 }
 
-/* Deltas of the block's vertices that a target may move. */
+/* Deltas of a block's vertices. */
 typedef struct skin_deltas {
     float of[3][NOH_LANES][4]; /* position, normal, tangent; the fourth float is unused */
     float touched[NOH_LANES];  /* 1, or 0 */
@@ -252,7 +251,7 @@ static inline void choose3(lanes mask, const lanes yes[3], lanes v[3])
     }
 }
 
-/* noh_morph_vertex for a block; vertices that no target moves stay as they are, without being made unit. */
+/* noh_morph_vertex for a block; vertices that no target moves stay unchanged and are not normalised. */
 static inline void morph_block(skin_deltas *d, int tangents, lanes p[3], lanes n[3], lanes t[3])
 {
     lanes mask, moved[3], normal[3], unit[3] = { n[0], n[1], n[2] };
@@ -297,10 +296,8 @@ static inline void cofactor_lanes(lanes m[3][4], lanes c[3][3])
     c[2][2] = cross_term(m[0][0], m[1][1], m[0][1], m[1][0]);
 }
 
-/* Where `direct`, rows are stored as they are: of three floats, the fourth lands where the next vertex's first will be
- * and is overwritten by it. In the last block, where there is no next vertex, only the vertices' own floats are
- * written.
- */
+/* direct 1: rows of four floats are stored directly; for three floats, the next vertex overwrites the fourth. The last
+ * block has no next vertex, so only the vertices' own floats are written (direct 0). */
 static inline void store_block(const lanes v[3], lanes last, uint32_t floats, uint32_t count, int direct, float *out)
 {
     const lanes columns[4] = { v[0], v[1], v[2], last };
@@ -315,7 +312,7 @@ static inline void store_block(const lanes v[3], lanes last, uint32_t floats, ui
     }
 }
 
-/* A block as noh_skin_apply moves its vertices, to elements at..at+count-1 of the outputs. */
+/* Move a block as noh_skin_apply does, to elements at..at+count-1 of the outputs. */
 static inline void move_block(const skin_job *job, float matrices[NOH_LANES][12], lanes p[3], lanes n[3], lanes t[3],
                               lanes hand, uint32_t at, uint32_t count, int direct)
 {

@@ -1,9 +1,9 @@
 /* gl_api.c: filling the table of GL functions.
  *
- * Functions of three kinds are looked up. Those that the library calls must all be there. Those for renderers may be
- * missing. Those beyond ES 3.0 depend on the context: eglGetProcAddress and its like return a pointer for a name that
- * the context does not support, so the version and the extension strings decide, and they also decide the suffix under
- * which a function is found. The table is built apart and copied once nothing can fail any more. */
+ * Three kinds of functions are looked up. Functions that the library calls are required; functions for renderers are
+ * optional. Functions beyond ES 3.0 depend on the context: eglGetProcAddress and similar functions return a pointer
+ * even for an unsupported name, so the version and the extension strings decide whether a function is available and
+ * under which suffix. A local table is filled first and copied only on success. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "noh/base.h"
@@ -69,7 +69,7 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name)
     return 0;
 }
 
-/* Look up the function whose name is the first word of `sentence`. *missing keeps the sentence of the first failure. */
+/* Look up the function named by the first word of `sentence`. *missing keeps the sentence of the first failure. */
 static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sentence, const char **missing)
 {
     char name[PROC_NAME_BYTES];
@@ -85,7 +85,7 @@ static noh_gl_proc get_required(noh_gl_get_proc get, void *user, const char *sen
     return proc;
 }
 
-/* Returns a sentence about the first required function that is missing, or NULL. */
+/* Return a sentence about the first missing required function, or NULL. */
 static const char *load_required(noh_gl_api *api, noh_gl_get_proc get, void *user)
 {
     const char *missing = NULL;
@@ -110,7 +110,7 @@ static noh_result read_version(noh_gl_api *api, noh_error *error)
     api->GetIntegerv(GL_MINOR_VERSION, &minor);
     api->is_es = text_starts(text, "OpenGL ES");
     api->version = major * 100 + minor * 10;
-    /* ES 2.0 does not know GL_MAJOR_VERSION: it raises an error, and the zeros stay. */
+    /* ES 2.0 has no GL_MAJOR_VERSION: the query raises an error and the zeros stay. */
     if (noh_gl_error_take(api) != GL_NO_ERROR || api->version < 300) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED, "the context is below OpenGL ES 3.0: create a newer one",
                         (uint64_t)api->version, 300);
@@ -128,12 +128,12 @@ static int is_webgl(const noh_gl_api *api)
     return 0;
 }
 
-/* The suffix of each group's functions in this context; NULL: the context does not have them. */
+/* Suffix of each group's functions in this context; NULL: not available. */
 static void choose_suffixes(noh_gl_api *api, const char *suffix[NOH_GL_GROUP_COUNT])
 {
     memset(suffix, 0, sizeof(*suffix) * NOH_GL_GROUP_COUNT);
     api->geometry_ext = 0;
-    if (!is_webgl(api)) suffix[NOH_GL_GROUP_MAP] = ""; /* its buffers cannot be mapped */
+    if (!is_webgl(api)) suffix[NOH_GL_GROUP_MAP] = ""; /* WebGL cannot map buffers */
     if (api->version >= 320) {
         suffix[NOH_GL_GROUP_GEOMETRY] = "";
     } else if (api->is_es && noh_gl_has_extension(api, "GL_EXT_geometry_shader")) {

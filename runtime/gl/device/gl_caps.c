@@ -1,8 +1,8 @@
 /* gl_caps.c: the probe of a context's abilities.
  *
- * Each ability is tried in the way that the library uses it: known floats are drawn into the three layers of an array
- * texture and read back. A driver may claim a format and then clamp, round or drop what is written to it; only the
- * values tell. Layers get different values, so that one that was mixed up or left out shows. */
+ * Each ability is tested the way the library uses it: known floats are drawn into the three layers of an array texture
+ * and read back. A driver may claim a format and then clamp, round or drop the values written to it, so only the values
+ * read back count. Each layer gets different values, which reveals swapped and missing layers. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "noh/base.h"
@@ -18,7 +18,7 @@
 #define TEXELS 16
 #define FLOATS (TEXELS * 4)
 #define LAYERS 3
-#define PASSES 3 /* rows of values: one is stored, two are blended on top of it by one draw */
+#define PASSES 3 /* rows of values: the first is stored, then one draw blends two on top of it */
 
 /* The GL objects that all probes share. */
 typedef struct probe {
@@ -40,7 +40,7 @@ typedef struct float_result {
 /* --- the numbers --- */
 
 /* 64 floats of both signs with full mantissas and magnitudes from 2^-20 to 2^2, by a linear congruential generator
- * (Numerical Recipes' constants). As halves and in sums they give ties, denormals, and roundings up and down. */
+ * (Numerical Recipes' constants). Their halves and sums include ties, denormals, and roundings up and down. */
 static void make_values(float values[FLOATS], uint32_t pass)
 {
     uint32_t state = 0x9e3779b9u * (pass + 1);
@@ -50,7 +50,7 @@ static void make_values(float values[FLOATS], uint32_t pass)
         uint32_t sign = state & 0x80000000u;
         state = state * 1664525u + 1013904223u;
         uint32_t bits = sign | (exponent << 23) | (state >> 9);
-        /* Every fourth lies exactly between two halves: ties tell the rounding modes apart. */
+        /* Every fourth value lies exactly between two halves: ties distinguish the rounding modes. */
         if (i % 4 == 3) bits = (bits & ~0x1fffu) | 0x1000u;
         memcpy(&values[i], &bits, sizeof bits);
     }
@@ -90,7 +90,7 @@ static void attach(const probe *p, GLuint texture, uint32_t attachment, uint32_t
     p->api->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture, 0, (GLint)layer);
 }
 
-/* Attach the three layers as draw buffers. 0 where the driver refuses. */
+/* Attach the three layers as draw buffers. Return 0 if the driver refuses. */
 static int attach_layers(const probe *p, GLuint texture)
 {
     static const GLenum buffers[LAYERS] = { GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2 };
@@ -120,8 +120,8 @@ static void draw(const probe *p, GLuint program, GLsizei instances)
     p->api->DrawArraysInstanced(GL_TRIANGLES, 0, 3, instances);
 }
 
-/* Draw rows of the values on top of each other in one draw and read all layers. One draw, because accumulation is one,
- * and a tiling GPU may keep float32 sums in its tile until the draw ends. 0 on any GL error. */
+/* Draw rows of values on top of each other and read all layers. One draw, like an accumulation, because a tiling GPU
+ * may keep float32 sums in its tile until the draw ends. Return 0 on any GL error. */
 static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pixels[LAYERS][FLOATS])
 {
     p->api->UseProgram(p->floats);
@@ -137,17 +137,17 @@ static int draw_and_read(const probe *p, GLint first_row, GLsizei rows, float pi
 
 /* --- comparing ---
  *
- * What was read is compared with four models: exact float32 sums, and halves that were rounded toward zero after each
- * pass, to nearest, or toward zero before it and to nearest after it. The values are chosen so that the roundings
- * differ, ties included; the model that matches every bit is how this driver rounds. If none does, half-float results
- * are only known within a bound. */
+ * The result is compared with four models: exact float32 sums, and halves rounded after each pass toward zero, after
+ * each pass to nearest, or toward zero before each pass and to nearest after it. The values make the models differ,
+ * also by ties; the model that matches every bit shows how this driver rounds. If none matches, half-float results are
+ * only known within a bound. */
 
 /* Expected contents of the target after some passes, by rounding model. */
 typedef struct models {
     float exact[LAYERS][FLOATS];   /* float32 sums */
     float rtz[LAYERS][FLOATS];     /* halves rounded toward zero */
     float rne[LAYERS][FLOATS];     /* halves rounded to nearest, ties to even */
-    float rtz_rne[LAYERS][FLOATS]; /* what is added toward zero, the sum to nearest */
+    float rtz_rne[LAYERS][FLOATS]; /* each term toward zero, the sum to nearest */
 } models;
 
 typedef struct comparison {
@@ -170,8 +170,8 @@ static void advance(models *m, uint32_t pass)
     }
 }
 
-/* Close: within what a half-float accumulator may lose in three passes over values below 4, flushed denormals included;
- * a pass that did not arrive is off by far more. */
+/* Close: within the error of a half-float accumulator in three passes over values below 4, flushed denormals included.
+ * A missing pass exceeds it by far. */
 static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
 {
     comparison out = { 1, 1, 1, 1, 1 };
@@ -190,7 +190,7 @@ static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
     return out;
 }
 
-/* Of what is stored alone, toward zero and then to nearest is toward zero: the plain modes come first. */
+/* Without blending, RTZ_RNE gives the same bits as RTZ, so the plain modes are tested first. */
 static noh_half_mode mode_of(const comparison *c)
 {
     if (c->rtz && c->rne) return NOH_HALF_UNKNOWN;
@@ -272,7 +272,7 @@ static int probe_u32(const probe *p)
     return right;
 }
 
-/* Layered drawing is tried in RGBA8: whether floats can be rendered is another question. */
+/* Layered drawing is tested in RGBA8, because float rendering is a separate capability. */
 static int draw_layers(const probe *p, GLuint program, GLuint texture)
 {
     static const GLfloat clear[4] = { 1.0f, 1.0f, 1.0f, 1.0f };
@@ -346,8 +346,8 @@ static void draw_points(const probe *p, GLuint program, uint8_t pixels[4 * 16 * 
     gl->ReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
-/* Points over half of the 4 x 4 blocks of a layer, each added once: a texel that is covered twice, not at all, or from
- * the block beside it shows. */
+/* Points over half of the 4 x 4 blocks of a layer, each added once. Reveals texels that are covered twice, not at all,
+ * or by the neighbouring block's point. */
 static int probe_points(const probe *p)
 {
     const noh_gl_api *gl = p->api;
@@ -381,7 +381,7 @@ static int probe_points(const probe *p)
     return noh_gl_error_take(gl) == GL_NO_ERROR && right;
 }
 
-/* A driver that lists the extension but cannot measure time has a counter of 0 bits. */
+/* A driver may list the extension and have a counter of 0 bits: it cannot measure time. */
 static int probe_timer(const noh_gl_api *gl)
 {
     if (!gl->TimeGenQueries || !gl->TimeDeleteQueries || !gl->TimeBeginQuery || !gl->TimeEndQuery ||
@@ -459,7 +459,7 @@ const char *noh_gl_geometry_defines(const noh_gl_api *api)
     return NULL;
 }
 
-/* --- the whole --- */
+/* --- the entire probe --- */
 
 static noh_result make_programs(probe *p, noh_error *error)
 {

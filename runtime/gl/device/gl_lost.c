@@ -1,4 +1,4 @@
-/* gl_lost.c: a table for objects whose context is gone. Their names mean nothing any more, or name other objects. */
+/* gl_lost.c: a table for objects of a lost context. Their names are invalid, or belong to other objects now. */
 #include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"
 

@@ -1,8 +1,8 @@
-/* gl_memory.c: GL objects and the bytes that they are counted with.
+/* gl_memory.c: GL objects and their bytes.
  *
- * A texture counts its texels in every mip level, each level half as wide and high as the one before, rounded down but
- * at least 1 (OpenGL ES 3.0, 3.8.10), times its layers and the bytes of a texel; where it is compressed, blocks in
- * place of texels. A renderbuffer counts its samples. */
+ * The bytes of a texture are the texels of all mip levels, each level half as wide and high as the previous one,
+ * rounded down but at least 1 (OpenGL ES 3.0, 3.8.10), times layers and bytes per texel; for a compressed texture,
+ * blocks in place of texels. The bytes of a renderbuffer include its samples. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "gl/device/gl_memory.h"

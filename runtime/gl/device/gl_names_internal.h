@@ -1,5 +1,4 @@
-/* gl_names_internal.h (private): GL's names and types, for the library's own files. Of GL's functions only types: calls go
- * through noh_gl_api. */
+/* gl_names_internal.h (private): GL's constants and types, and its function types; calls go through noh_gl_api. */
 #ifndef NOH_GL_GL_NAMES_INTERNAL_H
 #define NOH_GL_GL_NAMES_INTERNAL_H
 

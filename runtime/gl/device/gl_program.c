@@ -1,5 +1,5 @@
-/* gl_program.c: compiling and linking. Pending GL errors are cleared first and taken last, so that a call that the
- * driver refused is never taken for a program that works. */
+/* gl_program.c: compiling and linking. Pending GL errors are cleared first and read last, so that no refused call goes
+ * unnoticed. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "noh/base.h"
@@ -12,7 +12,7 @@
 
 enum { STAGE_VERTEX, STAGE_GEOMETRY, STAGE_FRAGMENT, STAGE_COUNT };
 
-/* A log that is appended to and is always zero-terminated. */
+/* An append-only log, always zero-terminated. */
 typedef struct log_text {
     char *text;
     size_t room, length;
@@ -35,7 +35,7 @@ static void log_head(log_text *log, const char *name, const char *stage)
     log_append(log, ": ");
 }
 
-/* How many bytes the driver may write, with its terminating zero. */
+/* Bytes that the driver may write, terminating zero included. */
 static GLsizei log_rest(const log_text *log)
 {
     size_t rest = log->room - log->length;
@@ -116,7 +116,7 @@ typedef struct input_kind {
     uint32_t components;
 } input_kind;
 
-/* Matrices have no locations of a mesh: they are of no kind. */
+/* Meshes have no matrix attributes: a matrix has no kind. */
 static input_kind kind_of(GLenum type)
 {
     static const GLenum types[3][4] = {
@@ -132,7 +132,7 @@ static input_kind kind_of(GLenum type)
     return (input_kind){ 0, 0 };
 }
 
-/* The error of an input; NULL: none. */
+/* The error message of an input; NULL: none. */
 static const char *check_input(const noh_gl_program_desc *desc, GLuint location, GLenum type)
 {
     const input_kind wants = kind_of(type);
@@ -173,7 +173,7 @@ static noh_result check_inputs(const noh_gl_api *api, const noh_gl_program_desc 
 
 /* ---- stages ---- */
 
-/* Compile every stage and attach it. The shaders are marked for deletion at once: they then live exactly as long as the
+/* Compile and attach every stage. The shaders are marked for deletion at once, so they live exactly as long as the
  * program. */
 static noh_result attach_stages(const noh_gl_api *api, const noh_gl_program_desc *desc, GLuint program, log_text *log,
                                 noh_error *error)
@@ -225,7 +225,7 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
     if (result == NOH_OK) result = link_program(api, desc, name, &words, error);
     if (result == NOH_OK) result = check_inputs(api, desc, name, &words, error);
     if (result == NOH_OK) bind_names(api, desc, name);
-    /* A refused call is the cause, a failed compile may be its effect: text that never arrived does not compile. */
+    /* Report a refused call first: it may have caused the failed compile. */
     noh_result refused = noh_gl_error_check(api, "the driver refused a call while making a program", 0, error);
     if (refused != NOH_OK) result = refused;
     if (result != NOH_OK) {

@@ -1,6 +1,6 @@
-/* gl_state.c: the GL state that noh changes, kept and put back.
+/* gl_state.c: saves and restores the GL state that noh changes.
  *
- * Draws keep the parts that they change, when they first change them: an opaque pass asks GL five questions. */
+ * Draws save each part of the state on its first change: an opaque pass makes five GL queries. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "noh/gl_device.h"
@@ -40,7 +40,7 @@ static int has_switch(const noh_gl_api *gl, uint32_t cap)
     case COLOR_LOGIC_OP:
     case NOH_GL_PROGRAM_POINT_SIZE: return !gl->is_es;
     case GL_PRIMITIVE_RESTART_FIXED_INDEX:
-        /* in WebGL, which maps no buffers, it is always on and no switch */
+        /* WebGL, which cannot map buffers, has primitive restart always on and no switch for it */
         return gl->is_es ? gl->MapBufferRange != NULL : gl->version >= 430;
     default: return 1;
     }
@@ -104,7 +104,8 @@ void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *r)
     if (r->kept & NOH_KEEP_FACE) gl->FrontFace(r->front_face);
     if (r->kept & NOH_KEEP_COLORS) put_colors(gl, r->color_mask);
     if (r->kept & NOH_KEEP_BLEND) {
-        /* where it is on they are the caller's still, of each draw buffer, but where more was kept */
+        /* With blending on, the caller's functions, one set per draw buffer, were not changed unless FUNCTIONS is
+         * kept. */
         if (!(r->enabled & BIT_BLEND) || (r->kept & NOH_KEEP_FUNCTIONS)) {
             gl->BlendFuncSeparate(r->blend[0], r->blend[1], r->blend[2], r->blend[3]);
             gl->BlendEquationSeparate(r->blend[4], r->blend[5]);
@@ -151,7 +152,7 @@ void noh_gl_blend_end(const noh_gl_api *gl, const noh_gl_raster *r)
     gl->DepthMask(r->depth_mask);
 }
 
-/* The functions that follow are put back whatever the caller had. */
+/* Changes the blend functions even if the caller has blending on, hence NOH_KEEP_FUNCTIONS. */
 void noh_gl_multiply_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     noh_gl_tests_begin(gl, r);
@@ -241,7 +242,7 @@ static const uint16_t unpack_questions[6] = { GL_UNPACK_ALIGNMENT,   GL_UNPACK_R
 static const uint16_t pack_questions[4] = { GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS,
                                             GL_PACK_SKIP_PIXELS };
 
-/* Alignment 1, which comes first, and otherwise 0. */
+/* Set the first value, the alignment, to 1 and all others to 0. */
 static void set_store(const noh_gl_api *gl, const uint16_t *questions, int *kept, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -338,7 +339,7 @@ static void restore_bindings(const noh_gl_api *gl, const noh_gl_state *s)
     } else {
         gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, (GLuint)range[0]);
     }
-    gl->BindBuffer(GL_UNIFORM_BUFFER, (GLuint)s->uniform_buffer); /* which the binding above changed */
+    gl->BindBuffer(GL_UNIFORM_BUFFER, (GLuint)s->uniform_buffer); /* also set by the binding above */
     gl->BindBuffer(GL_COPY_READ_BUFFER, (GLuint)s->copy_buffers[0]);
     gl->BindBuffer(GL_COPY_WRITE_BUFFER, (GLuint)s->copy_buffers[1]);
     gl->BindRenderbuffer(GL_RENDERBUFFER, (GLuint)s->renderbuffer);

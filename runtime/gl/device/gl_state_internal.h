@@ -1,4 +1,4 @@
-/* gl_state_internal.h (private): how the library keeps the state of gl_device.h. */
+/* gl_state_internal.h (private): how the library saves the state of gl_device.h. */
 #ifndef NOH_GL_GL_STATE_INTERNAL_H
 #define NOH_GL_GL_STATE_INTERNAL_H
 
@@ -12,49 +12,51 @@ enum {
     NOH_KEEP_COLORS = 4,     /* colour mask */
     NOH_KEEP_BLEND = 8,      /* blending, the depth mask */
     NOH_KEEP_REST = 16,      /* scissor and stencil tests, discard, logic operation, point size */
-    NOH_KEEP_FUNCTIONS = 32, /* how to blend is changed even where blending is on */
+    NOH_KEEP_FUNCTIONS = 32, /* blend functions, even if blending is on */
     NOH_KEEP_ALL = 63
 };
 
-/* Read the parts that are not kept yet. Begin with kept 0. */
+/* Save the parts not yet saved. Initialise `kept` to 0. */
 void noh_gl_raster_keep(const noh_gl_api *gl, noh_gl_raster *raster, uint32_t parts);
-/* Set what is kept. */
+/* Restore the saved parts. */
 void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *raster);
 
-/* Test depth by the caller's function, or what that stands for (gl_device.h). Keeps NOH_KEEP_TESTS alone. */
+/* Enable the depth test with the caller's function, adjusted as in gl_device.h. Saves only NOH_KEEP_TESTS. */
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *raster);
-/* 1: the caller's depths fall with the distance. */
+/* 1: the caller's depth decreases with distance. */
 int noh_gl_is_reversed(const noh_gl_raster *raster);
-/* Blend without writing depth, as the caller does or else straight alpha; and end it, so that other passes may follow. */
+/* Blend without writing depth, with the caller's blending or else straight alpha. End it before other passes. */
 void noh_gl_blend_begin(const noh_gl_api *gl, noh_gl_raster *raster);
 void noh_gl_blend_end(const noh_gl_api *gl, const noh_gl_raster *raster);
-/* Darken what is there: test depth as noh_gl_tests_begin, write none, from both sides; then set how to blend. */
+/* For darkening passes: depth test as noh_gl_tests_begin, no depth writes, no culling, blending on. The caller then
+ * sets the blend functions. */
 void noh_gl_multiply_begin(const noh_gl_api *gl, noh_gl_raster *raster);
-/* Behind all: no depth, no blending, from both sides. */
+/* For backdrops: no depth test or writes, no blending, no culling. */
 void noh_gl_behind_begin(const noh_gl_api *gl, noh_gl_raster *raster);
-/* Write depth alone, and end it. */
+/* Write only depth. End it before other passes. */
 void noh_gl_depth_only_begin(const noh_gl_api *gl, noh_gl_raster *raster);
 void noh_gl_depth_only_end(const noh_gl_api *gl, const noh_gl_raster *raster);
 
-/* Which framebuffers are bound: draw, read. */
+/* The bound framebuffers: draw, read. */
 void noh_gl_framebuffers_keep(const noh_gl_api *gl, int kept[2]);
 void noh_gl_framebuffers_put_back(const noh_gl_api *gl, const int kept[2]);
 
-/* State as in a new context, for draws into a texture; then bind a framebuffer and set the viewport. */
+/* Set the state of a new context, for draws into a texture. The caller then binds a framebuffer and sets the
+ * viewport. */
 void noh_gl_offscreen_begin(const noh_gl_api *gl, noh_gl_offscreen *kept);
 void noh_gl_offscreen_end(const noh_gl_api *gl, const noh_gl_offscreen *kept);
 
-/* Rows of pixels in memory, tightly packed, for TexSubImage; _pack: for ReadPixels, too. */
+/* Tightly packed rows of pixels in memory for TexSubImage; _pack: for ReadPixels too. */
 void noh_gl_unpack_begin(const noh_gl_api *gl, noh_gl_pixels *kept);
 void noh_gl_unpack_end(const noh_gl_api *gl, const noh_gl_pixels *kept);
 void noh_gl_pack_begin(const noh_gl_api *gl, noh_gl_pixels *kept);
 void noh_gl_pack_end(const noh_gl_api *gl, const noh_gl_pixels *kept);
 
-/* The shadow map's framebuffer and viewport, and the state that it is drawn in; noh_gl_light_end_shadow ends it. */
+/* Bind the shadow map's framebuffer and set viewport and state. End with noh_gl_light_end_shadow. */
 struct noh_gl_light;
 void noh_gl_light_bind_shadow(const struct noh_gl_light *light);
 
-/* A sampler object would hide how textures are filtered. */
+/* Unbind sampler objects, which would override the filters of the textures. */
 void noh_gl_samplers_none(const noh_gl_api *gl, uint32_t first, uint32_t count);
 
 #endif

@@ -11,8 +11,8 @@
 #define WIDTH_LOG2_MAX 11u
 #define HEIGHT_MAX 2048u
 
-/* 256 texels across are enough for a small mesh and waste at most a row of that; a wider table is needed only where the
- * height would exceed 2048. */
+/* A small mesh needs only 256 columns, which waste at most a row; a wider table is needed only if the height would
+ * exceed 2048. */
 void noh_gl_table_shape(uint32_t count, uint32_t *width_log2, uint32_t *height)
 {
     NOH_ASSERT(width_log2 && height && count <= NOH_GL_TABLE_TEXELS_MAX);
@@ -73,15 +73,15 @@ static void upload_block(const noh_gl_api *api, const noh_gl_table *t, uint32_t 
     }
 }
 
-/* Texels first to first + count - 1 are the rest of one row, whole rows, and the beginning of a last row: at most three
- * rectangles. */
+/* Texels first to first + count - 1 form at most three rectangles: the rest of one row, whole rows, and the start of a
+ * last row. */
 void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
                          const void *data)
 {
     NOH_ASSERT(table->texture.name && (data || !count));
     NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
     uint32_t width = 1u << table->width_log2, x = first & (width - 1u), y = first >> table->width_log2;
-    uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of a row that was begun */
+    uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of the first row */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
     noh_gl_pixels kept;

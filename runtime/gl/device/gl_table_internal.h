@@ -19,11 +19,11 @@ typedef struct noh_gl_table {
     uint32_t width_log2, height, texel_bytes;
 } noh_gl_table;
 
-/* The shape of a table of `count` texels: the least width of 256, 512, 1024 and 2048 at which it is at most 2048 high.
- */
+/* The shape of a table of `count` texels: the smallest width of 256, 512, 1024 and 2048 that keeps the height within
+ * 2048. */
 void noh_gl_table_shape(uint32_t count, uint32_t *width_log2, uint32_t *height);
 
-/* The bytes of a table. One of 0 texels still takes a row. */
+/* The bytes of a table. An empty table takes one row. */
 uint64_t noh_gl_table_bytes(GLenum format, uint32_t count);
 
 /* format: GL_RGB32UI, GL_RGBA32UI or GL_R32UI.

@@ -1,5 +1,5 @@
-/* gl_timer.c: a ring of queries. `oldest` is the next to be read, the `flying` queries from there on are in flight, and
- * the one behind them is the next to begin. A clock that became disjoint makes all of them worthless. */
+/* gl_timer.c: a ring of queries. `oldest` is the next query to read, `flying` queries from there on are in flight, and
+ * the query after them is the next to begin. A disjoint clock invalidates all of them. */
 #include "gl/device/gl_names_internal.h"
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
@@ -16,7 +16,7 @@ void noh_gl_timer_init(noh_gl_timer *timer, const noh_gl_api *api, const noh_gl_
     if (!timer->available) return;
     noh_gl_error_take(api);
     api->TimeGenQueries(NOH_GL_TIMER_FLIGHT, timer->queries);
-    /* reading the flag clears it: what happened before does not count */
+    /* reading the flag clears it */
     GLint disjoint = 0;
     if (api->is_es) api->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
     if (noh_gl_error_take(api) != GL_NO_ERROR) {

@@ -1,11 +1,11 @@
 /* gl_draw.c: the plain renderer's draws.
  *
- * Everything opaque is drawn first and writes depth. What is blended follows: it is hidden by opaque surfaces but does
- * not write depth, so that two blended surfaces never hide each other, whatever their order.
+ * Opaque surfaces are drawn first and write depth. Blended surfaces follow: they test depth but do not write it, so two
+ * blended surfaces never hide each other, whatever their order.
  *
- * Triangles are not sorted: their places are on the GPU alone. Where the texture of what blends is as good as opaque,
- * as along strands of hair, its core is drawn with the opaque surfaces and hides what is behind it, so only the fringe
- * around it, thin and mostly of one colour, is blended in stored order. */
+ * Triangles are not sorted, because only the GPU knows their positions. Where the texture of a blended surface is
+ * nearly opaque, as along strands of hair, this core is drawn with the opaque surfaces and hides whatever is behind it;
+ * only the fringe, thin and mostly of one colour, is blended in stored order. */
 #include "core/base/assert.h"
 #include "gl/draw/gl_draw.h"
 #include "gl/draw/gl_light.h"
@@ -175,7 +175,7 @@ static void set_front(noh_gl_renderer *r, int mirrored)
     r->gl->FrontFace(mirrored ? (GLenum)(GL_CW + GL_CCW) - r->raster.front_face : kept);
 }
 
-/* Uniforms of one instance. Instances of a crowd have these values in rows instead. */
+/* Uniforms of one instance. A crowd has these values in rows instead. */
 static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
@@ -207,7 +207,7 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)
 {
-    const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core is cut by its own alpha */
+    const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core has a cutoff of its own */
     const float kind = m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands;
     const int premultiplied = m->base_color_texture != NOH_NONE && pictures[m->base_color_texture].premultiplied;
     bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
@@ -244,7 +244,7 @@ static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const
     r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
 }
 
-/* Instances of a crowd have regions in rows of their own, of meshes that have any. */
+/* A crowd has the regions in a row of each instance, if the mesh has any. */
 #define REGIONS_IN_ROWS 8
 static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, int in_rows,
                          const noh_gl_texture *pictures)
@@ -294,7 +294,7 @@ typedef struct draw_job {
     const noh_gl_texture *pictures;
 } draw_job;
 
-/* The submeshes of a pass that one program draws. */
+/* The submeshes that one pass draws. */
 typedef enum draw_part { PART_OPAQUE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_DEPTH } draw_part;
 
 static int is_in_part(const noh_material *m, draw_part part)
@@ -308,7 +308,7 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Below it a pixel is not drawn; -1: all are. */
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. */
 static float cutoff_of(const noh_material *m, draw_part part)
 {
     if (part != PART_BLENDED && noh_gl_has_core(m)) {
@@ -334,7 +334,7 @@ static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint1
     return noh_gl_renderer_variant(j->r, key);
 }
 
-/* The first of the renderer's own triangles that is not below a number. */
+/* Index of the first of the renderer's own triangles with at least this number. */
 static uint32_t first_from(const noh_gl_triangles *t, uint32_t number)
 {
     uint32_t low = 0, high = t->count;
@@ -349,7 +349,7 @@ static uint32_t first_from(const noh_gl_triangles *t, uint32_t number)
     return low;
 }
 
-/* How many indices a submesh draws. *first: where they begin, of the renderer's own triangles */
+/* The number of indices that a submesh draws. *first: its first triangle in the renderer's own triangles */
 static uint32_t own_count(const noh_gl_triangles *t, const noh_submesh *s, uint32_t *first)
 {
     const uint32_t end = first_from(t, (s->first_index + s->index_count) / 3u);
@@ -387,7 +387,6 @@ static void draw_submesh(const draw_job *j, const noh_submesh *s, size_t level_f
     }
 }
 
-/* Go on with another program. */
 static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t level)
 {
     use_variant(j->r, v);
@@ -401,7 +400,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
 
-/* The uniform noh_blends: how a tint applies. */
+/* Bits of the uniform noh_blends: how a tint applies. */
 #define TINT_ALPHA 1
 #define TINT_NO_COLOR 2
 
@@ -418,7 +417,7 @@ static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_
     draw_submesh(j, s, first);
 }
 
-/* Of one priority, where blended; any otherwise. */
+/* PART_BLENDED draws only the given priority; other parts draw all. */
 static void draw_part_of(const draw_job *j, draw_part part, int priority)
 {
     size_t first;

@@ -37,8 +37,8 @@ void noh_lighting_shadow(noh_lighting *lighting, const float view_projection[16]
     lighting->shadow_texel = 2.0f * radius / (float)shadow_px;
 }
 
-/* Spherical harmonics become what a matte surface reflects, as factors of the polynomials 1, y, z, x, xy, yz, 3z^2-1,
- * zx, x^2-y^2. */
+/* Convert spherical harmonics to the light that a matte surface reflects, as factors of the polynomials 1, y, z, x, xy,
+ * yz, 3z^2-1, zx, x^2-y^2. */
 void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float rows[NOH_LIGHTING_ROWS][4])
 {
     static const float scale[9] = { 0.282094792f, 0.488602512f, 0.488602512f, 0.488602512f, 1.09254843f,
@@ -84,7 +84,7 @@ static noh_gl_texture_desc cube_desc(const noh_gl_light_desc *d)
 
 static noh_gl_texture_desc shadow_desc(const noh_gl_light_desc *d)
 {
-    const uint32_t side = d->shadow_px ? d->shadow_px : 1u; /* a sampler wants a texture */
+    const uint32_t side = d->shadow_px ? d->shadow_px : 1u; /* a sampler needs a texture */
     const noh_gl_texture_desc shadow = { GL_DEPTH_COMPONENT16, side, side, 0, 1, GL_LINEAR, 0 };
     return shadow;
 }

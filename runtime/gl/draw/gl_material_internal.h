@@ -9,7 +9,7 @@
 /* glTF's default material for a submesh without one. */
 const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh);
 
-/* What blends has a core where its alpha is at least this, which is drawn as if it were opaque. */
+/* The core of a blended surface, where alpha is at least this, is drawn as opaque. */
 #define NOH_GL_CORE_ALPHA 0.9f
 
 static inline int noh_gl_has_core(const noh_material *m)

@@ -27,7 +27,7 @@ static uint64_t attribute_bytes(const noh_mesh *mesh)
     return (uint64_t)mesh->header->vertex_count * mesh->header->attribute_stride;
 }
 
-/* Of this LOD level and all coarser ones, whose headers and indices follow it in the pack. */
+/* Indices of this LOD level and of all coarser ones, whose headers and indices follow in the pack. */
 static uint64_t index_count(const noh_mesh *mesh)
 {
     const noh_mesh_header *h = mesh->header;
@@ -97,8 +97,8 @@ static void set_words(const noh_gl_api *gl, GLuint location, uint32_t words, uin
     gl->VertexAttribIPointer(location, (GLint)words, GL_UNSIGNED_INT, (GLsizei)stride, (const void *)(uintptr_t)offset);
 }
 
-/* The words of a vertex's influences, as common_skin.glsl reads them. Seven words are two attributes, of four and
- * three. */
+/* The words of a vertex's influences, as common_skin.glsl reads them. Seven words take two attributes, of four and
+ * three words. */
 static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     uint32_t words = NOH_INFLUENCE_WORDS(m->mesh.header->influence_count);
@@ -136,7 +136,7 @@ static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
     noh_gl_label(gl, GL_VERTEX_ARRAY, m->vertex_array, "mesh", m->mesh.name);
 }
 
-/* Attributes that finished vertices replace. */
+/* Attributes replaced by finished vertices. */
 static void point_to_bind_pose(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     const uint32_t stride = m->mesh.header->attribute_stride;
@@ -184,7 +184,7 @@ void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const no
         if (morph->vertex_buffer) {
             point_to_bind_pose(api, mesh);
         } else {
-            point_to_rest(api, mesh); /* streams lay over it */
+            point_to_rest(api, mesh); /* replaced by streams */
         }
         api->BindBuffer(GL_ARRAY_BUFFER, 0);
     }
@@ -284,9 +284,9 @@ noh_result noh_gl_mesh_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger
 
 /* ---- filling ---- */
 
-#define FILL_INDICES 256u /* converted at once, where a pack has them in another width than the buffer */
+#define FILL_INDICES 256u /* converted at once, if pack and buffer have different index widths */
 
-/* Where the indices of a level begin in the buffer, bytes. */
+/* Byte offset of a level's indices in the buffer. */
 static size_t first_index_byte(const noh_gl_mesh *m, uint32_t level)
 {
     size_t count = 0;
@@ -296,17 +296,17 @@ static size_t first_index_byte(const noh_gl_mesh *m, uint32_t level)
 
 typedef struct filler {
     const noh_gl_api *gl;
-    uint64_t *at; /* of all arrays, one after another */
+    uint64_t *at; /* bytes filled, over all arrays in order */
     uint64_t begin;
     uint32_t *bytes;
 } filler;
 
-/* The bytes of an array of `count` that come next, from *from on. */
+/* The number of bytes to fill next in an array of `count` bytes, from offset *from. */
 static uint32_t next_bytes(const filler *f, uint64_t count, uint64_t *from)
 {
     uint64_t left = 0;
     *from = 0;
-    if (*f->at >= f->begin) { /* below it, the array before is not all there yet */
+    if (*f->at >= f->begin) { /* otherwise an earlier array is not complete yet */
         *from = *f->at - f->begin;
         left = *from < count ? count - *from : 0;
     }
@@ -323,7 +323,7 @@ static void fill_array(filler *f, const noh_gl_buffer *to, const void *data, uin
 {
     uint64_t from;
     uint32_t bytes = next_bytes(f, count, &from);
-    if (from + bytes < count) bytes &= ~3u; /* pieces are words, but for the end of records of odd bytes */
+    if (from + bytes < count) bytes &= ~3u; /* whole words, except at the end of the array */
     if (bytes) {
         f->gl->BindBuffer(GL_ARRAY_BUFFER, to->name);
         f->gl->BufferSubData(GL_ARRAY_BUFFER, (GLintptr)from, (GLsizeiptr)bytes, (const uint8_t *)data + from);

@@ -1,14 +1,14 @@
-/* gl_morph_vertices.c: the path cpu with finished vertices: what changed of an instance is accumulated, finished
- * (deform.h) and written into vertex buffers that a mesh's vertex array points to in place of its own.
+/* gl_morph_vertices.c: the path cpu with finished vertices. The changed vertices of an instance are accumulated,
+ * finished (deform.h) and written into vertex buffers, which replace the mesh's own buffers in a vertex array.
  *
  * There is a ring of two or three buffers, each with a slot for every instance, so that the GPU may still draw from one
- * slot while the next is written. Each slot remembers the weights that it was written by: groups of texels that no
- * changed target moves are left as they are, and vertices that no target moves are written once, at init.
+ * slot while the next is written. Each slot stores the weights it was written with: groups of texels that no changed
+ * target moves are not rewritten, and vertices that no target moves are written once, at init.
  *
- * Buffers are mapped without synchronisation. An instance leaves a slot by a later update, and comes back to it `ring`
- * of its updates after it was written, so all draws from it were issued before the update ring - 1 before this one: each
- * update leaves a fence, and waits for that one. Where buffers cannot be mapped, as in WebGL, or a driver refuses to,
- * glBufferSubData takes its place, which the driver orders after the draws. */
+ * Buffers are mapped without synchronisation. An instance reuses a slot `ring` of its updates after the slot was
+ * written. All draws from the slot were therefore issued before the update that lies ring - 1 updates back: each update
+ * inserts a fence, and waits for the fence of that update. If buffers cannot be mapped, as in WebGL, or the driver
+ * refuses, glBufferSubData is used, which the driver orders after the draws. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -25,24 +25,24 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 
-/* A refused glBufferSubData goes unseen (glGetError would wait for the GPU in some browsers), so now and then all of a
- * slot is written. */
+/* A refused glBufferSubData goes unnoticed (glGetError would wait for the GPU in some browsers), so every 64th update
+ * writes slots completely. */
 #define WHOLE_EVERY 64u
 
-#define FEW_GROUPS 8u /* 128 vertices are finished in less time than a call takes in a browser */
+#define FEW_GROUPS 8u /* finishing 128 vertices takes less time than a GL call in a browser */
 
-#define WAIT_NS 1000000000u /* for a frame of the GPU: a second is a lost context */
+#define WAIT_NS 1000000000u /* longest wait for a GPU frame: after a second the context is lost */
 
 /* The data written to one slot. */
 typedef struct slot_job {
     noh_gl_morph *m;
-    noh_mesh mesh; /* at the level that is accumulated */
+    noh_mesh mesh; /* at the accumulated level */
     noh_morph_layers layers;
     const float *weights;
     uint32_t instance, slot, stride;
     uint64_t offset; /* of the slot in its buffer */
-    int whole;       /* 1: all that targets move; 0: by m->groups */
-    uint8_t *mapped; /* NULL: it is sent in chunks */
+    int whole;       /* 1: all vertices moved by targets; 0: vertices of m->groups */
+    uint8_t *mapped; /* NULL: sent in chunks */
 } slot_job;
 
 static uint64_t offset_of(const noh_gl_morph *m, uint32_t instance)
@@ -94,7 +94,7 @@ static int is_written(const slot_job *j, uint32_t vertex)
     return texel < h->touched_count && j->m->groups[texel / NOH_MORPH_GROUP];
 }
 
-/* A mesh whose vertices say each which texel it has: runs of those whose texels are written. */
+/* A mesh with a texel number per vertex: write runs of vertices whose texels are written. */
 static void write_referring(const slot_job *j)
 {
     const uint32_t end = j->mesh.header->vertex_count;
@@ -113,7 +113,7 @@ uint32_t noh_gl_morph_vertex_end(const noh_mesh_header *h)
     return h->flags & NOH_MESH_TEXELS ? h->vertex_count : h->touched_count;
 }
 
-/* All vertices of the groups that are written, in runs. */
+/* Write all vertices of the marked groups, in runs. */
 static void write_slot(const slot_job *j)
 {
     const uint32_t end = noh_gl_morph_vertex_end(j->mesh.header),
@@ -175,7 +175,7 @@ static void find_changes(slot_job *j, int may_map)
     for (uint32_t t = 0; t < h->target_count && !j->whole; t++) {
         if (now[t] != then[t]) texels += j->mesh.targets[t].texel_count;
     }
-    j->whole |= texels / 4u >= h->touched_count; /* hardly anything would be left out */
+    j->whole |= texels / 4u >= h->touched_count; /* hardly any vertex would be skipped */
     if (j->whole) return;
     memset(m->groups, 0, groups);
     for (uint32_t t = 0; t < h->target_count; t++) {
@@ -227,7 +227,7 @@ static slot_job job_of(noh_gl_morph *m, uint32_t instance, uint32_t slot)
 
 typedef enum map_result { HAS_MAPPED, CANNOT_MAP, HAS_LOST } map_result;
 
-/* Write a slot through a mapping, where there are any and the driver does not refuse it. */
+/* Write a slot through a mapping, if the context can map and the driver does not refuse. */
 static map_result write_mapped(slot_job *j)
 {
     const noh_gl_api *gl = j->m->gl;
@@ -242,7 +242,7 @@ static map_result write_mapped(slot_job *j)
     return gl->UnmapBuffer(GL_ARRAY_BUFFER) == GL_TRUE ? HAS_MAPPED : HAS_LOST;
 }
 
-/* All of an instance's part of a buffer, including vertices that no target moves. */
+/* Write an instance's part of a buffer completely, including vertices that no target moves. */
 static void write_bind_pose(noh_gl_morph *m, uint32_t instance, uint32_t slot)
 {
     slot_job j = job_of(m, instance, slot);
@@ -250,8 +250,8 @@ static void write_bind_pose(noh_gl_morph *m, uint32_t instance, uint32_t slot)
     write_vertices(&j, NULL, 0, j.mesh.header->vertex_count);
 }
 
-/* A driver that has lost what was mapped has lost the whole buffer, also what other instances are drawn from: each gets
- * what its slot was written with last. */
+/* A driver that lost a mapping has lost the whole buffer, with the slots of all instances: rewrite each slot with the
+ * weights that it last had. */
 static void rewrite_buffer(noh_gl_morph *m, uint32_t slot)
 {
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
@@ -290,8 +290,8 @@ static void update_instance(noh_gl_morph *m, uint32_t instance, int may_map, noh
     stats->pairs += cost.pairs;
 }
 
-/* Wait until the slots that this update writes are drawn from no more, and leave a fence for a later one. Returns 0
- * where there are no fences, or the wait failed: then nothing is mapped. */
+/* Wait until the GPU no longer draws from the slots that this update writes, and insert a fence for a later update.
+ * Return 0 if there are no fences or the wait failed: then do not map. */
 static int wait_for_slots(noh_gl_morph *m)
 {
     const noh_gl_api *gl = m->gl;

@@ -1,7 +1,7 @@
 /* gl_picture.c: a pack's textures as GL objects.
  *
- * Blocks of ETC2 and EAC go to the GPU as they lie in the pack. A context that cannot read them is given texels, which
- * noh_gl_api.decode makes a strip of blocks at a time, in memory on the stack. */
+ * ETC2 and EAC blocks go from the pack to the GPU unchanged. For a context without these formats, noh_gl_api.decode
+ * decodes a strip of blocks at a time to texels, in stack memory. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "noh/base.h"
@@ -56,7 +56,7 @@ static GLint wrap_of(uint32_t wrap)
     return wrap == NOH_WRAP_CLAMP ? GL_CLAMP_TO_EDGE : wrap == NOH_WRAP_MIRROR ? GL_MIRRORED_REPEAT : GL_REPEAT;
 }
 
-/* A strip of up to 16 blocks of a level, as texels. The last column and row may reach over the level's edges. */
+/* A strip of up to 16 blocks of a level, as texels. The last column and row may extend beyond the level's edges. */
 static void send_strip(const noh_gl_api *api, uint32_t format, GLint index, const noh_texture_level *level, uint32_t x,
                        uint32_t y)
 {

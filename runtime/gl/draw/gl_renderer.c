@@ -39,7 +39,7 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 
 /* ---- choosing variants ---- */
 
-/* Key fields set by the renderer, not by a mesh; depth does not depend on colours. */
+/* Key fields set by the renderer, not by a mesh. Depth variants do not depend on colours. */
 static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int lit, int without_tangents)
 {
     key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
@@ -78,7 +78,7 @@ static noh_result want_one(const wish *w, noh_gl_variant_key key)
     return NOH_OK;
 }
 
-/* The variant that draws every pixel, and if the renderer fades, the one that draws some. */
+/* The variant that draws every pixel, and if the renderer fades, the variant that draws some. */
 static noh_result want_fades(const wish *w, noh_gl_variant_key key)
 {
     noh_result result = want_one(w, key);
@@ -118,7 +118,7 @@ static int has_cut_materials(const noh_mesh *mesh)
     return cut;
 }
 
-/* Those of a key for all materials of a mesh. */
+/* The variants of a key for all materials of a mesh. */
 static noh_result want_features(const wish *w, noh_gl_variant_key key)
 {
     noh_result result = NOH_OK;
@@ -146,7 +146,7 @@ static noh_result want(const wish *w, const noh_gl_skin_binding *skin, int crowd
     return result;
 }
 
-/* In the bind pose; with all its influences; and with each lower number. */
+/* Variants for the bind pose, for all influences, and for each smaller number of influences. */
 noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_gl_variant_list *list,
                                 noh_error *error)
 {

@@ -1,5 +1,5 @@
-/* gl_renderer_internal.h: which variants a renderer compiles, for those who must know how many before there are meshes
- * in a row. */
+/* gl_renderer_internal.h: lists the variants that a renderer compiles. Also serves callers that need their number
+ * before the meshes are in one array. */
 #ifndef NOH_GL_GL_RENDERER_INTERNAL_H
 #define NOH_GL_GL_RENDERER_INTERNAL_H
 
@@ -13,7 +13,7 @@ typedef struct noh_gl_variant_list {
     uint32_t count;
 } noh_gl_variant_list;
 
-/* Add every variant that a mesh may be drawn by; `meshes` of the desc is not read. Start with a count of 0.
+/* Add every variant that may draw a mesh; `meshes` of the desc is not read. Start with a count of 0.
  * errors  LIMIT more than NOH_GL_VARIANTS_MAX */
 noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh *mesh, noh_gl_variant_list *list,
                                 noh_error *error);

@@ -1,8 +1,8 @@
-/* gl_skin.c: palettes in memory, and the GL object that takes them.
+/* gl_skin.c: palettes in memory, and their GL object.
  *
- * All palettes of all instances lie in one array of rows, in the layout of the GL object. Setting matrices writes to
- * this array, compares first, and widens one span of rows that differ from what was sent. An update sends the span in
- * one call: a few rows in between that did not change are cheaper to send than more calls. */
+ * All palettes of all instances lie in one array of rows, in the layout of the GL object. Setting matrices writes only
+ * rows that differ to this array, and widens one span of rows to send. An update sends the span in one call: a few
+ * unchanged rows in between are cheaper to send than more calls. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "gl/draw/gl_skin.h"
@@ -39,7 +39,7 @@ static uint32_t first_row(const noh_gl_skin_mesh *m, uint32_t instance)
     return m->first_row + (instance - m->first_instance) * m->stride;
 }
 
-/* Rows from `first` to before `end`; none if first >= end. */
+/* Rows first to end - 1; empty if first >= end. */
 typedef struct span {
     uint32_t first, end;
 } span;
@@ -72,7 +72,7 @@ static void put_rows(const noh_gl_skin *skin, uint32_t row, const float *values,
     }
 }
 
-/* A joint of a mesh with NOH_MESH_DUAL_QUATERNION in the rows of common_skin.glsl: rotation, dual part, and the
+/* Write a joint of a mesh with NOH_MESH_DUAL_QUATERNION as the rows of common_skin.glsl: rotation, dual part, and the
  * stretch, a symmetric matrix, as xx yy zz xy, xz yz 0 0. */
 static void dual_rows(const float matrix[12], float rows[16])
 {
@@ -167,8 +167,8 @@ static noh_result no_crowds(uint32_t instance, noh_error *error)
                     instance, 0);
 }
 
-/* The row of a tile with its tint, as floats: its numbers are below 2^24 and so exact. The bits of such integers would
- * be denormal floats, which GPUs may flush to zero. */
+/* Write the row of a tile with its tint, as floats: its numbers are below 2^24 and so exact. Stored as integer bits
+ * they would be denormal floats, which GPUs may flush to zero. */
 static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], const uint32_t tint[3])
 {
     float values[4];
@@ -178,7 +178,7 @@ static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], co
     send(skin, &changed);
 }
 
-/* The bits of a row within a mask, or the other bits (of_tint). */
+/* The tile bits of a row's value, or its tint bits (of_tint). */
 static uint32_t tile_bits(const float *row, int i, int of_tint)
 {
     const uint32_t mask = i < 2 ? NOH_TILE_XY_MASK : i == 2 ? NOH_TILE_LOG2_MASK : 0xffffffffu;

@@ -8,15 +8,15 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 
-#define NOH_CROWD_ROWS 4u            /* in front of an instance's palettes in a texture: see crowd_row */
-#define NOH_CROWD_REGIONS 4u         /* one more, of a mesh with wrinkle regions */
+#define NOH_CROWD_ROWS 4u            /* before an instance's palettes in a texture: see crowd_row */
+#define NOH_CROWD_REGIONS 4u         /* index of one more row, of a mesh with wrinkle regions */
 #define NOH_SKIN_ROWS_MAX (1u << 26) /* 1 GiB */
 
 /* One mesh of the desc. */
 typedef struct noh_gl_skin_mesh {
     noh_mesh mesh;
     uint32_t instance_count, first_instance;
-    uint32_t first_row, stride; /* of the first instance; from one to the next */
+    uint32_t first_row, stride; /* row of the first instance; rows from one instance to the next */
 } noh_gl_skin_mesh;
 
 struct noh_gl_skin {
@@ -24,7 +24,7 @@ struct noh_gl_skin {
     noh_gl_ledger *ledger;
     noh_gl_skin_plan plan;
     uint32_t align, width_log2;
-    uint32_t user_rows; /* of an instance, behind its palettes: 0 or 1 */
+    uint32_t user_rows; /* per instance, after its palettes: 0 or 1 */
     uint32_t mesh_count;
     noh_gl_skin_mesh *meshes;        /* [mesh_count] */
     float *rows;                     /* [texel_count, in a texture width * height][4] */
@@ -33,9 +33,9 @@ struct noh_gl_skin {
     noh_gl_texture texture;          /* or this */
 };
 
-/* A tint in the high bits of a tile's numbers x, y, width_log2: 255 minus red above the 16 bits of x, minus green above
- * those of y, minus blue and then alpha above 8 bits of width_log2. White is 0, and all three are below 2^24, so that
- * they are exact as floats. tint NULL: white. */
+/* Pack a tint into the high bits of a tile's x, y and width_log2: 255 - red above the 16 bits of x, 255 - green above
+ * the 16 bits of y, 255 - blue and then 255 - alpha above the 8 bits of width_log2. White is 0, and all three numbers
+ * stay below 2^24, so they are exact as floats. tint NULL: white. */
 #define NOH_TILE_XY_MASK 0xffffu
 #define NOH_TILE_LOG2_MASK 0xffu
 static inline void noh_gl_tint_bits(const uint8_t tint[4], uint32_t bits[3])
@@ -44,7 +44,7 @@ static inline void noh_gl_tint_bits(const uint8_t tint[4], uint32_t bits[3])
     if (tint) bits[2] |= (uint32_t)(255 - tint[3]) << 16;
 }
 
-/* What is in front of the palettes of an instance of this mesh. */
+/* Rows before the palettes of an instance of this mesh. */
 uint32_t noh_gl_crowd_rows(const noh_mesh *mesh);
 
 /* Palettes start at multiples of this many rows. */
@@ -54,7 +54,7 @@ uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps
 uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
                             noh_gl_skin_mesh *meshes);
 
-/* Carve everything behind the struct itself from an arena. `skin` NULL only measures. */
+/* Carve everything after the struct itself from an arena. `skin` NULL only measures. */
 void noh_gl_skin_carve(noh_arena *arena, uint32_t mesh_count, const noh_gl_skin_plan *plan, noh_gl_skin *skin);
 
 #endif

@@ -1,9 +1,8 @@
-/* gl_skin_plan.c: where palettes go, and every byte of them.
+/* gl_skin_plan.c: the layout and exact size of palettes.
  *
- * Instance after instance, mesh after mesh, each instance has its palettes one behind another, each at a multiple of
- * the alignment: of one row in a texture, of the GPU's offset alignment in a uniform buffer, where each palette is
- * bound as a range of its own. In a texture, the four rows of a crowd's instance come first, and
- * of meshes with wrinkle regions a fifth one. */
+ * Palettes are stored mesh by mesh and instance by instance, each at a multiple of the alignment: one row in a texture,
+ * the GPU's offset alignment in a uniform buffer, where each palette is bound as a range of its own. In a texture, an
+ * instance of a crowd starts with four rows of its own, or five if its mesh has wrinkle regions. */
 #include <string.h>
 
 #include "gl/draw/gl_skin_internal.h"
@@ -20,7 +19,7 @@
 NOH_STATIC_ASSERT(NOH_PALETTE_JOINTS_MAX == 256u, palette_block_of_common_skin);
 
 #define WIDTH_LOG2_MIN 6u
-#define SIDE_OF_ES3 2048u /* every ES 3.0 has textures of this size */
+#define SIDE_OF_ES3 2048u /* ES 3.0 guarantees this texture size */
 
 const char *noh_palette_mode_name(noh_palette_mode mode)
 {
@@ -58,7 +57,7 @@ uint32_t noh_gl_joint_rows(const noh_mesh *mesh)
     return (mesh->header->flags & NOH_MESH_DUAL_QUATERNION) ? 4u : 3u;
 }
 
-/* The bytes of the largest palette_block that a mesh of the desc is drawn with. ES 3.0 promises 16 KiB. */
+/* The bytes of the largest palette_block that a mesh of the desc needs. ES 3.0 guarantees 16 KiB. */
 static uint32_t block_bytes(const noh_gl_skin_desc *desc)
 {
     uint32_t rows = 3;
@@ -95,8 +94,8 @@ uint32_t noh_gl_skin_align(const noh_gl_skin_plan *plan, const noh_gl_caps *caps
     return plan->mode == NOH_PALETTE_TEXTURE ? 1u : (bytes + 15u) / 16u;
 }
 
-/* The narrowest texture that holds the rows and is no higher than textures may be: up to 2048 x 2048, which every
- * ES 3.0 has, then up to the limits of this GPU. */
+/* The narrowest texture that holds the rows within the maximum height: up to 2048 x 2048, which ES 3.0 guarantees, then
+ * up to the limits of this GPU. */
 static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_plan *plan, noh_error *error)
 {
     uint32_t log2 = WIDTH_LOG2_MIN;
@@ -175,7 +174,7 @@ static void set_bytes(const noh_gl_skin_desc *desc, noh_gl_skin_plan *plan)
     plan->cpu_bytes = arena.used;
     if (plan->mode == NOH_PALETTE_TEXTURE) {
         plan->gpu_bytes = 16u * (uint64_t)plan->width * plan->height;
-    } else if (plan->texel_count) { /* a whole block is bound from the start of every palette, also of the last one */
+    } else if (plan->texel_count) { /* a whole block is bound at the start of every palette, the last one included */
         plan->gpu_bytes = 16u * (uint64_t)plan->texel_count + block_bytes(desc);
     }
 }

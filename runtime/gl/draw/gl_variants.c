@@ -1,4 +1,4 @@
-/* gl_variants.c: from a mesh and its bindings to a key, from a key to its defines, from the defines to a program. */
+/* gl_variants.c: makes a key from a mesh and its bindings, defines from a key, and a program from defines. */
 #include "core/base/assert.h"
 #include "gl/device/gl_api.h"
 #include "gl/draw/gl_skin.h"
@@ -17,7 +17,7 @@
 #include "gl/device/gl_names_internal.h"
 #include "shaders.gen.h"
 
-/* The largest of 1, 2, 4, 8 that is at most `limit` and at most `stored`; limit 0: all that are stored. */
+/* The largest of 1, 2, 4, 8 that is at most `limit` and at most `stored`; limit 0: no limit. */
 static uint8_t drawn_of(uint32_t stored, uint32_t limit)
 {
     uint32_t drawn = stored;
@@ -89,9 +89,9 @@ noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
     return key;
 }
 
-/* ---- the text before a shader's own ---- */
+/* ---- text before a shader's own ---- */
 
-/* All defines together take less than NOH_GL_DEFINES_BYTES, which never cuts them. */
+/* All defines together fit NOH_GL_DEFINES_BYTES, so they are never cut. */
 static size_t put_text(char *text, size_t at, const char *more)
 {
     while (*more && at + 1u < NOH_GL_DEFINES_BYTES) {
@@ -190,7 +190,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
     return count;
 }
 
-/* Append a piece, as far as text[bytes] reaches. Returns where it would end. */
+/* Append a piece, cut at the end of text[bytes]. Return the offset of its end if uncut. */
 static size_t put_piece(char *text, size_t bytes, size_t at, const char *piece)
 {
     for (; *piece; piece++, at++) {
@@ -231,7 +231,7 @@ typedef struct whole_source {
     const char *pieces[SOURCE_PIECES_MAX];
 } whole_source;
 
-/* own: NULL for the library's */
+/* own: NULL for the library's shaders */
 static void make_source(whole_source *to, GLenum stage, const noh_gl_source *library, const char *own,
                         const char *defines)
 {
@@ -290,8 +290,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
     }
 }
 
-/* List the attributes of vertex arrays: the game's own and those of meshes (low_gl.h). Returns their number.
- * Attributes that a mesh lacks are constants of the same kind. */
+/* List the attributes of vertex arrays, the game's and the meshes' (low_gl.h), and return their number. Attributes
+ * that a mesh lacks are constants of the same kind. */
 #define INPUTS_MAX (15u + NOH_GL_OWN_INPUTS_MAX)
 static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,
                             noh_gl_input inputs[INPUTS_MAX])

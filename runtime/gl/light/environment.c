@@ -60,7 +60,7 @@ static float power_of(float s, uint32_t power)
     return power == 0 ? 1.0f : power == 1 ? s : s * s;
 }
 
-/* The axes of a window's plane. */
+/* Axes of a window's plane. */
 static void window_axes(const noh_window *w, float right[3], float up[3])
 {
     const float *d = w->direction;
@@ -75,7 +75,7 @@ static void window_axes(const noh_window *w, float right[3], float up[3])
     right[2] = up[0] * d[1] - up[1] * d[0];
 }
 
-/* 1 where a pane lies at x of -1..1 along one side. */
+/* 1 if x in -1..1 along one side lies in a pane. */
 static int is_pane(float x, uint32_t panes, float bar)
 {
     const float at = 0.5f * (x + 1.0f) * (float)panes;
@@ -143,7 +143,7 @@ static void add_pane(const noh_window *w, uint32_t order, const float corner[2],
 {
     float right[3], up[3], direction[3];
     window_axes(w, right, up);
-    for (uint32_t i = 0; i < 64u; i++) { /* each half by a rule of its own */
+    for (uint32_t i = 0; i < 64u; i++) { /* four nodes for each half of each side */
         const uint32_t a = i % 8u, b = i / 8u, right_half = a / 4u, upper_half = b / 4u;
         const float x = corner[0] + 0.5f * size[0] * (nodes[a % 4u] + (float)right_half);
         const float y = corner[1] + 0.5f * size[1] * (nodes[b % 4u] + (float)upper_half);
@@ -246,8 +246,8 @@ void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh
     }
     noh_normalize3(direction, direction);
     noh_sh_basis(light->order, direction, basis);
-    /* least squares over bands 1 to 3: of an even light from all around, nothing; the square of a band's basis is
-     * (2 l + 1) / (4 pi) */
+    /* Least squares over bands 1 to 3; uniform light from all directions gives 0. The squared basis functions of band l
+     * sum to (2 l + 1) / (4 pi). */
     d2 = (float)(fitted * fitted - 1u) * 0.0795774715f;
     for (uint32_t c = 0; c < 3u; c++) {
         float sum = 0.0f;

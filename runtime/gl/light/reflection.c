@@ -152,21 +152,21 @@ static void make_sources(const noh_reflection_desc *desc, uint32_t side, float *
 
 typedef struct blur {
     float *sources;
-    uint32_t side, finest; /* level of the source where the blur's middle is */
+    uint32_t side, finest; /* source level at the middle of the blur */
     float a2;              /* alpha squared */
     float direction[3];
     float sum[3], weight;
 } blur;
 
-/* GGX of the half vector between the direction and a light, as a function of the cosine t between the two (the half
- * vector's is sqrt((1 + t) / 2)), times t; without what is the same for all. */
+/* GGX of the half vector between the direction and a light, times t, as a function of the cosine t between the two (the
+ * half vector's cosine is sqrt((1 + t) / 2)); without constant factors. */
 static float lobe(float a2, float t)
 {
     const float d = 0.5f * (1.0f + t) * (a2 - 1.0f) + 1.0f;
     return t / (d * d);
 }
 
-/* One texel of a source, or where the middle of the blur is near, the four of the next finer one. */
+/* One texel of a source, or near the middle of the blur, the four texels of the next finer source. */
 static void add_source(blur *b, uint32_t level, uint32_t face, uint32_t x, uint32_t y)
 {
     const uint32_t n = b->side >> level;

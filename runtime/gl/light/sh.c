@@ -31,8 +31,8 @@ float noh_sh_normalisation(uint32_t l, uint32_t m)
     return normalisation[m][l - m];
 }
 
-/* One m: the associated Legendre functions without their factor (1 - z^2)^(m/2), which is in (x + i y)^m, by the
- * recurrence in l; `cosine` and `sine` are that power's parts. */
+/* One m: the associated Legendre functions by the recurrence in l, without their factor (1 - z^2)^(m/2), which is part
+ * of (x + i y)^m; `cosine` and `sine` are the real and imaginary parts of this power. */
 static void basis_of_m(uint32_t order, uint32_t m, float z, float first, const float power[2], float *basis)
 {
     float before = 0.0f, now = first;
@@ -105,7 +105,7 @@ void noh_sh_convolve(uint32_t order, const float *bands, float *coefs)
 
 /* ---- rotation ---- */
 
-/* The matrices of one band, m and n from -l to l, and of the one before it. */
+/* The matrices of one band, m and n from -l to l, and of the previous band. */
 typedef struct sh_turn {
     float first[3][3]; /* of band 1: y, z, x */
     float before[BAND_WIDTH][BAND_WIDTH];

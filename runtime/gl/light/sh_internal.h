@@ -1,4 +1,4 @@
-/* sh_internal.h: the factors of spherical harmonics, for shaders that have the polynomials. Threads: no state. */
+/* sh_internal.h: the factors of spherical harmonics, for shaders that compute the polynomials. Threads: no state. */
 #ifndef NOH_LIGHT_SH_INTERNAL_H
 #define NOH_LIGHT_SH_INTERNAL_H
 

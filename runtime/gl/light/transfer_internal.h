@@ -1,14 +1,14 @@
-/* transfer_internal.h: what targets change of occlusion, in the one arithmetic of CPU and GPU. Threads: no state.
+/* transfer_internal.h: how targets change occlusion, with the same arithmetic on CPU and GPU. Threads: no state.
  *
- * Sums are of (delta * ratio) * (position_scale * weight): the last product is what accumulators multiply positions by,
- * so the occlusion needs no weight of its own. */
+ * The terms are (delta * ratio) * (position_scale * weight). Accumulators also multiply positions by the last product,
+ * so occlusion needs no weight of its own. */
 #ifndef NOH_LIGHT_TRANSFER_INTERNAL_H
 #define NOH_LIGHT_TRANSFER_INTERNAL_H
 
 #include "noh/format.h"
 #include "noh/pack.h"
 
-/* A target's scale of occlusion over that of its positions; 0 for targets that move nothing, or next to nothing. */
+/* A target's occlusion scale divided by its position scale; 0 for targets that move nothing, or next to nothing. */
 static inline float noh_transfer_ratio(const noh_mesh *mesh, uint32_t target)
 {
     const noh_transfer_header *h = mesh->transfer;
@@ -18,8 +18,8 @@ static inline float noh_transfer_ratio(const noh_mesh *mesh, uint32_t target)
     return ratio < 1e30f ? ratio : 0.0f;
 }
 
-/* The stored difference at a delta texel; 0 where the target does not move the vertex: lists by vertex do not have it.
- */
+/* The stored difference at a delta texel; 0 if the target does not move the vertex, which is then not in lists by
+ * vertex. */
 static inline int32_t noh_transfer_delta(const noh_mesh *mesh, uint32_t texel)
 {
     const noh_transfer_header *h = mesh->transfer;

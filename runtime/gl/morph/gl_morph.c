@@ -1,9 +1,8 @@
 /* gl_morph.c: making and deleting accumulators, and the code common to all paths: weights, LOD levels, changed
  * instances.
  *
- * Nothing is accumulated when weights are set. An instance is marked as changed, and noh_gl_morph_update accumulates
- * all such instances together, so that a crowd costs a few draws. An instance that did not change keeps the sums of its
- * tile. */
+ * Setting weights only marks an instance as changed. noh_gl_morph_update accumulates all changed instances together, so
+ * that a crowd costs a few draws. An unchanged instance keeps the sums of its tile. */
 #include "core/base/assert.h"
 #include "deform/morph/morph.h"
 #include "gl/device/gl_api.h"
@@ -33,7 +32,7 @@ static noh_result create_layers(noh_gl_morph *m, noh_error *error)
     return noh_gl_texture_create(m->gl, m->ledger, &desc, &m->layers, error);
 }
 
-/* The textures; vertex array, program and framebuffers are labelled where they are made. */
+/* Label the textures. Vertex array, program and framebuffers are labelled where they are made. */
 static void label_objects(const noh_gl_morph *m)
 {
     const struct {
@@ -73,8 +72,8 @@ static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, 
 }
 
 #if NOH_ASSERT_LEVEL >= 2
-/* Every instance has a mesh of the desc, a level that the mesh has, finite weights, and a tile inside the atlas; the
- * count of changed instances is right. */
+/* Check that every instance has a mesh of the desc, a level of this mesh, finite weights, and a tile inside the atlas,
+ * and that the count of changed instances is right. */
 static int is_valid(const noh_gl_morph *m)
 {
     uint32_t dirty = 0;
@@ -104,7 +103,7 @@ static void mark_all_dirty(noh_gl_morph *m)
     m->dirty_count = m->plan.instance_count;
 }
 
-/* Everything but the GL objects. */
+/* Initialise everything except the GL objects. */
 static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const noh_gl_morph_desc *desc,
                            noh_gl_morph_plan plan)
 {
@@ -261,8 +260,8 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
     return NOH_OK;
 }
 
-/* The accumulation texels of a coarser level are the first ones of a finer level. So when an instance gets coarser,
- * what it needs has been accumulated already; only a finer level makes it accumulate again. */
+/* The accumulation texels of a coarser level are the first texels of a finer level. So a coarser level needs no new
+ * accumulation; only a finer one does. */
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level)
 {
     const noh_mesh_header *h;
@@ -279,7 +278,7 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
     }
 }
 
-/* ---- levels that come later ---- */
+/* ---- levels loaded later ---- */
 
 int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes)
 {

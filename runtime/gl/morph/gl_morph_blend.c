@@ -5,17 +5,17 @@
  * under it and multiplies it by weight and scale. Alpha plays no part, so weights below 0 and above 1 work. All quads
  * of all instances are one draw, or one for each NOH_BATCH_QUADS of them.
  *
- * A software rasteriser shades whole blocks, and those on a quad's diagonal for both of its triangles. There each block
- * is a point of size 4, if the probe has found that such a point covers its sixteen texels once and no other
- * (noh_gl_caps.block_points). What a block covers beside the rectangle has zeros as deltas. llvmpipe keeps what it
- * has set up, some 400 bytes a point, until it is flushed. So it is, before that outgrows the processor's cache
- * (measured on 290 targets, 13,000 points: 1.6 times slower without). Only llvmpipe itself is: zink (Mesa 22.3.6) loses
- * sums over a flush.
+ * A software rasteriser shades whole blocks, and blocks on a quad's diagonal twice, once for each triangle. There each
+ * block is a point of size 4, if the probe found that such a point covers its sixteen texels once and no other
+ * (noh_gl_caps.block_points). Outside the rectangle the deltas of a block are zeros. llvmpipe keeps the setup of
+ * points, about 400 bytes each, until a flush, so draws are flushed before this data outgrows the processor's cache
+ * (measured on 290 targets, 13,000 points: 1.6 times slower without). Only llvmpipe itself is flushed: zink (Mesa
+ * 22.3.6) loses sums at a flush.
  *
  * Why the bits equal the CPU's: blending happens in the order in which primitives are submitted (OpenGL ES 3.2, 2.1),
- * and they are submitted target by target in index order, as deform.h adds. Each sum therefore has the same terms in the
- * same order, and the same bits wherever the blender adds in float32; sums begin at +0, and adding a zero of either
- * sign changes none of them.
+ * and they are submitted target by target in index order, the order in which deform.h adds. Each sum therefore has the
+ * same terms in the same order, and the same bits wherever the blender adds in float32; sums begin at +0, and adding a
+ * zero of either sign changes none of them.
  *
  * Microsoft's SparseMorphTargets sample (DirectX SDK) draws targets additively, each cut to what it changes, through a
  * geometry shader that sends a triangle to three render targets. It blends by source alpha and starts from the base
@@ -35,7 +35,7 @@
 
 /* ---- making ---- */
 
-/* Of what is drawn in a pass, of two layers, of occlusion. */
+/* Defines for the layers drawn in a pass, for two layers, and for occlusion. */
 #define DEFINES_OF(pass)                                                                \
     {                                                                                   \
         { pass, pass "#define OCCLUSION\n" },                                           \
@@ -86,7 +86,7 @@ static noh_result create_framebuffers(noh_gl_morph *m, noh_error *error)
     return result;
 }
 
-/* Two triangles for each four vertices, as a strip of them would be. */
+/* Two triangles for every four vertices, in the order of a strip. */
 static noh_result create_indices(noh_gl_morph *m, noh_error *error)
 {
     static const uint8_t corners[6] = { 0, 1, 2, 2, 1, 3 };
@@ -125,13 +125,13 @@ noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes,
 
 /* ---- updating ---- */
 
-/* Vertices of blocks. All are in the buffer before the first is drawn, so that no driver has to order both: zink (Mesa
- * 22.3.6) lost draws where batches were sent between them. */
+/* Vertices of blocks. All are sent to the buffer before the first draw, so the driver need not order uploads and draws:
+ * zink (Mesa 22.3.6) lost draws when batches were sent in between. */
 typedef struct batch {
     noh_gl_morph *m;
-    uint32_t (*vertices)[3];  /* texel of the atlas x | y << 16, of the tiles likewise, record of the target */
+    uint32_t (*vertices)[3];  /* texel of the atlas x | y << 16, texel of the tiles likewise, record of the target */
     uint32_t count, capacity; /* points, or quads of four vertices */
-    uint32_t at;              /* what lies in the buffer already */
+    uint32_t at;              /* vertices or quads already in the buffer */
     uint32_t draws;
 } batch;
 
@@ -140,7 +140,7 @@ static size_t bytes_of(const noh_gl_morph *m, uint32_t count)
     return (m->plan.points ? 12u : 48u) * (size_t)count;
 }
 
-/* What lies in the buffer from `at` on. Indices have 16 bits, so quads are counted from where the attribute begins. */
+/* Draw `count` points or quads from `at` on. Indices have 16 bits, so quads move the start of the attribute instead. */
 static void draw(batch *b, uint32_t at, uint32_t count)
 {
     const noh_gl_api *gl = b->m->gl;
@@ -210,7 +210,7 @@ static void put_strip(batch *b, const noh_rect *rect, noh_gl_blocks blocks, uint
                       uint32_t record)
 {
     const uint32_t across = 1u << b->m->tiles_across_log2;
-    for (uint32_t x = blocks.x0; x < blocks.x1;) { /* where the row of tiles ends, a new quad begins */
+    for (uint32_t x = blocks.x0; x < blocks.x1;) { /* a new quad starts at the end of a row of tiles */
         const uint32_t left = blocks.x1 - x, fit = across - (tile & (across - 1u)), count = left < fit ? left : fit;
         const uint32_t block[3] = { x, x + count, row };
         put_quad(b, rect, block, place, tile, record);
@@ -237,7 +237,7 @@ static void put_target(batch *b, const noh_mesh *mesh, const noh_target *target,
 }
 
 /* The active targets of all changed instances, in index order: the order of a sum decides its last bit. The tiles may
- * belong to a finer LOD level: a level's rectangles of a target are the first ones of it. */
+ * belong to a finer LOD level: a target's rectangles at a coarser level are its first ones at a finer level. */
 static void put_targets(batch *b)
 {
     noh_gl_morph *m = b->m;
@@ -258,7 +258,7 @@ static void put_targets(batch *b)
     }
 }
 
-/* Returns their number. */
+/* Return the number of vertices. */
 static uint32_t put_records(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     uint32_t records = 0;
@@ -289,7 +289,7 @@ static void clear_bound(noh_gl_morph *m)
     }
 }
 
-/* Clear the tiles of changed instances: the others keep their sums. */
+/* Clear the tiles of changed instances; the others keep their sums. */
 static void clear_tiles(noh_gl_morph *m)
 {
     if (m->dirty_count == m->plan.instance_count) {
@@ -322,7 +322,7 @@ void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats)
 {
     static const char *const pass_names[3] = { "position", "normal", "tangent" };
     const int passes = m->plan.path == NOH_MORPH_PER_LAYER ? (int)m->plan.layer_count : 1;
-    const int point_size = m->plan.points && !m->gl->is_es; /* OpenGL ES always takes it from the shader */
+    const int point_size = m->plan.points && !m->gl->is_es; /* OpenGL ES always takes the point size from the shader */
     const uint32_t records = put_records(m, stats);
     noh_gl_offscreen kept;
     batch b = { m, (uint32_t(*)[3])m->staging, 0, m->batch.entries, 0, 0 };

@@ -1,5 +1,5 @@
-/* gl_morph_calibrate.c: paths measured on the driver, with the caller's clock. A path is made, updated with weights
- * that change, and deleted again; the least time of an update counts, because whatever disturbs one only makes it longer. */
+/* gl_morph_calibrate.c: measures paths on the driver with the caller's clock. Each path is created, updated with
+ * changing weights, and deleted. The shortest update counts, because disturbances only make an update longer. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -57,7 +57,7 @@ static void measure(noh_gl_morph *m, float share, noh_gl_clock clock, void *user
     uint64_t from, to, start, least = UINT64_MAX;
     uint32_t rounds = 0;
     change_weights(m, share, 0);
-    noh_gl_morph_update(m, NULL); /* clears all, and drivers finish their shaders at the first draw */
+    noh_gl_morph_update(m, NULL); /* clears all tiles, and drivers finish compiling at the first draw */
     start = from = clock(user);
     do {
         change_weights(m, share, ++rounds);
@@ -66,7 +66,7 @@ static void measure(noh_gl_morph *m, float share, noh_gl_clock clock, void *user
         least = to - from < least ? to - from : least;
         from = to;
     } while (to - start < budget_ns && rounds < 1000u);
-    times->ns[m->plan.path] = least ? least : 1u; /* 0 says that it was not tried */
+    times->ns[m->plan.path] = least ? least : 1u; /* 0 means not tried */
     times->rounds[m->plan.path] = rounds;
 }
 

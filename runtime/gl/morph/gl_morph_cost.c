@@ -3,12 +3,12 @@
  * The unit is one texel blended into three layers of RGBA32F. All terms are of one update of one instance of each mesh,
  * with the expected share of its targets active.
  *   mrt     its texels; a quad costs as much as 4 of them, or on a software rasteriser, which shades whole blocks, all
- *           16 of each block instead; twice all that where the layers do not fit a known tile memory; a third of it
+ *           16 of each block instead; twice all that if the layers do not fit a known tile memory; a third of it
  *           for halves, which GPUs blend at a higher rate; the clear
- *   gather  16 texels of each block at a factor, and 0.3 for each that is written once; what is uploaded
- *   cpu     pairs and vertices, and what is uploaded: sums, or finished vertices
- * The factors for software were measured, those for GPUs on one, an NVIDIA H100 (runtime/gl/LOG.md has both); of other
- * GPUs, tilers above all, they are reasoned: let a game calibrate (noh_gl_morph_calibrate). */
+ *   gather  16 texels of each block at a factor, and 0.3 for each texel written once; the upload
+ *   cpu     pairs and vertices, and the upload: sums, or finished vertices
+ * The factors for software, and for one GPU, an NVIDIA H100, were measured (runtime/gl/LOG.md); for other GPUs, tilers
+ * above all, they are estimates: a game should calibrate (noh_gl_morph_calibrate). */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -20,16 +20,15 @@
 #include "noh/noh_gl.h"
 
 #define QUAD_TEXELS 4.0f     /* a quad's vertices and setup */
-#define GATHER_SOFTWARE 0.9f /* of a texel that gather reads and adds, */
+#define GATHER_SOFTWARE 0.9f /* a texel that gather reads and adds */
 #define GATHER_GPU 0.3f
-#define HALF_BLEND_GPU 0.35f /* of a texel of halves that is blended */
-#define WRITE 0.3f           /* of a texel that is written once */
-#define UPLOADED_BYTES 32.0f /* that cost as much as one texel; reasoned */
-#define CPU_PAIR 0.17f       /* 1.4 ns, where a blended texel is 8 on the same processor */
-#define CPU_VERTEX 0.12f     /* 1 ns: into the texture */
+#define HALF_BLEND_GPU 0.35f /* a blended texel of halves */
+#define WRITE 0.3f           /* a texel written once */
+#define UPLOADED_BYTES 32.0f /* that cost as much as one texel; estimated */
+#define CPU_PAIR 0.17f       /* 1.4 ns; a blended texel takes 8 ns on the same processor */
+#define CPU_VERTEX 0.12f     /* 1 ns, to write to the texture */
 
-/* Bytes that a pixel may take in the tile memory of a GPU without its tiles getting smaller or spilling; 0: it has no
- * such memory, or it is not known. */
+/* Bytes per pixel that fit a GPU's tile memory at full tile size; 0: no tile memory, or unknown. */
 static uint32_t tile_bytes(const char *renderer)
 {
     const noh_gl_quirk *quirk = noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_32);
@@ -80,7 +79,7 @@ void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, 
     if (!software && plan->accumulate == NOH_ACCUMULATE_F16) c->mrt *= HALF_BLEND_GPU;
     c->mrt += c->touched;
     c->per_layer = c->mrt + (software ? 0.0f : QUAD_TEXELS * c->quads * (float)(plan->layer_count - 1u));
-    uploaded = 16.0f * c->blocks + 1.25f * c->touched; /* entries, and where lists begin */
+    uploaded = 16.0f * c->blocks + 1.25f * c->touched; /* entries and starts of lists */
     c->gather = 16.0f * c->blocks * (software ? GATHER_SOFTWARE : GATHER_GPU) + WRITE * c->touched +
                 uploaded / UPLOADED_BYTES;
     c->cpu = CPU_PAIR * c->pairs + CPU_VERTEX * c->touched +

@@ -30,7 +30,7 @@ static void narrow_to_half(void *floats, size_t count)
 }
 
 /* [layers][texels][3] to [layers][texels][4] in place, from the end, so that no unread float is overwritten. The fourth
- * of the first layer is the occlusion, behind them all; of the others it is 0. */
+ * component is the occlusion, stored after all layers, in the first layer, and 0 in the others. */
 static void widen(float *staging, uint32_t layers, size_t texels)
 {
     const float *occlusion = staging + 4u * layers * texels;

@@ -1,9 +1,9 @@
 /* gl_morph_gather.c: the path gather, which sums without blending.
  *
- * Each block of 4 x 4 accumulation texels has a list of the active targets that move any of them, in target order. One
- * fragment per vertex walks its block's list, adds delta * weight in registers, and writes the three layers once. The
- * CPU adds in the same order, so the bits are the same; a target that does not move a vertex has a delta of 0, and
- * adding a zero changes no sum that began at +0.
+ * Each block of 4 x 4 accumulation texels has a list of the active targets that move any of its texels, in target
+ * order. One fragment per vertex reads its block's list, adds delta * weight in registers, and writes the three layers
+ * once. The CPU adds in the same order, so the bits are the same; a target that does not move a vertex has a delta of
+ * 0, and adding a zero changes no sum that began at +0.
  *
  * The lists are rebuilt for each update, by a counting sort of the blocks of the active targets, so the cost depends
  * only on active targets, and each entry contains its weights. An update sends the lists: 16 bytes for each block of
@@ -93,7 +93,7 @@ static void draw_lists(noh_gl_morph *m, lists *l, noh_gl_morph_stats *stats)
     l->entry_count = l->start_count = l->tile_count = 0;
 }
 
-/* How many active targets each block has, into the cursors. */
+/* Count the active targets of each block in the cursors. */
 static void count_targets(const noh_mesh *mesh, const float *weights, uint32_t *cursors)
 {
     const uint32_t across_log2 = mesh->header->morph_width_log2 - 2u;
@@ -127,8 +127,8 @@ static void put_target(lists *l, const noh_mesh *mesh, const noh_target *target,
     }
 }
 
-/* Room for a list of each block: where it begins, into starts and cursors. A block without an active target has one
- * entry that adds nothing. Returns the number of entries. */
+/* Write where each block's list begins to starts and cursors. A block without an active target has one entry that adds
+ * nothing. Return the number of entries. */
 static uint32_t begin_lists(lists *l, uint32_t positions)
 {
     uint32_t *starts = l->starts + l->start_count, at = l->entry_count;
@@ -160,8 +160,8 @@ static uint32_t entries_of(const uint32_t *cursors, uint32_t positions)
     return entries;
 }
 
-/* The lists of an instance. Its tiles may belong to a finer LOD level: a level's rectangles of a target are the first
- * ones of it. */
+/* The lists of an instance. Its tiles may belong to a finer LOD level: a target's rectangles at a coarser level are its
+ * first ones at a finer level. */
 static void list_instance(noh_gl_morph *m, uint32_t instance, lists *l, noh_gl_morph_stats *stats)
 {
     const noh_mesh mesh = noh_gl_morph_view(m, instance);

@@ -13,37 +13,37 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_table_internal.h"
 
-#define NOH_TILE_CHUNK 64u       /* tiles of delta texels that are sent at once at load: at most 16 KiB */
-#define NOH_BATCH_QUADS 4096u    /* quads that the blended paths draw at once, 48 bytes each, */
-#define NOH_BATCH_POINTS 1536u   /* or points, 12 bytes each (gl_morph_blend.c) */
-#define NOH_BATCH_ENTRIES 16384u /* entries of lists that gather sends at once, more only if one instance has more */
+#define NOH_TILE_CHUNK 64u       /* tiles of delta texels sent at once at load: at most 16 KiB */
+#define NOH_BATCH_QUADS 4096u    /* quads that the blended paths draw at once, 48 bytes each */
+#define NOH_BATCH_POINTS 1536u   /* likewise points, 12 bytes each (gl_morph_blend.c) */
+#define NOH_BATCH_ENTRIES 16384u /* list entries that gather sends at once, more only if one instance has more */
 #define NOH_STREAM_STRIDE 12u    /* bytes of a vertex in a stream */
-#define NOH_STREAM_CHUNK 3072u   /* bytes of streams that are sent at once at load */
-#define NOH_VERTEX_CHUNK 1024u   /* finished vertices that are sent at once where buffers cannot be mapped */
+#define NOH_STREAM_CHUNK 3072u   /* bytes of streams sent at once at load */
+#define NOH_VERTEX_CHUNK 1024u   /* finished vertices sent at once if buffers cannot be mapped */
 #define NOH_VERTEX_RING_MAX 3u
 
 /* One mesh of the desc. Its instances' tiles fill a band of the atlas, row by row. */
 typedef struct noh_gl_morph_mesh {
     noh_mesh mesh;
     uint32_t instance_count, first_instance;
-    uint32_t first_weight; /* into weights */
+    uint32_t first_weight; /* index into weights */
     uint32_t columns, band_y;
-    uint32_t owner; /* the mesh of the desc whose part of the tables this one uses: itself, or a finer LOD level */
-    /* where an owner's part begins */
+    uint32_t owner; /* the mesh of the desc whose tables this one uses: itself, or a finer LOD level */
+    /* where an owner's data begins */
     uint32_t first_tile, tile_count; /* of the delta tiles */
     uint32_t first_target;           /* into target_tiles */
-    uint32_t first_byte;             /* of its instances' finished vertices, in each buffer of the ring */
+    uint32_t first_byte;             /* finished vertices of its instances, in each buffer of the ring */
 } noh_gl_morph_mesh;
 
-/* The blocks of 4 x 4 accumulation texels that a rectangle touches, of a tile's: x0..x1-1, y0..y1-1. */
+/* The blocks of 4 x 4 accumulation texels of a tile that a rectangle touches: x0..x1-1, y0..y1-1. */
 typedef struct noh_gl_blocks {
     uint32_t x0, y0, x1, y1;
 } noh_gl_blocks;
 
-/* The most that is sent for one draw. */
+/* Upper bounds of the data sent for one draw. */
 typedef struct noh_gl_batch {
     uint32_t entries;              /* points, quads, or entries of gather's lists */
-    uint32_t positions, instances; /* gather: lists, and instances that they belong to */
+    uint32_t positions, instances; /* gather: lists, and their instances */
     uint64_t bytes;                /* blended paths: vertices of all batches of an update */
 } noh_gl_batch;
 
@@ -52,28 +52,28 @@ struct noh_gl_morph {
     noh_gl_ledger *ledger;
     noh_gl_morph_plan plan;
     uint32_t mesh_count;
-    uint32_t table_count;      /* mesh_count, and 1 where there is desc.coarse: its tables are the last */
+    uint32_t table_count;      /* mesh_count, plus 1 with desc.coarse, whose tables are the last */
     noh_gl_morph_mesh *meshes; /* [table_count] */
-    noh_mesh source;           /* with desc.coarse: the finest level that is accumulated, in the pack that has it */
+    noh_mesh source;           /* with desc.coarse: the finest accumulated level, in its own pack */
     uint32_t *instance_mesh;   /* [instance_count] */
     uint8_t *dirty;            /* [instance_count] */
-    uint8_t *levels;           /* [instance_count] LOD level that is accumulated; none is finer than its mesh */
+    uint8_t *levels;           /* [instance_count] accumulated LOD level, never finer than the mesh */
     uint32_t dirty_count;
     float *weights;    /* [weight_count], instance after instance */
     uint32_t *records; /* [weight_count][4] of the active targets (blended paths): staging of the record table */
     void *staging;     /* a batch of vertices, gather's lists, or the CPU's layers; at load, chunks of the tables */
     size_t staging_bytes;
-    noh_morph_kernel kernel; /* of the path cpu */
+    noh_morph_kernel kernel; /* for the path cpu */
     noh_gl_batch batch;
-    uint32_t *target_tiles; /* of the owners, [target_count] each: a target's first tile, in the order of targets */
-    uint32_t *slots;        /* [block_count] (gather): where that tile lies, in the order of blocks: x | y << 9 */
+    uint32_t *target_tiles; /* per owner, [target_count]: a target's first tile, in the order of targets */
+    uint32_t *slots;        /* [block_count] (gather): position of the tile, in the order of blocks: x | y << 9 */
 
     /* Finished vertices (gl_morph_vertices.c). A slot is an instance's part of one buffer of the ring. */
-    float *slot_weights;   /* [ring][weight_count] by which it was written */
-    uint8_t *slot_levels;  /* [ring][instance_count] at which; NOH_SLOT_STALE: write all of it */
-    uint8_t *slot_drawn;   /* [instance_count] in the ring */
+    float *slot_weights;   /* [ring][weight_count] weights of each written slot */
+    uint8_t *slot_levels;  /* [ring][instance_count] its level; NOH_SLOT_STALE: write it completely */
+    uint8_t *slot_drawn;   /* [instance_count] index in the ring */
     GLuint *vertex_arrays; /* [ring][instance_count]; 0: none */
-    uint8_t *groups;       /* of the largest mesh: 1: a group of texels is written now */
+    uint8_t *groups;       /* for the largest mesh; 1: write this group of texels */
     void *finished;        /* [NOH_VERTEX_CHUNK] vertices at most */
     uint32_t update_count;
     noh_gl_buffer ring[NOH_VERTEX_RING_MAX];
@@ -82,13 +82,13 @@ struct noh_gl_morph {
     noh_gl_texture layers;
     noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
     uint32_t tiles_across_log2;
-    noh_gl_table record_table;     /* of the active targets, or gather's lists */
+    noh_gl_table record_table;     /* records of active targets, or gather's lists */
     noh_gl_table starts;           /* where gather's lists begin, by block */
     noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
     GLuint a_stream; /* attribute of the stream */
-    int flushes;     /* draws of points are flushed (gl_morph_blend.c) */
+    int flushes;     /* flush between draws of points (gl_morph_blend.c) */
     GLint u_layer;
 };
 
@@ -102,7 +102,7 @@ int noh_gl_morph_finishes(const noh_gl_morph_desc *desc, noh_accumulate accumula
 /* Fill plan->costs. The plan has accumulate and layer_count. */
 void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan);
 
-/* Carve everything behind the struct itself from an arena. `m` NULL only measures. */
+/* Carve everything after the struct itself from an arena. `m` NULL only measures. */
 void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan,
                         noh_gl_morph *m);
 
@@ -110,29 +110,29 @@ noh_gl_blocks noh_gl_blocks_of(const noh_rect *rect);
 
 noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
 
-/* Blocks of an instance's place in the atlas. */
+/* Number of blocks of an instance's tile in the atlas. */
 uint32_t noh_gl_morph_positions(const noh_mesh_header *h);
 
-/* How many vertices targets may move: the first ones, where vertex n has texel n. */
+/* Targets may move only vertices below this number: the first ones, if vertex n has texel n. */
 uint32_t noh_gl_morph_vertex_end(const noh_mesh_header *h);
 
 /* The texture of the delta tiles of a plan, which is `1 << *across_log2` tiles wide. */
 noh_gl_texture_desc noh_gl_morph_tiles_desc(const noh_gl_morph_plan *plan, uint32_t *across_log2);
 
 /* Rows from one tile to the next: a multiple of four. Rasterisers work in blocks of 2 x 2 to 4 x 4 pixels, and the
- * converter cuts rectangles along those blocks, so every tile must be aligned to them (an eighth less work for mrt with
- * 100 heads on llvmpipe). */
+ * converter cuts rectangles along these blocks, so every tile is aligned to them (an eighth less work for mrt with 100
+ * heads on llvmpipe). */
 uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
 
-/* Whether the tables of a mesh of the desc, or of desc.coarse behind them, are uploaded when they are made. */
+/* Whether the tables of a mesh of the desc, or of desc.coarse after them, are uploaded at creation. */
 static inline int noh_gl_morph_is_there(const noh_gl_morph *m, uint32_t mesh)
 {
     return m->meshes[mesh].owner == mesh && (m->table_count == m->mesh_count || mesh == m->mesh_count);
 }
 
-/* An instance's mesh at the LOD level that is accumulated. */
+/* An instance's mesh at its accumulated LOD level. */
 noh_mesh noh_gl_morph_view(const noh_gl_morph *m, uint32_t instance);
-/* The mesh of the desc whose part of the tables an instance uses. */
+/* The mesh of the desc whose tables an instance uses. */
 const noh_gl_morph_mesh *noh_gl_morph_tables(const noh_gl_morph *m, uint32_t instance);
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y);
@@ -150,19 +150,19 @@ uint32_t noh_gl_morph_target_bits(const noh_target *target);
 /* Set u_tables and u_atlas of the path's program. */
 void noh_gl_morph_constants(noh_gl_morph *m);
 
-/* Make the buffer of the draws and its vertex array: one attribute of so many uint32_t; `instanced` 1: each instance
- * has one, else each vertex. */
+/* Make the buffer of the draws and its vertex array, with one attribute of `components` uint32_t; `instanced` 1: per
+ * instance, 0: per vertex. */
 noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint components, uint64_t bytes,
                                GLuint instanced, noh_error *error);
 
-/* Make the delta tiles, and fill those that are there. */
+/* Make the delta tiles, and fill those already loaded. */
 noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error);
 
-/* As noh_gl_morph_fill. mesh: the one whose tiles an owner has. */
+/* As noh_gl_morph_fill. mesh: the owner's mesh, whose tiles are filled. */
 int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const noh_mesh *mesh, uint32_t *at,
                             uint32_t *bytes);
 
-/* Bind what a draw reads; leave the state that noh_gl_morph_update promises.
+/* Bind the inputs of a draw; restore the state as noh_gl_morph_update promises.
  * kept  NULL at the end: nothing was drawn */
 void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept);
 void noh_gl_morph_end(const noh_gl_morph *m, const noh_gl_offscreen *kept);
@@ -184,7 +184,7 @@ void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_m
 
 struct noh_gl_mesh;
 
-/* A vertex array like the mesh's own, but for what `morph` has finished; 0 where the driver makes none. */
+/* A vertex array like the mesh's own, except for the vertices finished by `morph`; 0 if the driver refuses. */
 GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const struct noh_gl_mesh *mesh, const noh_gl_morph_binding *morph);
 
 #define NOH_SLOT_STALE 255u

@@ -1,9 +1,9 @@
-/* gl_morph_plan.c: choosing the path, the layout of the data and its exact bytes, before anything is made.
+/* gl_morph_plan.c: chooses the path, the layout of the data and its exact bytes, before anything is created.
  *
  * The atlas is the texture array whose layers take the sums. Each mesh of the desc has a band of it, and each instance
- * a tile in its mesh's band. The tables hold what does not change, the delta texels and where they go, once per mesh
- * however many instances it has. The stream and the staging memory hold what one update sends. They are large enough
- * for every target of every instance to be active at once, so an update cannot run out of room, and never fails. */
+ * a tile in its mesh's band. The tables hold constant data, the delta texels and their destinations, once per mesh for
+ * any number of instances. The stream and the staging memory hold the data sent by one update. They are large enough
+ * for every target of every instance to be active at once, so an update never runs out of memory. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -74,8 +74,8 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     return NULL;
 }
 
-/* The cheapest path on a GPU by the model of gl_morph_cost.c. layered and per-layer do the work of mrt and more, so
- * they are never cheaper. */
+/* The cheapest path on a GPU by the model of gl_morph_cost.c. layered and per-layer do more work than mrt, so they are
+ * never cheaper. */
 static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, const noh_gl_caps *caps, const char **reason)
 {
     const noh_accumulate accumulate = plan->accumulate;
@@ -104,8 +104,8 @@ static noh_morph_path cheapest_on_gpu(const noh_gl_morph_plan *plan, const noh_g
     return NOH_MORPH_CPU;
 }
 
-/* The policy `blend`: one draw where a geometry shader can send a triangle to each of the three layers, else a pass for
- * each. Where the format cannot be blended into, the check of per-layer says so. */
+/* The policy `blend`: one draw if a geometry shader can send a triangle to each of the three layers, else a pass for
+ * each. If the GPU cannot blend into the format, the check of per-layer reports it. */
 static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps *caps, const char **reason)
 {
     if (!missing(NOH_MORPH_LAYERED, accumulate, caps)) {
@@ -169,7 +169,7 @@ int noh_gl_morph_finishes(const noh_gl_morph_desc *desc, noh_accumulate accumula
            !has_uv_targets(desc);
 }
 
-/* How many buffers finished vertices take turns in. A software rasteriser is at most a frame behind, and two stay in
+/* Buffers in the ring of finished vertices. A software rasteriser is at most one frame behind, and two buffers stay in
  * its caches; a GPU may be two frames behind. */
 static uint32_t vertex_ring(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, const noh_gl_morph_plan *plan)
 {
@@ -223,8 +223,8 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header)
 }
 
 /* Stack the meshes' bands in an atlas of this width. A tile is as wide as its mesh's grid of accumulation texels, a
- * power of two, and a band has as many tiles side by side as fit. Returns the height, which may be more than a texture
- * has. */
+ * power of two, and a band has as many tiles per row as fit. Returns the height, which may exceed the limit of
+ * textures. */
 static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width, noh_gl_morph_mesh *meshes)
 {
     uint64_t y = 0;
@@ -242,8 +242,8 @@ static uint64_t stack_bands(const noh_gl_morph_desc *desc, uint32_t atlas_width,
     return y;
 }
 
-/* Choose the atlas: the least width, a power of two, at which the bands are no higher than a texture may be. Widths up
- * to 2048 are tried with heights up to 2048, which every ES 3.0 has, and only then the larger ones of this GPU. */
+/* Choose the atlas: the smallest width, a power of two, at which the bands fit the height of a texture. Widths up to
+ * 2048 are tried with heights up to 2048, which ES 3.0 guarantees, and only then the larger sizes of this GPU. */
 static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_size_max, noh_gl_morph_mesh *meshes,
                               noh_gl_morph_plan *plan, noh_error *error)
 {
@@ -255,7 +255,7 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
             least = w;
         }
     }
-    if (least == 1) { /* no target anywhere: one texel, so that there is a texture to bind */
+    if (least == 1) { /* no targets: one texel, so that there is a texture to bind */
         plan->atlas_width = plan->atlas_height = 1;
         for (uint32_t i = 0; meshes && i < desc->mesh_count; i++) {
             meshes[i].columns = 1;
@@ -281,8 +281,8 @@ static noh_result place_tiles(const noh_gl_morph_desc *desc, uint32_t texture_si
 }
 
 /* The mesh of the desc whose tables a mesh uses: the finest LOD level of the same mesh, the first of equals. One table
- * serves all levels because a level's rectangles, target by target, and its lists, vertex by vertex, are a prefix of
- * every finer level's. */
+ * serves all levels, because a level's rectangles per target and its lists per vertex are prefixes of the same data at
+ * every finer level. */
 static uint32_t owner_of(const noh_gl_morph_desc *desc, uint32_t index)
 {
     uint32_t owner = index;
@@ -308,7 +308,7 @@ static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
     return has;
 }
 
-/* Place an owner of tiles after the previous ones. `to` may be NULL. */
+/* Place an owner of tiles after the previous owners. `to` may be NULL. */
 static void add_owner(const noh_mesh *mesh, uint32_t tiles, noh_gl_morph_mesh *to, table_sums *sums)
 {
     if (to) {
@@ -323,14 +323,14 @@ static void add_owner(const noh_mesh *mesh, uint32_t tiles, noh_gl_morph_mesh *t
     sums->targets += mesh->header->target_count;
 }
 
-/* Blocks of a mesh of the desc; while its rectangles are not there, of the finest one. */
+/* Blocks of a mesh of the desc; before its rectangles are loaded, blocks of the finest level. */
 static uint32_t blocks_of(const noh_gl_morph_desc *desc, uint32_t mesh)
 {
     return desc->coarse ? desc->later_blocks : noh_gl_morph_blocks(&desc->meshes[mesh]);
 }
 
-/* Where each mesh's part of the tables begins. `meshes` may be NULL. The tables of a level in a pack of its own come
- * last. They are not part of a finer level's tables, because targets dropped by the level have no entries. */
+/* Place each mesh's tables. `meshes` may be NULL. The tables of a level in its own pack come last. They are not part of
+ * a finer level's tables, because targets dropped by the level have no entries. */
 static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
     table_sums sums = { 0, 0, 0, 0, 0 };
@@ -350,7 +350,7 @@ static table_sums place_tables(const noh_gl_morph_desc *desc, noh_gl_morph_mesh 
     return sums;
 }
 
-/* Of one buffer of the ring. Meshes that no target moves have no vertices in it. */
+/* Bytes of one buffer of the ring. Meshes that no target moves have no vertices in it. */
 static uint64_t place_vertices(const noh_gl_morph_desc *desc, noh_gl_morph_mesh *meshes)
 {
     uint64_t bytes = 0;
@@ -400,7 +400,7 @@ static uint32_t instances_of(const noh_gl_morph_desc *desc, uint32_t mesh)
     return desc->instance_counts ? desc->instance_counts[mesh] : 1u;
 }
 
-/* Points or quads for every active target of every instance: a strip is cut at most where a row of tiles ends. */
+/* Points or quads for every target of every instance: a strip is cut only at the end of a row of tiles. */
 static uint64_t primitives_of(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     uint32_t across_log2;

@@ -11,7 +11,7 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 
-/* ---- where things are ---- */
+/* ---- positions ---- */
 
 void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, uint32_t *y)
 {
@@ -46,7 +46,7 @@ uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance)
 
 void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last)
 {
-    /* the same products as the CPU reference, so that both round alike */
+    /* the same products as on the CPU, so that both round alike */
     const float scaled[3] = { target->position_scale * weight, target->normal_scale * weight,
                               target->tangent_scale * weight };
     memcpy(record, scaled, sizeof scaled);
@@ -129,7 +129,7 @@ noh_result noh_gl_morph_stream(noh_gl_morph *m, const char *attribute, GLint com
 void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept)
 {
     const GLuint names[3] = { m->tiles.name, m->record_table.texture.name, m->starts.texture.name };
-    for (unsigned i = 3; i-- > 0;) { /* downwards, so that unit 0 is the active one at the end */
+    for (unsigned i = 3; i-- > 0;) { /* downwards, so that unit 0 is active at the end */
         m->gl->ActiveTexture(GL_TEXTURE0 + i);
         m->gl->BindTexture(GL_TEXTURE_2D, names[i]);
     }

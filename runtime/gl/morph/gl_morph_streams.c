@@ -1,9 +1,9 @@
 /* gl_morph_streams.c: the path streams: deltas as vertex attributes, added in the vertex shader of the draw itself.
  *
- * Each target has a stream, three words for each vertex, of the form of its delta texels: also for vertices that it
- * does not move, so a target costs 12 bytes a vertex on the GPU, whatever it moves. In return nothing is rendered to,
- * no texture is fetched from, and a change of weights costs nothing but uniforms. Granberg, Character Animation with
- * Direct3D, 2009, chapter 8, binds four targets as whole meshes, with texture coordinates that nothing reads. */
+ * Each target has a stream of three words per vertex, in the format of delta texels, also for vertices that it does not
+ * move: a target always takes 12 bytes per vertex on the GPU. In return there is no render target and no texture fetch,
+ * and changed weights cost only uniforms. Granberg, Character Animation with Direct3D, 2009, chapter 8, binds four
+ * targets as whole meshes, with texture coordinates that nothing reads. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -18,7 +18,7 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 
-#define STREAM_CHUNK (NOH_STREAM_CHUNK / NOH_STREAM_STRIDE) /* vertices that are sent at once at load */
+#define STREAM_CHUNK (NOH_STREAM_CHUNK / NOH_STREAM_STRIDE) /* vertices sent at once at load */
 
 /* ---- making ---- */
 
@@ -32,7 +32,7 @@ static void find_delta(const noh_mesh *mesh, const noh_target *target, uint32_t 
     const noh_rect *rect = mesh->rects + target->first_rect;
     memset(words, 0, 12);
     for (uint32_t r = 0; r < target->rect_count && !(words[0] | words[1] | words[2]); r++, rect++) {
-        if (x - rect->x < rect->w && y - rect->y < rect->h) { /* unsigned: below the corner is far above */
+        if (x - rect->x < rect->w && y - rect->y < rect->h) { /* unsigned: wraps to a large number below the corner */
             memcpy(words, of_rect + 3u * (size_t)((y - rect->y) * rect->w + (x - rect->x)), 12);
         }
         of_rect += 3u * (size_t)rect->w * rect->h;
@@ -58,7 +58,7 @@ static void upload_stream(noh_gl_morph *m, const noh_mesh *mesh, uint32_t target
     }
 }
 
-/* Where a mesh's streams begin, bytes. */
+/* Byte offset of a mesh's streams. */
 static uint64_t first_byte(const noh_gl_morph *m, uint32_t owner)
 {
     uint64_t at = 0;
@@ -131,7 +131,7 @@ void noh_gl_morph_set_streams(const noh_gl_morph *m, uint32_t instance, noh_gl_m
     binding->stream_buffer = m->stream.name;
     for (uint32_t i = 0; i < NOH_MORPH_STREAMS_MAX; i++) {
         float *stream = binding->streams[i];
-        binding->stream_offsets[i] = (uint32_t)first; /* of a stream that is there, with the weight 0 */
+        binding->stream_offsets[i] = (uint32_t)first; /* unused: any stream, with weight 0 */
         stream[0] = stream[1] = stream[2] = 0.0f;
         stream[3] = 8.0f * (1u + (1u << 8) + (1u << 16));
         if (i < count) {

@@ -1,14 +1,14 @@
 /* gl_morph_tiles.c: the delta texels of the GPU's paths, in blocks of 4 x 4.
  *
  * Rasterisers shade in blocks of 2 x 2 to 4 x 4 pixels, and the converter cuts rectangles along blocks of 4 x 4. So
- * each block of the accumulator that a rectangle touches has a tile of 4 x 4 delta texels, zeros where it does not
- * reach, and the tile lies in its texture as the block lies in the accumulator: a fragment adds one offset to its own
- * coordinate and fetches. A pack has rectangles without gaps, row after row; tiles are made of them at load, through a
- * chunk of the staging memory. On faces they take 1.02 to 1.14 times the texels of the pack.
+ * each block of the accumulator that a rectangle touches has a tile of 4 x 4 delta texels, zeros outside the rectangle,
+ * aligned in its texture like the block in the accumulator: a fragment adds one offset to its own coordinate and
+ * fetches. A pack stores rectangles without gaps, row by row; tiles are made from them at load, through a chunk of the
+ * staging memory. On faces they take 1.02 to 1.14 times the texels of the pack.
  *
- * The blended paths want tiles in the order of targets, in which they draw. gather reads all targets of a block one
- * after the other, so it wants them by block, and within it by target: `slots` says where each one goes. (Measured in
- * the order of targets, 290 of them: 2.8 times slower on llvmpipe.) */
+ * The blended paths need tiles in the order of targets, in which they draw. gather reads all targets of a block in
+ * turn, so it needs them by block, and within a block by target: `slots` has the position of each tile. (gather in the
+ * order of targets, measured with 290 targets: 2.8 times slower on llvmpipe.) */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -86,7 +86,7 @@ noh_gl_texture_desc noh_gl_morph_tiles_desc(const noh_gl_morph_plan *plan, uint3
 
 /* ---- filling ---- */
 
-/* The place of a tile in the texture, in tiles, x | y << 9, and back. */
+/* The position of a tile in the texture, in tiles, x | y << 9, and back. */
 static uint32_t place_of(const noh_gl_morph *m, uint32_t tile)
 {
     return (tile & ((1u << m->tiles_across_log2) - 1u)) | tile >> m->tiles_across_log2 << 9;
@@ -97,18 +97,18 @@ static uint32_t tile_at(uint32_t place, uint32_t across_log2)
     return (place & 511u) | place >> 9 << across_log2;
 }
 
-/* Tiles first..first+count-1 of an owner's, side by side as in a row of tiles of the texture. */
+/* Tiles first..first+count-1 of an owner, side by side as in a row of tiles of the texture. */
 typedef struct tile_chunk {
     uint32_t *texels; /* [4][4 * count][words] */
-    uint32_t words;   /* of a texel: 3, or 4 with occlusion */
+    uint32_t words;   /* per texel: 3, or 4 with occlusion */
     uint32_t first, count;
-    const uint32_t *slots; /* where the n-th tile in the order of targets goes; NULL: there */
+    const uint32_t *slots; /* position of the n-th tile in the order of targets; NULL: position n */
     uint32_t first_tile, tile_count, across_log2;
-    uint32_t row_first, row_end; /* of blocks in which all of them are, with slots */
+    uint32_t row_first, row_end; /* rows of blocks that contain all these tiles, with slots */
 } tile_chunk;
 
-/* A delta word whose tangent's field takes all that the other two leave: the same three values, and the field's width
- * need not be told. */
+/* Widen the tangent's field of a delta word to all bits that the other two leave: the values stay, and shaders need not
+ * know the field's width. */
 static uint32_t widened(uint32_t word, const noh_target *target)
 {
     const uint32_t before = (uint32_t)target->position_bits + target->normal_bits;
@@ -127,12 +127,12 @@ static void put_texel(const noh_mesh *mesh, uint32_t target, uint32_t texel, uin
     }
 }
 
-/* One tile of a rectangle whose delta texels begin at `texel`. The chunk is zeros before. */
+/* One tile of a rectangle whose delta texels begin at `texel`. The chunk is zero before. */
 static void put_tile(const tile_chunk *c, const noh_mesh *mesh, uint32_t target, const noh_rect *rect, uint32_t texel,
                      const uint32_t block[2], uint32_t slot)
 {
     for (uint32_t y = 0; y < 4u; y++) {
-        const uint32_t row = 4u * block[1] + y - rect->y; /* above the rectangle it wraps to a large number */
+        const uint32_t row = 4u * block[1] + y - rect->y; /* wraps to a large number above the rectangle */
         uint32_t *to = c->texels + c->words * (4u * c->count * (size_t)y + 4u * (size_t)slot);
         for (uint32_t x = 0; x < 4u && row < rect->h; x++) {
             const uint32_t column = 4u * block[0] + x - rect->x;
@@ -155,8 +155,8 @@ static void put_rect(const tile_chunk *c, const noh_mesh *mesh, uint32_t target,
     }
 }
 
-/* Every tile of the chunk. Rectangles that have none are passed over, so the walks of all chunks take little more than
- * one walk over all tiles. */
+/* Write every tile of the chunk. Rectangles without tiles in it are skipped, so all chunks together take little more
+ * than one pass over all tiles. */
 static void put_chunk(const tile_chunk *c, const noh_mesh *mesh)
 {
     uint32_t index = 0;
@@ -175,7 +175,7 @@ static void put_chunk(const tile_chunk *c, const noh_mesh *mesh)
     }
 }
 
-/* Where each target's tiles begin, in the order of targets. */
+/* Find each target's first tile, in the order of targets. */
 static void find_targets(const noh_mesh *mesh, uint32_t *first)
 {
     uint32_t index = 0;
@@ -213,7 +213,7 @@ static void find_slots(const noh_gl_morph *m, const noh_gl_morph_mesh *to, const
     }
 }
 
-/* The rows of blocks that the tiles of a chunk belong to. */
+/* Find the rows of blocks that contain the tiles of a chunk. */
 static void find_rows(tile_chunk *c, const noh_mesh_header *h, const uint32_t *ends)
 {
     const uint32_t across_log2 = h->morph_width_log2 - 2u, positions = noh_gl_morph_positions(h);

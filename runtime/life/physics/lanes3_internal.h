@@ -1,5 +1,5 @@
-/* lanes3_internal.h (private to sim/): vectors and rotations, one for each lane. Rotations are x, y, z, w.
- * Threads: no state; any thread. */
+/* lanes3_internal.h (private to physics/): vectors and rotations, one per lane. Rotations are x, y, z, w. Threads: no
+ * state; any thread. */
 #ifndef NOH_SIM_LANES3_INTERNAL_H
 #define NOH_SIM_LANES3_INTERNAL_H
 
@@ -65,7 +65,7 @@ NOH_ALWAYS_INLINE lane3 lane3_choose(lanes mask, lane3 yes, lane3 no)
     return r;
 }
 
-/* One over the root of a square, where the mask says that it is no tiny one; else 1. */
+/* 1 / sqrt(square) where the mask is set (the square is not tiny), else 1. */
 NOH_ALWAYS_INLINE lanes lanes_inverse_root(lanes mask, lanes square)
 {
     const lanes one = lanes_set(1.0f);
@@ -135,8 +135,8 @@ NOH_ALWAYS_INLINE lane3 lane4_axis_z(lane4 q)
     return r;
 }
 
-/* q turned by a small rotation vector, of which at most 0.5 rad are taken: one Newton step brings it back to length 1,
- * and that fails where the square passes 3. */
+/* Turn q by a small rotation vector, clamped to 0.5 rad: one Newton step restores length 1, and fails if the square
+ * exceeds 3. */
 NOH_ALWAYS_INLINE lane4 lane4_turn(lane4 q, lane3 w)
 {
     const lanes square = lane3_dot(w, w), large = lanes_less(lanes_set(0.25f), square);
@@ -151,7 +151,7 @@ NOH_ALWAYS_INLINE lane4 lane4_turn(lane4 q, lane3 w)
     return lane4_scale(sum, lanes_sub(lanes_set(1.5f), lanes_mul(half, lane4_square(sum))));
 }
 
-/* The rotation from b to a as a vector, twice its imaginary part: right for small ones. */
+/* The rotation from b to a as a vector: twice the imaginary part, accurate for small rotations. */
 NOH_ALWAYS_INLINE lane3 lane4_difference(lane4 a, lane4 b)
 {
     const lane4 d = lane4_mul(a, lane4_conjugate(b));
@@ -160,7 +160,7 @@ NOH_ALWAYS_INLINE lane3 lane4_difference(lane4 a, lane4 b)
     return r;
 }
 
-/* What lane4_turn turned b by to make it a: its inverse, so that a free body keeps its spin. */
+/* The vector by which lane4_turn turned b into a: its inverse, so that a free body keeps its spin. */
 NOH_ALWAYS_INLINE lane3 lane4_turned(lane4 a, lane4 b)
 {
     const lane4 d = lane4_mul(a, lane4_conjugate(b));
@@ -170,7 +170,7 @@ NOH_ALWAYS_INLINE lane3 lane4_turned(lane4 a, lane4 b)
     return lane3_scale(v, lanes_div(two, w));
 }
 
-/* The arc tangent of num / den, taken as -1..1, to 1e-4.
+/* The arc tangent of num / den, clamped to -1..1, accurate to 1e-4.
  * source  a polynomial of degree 9 in the ratio */
 NOH_ALWAYS_INLINE lanes lanes_arc_tangent(lanes num, lanes den)
 {

@@ -48,8 +48,7 @@ void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float positi
     noh_quat_normalize(rotation);
 }
 
-/* The body that a joint moves with: its own, or that of its nearest ancestor with one; the first body for joints above
- * all bodies. */
+/* The body that a joint moves with: its own, or its nearest ancestor's; the first body for joints above all bodies. */
 static uint32_t owner_of(const maker *m, uint32_t joint)
 {
     while (joint != NOH_JOINT_ROOT) {

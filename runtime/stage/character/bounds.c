@@ -6,13 +6,12 @@
 
 #include "core/base/math_internal.h"
 
-#define ROUNDING 1.000002f /* more than the sums and roots below can lose */
+#define ROUNDING 1.000002f /* above the rounding error of the sums and roots below */
 
-/* A ball that contains the vertices of one joint. Its centre is the joint or, where the joint was not posed, the
- * nearest posed ancestor: the joint then keeps its bind pose relative to it, so it is at most the sum of the bones in
- * between away, whatever their rotations. */
+/* A ball that contains the vertices of one joint. Its centre is the joint or, if the joint was not posed, the nearest
+ * posed ancestor. The distance between the two is at most the sum of the bones in between, whatever their rotations. */
 typedef struct ball {
-    const float *matrix; /* of the joint at the centre */
+    const float *matrix; /* joint at the centre */
     float radius, stretch;
 } ball;
 
@@ -27,7 +26,7 @@ static float magnitude(float v)
     return v < 0.0f ? -v : v;
 }
 
-/* The most that a joint's scale stretches what is below it. */
+/* The largest factor by which a joint's scale stretches its descendants. */
 static float largest_scale(const noh_transform *t)
 {
     const float x = magnitude(t->scale[0]), y = magnitude(t->scale[1]), z = magnitude(t->scale[2]);
@@ -69,10 +68,10 @@ static float radius_around(const float *centre, ball b)
     return noh_sqrt(noh_dot3(d, d)) * ROUNDING + b.radius;
 }
 
-#define KEPT 64u /* balls that the second pass need not make again */
+#define KEPT 64u /* balls kept for the second pass */
 
-/* The box contains all balls. The sphere is centred in the box, not minimal: one more pass over the joints finds the
- * radius that contains every ball, which is at most sqrt(3) times the smallest one. */
+/* The box contains all balls. The sphere is not minimal, but centred in the box: a second pass over the joints finds
+ * the radius that contains every ball, at most sqrt(3) times the smallest radius. */
 void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const float *joint_radius_m,
                       uint32_t joint_count, noh_bounds *bounds)
 {
@@ -139,7 +138,7 @@ static void add_targets(const noh_mesh *mesh, const float *weights, float deltas
     }
 }
 
-/* How far the farthest corner of a box is from a joint. In a box no point is farther from any place than a corner. */
+/* The distance from a joint to the farthest corner of a box. No point of the box is farther away. */
 static float farthest_corner(const float *inverse_bind, const float box[6])
 {
     float farthest = 0.0f;

@@ -1,8 +1,8 @@
 /* character.c: a controller with levels of detail and two poses.
  *
- * A character that is far away is not posed in every frame. It is posed ahead of time, at the tick of its next update,
- * and until then what shows is a mix of that pose and the one before: linear in the matrices, and far cheaper than a
- * pose. The two palettes, weights and spheres take turns at being the pose that is left and the one that is reached. */
+ * A distant character is not posed in every frame. It is posed ahead of time, for the tick of its next update. Until
+ * then the character shows a mix of this pose and the previous one, linear in the matrices and far cheaper than a pose.
+ * The two palettes, weights and spheres take turns as source and target of the mix. */
 #include "core/base/assert.h"
 #include "motion/anim/controller.h"
 #include "stage/character/bounds.h"
@@ -26,7 +26,7 @@ typedef struct layout {
     size_t controller, palettes[2], floats[2], bytes;
 } layout;
 
-/* Carve and return the offset, not the address: a character holds no pointers, so that a copy of it is a character. */
+/* Carve and return the offset, not the address: a character holds no pointers, so it can be copied byte by byte. */
 static size_t place(noh_arena *arena, size_t bytes)
 {
     (void)noh_arena_carve(arena, bytes, 16);
@@ -43,7 +43,7 @@ static layout layout_of(const noh_character_desc *d, size_t controller_bytes)
         l.palettes[i] = place(&arena, 12u * sizeof(float) * (size_t)d->controller.set->joint_count);
         l.floats[i] = place(&arena, d->controller.set->float_count * sizeof(float));
     }
-    (void)noh_arena_carve(&arena, 0, 16); /* a multiple of the alignment, so that characters can lie in an array */
+    (void)noh_arena_carve(&arena, 0, 16); /* a multiple of the alignment, for arrays of characters */
     l.bytes = arena.used;
     return l;
 }
@@ -81,7 +81,7 @@ noh_result noh_character_init(void *memory, size_t bytes, const noh_character_de
     noh_result result;
     layout l;
     if (controller_bytes == 0) {
-        return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* which names the field */
+        return noh_controller_init(NULL, 0, &desc->controller, &controller, error); /* reports the field */
     }
     l = layout_of(desc, controller_bytes);
     result = noh_arena_open(&arena, memory, bytes, l.bytes, error);
@@ -276,8 +276,8 @@ static void mix_floats(const float *a, const float *b, float part, uint32_t coun
     }
 }
 
-/* The mix that is shown now becomes the source pose. The mix of two spheres contains the mix of what they contain, so
- * spheres are mixed like the rest. */
+/* The current mix becomes the source pose. Spheres are mixed likewise: the mix of two spheres contains the mix of their
+ * contents. */
 static void keep_shown(noh_character *ch, uint32_t from, float part)
 {
     uint32_t to = from ^ 1u;
@@ -319,10 +319,10 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
 }
 
 /* Matrices of all joints. A joint that was not sampled keeps its bind pose relative to its parent. With inverse bind
- * matrices its skinning matrix is then its parent's: model[parent] * bind * inverse bind of the joint, where
- * bind * inverse bind of the joint = inverse bind of the parent. So it is copied, which is cheaper than a product.
- * Without inverse bind matrices the joint's model matrix is needed, and made from the bind pose that
- * noh_controller_pose left in scratch->local. */
+ * matrices its skinning matrix is then equal to its parent's: model[parent] * bind * inverse bind of the joint, where
+ * bind * inverse bind of the joint = inverse bind of the parent. A copy is cheaper than a product. Without inverse bind
+ * matrices the joint's model matrix is computed from the bind pose, which noh_controller_pose left in
+ * scratch->local. */
 static void make_palette(const noh_skeleton *skeleton, const noh_character_scratch *s, uint32_t joint_count,
                          float *palette)
 {

@@ -11,7 +11,7 @@
 #include "motion/anim/clip_set_internal.h"
 #include "stage/character/measure_internal.h"
 
-#define STEP_TICKS 400u /* frames at sample rates of 24, 30, 60 and 120 Hz lie on these */
+#define STEP_TICKS 400u /* multiples of this contain the frames at 24, 30, 60 and 120 Hz */
 
 typedef struct work {
     noh_transform *pose;
@@ -41,8 +41,8 @@ size_t noh_joint_lod_measure_size(const noh_time_probe *probe)
 }
 
 /* The largest error of a point with the first `count` joints posed, or `worst` if that is larger. Joints are stored
- * parents first, so the prefix is posed as it would be in full, and one pass over the joints left out builds their
- * matrices: the parent's, posed or itself left out, times the bind pose. Only their vertices can be off. */
+ * parents first, so the first joints have the same pose as with all joints. One pass over the skipped joints builds
+ * their matrices: the parent's matrix times the bind pose. Only the vertices of skipped joints can have errors. */
 static float level_off(const noh_time_probe *p, work *w, uint32_t count, float worst)
 {
     const noh_skeleton *s = p->skeleton;
@@ -99,7 +99,7 @@ noh_result noh_joint_lod_measure(void *memory, size_t bytes, const noh_time_prob
             error_m[i] = level_off(probe, &w, counts[i], error_m[i]);
         }
     }
-    /* A coarser level may be closer by chance; errors of a LOD table must not fall. */
+    /* A coarser level may have a smaller error by chance; errors of a LOD table must not decrease. */
     for (uint32_t i = 1; i < level_count; i++) {
         error_m[i] = error_m[i] > error_m[i - 1] ? error_m[i] : error_m[i - 1];
     }

@@ -63,7 +63,7 @@ noh_result noh_lod_settings_check(const noh_lod_settings *s, noh_error *error)
 typedef struct errors {
     float error_m[NOH_LOD_LEVELS_MAX];
     uint32_t count;
-    uint32_t first; /* the finest that may be chosen */
+    uint32_t first; /* the finest selectable level */
 } errors;
 
 static errors errors_of(const noh_lod_table *t, noh_lod_kind kind)
@@ -185,9 +185,9 @@ static limits limits_of(const noh_lod_settings *s, noh_lod_kind kind, double qua
     return l;
 }
 
-/* One step of the hysteresis: from the present level to finer ones while its error is above `refine`, then to coarser
- * ones while theirs is at most `coarsen`. Errors rise with the level and coarsen < refine, so a level that the first
- * loop has just left is never entered by the second, and an error that wavers between the two changes nothing. */
+/* One step of the hysteresis: go to finer levels while the error is above `refine`, then to coarser levels while their
+ * error is at most `coarsen`. Errors rise with the level and coarsen < refine, so the second loop never returns to a
+ * level that the first loop left, and an error that varies between the two thresholds changes nothing. */
 static uint8_t choose_level(const errors *e, uint32_t level, limits l)
 {
     level = level < e->count ? level : e->count ? e->count - 1u : 0;
@@ -201,8 +201,8 @@ static uint8_t choose_level(const errors *e, uint32_t level, limits l)
     return (uint8_t)level;
 }
 
-/* The mesh level changes only once the fade before it has ended. It is then the level within the share, or the limit
- * where no finer one has memory. */
+/* The mesh level changes only after the previous fade. It becomes the level within the share, or the limit if no finer
+ * level has memory. */
 static void choose_mesh(noh_lod *d, const errors *e, const noh_lod_settings *s, limits l, int64_t clock)
 {
     uint8_t next;
@@ -223,8 +223,8 @@ static void choose_mesh(noh_lod *d, const errors *e, const noh_lod_settings *s, 
 }
 
 /* The errors of the update rates, in the form of level errors. Measured errors may decrease by chance from one rate to
- * a lower one; they are raised so that they never do. The clips' own error is present at every rate and counts in the
- * same share. */
+ * a lower one; they are raised to be monotonic. The clips' own error is present at every rate and counts in the same
+ * share. */
 static errors rate_errors(const noh_lod_table *t, const float *update_error_m)
 {
     errors e = { { 0.0f }, 1, 0 };
@@ -237,7 +237,7 @@ static errors rate_errors(const noh_lod_table *t, const float *update_error_m)
     return e;
 }
 
-/* Begin again from the finest levels. */
+/* Restart from the finest levels. */
 static void forget_levels(noh_lod *d)
 {
     d->fade_ticks = 0;
@@ -361,14 +361,14 @@ uint32_t noh_lod_influence_count(const noh_lod *d, const noh_lod_table *t)
 
 /* ---- targets ---- */
 
-/* The error of leaving one target out, metres. NaN compares above every limit, so such a target is kept. */
+/* The error of dropping one target, metres. NaN compares above every limit, so such a target is kept. */
 static float cost_of(const float *weights, const float *radius_m, uint32_t i)
 {
     float product = weights[i] * radius_m[i];
     return product < 0.0f ? -product : product;
 }
 
-/* Floats of one sign are ordered as their bits are. */
+/* Floats of one sign have the order of their bits. */
 static float float_of(uint32_t bits)
 {
     union {
@@ -394,7 +394,7 @@ static uint32_t bits_of(float value)
 /* The sum of the costs up to a limit, and the costs next to the limit on both sides. */
 typedef struct cut {
     double sum;
-    float below, above; /* the largest up to the limit; the smallest over it, infinite where there is none */
+    float below, above; /* the largest up to the limit; the smallest above it, infinity if there is none */
 } cut;
 
 static cut cut_at(const float *weights, const float *radius_m, uint32_t count, float limit)
@@ -410,12 +410,12 @@ static cut cut_at(const float *weights, const float *radius_m, uint32_t count, f
     return c;
 }
 
-/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. This is the
- * greedy choice: the smallest costs first gives the most targets that fit. Sorting the costs would need memory; instead
- * this bisects over the limit. Floats that are not negative have the order of their bits, so at most 31 halvings
- * separate any two, and each pass finds the nearest costs on both sides, which lets the search step from cost to cost.
- * At the next float above the result not all equal costs fit: noh_lod_targets takes these by index. The search starts
- * between room / (count + 1), which always fits, and the room itself. *sum: of the costs that fit. */
+/* Find the largest limit such that all costs up to it fit into the room together, and return its bits. This greedy
+ * choice, the smallest costs first, gives the largest number of targets that fit. Sorting the costs would need memory;
+ * instead this bisects over the limit. Floats that are not negative have the order of their bits, so at most 31
+ * halvings separate any two, and each pass finds the nearest costs on both sides, which lets the search step from cost
+ * to cost. Costs equal to the next float above the result do not all fit: noh_lod_targets takes these by index. The
+ * search starts between room / (count + 1), which always fits, and the room itself. *sum: sum of the costs that fit. */
 static uint32_t largest_limit(const float *weights, const float *radius_m, uint32_t count, double room, double *sum)
 {
     const float most = room < (double)float_of(LARGEST_BITS) ? (float)room : float_of(LARGEST_BITS);
@@ -447,7 +447,7 @@ uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const flo
     for (uint32_t i = 0; i < count; i++) {
         float cost = cost_of(weights, radius_m, i);
         int skip = cost <= limit;
-        if (!skip && cost <= next && skipped + (double)cost <= room) { /* of equal costs the first by index */
+        if (!skip && cost <= next && skipped + (double)cost <= room) { /* first by index among equal costs */
             skip = 1;
             skipped += (double)cost;
         }

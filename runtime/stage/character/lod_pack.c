@@ -20,7 +20,7 @@ typedef struct source {
     const uint32_t *levels; /* [level_count] joints */
     uint32_t level_count, skeleton, clip_count, joint_count;
     uint32_t mesh_level_count, target_count;
-    int skinned; /* there is a mesh, and joints move it */
+    int skinned; /* the mesh exists and is skinned */
 } source;
 
 /* The carved arrays; NULL while measuring. */
@@ -42,7 +42,7 @@ static int is_of_skeleton(const source *s, const noh_mesh *mesh)
            noh_pack_skin_at(s->pack, mesh->header->skin, &skin, NULL) == NOH_OK && skin.header->skeleton == s->skeleton;
 }
 
-/* What is wrong with the desc; NULL: nothing. */
+/* The error message of the desc; NULL: valid. */
 static const char *resolve(const noh_lod_pack_desc *desc, source *s)
 {
     if (!desc->set) return "set is NULL";
@@ -95,8 +95,8 @@ size_t noh_lod_pack_size(const noh_lod_pack_desc *desc)
 
 /* ---- errors of clips ---- */
 
-/* The factor that makes a clip's errors into metres, for vertices as far from their joints as `radius`. An error of
- * rotation grows with the distance, one of translation does not, so scaling by the ratio of distances bounds both. */
+/* The factor that converts a clip's errors to metres, for vertices up to `radius` from their joints. A rotation error
+ * grows with the distance and a translation error does not, so scaling by the ratio of distances bounds both. */
 static float to_metres(const noh_pack *pack, const noh_clip_header *h, float radius)
 {
     noh_skeleton skeleton;
@@ -108,8 +108,7 @@ static float to_metres(const noh_pack *pack, const noh_clip_header *h, float rad
     return h->error_shell > 0.0f && radius > h->error_shell ? unit_m * (radius / h->error_shell) : unit_m;
 }
 
-/* The error of a clip with this many joints: the error of its finest level with at most this many. -1: there is
- * none. */
+/* The error of a clip with this many joints: the error of its finest level with at most this many. -1: none. */
 static float joint_error(const noh_pack *pack, const noh_pack_clip *clip, uint32_t joint_count)
 {
     uint32_t level_count;
@@ -122,7 +121,7 @@ static float joint_error(const noh_pack *pack, const noh_pack_clip *clip, uint32
     return -1.0f;
 }
 
-/* Raise the errors of the levels to the clip's errors; drop levels that the clip has no error for. */
+/* Raise the errors of the levels to the clip's errors; drop levels for which the clip has no error. */
 static void add_joint_errors(const noh_pack *pack, const noh_pack_clip *clip, float metres, noh_lod_joints *levels,
                              uint32_t *level_count)
 {
@@ -161,7 +160,7 @@ static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float rad
 
 /* ---- meshes ---- */
 
-/* The worst error of a level in any pose, plus what the targets that it leaves out can add to it; metres. */
+/* The worst error of a level in any pose, including the targets that the level drops; metres. */
 static float level_error(const noh_mesh_header *h)
 {
     const float errors[4] = { h->level_error_rest, h->level_error_targets, h->level_error_pairs, h->level_error_clip };

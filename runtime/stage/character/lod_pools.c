@@ -6,32 +6,32 @@
 #include <string.h>
 
 
-#define NOT_ASKED 0xffu /* in place.next: it did not ask, */
-#define LEFT_OUT 0xfeu  /* is past shown_max, */
-#define RESTS 0xfdu     /* or finds no slot */
+#define NOT_ASKED 0xffu /* in place.next: did not ask, */
+#define LEFT_OUT 0xfeu  /* is beyond shown_max, */
+#define RESTS 0xfdu     /* or found no slot */
 #define STAYS 1.25f     /* factor on the priority of an instance that keeps its slot */
 
 typedef struct pool {
     uint32_t level, slot_count;
-    uint32_t first;      /* the pool's part of `free` begins here */
-    uint32_t free_count; /* free[first .. first + free_count - 1] are its free slots: a stack */
+    uint32_t first;      /* start of the pool's part of `free` */
+    uint32_t free_count; /* stack of free slots: free[first .. first + free_count - 1] */
 } pool;
 
-/* Of one instance. */
+/* One instance. */
 typedef struct place {
     uint32_t slot;
-    uint8_t held;  /* 1: it holds a slot */
-    uint8_t pool;  /* of that slot */
-    uint8_t level; /* asked for */
-    uint8_t next;  /* the pool that it is given in this frame, or one of the above */
+    uint8_t held;  /* 1: holds a slot */
+    uint8_t pool;  /* of the held slot */
+    uint8_t level; /* requested */
+    uint8_t next;  /* the pool assigned in this frame, or one of the above */
 } place;
 
 struct noh_lod_pools {
     uint32_t instance_count, shown_max, pool_count;
     pool pools[NOH_LOD_POOLS_MAX];
     noh_lod_pools_stats stats;
-    /* byte offsets from here, so that a copy of the block is the same pools */
-    uint32_t keys_offset;   /* uint64_t[instance_count] requests; key_of */
+    /* byte offsets from this struct, so that the block can be copied */
+    uint32_t keys_offset;   /* uint64_t[instance_count] requests; see key_of */
     uint32_t places_offset; /* place[instance_count] */
     uint32_t free_offset;   /* uint32_t[slots] */
     uint32_t bytes;
@@ -76,7 +76,7 @@ static uint32_t *free_of(const noh_lod_pools *p)
     return (uint32_t *)(void *)((uint8_t *)(uintptr_t)p + p->free_offset);
 }
 
-/* The bytes carved, and where the arrays lie. */
+/* The size of the block and the offsets of its arrays. */
 static noh_lod_pools layout_of(uint32_t instances, uint32_t slots)
 {
     noh_arena arena = noh_arena_measure();
@@ -109,7 +109,7 @@ static void fill_pools(noh_lod_pools *p, const noh_lod_pools_desc *d)
         to->slot_count = to->free_count = d->slot_counts[i];
         to->first = first;
         for (uint32_t k = 0; k < to->slot_count; k++) {
-            free_of(p)[first + k] = to->slot_count - 1u - k; /* the last is taken first: slot 0 */
+            free_of(p)[first + k] = to->slot_count - 1u - k; /* slot 0 is last, so it is taken first */
         }
         first += to->slot_count;
     }
@@ -157,8 +157,8 @@ static int same_desc(const noh_lod_pools *a, const noh_lod_pools *b)
     return same;
 }
 
-/* All slots are in range, and as many are held or free as there are. A slot held twice shows one actor's face on two:
- * wrong to look at, and harmless. */
+/* All slots are in range, and the numbers of held and free slots add up. A slot held twice is not detected: it only
+ * shows one actor's face on two actors. */
 static int are_slots_sound(const noh_lod_pools *p)
 {
     uint32_t held[NOH_LOD_POOLS_MAX] = { 0 };
@@ -274,7 +274,7 @@ static int is_consistent(const noh_lod_pools *p)
 }
 #endif
 
-/* Let a key sink in a heap whose top is the lowest. */
+/* Sift a key down in a heap whose top is the lowest key. */
 static void sift(uint64_t *keys, uint32_t at, uint32_t count)
 {
     uint64_t key = keys[at];
@@ -305,7 +305,7 @@ static void sort_keys(uint64_t *keys, uint32_t count)
     }
 }
 
-/* How many pools hold a level: the first ones, whose own level is that one or a finer one. */
+/* The number of pools that hold a level: the first ones, whose level is the same or finer. */
 static uint32_t count_fitting(const noh_lod_pools *p, uint32_t level)
 {
     uint32_t fit = 0;
@@ -334,7 +334,7 @@ static int all_fit(const noh_lod_pools *p)
     return 1;
 }
 
-/* The coarsest pool that holds the level and has room, else the next coarser one that has; RESTS where none has. */
+/* The coarsest pool that holds the level and has room, else the next coarser pool with room; RESTS if there is none. */
 static uint32_t choose_pool(const noh_lod_pools *p, uint32_t level)
 {
     const uint32_t *used = p->stats.used, fit = count_fitting(p, level);
@@ -357,9 +357,10 @@ static int has_pool(const place *at)
     return at->next < NOH_LOD_POOLS_MAX;
 }
 
-/* Sharing has three passes, so that a slot which one instance gives up can go to another in the same frame. The first
- * only counts: each request, in order of priority, gets a pool. The second frees the slots of instances that did not
- * ask or are given another pool. The third takes slots for those without one: the counts say that there are enough. */
+/* Sharing has three passes, so that a slot released by one instance can go to another in the same frame. The first only
+ * counts: each request, in order of priority, is assigned a pool. The second frees the slots of instances that did not
+ * ask or are assigned another pool. The third takes slots for instances without one; the counts guarantee that there
+ * are enough. */
 static void choose_pools(noh_lod_pools *p)
 {
     memset(p->stats.used, 0, sizeof p->stats.used);
@@ -391,7 +392,7 @@ static void take_from(noh_lod_pools *p, place *at, uint32_t which)
     p->stats.moved++;
 }
 
-/* stays 1: only of instances that are given no pool at all. */
+/* stays 1: free only the slots of instances without an assigned pool. */
 static void release(noh_lod_pools *p, int stays)
 {
     for (uint32_t i = 0; i < p->instance_count; i++) {
@@ -428,7 +429,7 @@ static uint32_t count_due(const noh_lod_pools *p)
     return due;
 }
 
-/* The first that is due by priority; without_slot 1: of those that hold none. NULL: there is none. */
+/* The due instance of highest priority; without_slot 1: among those without a slot. NULL: none. */
 static place *first_due(const noh_lod_pools *p, int without_slot)
 {
     for (uint32_t i = 0; i < p->stats.asked; i++) {
@@ -438,8 +439,8 @@ static place *first_due(const noh_lod_pools *p, int without_slot)
     return NULL;
 }
 
-/* Whoever is due a pool with a free slot gets it, by priority; what it leaves is free for the next. Returns the moves.
- */
+/* Give free slots to due instances, by priority; the slots they leave are free for the next. Returns the number of
+ * moves. */
 static uint32_t move_where_free(noh_lod_pools *p, uint32_t moves)
 {
     uint32_t made = 0;
@@ -454,8 +455,8 @@ static uint32_t move_where_free(noh_lod_pools *p, uint32_t moves)
     return made;
 }
 
-/* The holder of lowest priority that is due another pool than the one it is in. There is one in a pool that is full
- * while someone else is due it: no more are due a pool than it has slots. */
+/* The instance of lowest priority in a pool that is due another pool. A full pool with an instance waiting for it
+ * contains one, because no more instances are assigned to a pool than it has slots. */
 static place *last_due_in(const noh_lod_pools *p, uint32_t which)
 {
     for (uint32_t i = p->stats.asked; i-- > 0;) {
@@ -465,7 +466,7 @@ static place *last_due_in(const noh_lod_pools *p, uint32_t which)
     return NULL;
 }
 
-/* The coarsest pool with a free slot; there is one while an instance that is due has no slot. */
+/* The coarsest pool with a free slot; there is one while a due instance has no slot. */
 static uint32_t any_free(const noh_lod_pools *p)
 {
     uint32_t which = p->pool_count;
@@ -473,8 +474,8 @@ static uint32_t any_free(const noh_lod_pools *p)
     return which;
 }
 
-/* The first that is due takes the slot of one that is in its pool and due elsewhere, who gets its slot, or a free one.
- */
+/* The first due instance takes a slot in its pool from an instance due elsewhere, which gets the first one's slot, or a
+ * free slot. */
 static uint32_t exchange(noh_lod_pools *p)
 {
     place *a = first_due(p, 0), *b = a ? last_due_in(p, a->next) : NULL;
@@ -499,7 +500,7 @@ static uint32_t exchange(noh_lod_pools *p)
     return 2;
 }
 
-/* With one move left: give a slot to an instance without one, even if not the slot it is due. */
+/* With one move left: give any slot to an instance without one, even outside its assigned pool. */
 static uint32_t take_any(noh_lod_pools *p)
 {
     place *at = first_due(p, 1);
@@ -510,7 +511,7 @@ static uint32_t take_any(noh_lod_pools *p)
     return 1;
 }
 
-/* Who still waits keeps what it has. */
+/* Instances that still wait keep their slots. */
 static void settle(noh_lod_pools *p)
 {
     memset(p->stats.used, 0, sizeof p->stats.used);
@@ -541,7 +542,7 @@ static void share_bounded(noh_lod_pools *p, uint32_t moves)
     settle(p);
 }
 
-/* ---- all of it ---- */
+/* ---- sharing, all steps ---- */
 
 static void mark(uint32_t *high_water, uint32_t value)
 {

@@ -1,4 +1,4 @@
-/* What the measurements of LOD errors share: measure_internal.h. */
+/* Shared by the measurements of LOD errors: measure_internal.h. */
 #include "motion/anim/root_motion.h"
 #include "motion/anim/time.h"
 #include "noh/clip.h"
@@ -50,7 +50,7 @@ void noh_probe_sample(const noh_time_probe *p, uint32_t clip, int64_t tick, cons
 
 /* An upper bound on the largest singular value of a 3 x 3 matrix, too high by a factor of at most 3^(1/8): the Schatten
  * 8-norm. With singular values s, (A'A)^2 has eigenvalues s^4, and the square of its Frobenius norm is the sum of s^8;
- * the eighth root of that is at least the largest s. Three square roots and no iteration. */
+ * the eighth root of that is at least the largest s. This takes three square roots and no iteration. */
 static float norm_bound(const float a[9])
 {
     float g[9], square[9], sum = 0.0f;
@@ -81,7 +81,7 @@ float noh_probe_off(const float difference[12], float radius, float least)
     }
     length = noh_sqrt(noh_dot3(shift, shift));
     radius = radius > 0.0f ? radius : 0.0f;
-    /* The Frobenius norm is never below the largest singular value, and cheap: most joints end here. */
+    /* The Frobenius norm is never below the largest singular value, and cheap: it is enough for most joints. */
     if (length + radius * noh_sqrt(square) > least) {
         const float off = length + radius * norm_bound(linear);
         least = off > least ? off : least;

@@ -1,4 +1,4 @@
-/* measure_internal.h (private to character/): what the measurements of LOD errors share. */
+/* measure_internal.h (private to character/): shared by the measurements of LOD errors. */
 #ifndef NOH_CHARACTER_MEASURE_INTERNAL_H
 #define NOH_CHARACTER_MEASURE_INTERNAL_H
 
@@ -6,15 +6,15 @@
 #include "noh/low_core.h"
 #include "noh/low_stage.h"
 
-/* What is wrong with a probe or a clip; NULL: nothing. joint_radius_m is not looked at. */
+/* The error message of a probe or a clip; NULL: valid. Does not check joint_radius_m. */
 const char *noh_probe_fault(const noh_time_probe *probe, uint32_t clip);
 
-/* How far joint 0 travels in one pass of a repeating clip; 0 for other clips, or where the probe does not travel.
- * shapes  pose[joint_count], floats[float_count] to work in */
+/* The travel of joint 0 in one pass of a repeating clip; 0 for other clips, or if the probe does not travel.
+ * shapes  scratch: pose[joint_count], floats[float_count] */
 void noh_probe_travel(const noh_time_probe *probe, uint32_t clip, noh_transform *pose, float *floats, float travel[3]);
 
 /* The matrices and floats of a clip at a tick of its own clock, played in its own loop mode, moved by `travel` for
- * every pass completed; NULL: not moved.
+ * every completed pass; NULL: not moved.
  * shapes  pose[joint_count], model[joint_count][12], floats[float_count] */
 void noh_probe_sample(const noh_time_probe *probe, uint32_t clip, int64_t tick, const float *travel,
                       noh_transform *pose, float *model, float *floats);
@@ -42,7 +42,7 @@ void noh_rate_carve(noh_arena *arena, const noh_clip_set *set, noh_rate_work *wo
 /* The error of the probe's floats in a mix: the sum of their worst displacements. */
 float noh_rate_floats_off(const noh_time_probe *probe, const noh_rate_work *work, float part);
 
-/* error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks that low_stage.h names. */
+/* Compute error_m[NOH_UPDATE_RATE_COUNT] of a clip, over all periods and ticks listed in low_stage.h. */
 void noh_rate_measure(const noh_time_probe *probe, uint32_t clip, noh_rate_off off, void *user, noh_rate_work *work,
                       float *error_m);
 

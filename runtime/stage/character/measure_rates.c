@@ -5,8 +5,8 @@
 #include "noh/low_stage.h"
 #include "stage/character/measure_internal.h"
 
-/* Frames at sample rates of 24, 30, 60 and 120 Hz lie on these ticks, and with them the corners of what is interpolated
- * between frames, where errors are largest. */
+/* These ticks include the frames at 24, 30, 60 and 120 Hz, where interpolated curves have corners and errors are
+ * largest. */
 #define START_TICKS 400u /* between the starts of two measured periods */
 #define PLACE_TICKS 200u /* between two measured ticks within a period */
 
@@ -40,9 +40,9 @@ static void sample(const noh_time_probe *p, uint32_t clip, int64_t tick, noh_rat
     noh_probe_sample(p, clip, tick, w->travel, w->pose, out->model, out->floats);
 }
 
-/* At the start and the end of an update period the shown pose is the true one; in between it is a straight mix of these
- * two, which is compared with the true pose. Instances are staggered, so a period may begin at any tick: all starts are
- * tried, START_TICKS apart, from the clip's first tick to where play repeats itself or stands still. */
+/* At the start and the end of an update period the shown pose is exact; in between it is a linear mix of the two, which
+ * is compared with the exact pose. Instances are staggered, so a period may begin at any tick: starts are tried
+ * START_TICKS apart, from the clip's first tick until playback repeats or stops. */
 static float measure(const noh_time_probe *p, uint32_t clip, uint32_t period, noh_rate_off off, void *user,
                      noh_rate_work *w)
 {

@@ -52,16 +52,16 @@ void noh_schedule_spend(noh_schedule *s, uint32_t cost)
     s->spent += cost;
 }
 
-/* Where the budget does not suffice for all offers, they wait in a binary heap with the most urgent on top. Building it
- * is linear in the offers, and taking one is logarithmic, so a frame that serves few of many never pays for a sort of
- * all. Where the budget suffices, the order does not matter and nothing is built. (J. W. J. Williams, "Algorithm 232:
- * Heapsort", and R. W. Floyd, "Algorithm 245: Treesort 3", Communications of the ACM 7, 1964) */
+/* If the budget is too small for all offers, they are put in a binary heap with the most urgent on top. Building the
+ * heap is linear in the offers and taking one is logarithmic, so a frame that serves few of many offers does not pay
+ * for sorting all. If the budget suffices, the order does not matter and no heap is built. (J. W. J. Williams,
+ * "Algorithm 232: Heapsort", and R. W. Floyd, "Algorithm 245: Treesort 3", Communications of the ACM 7, 1964) */
 static int before(const noh_schedule_item *a, const noh_schedule_item *b)
 {
     return a->urgency != b->urgency ? a->urgency > b->urgency : a->instance < b->instance;
 }
 
-/* Let an item sink to its place: the more urgent child moves up until neither is more urgent. */
+/* Sift an item down: the more urgent child moves up until neither is more urgent. */
 static void sift(noh_schedule_item *items, uint32_t at, uint32_t count)
 {
     noh_schedule_item item = items[at];
@@ -108,7 +108,7 @@ void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks,
     }
     s->offered++;
     s->offered_high_water = s->offered > s->offered_high_water ? s->offered : s->offered_high_water;
-    /* One frame is added to the lateness, so that visibility counts among those that are due just now. */
+    /* One frame is added to the lateness, so that visibility also counts among offers due in this frame. */
     item->urgency = ((uint64_t)late_ticks + s->frame_ticks + 1u) * visibility_steps(visibility);
     item->instance = instance;
     item->cost = cost;
@@ -116,7 +116,8 @@ void noh_schedule_offer(noh_schedule *s, uint32_t instance, uint32_t late_ticks,
     s->count++;
 }
 
-/* Before the first is served: all offers fit into the budget, or they become a heap, subtree by subtree from below. */
+/* Before the first offer is served: if not all offers fit into the budget, build the heap, subtree by subtree from
+ * below. */
 static void put_in_order(noh_schedule *s)
 {
     s->order = s->spent + s->offered_cost <= s->budget ? ALL_SERVED : HEAP;

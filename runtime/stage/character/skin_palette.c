@@ -51,9 +51,9 @@ int noh_skin_skeleton(const noh_skin *skin, const noh_skeleton *skeleton, float 
     return 1;
 }
 
-/* A character's two palettes hold the joints' model-space matrices or, where the skeleton of its updates had inverse
- * bind matrices, their products with these. Mixing is linear, so it may come before or after that product; here it
- * comes first, joint by joint, and the product follows where it is still to be made. */
+/* A character's two palettes hold the joints' model-space matrices or, if the skeleton of its updates had inverse bind
+ * matrices, the products of both. Mixing is linear, so it may come before or after this product; here it comes first,
+ * joint by joint, and then the product if it is still missing. */
 void noh_character_skin(const noh_character *ch, const noh_skin *skin, float *matrices)
 {
     NOH_ASSERT(ch->time.posed && skin && matrices);

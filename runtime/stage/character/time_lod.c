@@ -23,8 +23,8 @@ void noh_time_lod_init(noh_time_lod *t, uint32_t instance)
     t->instance = instance;
 }
 
-/* The first of the instance's own update ticks after a clock. They lie a period apart; their phase is the fractional
- * part of instance * golden ratio, in 32-bit fixed point, times the period. */
+/* The instance's first update tick after a clock. Update ticks are a period apart; their phase is the fractional part
+ * of instance * golden ratio, in 32-bit fixed point, times the period. */
 static int64_t next_due(uint32_t instance, int64_t clock, uint32_t period)
 {
     const uint32_t golden = 2654435769u; /* 2^32 divided by the golden ratio */
@@ -41,7 +41,7 @@ void noh_time_lod_frame(noh_time_lod *t, int64_t clock, noh_update_rate rate)
     t->clock = shown;
     t->chosen_rate = (uint8_t)rate;
     if (rate < t->shown_rate) {
-        noh_time_lod_wake(t); /* the mix that is shown is too coarse by now */
+        noh_time_lod_wake(t); /* the current mix is too coarse now */
     }
 }
 
@@ -68,21 +68,21 @@ static int64_t present(const noh_time_lod *t)
     return noh_clock_add(t->clock, t->behind_ticks);
 }
 
-/* Pose the instance as it is now, and show that alone. */
+/* Pose the instance for the present, and show only this pose. */
 static noh_time_update update_exactly(noh_time_lod *t)
 {
     noh_time_update u = { 0, 1.0f, 0 };
     t->from_clock = t->to_clock = present(t);
-    t->due_clock = noh_clock_add(t->clock, 1);       /* with the next frame */
-    if (t->behind_ticks) t->due_clock = t->to_clock; /* after the next step */
+    t->due_clock = noh_clock_add(t->clock, 1);       /* due in the next frame */
+    if (t->behind_ticks) t->due_clock = t->to_clock; /* due after the next step */
     u.pose_clock = t->to_clock;
     u.pose = t->to_pose;
     return u;
 }
 
-/* Where a mix that begins at from_clock ends: at the next of the instance's own update ticks, but at most a period
- * away. After a restart, when source and target may be far apart, it is at least half a period away, so that what is
- * shown does not rush. A controller does not play back: it ends at the game's clock, or after it.
+/* The end of a mix that begins at from_clock: the instance's next update tick, but at most a period away. After a
+ * restart, when source and target may differ greatly, it is at least half a period away, so that the shown motion is
+ * not rushed. A controller cannot play backwards, so the end is never before the game's clock.
  * period  0: at the game's clock */
 static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
 {
@@ -94,8 +94,8 @@ static int64_t interval_end(const noh_time_lod *t, uint32_t period, int restart)
     return end < soonest ? soonest : end;
 }
 
-/* Pose the instance as it will be at its next update. What is shown now must be where the new mix begins, so that
- * nothing jumps; there are three cases:
+/* Pose the instance for its next update. The new mix must begin with the currently shown pose to avoid a jump; there
+ * are three cases:
  *   in time  the mix has just ended, within the last frame: its target is the new source, and the new mix begins where
  *            it ended, not at this frame, so that frames that fall between update ticks lose no time
  *   early    the mix is still under way (noh_time_lod_wake): the mix as it is now becomes the source, from now on
@@ -144,9 +144,9 @@ void noh_time_lod_wake(noh_time_lod *t)
     t->due_clock = t->clock < t->due_clock ? t->clock : t->due_clock;
 }
 
-/* The square of a track's playback speed, its own or that which its sync group gives it now, whichever is faster; at
- * least 1. Between two updates a mix strays from a smooth motion by up to period^2 / 8 times its acceleration (the
- * error of linear interpolation), and a clip played s times as fast has s^2 times the acceleration. */
+/* The square of a track's playback speed, its own or its sync group's, whichever is faster; at least 1. Between two
+ * updates a mix differs from a smooth motion by up to period^2 / 8 times the acceleration (the error of linear
+ * interpolation), and a clip played s times as fast has s^2 times the acceleration. */
 static float speed_squared(const noh_track *track)
 {
     const float present = (float)track->speed_now / (float)NOH_SPEED_ONE,
@@ -155,8 +155,8 @@ static float speed_squared(const noh_track *track)
     return square > 1.0f ? square : 1.0f;
 }
 
-/* Blended tracks are averaged, and a mean of poses is off by no more than the worst of them; additive tracks put their
- * weighted errors on top. */
+/* Blended tracks are averaged, and the error of a mean of poses is at most their largest error; additive tracks add
+ * their weighted errors. */
 void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m)
 {
     float added[NOH_UPDATE_RATE_COUNT] = { 0.0f };

@@ -19,7 +19,7 @@ size_t noh_time_lod_measure_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* The largest error of any point within its joint's radius, plus that of the floats, or `least` if that is larger. The
+/* The largest error of any point within its joint's radius, plus the floats' error, or `least` if that is larger. The
  * floats' error is the same for all joints, so a joint matters only if it exceeds `least` without them. */
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
 {
@@ -35,8 +35,8 @@ static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *
         }
         worst = p->joint_radius_m[j] >= 0.0f ? noh_probe_off(difference, p->joint_radius_m[j], worst) : worst;
     }
-    /* Where nothing worse was found, `least` is returned unchanged: subtracting the floats and adding them again would
-     * let it creep up by rounding. */
+    /* If nothing worse was found, `least` is returned unchanged: subtracting and adding the floats' error would let it
+     * grow by rounding. */
     return (worst > enough || floats > least) && worst + floats > least ? worst + floats : least;
 }
 

@@ -11,10 +11,9 @@
 
 typedef struct work {
     const noh_time_lod_points *points;
-    float *off; /* [joint_count][12] the error of each joint's matrix: shown minus true */
-    float *
-        reach; /* [joint_count] how far the points are that a joint holds, times the largest sum of a point's weights */
-    float weight; /* the latter */
+    float *off;   /* [joint_count][12] the error of each joint's matrix: shown minus true */
+    float *reach; /* [joint_count] the distance of the farthest point held by a joint, times `weight` */
+    float weight; /* largest sum of a point's weights */
     noh_rate_work rates;
 } work;
 
@@ -37,8 +36,8 @@ size_t noh_time_lod_points_size(const noh_time_probe *probe)
     return arena.used;
 }
 
-/* A point's error, squared. Skinning is linear in the matrices, so the error of the skinned point is the errors of its
- * joints' matrices, applied to it and blended by its weights. */
+/* A point's error, squared. Skinning is linear in the matrices, so the error of the skinned point is found by skinning
+ * it with the errors of its joints' matrices. */
 static float point_off(const noh_time_hold *holds, uint32_t count, const float *off)
 {
     float error[3] = { 0.0f, 0.0f, 0.0f };
@@ -52,9 +51,9 @@ static float point_off(const noh_time_hold *holds, uint32_t count, const float *
     return noh_dot3(error, error);
 }
 
-/* A bound for all points: the largest that any joint's error moves a point as far away as the farthest that it holds,
- * by the Frobenius norm. A joint costs as much as a point, and for most poses the bound is enough: where a clip moves
- * little or evenly, mixes are right. */
+/* A bound for all points: for each joint, the displacement of its farthest point by the joint's error, from the
+ * Frobenius norm. A joint costs as much as a point, and for most poses, in which a clip moves little or evenly, the
+ * bound is enough. */
 static float most_off(const work *w, uint32_t joint_count)
 {
     float most = 0.0f;
@@ -69,7 +68,7 @@ static float most_off(const work *w, uint32_t joint_count)
         bound = noh_sqrt(linear) * w->reach[j] + noh_sqrt(shift) * w->weight;
         most = bound > most ? bound : most;
     }
-    return most * 1.001f; /* more than is lost by rounding */
+    return most * 1.001f; /* above the rounding error */
 }
 
 static float pose_off(void *user, const noh_time_probe *p, const noh_rate_work *w, float part, float least)
