@@ -3,14 +3,13 @@
 precision highp float;
 precision highp int;
 
-uniform highp sampler2D u_points; /* rows of control hairs, two texels per patch (its corners), five per body */
-uniform vec4 u_counts;            /* points of a hair, rows of hairs, patches, segments of a strip */
-uniform vec4 u_widths;            /* half width of a strip at root and tip, spread of strips, gloss */
-uniform vec4 u_curl;              /* radius, turns, fade of a body, hairs in a row of texels (0: 1) */
-uniform vec4 u_crowd;             /* strips drawn per body, first body, row of bodies, all strips of one; zeros:
-                                   * one body, at u_world */
-uniform vec4 u_middle;            /* middle of the skull, head space */
-uniform vec4 u_world[3];          /* of one body: head space to world */
+uniform highp sampler2D u_points; /* rows of control hairs, then two texels for the corners of each patch, then five for
+                                   * each head */
+uniform vec4 u_counts;            /* points of a control hair, rows of control hairs, patches, segments of a strip */
+uniform vec4 u_widths;            /* half the width of a strip at root and tip, how far strips stray, gloss */
+uniform vec4 u_curl;              /* radius, turns, unused, control hairs in a row of texels */
+uniform vec4 u_crowd;             /* strips drawn of each head, the first head, the row of heads, strips of a haircut */
+uniform vec4 u_middle;            /* of the skull, head space */
 uniform mat4 u_view_projection;
 uniform vec4 u_eye;               /* world; w 0: parallel projection */
 uniform vec4 u_light;             /* unit, towards the light */
@@ -39,21 +38,16 @@ vec3 fetch(int x, int y)
     return texelFetch(u_points, ivec2(x, y), 0).xyz;
 }
 
-int hairs_in_row()
-{
-    return max(int(u_curl.w), 1);
-}
-
-/* The n-th texel from the start of a row. */
+/* The n-th texel from a row on. */
 vec3 fetch_from(int row, int n)
 {
-    int width = int(u_counts.x) * hairs_in_row();
+    int width = int(u_counts.x) * int(u_curl.w);
     return fetch(n % width, row + n / width);
 }
 
 void add_hair(int hair, ivec4 at, vec4 place, vec4 slope, float share, inout vec3 position, inout vec3 tangent)
 {
-    int row = hair / hairs_in_row(), x = (hair - row * hairs_in_row()) * int(u_counts.x);
+    int in_row = int(u_curl.w), row = hair / in_row, x = (hair - row * in_row) * int(u_counts.x);
     vec3 a = fetch(x + at.x, row), b = fetch(x + at.y, row), c = fetch(x + at.z, row), d = fetch(x + at.w, row);
     position += share * (a * place.x + b * place.y + c * place.z + d * place.w);
     tangent += share * (a * slope.x + b * slope.y + c * slope.z + d * slope.w);
@@ -70,22 +64,13 @@ struct head {
 
 head head_of(uint instance)
 {
-    head h = head(u_world[0], u_world[1], u_world[2], instance, 0, u_curl.z, 1.0, true);
-    if (u_crowd.x > 0.5) {
-        uint each = uint(u_crowd.x), body = instance / each;
-        int at = (int(u_crowd.y) + int(body)) * 5, row = int(u_crowd.z);
-        vec3 a = fetch_from(row, at), b = fetch_from(row, at + 1), c = fetch_from(row, at + 2);
-        vec3 d = fetch_from(row, at + 3), own = fetch_from(row, at + 4);
-        h.x = vec4(a, b.x);
-        h.y = vec4(b.yz, c.xy);
-        h.z = vec4(c.z, d);
-        h.strip = instance - body * each;
-        h.first = int(own.x);
-        h.fade = own.y;
-        h.widen = u_crowd.w / max(own.z, 1.0);
-        h.is_drawn = float(h.strip) < own.z;
-    }
-    return h;
+    uint each = uint(u_crowd.x), body = instance / each;
+    int at = (int(u_crowd.y) + int(body)) * 5, row = int(u_crowd.z);
+    vec3 a = fetch_from(row, at), b = fetch_from(row, at + 1), c = fetch_from(row, at + 2);
+    vec3 d = fetch_from(row, at + 3), own = fetch_from(row, at + 4);
+    uint strip = instance - body * each;
+    return head(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, d), strip, int(own.x), own.y, u_crowd.w / max(own.z, 1.0),
+                float(strip) < own.z);
 }
 
 vec3 to_world(head h, vec3 p, float w)

@@ -43,8 +43,6 @@ runtime/gl/draw/gl_variants.c
 runtime/gl/morph/gl_morph_blend.c
 runtime/gl/morph/gl_morph_shared.c
 runtime/gl/stage/drawable.c
-runtime/gl/stage/stage_hair.c
-runtime/gl/stage/stage_hairs.c
 END
 grep -rlE '>GetUniformLocation\(' --include='*.c' runtime | sort >"$work/finding"
 check 'uniforms are found where programs are created, never in a draw' cmp "$work/finders" "$work/finding"

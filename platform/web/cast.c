@@ -69,16 +69,22 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
 /* Hair goes to the first kind with the joint that carries it. */
 static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
-    cast->hair_kind = NOH_NONE;
+    noh_actor_hair_desc *hair = &cast->hair;
+    noh_result result = NOH_ERR_NOT_FOUND;
+    uint32_t k = 0;
     if (cast->wants.elsewhere || noh_haircut_open(pack, &cast->cut, NULL)) return NOH_OK;
-    for (uint32_t k = 0; k < cast->desc.kind_count && cast->hair_kind == NOH_NONE; k++) {
-        if (noh_wig_make(&cast->cut, pack, cast->kinds[k].skeleton, &cast->wig, error) == NOH_OK) cast->hair_kind = k;
+    while (k < cast->desc.kind_count && result) {
+        result = noh_actor_hair_desc_make(&cast->cut, pack, cast->kinds[k++].skeleton, hair, error);
     }
-    if (cast->hair_kind == NOH_NONE) return NOH_ERR_NOT_FOUND;
-    cast->hair_part = noh_wig_part(&cast->wig);
-    cast->kinds[cast->hair_kind].parts = &cast->hair_part;
-    cast->kinds[cast->hair_kind].part_count = 1;
-    cast->hair_bytes = (noh_stage_hair_size(&cast->cut) + 15u) / 16u * 16u;
+    if (result) return result;
+    hair->kind = k - 1u;
+    hair->head_max = hair->near_max = cast->wants.actors;
+    hair->in_state = 1;
+    cast->hair_part = noh_actor_hair_part(hair);
+    cast->kinds[hair->kind].parts = &cast->hair_part;
+    cast->kinds[hair->kind].part_count = 1;
+    cast->heads_bytes = (noh_actor_hair_size(hair) + 15u) / 16u * 16u;
+    cast->has_hair = 1;
     return NOH_OK;
 }
 
@@ -138,7 +144,7 @@ static void place_rest(web_cast *cast, const noh_pack *pack)
     cast->texels_at = at = (at + 15u) / 16u * 16u;
     at += noh_reflection_size(cast->reflection.side);
     cast->hair_at = at = (at + 15u) / 16u * 16u;
-    at += cast->wants.actors * cast->hair_bytes;
+    if (cast->has_hair) at += cast->heads_bytes + noh_stage_hair_size(&cast->hair);
     cast->scratch_at = (at + 15u) / 16u * 16u;
     cast->scratch_bytes = larger(to_bake, web_cast_scratch(pack));
     cast->bytes = cast->scratch_at + cast->scratch_bytes + (size_t)cast->plan.state_bytes;
@@ -149,9 +155,9 @@ static void add_up(web_cast *cast)
 {
     cast->cpu_bytes = cast->plan.cpu_bytes;
     cast->gpu_bytes = cast->plan.gpu_bytes;
-    if (cast->hair_kind == NOH_NONE) return;
-    cast->cpu_bytes += cast->wants.actors * noh_stage_hair_size(&cast->cut);
-    cast->gpu_bytes += cast->wants.actors * noh_stage_hair_bytes(&cast->cut);
+    if (!cast->has_hair) return;
+    cast->cpu_bytes += noh_actor_hair_size(&cast->hair) + noh_stage_hair_size(&cast->hair);
+    cast->gpu_bytes += noh_stage_hair_bytes(&cast->hair);
 }
 
 static void describe(web_cast *cast)

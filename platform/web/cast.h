@@ -34,18 +34,18 @@ typedef struct web_cast {
     noh_reflection reflection; /* without texels: not needed before the stage is created */
     noh_gl_light_desc light;
     noh_haircut cut;
-    noh_wig wig;
+    noh_actor_hair_desc hair; /* of all actors of its kind */
     noh_stage_part hair_part;
-    uint32_t hair_kind;                                         /* kind with hair; NOH_NONE: the pack has none */
-    noh_error cannot_fall;                                      /* OK: actors of the first kind can fall */
-    uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds except the first */
+    int has_hair;                                               /* 0: the pack has none */
+    noh_error cannot_fall;                                      /* OK: actors of the first kind can */
+    uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */
     noh_stage_plan plan;
     /* Offsets of the page's other data, after the stage: matrices for web_bounds, texels of a reflection, hair, and
      * scratch memory for baking reflections and finding faces; then the state handed from one stage to the next */
     size_t matrices_at, texels_at, hair_at, scratch_at, scratch_bytes;
-    size_t hair_bytes;             /* per actor; 0: none */
-    size_t bytes;                  /* of everything */
-    uint64_t cpu_bytes, gpu_bytes; /* stage and hair */
+    size_t heads_bytes;            /* of the noh_actor_hair; what draws it follows */
+    size_t bytes;                  /* of all of it */
+    uint64_t cpu_bytes, gpu_bytes; /* of the stage and its hair */
 } web_cast;
 
 /* Plan a kind for each skeleton of the pack that moves a mesh; every float can be held. The cast must not be moved

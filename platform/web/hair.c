@@ -5,98 +5,67 @@
 
 #include "web.h"
 
-#define SHAKE_S 1.6  /* duration of a head shake */
-#define SHAKE_HZ 1.5 /* its frequency */
+#define SHAKE_S 1.6  /* how long a head is shaken */
+#define SHAKE_HZ 1.5 /* how often per second */
 #define SHAKE_RAD 0.6
 #define TURN 6.283185307179586
 
-/* ---- create and delete ---- */
-
-static int is_worn(void)
-{
-    return web.cast.hair_kind != NOH_NONE;
-}
-
-/* The figure of a character that has the hair. */
-static const web_figure *figure_of(uint32_t character)
-{
-    for (uint32_t i = 0; i < web.figure_count; i++) {
-        if (web.figures[i].kind == web.cast.hair_kind && web.figures[i].character == character) return &web.figures[i];
-    }
-    return NULL;
-}
+/* ---- life cycle ---- */
 
 noh_result web_hair_open(void)
 {
     const noh_gl_device device = { &web.gl, &web.caps, &web.ledger, NULL, 0 };
-    noh_result result = NOH_OK;
-    if (!is_worn()) return NOH_OK;
-    memcpy(web.cast.wig.wind, web.hair.wind, sizeof web.hair.wind);
-    for (uint32_t i = 0; i < web.cast.wants.actors && !result; i++) {
-        result = noh_stage_hair_create(&device, &web.cast.wig, web_block(web.cast.hair_at + i * web.cast.hair_bytes),
-                                       web.cast.hair_bytes, web.cast.wants.lit, web.cast.desc.encode_srgb,
-                                       &web.hair.drawn[i], &web.error);
-    }
-    return result;
+    noh_actor_hair_desc *desc = &web.cast.hair;
+    noh_result result;
+    if (!web.cast.has_hair) return NOH_OK;
+    memcpy(desc->wind, web.hair.wind, sizeof desc->wind);
+    result = noh_actor_hair_init(web_block(web.cast.hair_at), web.cast.heads_bytes, desc, &web.hair.heads, &web.error);
+    if (result) return result;
+    return noh_stage_hair_create(&device, web.hair.heads, web_block(web.cast.hair_at + web.cast.heads_bytes),
+                                 noh_stage_hair_size(desc), web.cast.wants.lit, web.cast.desc.encode_srgb,
+                                 &web.hair.drawn, &web.error);
 }
 
 void web_hair_close(void)
 {
-    for (uint32_t i = 0; i < WEB_CHARACTERS_MAX; i++) {
-        if (web.hair.drawn[i].gl) noh_stage_hair_delete(&web.hair.drawn[i]);
-        memset(&web.hair.drawn[i], 0, sizeof web.hair.drawn[i]);
-    }
+    noh_stage_hair_delete(&web.hair.drawn);
+    memset(&web.hair.drawn, 0, sizeof web.hair.drawn);
+    web.hair.heads = NULL;
 }
 
 noh_result web_hair_restore(void)
 {
-    noh_result result = NOH_OK;
-    for (uint32_t i = 0; is_worn() && i < web.cast.wants.actors && !result; i++) {
-        result = noh_stage_hair_restore(&web.hair.drawn[i], NULL, 0, &web.error);
-    }
-    return result;
+    return web.hair.heads ? noh_stage_hair_restore(&web.hair.drawn, NULL, 0, &web.error) : NOH_OK;
 }
 
 /* ---- a frame ---- */
 
-/* The hair of a character; NULL: none, or hidden. */
-static noh_stage_hair *shown(uint32_t character)
+static int is_shown(void)
 {
-    return is_worn() && !web.hair.off && figure_of(character) ? &web.hair.drawn[character] : NULL;
+    return web.hair.heads && !web.hair.off;
 }
 
-noh_result web_hair_update(void)
+void web_hair_update(void)
 {
-    noh_result result = NOH_OK;
-    for (uint32_t i = 0; i < web.cast.wants.actors && !result; i++) {
-        if (shown(i)) result = noh_stage_hair_update(shown(i), web.stage, figure_of(i)->actor, 0, &web.error);
-    }
-    return result;
+    if (!is_shown()) return;
+    noh_actor_hair_frame(web.hair.heads, web.stage, 0);
+    noh_stage_hair_update(&web.hair.drawn);
 }
 
 void web_hair_shadow(void)
 {
-    for (uint32_t i = 0; i < web.cast.wants.actors; i++) {
-        if (shown(i)) noh_stage_hair_draw_shadow(shown(i), web.stage, 1);
-    }
+    if (is_shown()) noh_stage_hair_draw_shadow(&web.hair.drawn, web.stage, 1);
 }
 
-static void draw_half(noh_pass pass)
-{
-    for (uint32_t i = 0; i < web.cast.wants.actors; i++) {
-        if (shown(i)) noh_stage_hair_draw(shown(i), web.stage, 0, pass);
-    }
-}
-
-/* Draw opaque surfaces, opaque hair, blended surfaces, blended hair. */
+/* Opaque surfaces and hair on them, then what blends in front of them. */
 noh_result web_hair_draw(void)
 {
     noh_result result;
-    if (!is_worn()) return noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);
+    if (!web.hair.heads) return noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);
     result = noh_stage_draw(web.stage, NOH_PASS_OPAQUE, 0, NULL, &web.error);
-    if (!result) draw_half(NOH_PASS_OPAQUE);
+    if (!result && is_shown()) noh_stage_hair_draw(&web.hair.drawn, web.stage, 0, NOH_PASS_OPAQUE);
     if (!result) result = noh_stage_draw(web.stage, NOH_PASS_BLENDED, 0, NULL, &web.error);
-    if (!result) draw_half(NOH_PASS_BLENDED);
+    if (!result && is_shown()) noh_stage_hair_draw(&web.hair.drawn, web.stage, 0, NOH_PASS_BLENDED);
     return result;
 }
 
@@ -104,7 +73,7 @@ noh_result web_hair_draw(void)
 
 EMSCRIPTEN_KEEPALIVE int web_has_hair(void)
 {
-    return is_worn();
+    return web.hair.heads != NULL;
 }
 
 /* shows: 0 or 1; wind: metres per second, from the right. */
@@ -112,7 +81,7 @@ EMSCRIPTEN_KEEPALIVE void web_set_hair(int shows, float wind)
 {
     web.hair.off = !shows;
     web.hair.wind[0] = -wind;
-    memcpy(web.cast.wig.wind, web.hair.wind, sizeof web.hair.wind);
+    memcpy(web.cast.hair.wind, web.hair.wind, sizeof web.hair.wind);
 }
 
 /* Shake the heads: characters turn left and right for SHAKE_S seconds. */

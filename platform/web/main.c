@@ -75,7 +75,7 @@ noh_result web_open_stage(const web_wants *wants)
     if (result) return result;
     web.part_count = noh_stage_plan_parts(&web.cast.desc, &web.caps, &web.cast.plan, web.parts, WEB_PARTS_MAX);
     web.part_count = web.part_count < WEB_PARTS_MAX ? web.part_count : WEB_PARTS_MAX - 1u;
-    if (web.cast.hair_kind != NOH_NONE) {
+    if (web.cast.has_hair) {
         web.parts[web.part_count++] = (noh_stage_bytes){ "hair", NOH_NONE, web.cast.cpu_bytes - web.cast.plan.cpu_bytes,
                                                          web.cast.gpu_bytes - web.cast.plan.gpu_bytes };
     }
@@ -518,7 +518,7 @@ EMSCRIPTEN_KEEPALIVE int web_draw(void)
     result = noh_stage_frame_begin(web.stage, views, shadow ? 2 : 1, &web.error);
     if (!result) result = noh_stage_frame_end(web.stage, &web.error);
     web.view.cut = 0;
-    if (!result) result = web_hair_update();
+    if (!result) web_hair_update();
     if (!result && shadow) result = noh_stage_draw_shadow(web.stage, 1, &web.error);
     if (result) return (int)result;
     if (shadow) web_hair_shadow();

@@ -15,6 +15,7 @@
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
+#include "noh/modules.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 
@@ -53,9 +54,10 @@ static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_
     if (wants->alive && wants->lit && wants->path == NOH_MORPH_CPU) {
         printf("floats %u\nfaces %u\n", cast.plan.kinds[0].float_count, cast.faces_found);
         if (!cast.cannot_fall.result) printf("falls\n");
-        if (cast.hair_kind != NOH_NONE) {
-            printf("hair %u %zu %llu\n", cast.hair_part.state_bytes, noh_stage_hair_size(&cast.cut),
-                   (unsigned long long)noh_stage_hair_bytes(&cast.cut));
+        if (cast.has_hair) {
+            printf("hair %u %zu %llu\n", cast.hair_part.state_bytes,
+                   noh_actor_hair_size(&cast.hair) + noh_stage_hair_size(&cast.hair),
+                   (unsigned long long)noh_stage_hair_bytes(&cast.hair));
         }
         for (int i = 0; i < 6; i++) printf("%s%.9g", i ? " " : "eyes ", (double)cast.faces[0].face.eyes[i / 3][i % 3]);
         printf("\n");

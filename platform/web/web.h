@@ -49,8 +49,9 @@ typedef struct web_light {
 } web_light;
 
 typedef struct web_hair {
-    noh_stage_hair drawn[WEB_CHARACTERS_MAX]; /* per character */
-    int off;                                  /* 1: hidden */
+    noh_actor_hair *heads; /* NULL: none */
+    noh_stage_hair drawn;
+    int off; /* 1: not shown */
     float wind[3];
     double shake_s; /* remaining time of the head shake */
 } web_hair;
@@ -116,7 +117,7 @@ void web_light_find_floor(void); /* after measuring the figures at rest */
 noh_result web_hair_open(void);
 void web_hair_close(void);
 noh_result web_hair_restore(void);
-noh_result web_hair_update(void); /* after a frame */
+void web_hair_update(void); /* after a frame */
 void web_hair_shadow(void);
 noh_result web_hair_draw(void); /* with the stage's color passes */
 void web_hair_shake(double seconds);

@@ -153,8 +153,8 @@ typedef enum noh_half_mode {
 #define NOH_HAIR_PATCHES_MAX 256u    /* patches of four control hairs, of one haircut */
 #define NOH_HAIR_STRIPS_MAX 16384u   /* of one haircut */
 #define NOH_HAIR_SEGMENTS_MAX 64u    /* of a strip */
-#define NOH_WIGS_NEAR_MAX 64u        /* heads of a kind with moving hair at once (modules.h) */
-#define NOH_HAIR_STEPS_MAX 60u       /* of 1/60 s per call; the rest of a longer time is dropped */
+#define NOH_HAIR_NEAR_MAX 64u        /* heads of a kind whose hair moves at once (modules.h) */
+#define NOH_HAIR_STEPS_MAX 60u       /* of 1/60 s in one call; what is left of a longer time is dropped */
 
 /* ---- crowds ---- */
 

@@ -466,8 +466,8 @@ const char *noh_gl_shader_text(const char *name);
  *   noh_stage_decals_draw,        mask, depth range, clip         front face, where an
  *   noh_stage_patches_draw,       control, front face, cull       instance is mirrored;
  *   noh_stage_hair_draw,          mode, colour mask, scissor,     in a depth pass the colour
- *   noh_stage_hairs_draw,         stencil, polygon offset,        mask; in a blended pass the
- *   noh_stage_terrain_draw        sRGB write, sample state,       depth mask and, where
+ *   noh_stage_terrain_draw        stencil, polygon offset,        mask; in a blended pass the
+ *                                 sRGB write, sample state,       depth mask and, where
  *                                 blending (3)                    GL_BLEND is off, blending
  *   noh_stage_blob_draw,          the same, except blending     the same, and blending        (1)
  *   noh_stage_floor_draw,         and the depth mask

@@ -97,98 +97,83 @@ typedef struct noh_stage_part {
  * goes. NULL: the actor is gone, has no such part, or a frame has begun. */
 void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part);
 
-/* ======== hair of an actor ========
- * Hair of the actors of a kind.
+/* ======== actor hair ========
+ * Hair of the actors of a kind, from one head to a crowd.
  *
- *   noh_wig_make    a haircut and the joint that carries it
- *   noh_wig_part    the part that moves it, for noh_kind_desc.parts
- *   noh_wig_points  where its control hairs are
- *   noh_wig_seen    where its head is, as it was shown
+ *   noh_actor_hair_desc_make             a haircut on the heads of a kind: finds the joint that carries it
+ *   noh_actor_hair_part                  simulates it in the stage, for noh_kind_desc.parts
+ *   noh_actor_hair_size, noh_actor_hair_init   the heads, and the hair that moves outside the stage
+ *   noh_actor_hair_frame                 after each frame: finds visible heads and chooses whose hair moves
+ *   noh_actor_hair_heads                 the visible heads
+ *   noh_actor_hair_points                the control hairs of one of them
  *
- * Control hairs (low_life.h) are state of the stage like all that parts have (modules.h): planned, saved, forked and
- * hashed, with the same bits for any number of jobs. noh_gl.h draws them.
+ * Up to near_max heads have hair that moves. If more are visible, those that look largest are chosen; a chosen head is
+ * kept until another looks a quarter larger. All other hair hangs at rest and follows its head. There are two ways to
+ * simulate it:
  *
- * Threads: as modules.h. `wind` may be changed between frames. */
-
-typedef struct noh_wig {
-    const noh_haircut *cut;
-    uint32_t joint; /* NOH_NONE: the actor itself */
-    float wind[3];  /* as in noh_hair_carrier, world */
-} noh_wig;
-
-/* skeleton  of the kind; in one without, joint_count is 0
- * errors    NOT_FOUND the skeleton has no such joint */
-noh_result noh_wig_make(const noh_haircut *cut, const noh_pack *pack, uint32_t skeleton, noh_wig *out,
-                        noh_error *error);
-
-/* The part; the wig and its haircut must outlive the stage. Of each actor 16 bytes and those of noh_hair_size. */
-noh_stage_part noh_wig_part(const noh_wig *wig);
-
-/* shapes  state: of noh_actor_part; points[hair_count][point_count][3], head space; at rest where none was posed */
-void noh_wig_points(const noh_wig *wig, const void *state, float *points);
-
-/* Where the head of an actor is, as the last frame showed it.
- * shapes   world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each view that sees
- *          it
- * returns  0 if it was not shown; nothing is written then */
-int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
-                 uint32_t *views);
-
-/* ======== hair of a crowd ========
- * Hair of a whole kind in fixed memory. Hair moves on the actors that look largest; on all others it hangs at
- * rest and follows the head.
+ *   in_state 1   Every actor of the kind has hair of its own, which noh_actor_hair_part simulates with the stage. It is
+ *                saved, forked and hashed like all state of modifiers (modules.h), with the same bits for any number of
+ *                jobs. Costs noh_hair_size bytes and time for each actor, visible or not.
+ *   in_state 0   noh_actor_hair_frame simulates near_max heads outside the stage. This hair is not part of the stage's
+ *                state: a restored stage begins with hair at rest. It begins to move at NOH_HAIR_MOVING_PIXELS pixels
+ *                per metre and moves fully from twice that on, so that nothing jumps as an actor approaches. A head
+ *                that is no longer chosen is at rest at once.
  *
- *   noh_wigs_size, noh_wigs_init   for a wig (modules.h), a number of actors, and a number whose hair moves at once
- *   noh_wigs_frame                 after each frame: find the visible actors, choose whose hair moves, step it
- *   noh_wigs_bodies                the visible actors, and where each head is
- *   noh_wigs_points                control hairs of one of them
+ * noh_gl.h draws it.
  *
- * noh_wig_part, by contrast, gives every actor of a kind hair of its own: hundreds of them would take tens of kilobytes
- * each, and time for hair that nobody sees. Wigs are not part of the stage's state: they are not saved, forked or
- * hashed, and a restored stage begins with hair at rest. noh_gl.h draws them.
- *
- * Hair begins to move at NOH_WIGS_MOVING_PIXELS pixels a metre and moves fully from twice that on, so that it swings
- * more or less as an actor approaches or recedes, without a jump. If more than near_max actors are that large, the
- * largest are chosen. A chosen actor is kept until another looks a quarter larger; its hair is then at rest at once.
- *
- * Threads: the stage's, outside of steps and frames; noh_wigs_size, any. */
+ * Threads: the stage's, outside of steps and frames; noh_actor_hair_size, any. */
 
-typedef struct noh_wigs_desc {
-    const noh_wig *wig; /* must outlive all */
-    uint32_t kind;      /* of the stage */
-    uint32_t actor_max; /* actors of the kind that are visible at once, 1..NOH_STAGE_ACTORS_MAX; any more
-                         * have no hair */
-    uint32_t near_max;  /* actors whose hair moves at once, 0..NOH_WIGS_NEAR_MAX */
-} noh_wigs_desc;
+typedef struct noh_actor_hair_desc {
+    const noh_haircut *cut; /* must outlive the desc */
+    uint32_t joint;         /* carries the hair; NOH_NONE: the actor itself */
+    uint32_t kind;          /* of the stage */
+    uint32_t head_max;      /* heads visible at once, 1..NOH_STAGE_ACTORS_MAX; any more have no hair */
+    uint32_t near_max;      /* heads whose hair moves at once, 0..NOH_HAIR_NEAR_MAX */
+    int in_state;           /* 1: simulated by noh_actor_hair_part */
+    float wind[3];          /* as in noh_hair_carrier, in the world; may change between frames */
+} noh_actor_hair_desc;
 
-/* A visible actor. */
-typedef struct noh_wigs_body {
+/* A visible head. */
+typedef struct noh_hair_head {
     float world[12];        /* from head space (metres), less noh_stage_origin */
     float pixels_per_metre; /* of head space */
     float moves;            /* 0 (at rest) to 1 (in full motion) */
     uint32_t views;         /* a bit for each view that sees it */
-    uint32_t slot;          /* among those whose hair moves; NOH_NONE: at rest */
-} noh_wigs_body;
+    uint32_t slot;          /* 0..near_max - 1 if its hair moves; NOH_NONE: at rest */
+} noh_hair_head;
 
-typedef struct noh_wigs noh_wigs;
+typedef struct noh_actor_hair noh_actor_hair;
 
-/* The exact bytes: 80 for each actor, and noh_hair_size for each whose hair moves. 0 for an impossible desc. */
-size_t noh_wigs_size(const noh_wigs_desc *desc);
+/* Fill a desc for one head of kind 0, simulated outside the stage. Change counts, kind and in_state as needed.
+ * skeleton  of the kind; unused if the haircut names no joint
+ * errors    NOT_FOUND the skeleton has no joint of the haircut's name */
+noh_result noh_actor_hair_desc_make(const noh_haircut *cut, const noh_pack *pack, uint32_t skeleton,
+                                    noh_actor_hair_desc *out, noh_error *error);
 
-/* errors  ARG memory, or a number of the desc is out of its range; MEMORY */
-noh_result noh_wigs_init(void *memory, size_t bytes, const noh_wigs_desc *desc, noh_wigs **wigs, noh_error *error);
+/* The modifier that simulates hair in the stage. `desc` must outlive the stage and stay where it is.
+ * memory  16 bytes and noh_hair_size, in each actor */
+noh_stage_part noh_actor_hair_part(const noh_actor_hair_desc *desc);
 
-/* After noh_stage_frame_end, in every frame.
- * ticks  by which the stage was stepped since the last frame */
-void noh_wigs_frame(noh_wigs *wigs, noh_stage *stage, uint32_t ticks);
+/* The exact bytes: about 80 for each head and, with in_state 0, noh_hair_size for each that moves. 0 for an impossible
+ * desc. */
+size_t noh_actor_hair_size(const noh_actor_hair_desc *desc);
 
-/* bodies[*count], until the next frame. */
-const noh_wigs_body *noh_wigs_bodies(const noh_wigs *wigs, uint32_t *count);
+/* desc    must outlive the hair and stay where it is; with in_state 1 it is the one given to noh_actor_hair_part
+ * errors  ARG memory is NULL or misaligned, or a count of the desc is out of range; MEMORY */
+noh_result noh_actor_hair_init(void *memory, size_t bytes, const noh_actor_hair_desc *desc, noh_actor_hair **hair,
+                               noh_error *error);
 
-/* shapes  points[hair_count][point_count][3], head space; at rest where its hair does not move */
-void noh_wigs_points(const noh_wigs *wigs, uint32_t body, float *points);
+/* Call it after noh_stage_frame_end, in every frame.
+ * ticks  that the stage was stepped by since the last frame; unused with in_state */
+void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks);
 
-const noh_wigs_desc *noh_wigs_desc_of(const noh_wigs *wigs);
+/* heads[*count], valid until the next frame. */
+const noh_hair_head *noh_actor_hair_heads(const noh_actor_hair *hair, uint32_t *count);
+
+/* shapes  points[hair_count][point_count][3], head space */
+void noh_actor_hair_points(const noh_actor_hair *hair, uint32_t head, float *points);
+
+const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
 
 /* ======== feet of actors ========
  * Actors that stand on the ground.

@@ -308,17 +308,18 @@ typedef struct noh_gl_mesh {
  * A stage drawn by OpenGL ES 3.
  *
  *   noh_stage_on_gl           its address goes into noh_stage_desc.gpu; noh_stage_init then takes a noh_gl_device
- *   noh_stage_draw            one pass of what a view of the last frame sees
- *   noh_stage_set_lighting    the light of a stage with noh_stage_desc.light
- *   noh_stage_draw_shadow     its shadow map
- *   noh_stage_shader_size     shaders of your own in place of the library's:
+ *   noh_stage_draw            draw one pass of a view of the last frame
+ *   noh_stage_set_lighting    light a stage that has noh_stage_desc.light
+ *   noh_stage_light_of        its light textures
+ *   noh_stage_draw_shadow     draw its shadow map
+ *   noh_stage_shader_size     shaders of your own in place of the library's,
  *   noh_stage_shader_create   in every variant that the kinds of the stage need
  *   noh_stage_shader_delete, noh_stage_shader_restore
  *   noh_stage_morph_plan      how its targets are accumulated
  *   noh_actor_on_gl           the GL objects of an actor, for draws of your own
  *
- * On the GPU a mesh of a pack is there once, however many kinds draw it. Actors at the same level are drawn by one call
- * for each submesh, those that fade between two levels one by one.
+ * The GPU holds each mesh of a pack once, however many kinds draw it. Actors at the same LOD level are drawn by one
+ * call for each submesh; actors that fade between two levels are drawn one by one.
  *
  * Threads: the context's own thread. */
 
@@ -328,7 +329,7 @@ typedef enum noh_pass {
     NOH_PASS_COLOR = 0, /* opaque, then blended */
     NOH_PASS_OPAQUE,
     NOH_PASS_BLENDED,
-    NOH_PASS_DEPTH /* what NOH_PASS_OPAQUE draws, positions alone: shadow maps, depth first */
+    NOH_PASS_DEPTH /* the same triangles as NOH_PASS_OPAQUE, depth alone: for shadow maps and depth prepasses */
 } noh_pass;
 
 typedef struct noh_stage_shader noh_stage_shader;
@@ -348,54 +349,55 @@ typedef struct noh_gl_drawable {
     int uniforms[2][NOH_DRAWABLE_UNIFORMS]; /* locations in each program; -1: not used by it */
 } noh_gl_drawable;
 
-/* Draw what the view-th view of the last frame sees, into the framebuffer and viewport that are set. In a view without
- * height_px actors with no_shadow are left out.
+/* Draw one view of the last frame into the current framebuffer and viewport. A view without height_px leaves out actors
+ * with no_shadow.
  * shader  NULL: the library's
  * state   gl_device.h: depth function, front face and blending are yours
  * errors  ARG the stage is lit and no lighting was set; the last frame had no such view, or a frame has begun and not
- * ended; or the desc is without_shader or without_depth, and this draw needs it */
+ *         ended; or noh_stage_desc.without_shader or without_depth excludes this draw */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
 
-/* What shaders are told of the light from now on; only in a stage with noh_stage_desc.light, which draws no colour
- * without it. Borrowed, and read at each noh_stage_draw. NULL: none. */
+/* Set the lighting for all later draws. It is borrowed, and read at each draw. A stage with noh_stage_desc.light draws
+ * no colour without it; other stages ignore it. NULL: none. */
 void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting);
 
-/* Its textures, for shaders of your own that show what is behind; NULL without noh_stage_desc.light. */
+/* The light textures of the stage, for backdrops, floors and shaders of your own; NULL without noh_stage_desc.light. */
 const noh_gl_light *noh_stage_light_of(const noh_stage *stage);
 
-/* Draw what a view sees into the stage's shadow map: one without height_px, as noh_view_shadow makes it.
+/* Draw a view into the shadow map of the stage. The view has no height_px: noh_view_shadow makes one.
  * state   gl_device.h
- * errors  ARG as noh_stage_draw of NOH_PASS_DEPTH; the desc has no light with a shadow map */
+ * errors  ARG as noh_stage_draw of NOH_PASS_DEPTH, or the stage has no light with a shadow map */
 noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error);
 
-/* Shaders of your own (low_gl.h; shaders_es/README.md says what they can call). They are made in memory of yours.
- * log     as in noh_gl_device: what the driver says of them
- * errors  ARG memory is NULL or misaligned; MEMORY it is too small; else as noh_gl_renderer_create */
+/* Create shaders of your own (low_gl.h; shaders_es/README.md lists what they can call).
+ * memory  [bytes] at least noh_stage_shader_size, aligned to NOH_MEMORY_ALIGN; the shader keeps it
+ * log     as in noh_gl_device: messages of the driver
+ * errors  ARG memory is NULL or misaligned; MEMORY `bytes` is too small; else as noh_gl_renderer_create */
 size_t noh_stage_shader_size(const noh_stage *stage);
 noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
                                    char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error);
 void noh_stage_shader_delete(noh_stage_shader *shader);
 
-/* After a lost context.
+/* Create the programs again in a new context (gl_device.h).
  * errors  as noh_gl_renderer_restore */
 noh_result noh_stage_shader_restore(noh_stage_shader *shader, char *log, size_t log_bytes, noh_error *error);
 
-/* How the first mesh that has targets is accumulated, or would be in a stage of this plan: path, format and reason.
- * Needs no driver.
+/* Get the path, format and reason of the accumulator of the first mesh with targets, as a stage of this plan has it. No
+ * driver is needed.
  * errors  as noh_gl_morph_plan_make */
 noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, const noh_stage_plan *plan,
                                 noh_gl_morph_plan *out, noh_error *error);
 
 /* A mesh of an actor on the GPU. */
 typedef struct noh_stage_drawn {
-    const noh_gl_mesh *mesh; /* the stage's, valid as long as it is */
+    const noh_gl_mesh *mesh; /* valid as long as the stage */
     noh_gl_morph_binding morph;
     noh_gl_skin_binding skin;
-    int is_morphed, is_skinned;     /* 0: that binding is zeros, and not to be used */
-    const noh_gl_texture *pictures; /* [texture_count] of its mesh pack, of the texture set that the actor wears */
+    int is_morphed, is_skinned;     /* 0: do not use that binding */
+    const noh_gl_texture *pictures; /* [texture_count of its mesh pack], from the texture set of the actor */
 } noh_stage_drawn;
 
-/* The index-th mesh of an actor, as noh_actor_mesh_at counts them. Valid until the next frame.
+/* Get a mesh of an actor, by the index of noh_actor_mesh_at. Valid until the next frame.
  * errors  NOT_FOUND the actor is gone, has no such mesh, or no view of the last frame saw it */
 noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error);
 
@@ -438,8 +440,8 @@ void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, con
  *   noh_stage_blob_create   the GL objects; noh_stage_blob_delete, noh_stage_blob_restore
  *   noh_stage_blob_draw     all blobs of a view
  *
- * Draw them after the ground and before characters. A blob multiplies the colours in the framebuffer, so it works on any
- * ground, and on a background without one. It takes no GPU memory besides its program.
+ * Draw them after the ground and before characters. A blob multiplies the colours in the framebuffer, so it works on
+ * any ground, and on a background without one. It takes no GPU memory besides its program.
  *
  * Threads: the context's own thread. */
 
@@ -462,24 +464,24 @@ noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_by
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count);
 
 /* ======== decals ========
- * The marks of marks.h drawn on actors.
+ * Decals on actors (marks.h) drawn by projection.
  *
- *   noh_stage_decals_size, noh_stage_decals_create   programs for the meshes of a stage, and room for one ring;
- *                                                    _delete, _restore
- *   noh_stage_decals_draw                            the marks of an actor
+ *   noh_stage_decals_size     exact bytes of memory
+ *   noh_stage_decals_create   programs for the meshes of a stage, and a texture for one ring; _delete, _restore
+ *   noh_stage_decals_draw     the decals of an actor
  *
- * Whatever rests within a mark's sphere and faces as it does has it, also a fold that only touches there;
- * noh_gl.h draws the same marks without.
+ * A pixel shows a decal if its place in the bind pose lies within the sphere of the decal and its surface faces the
+ * same way. A fold that only touches the decal in the bind pose shows it, too; noh_gl.h avoids that.
  *
- * The meshes that have marks are drawn once more, all marks of one in one draw: pixels without a mark are discarded,
- * the others are blended over the surface, lit as it is, with its normal map and wrinkles. Levels may fade meanwhile.
+ * Meshes with decals are drawn again, each with all its decals in one draw call: pixels without a decal are discarded,
+ * the others are blended over the surface, with its light, normal map and wrinkles. LOD levels may fade meanwhile.
  *
- * On the GPU: 4,096 bytes, and a picture of yours. Threads: the context's own thread. */
+ * GPU memory: NOH_STAGE_DECALS_BYTES. Threads: the context's own thread. */
 
-/* What is drawn on the marks: tiles of a texture, from its upper left corner on. */
+/* An image of tiles, counted from its upper left corner. */
 typedef struct noh_decal_picture {
-    unsigned texture;       /* GL_TEXTURE_2D, sRGB, with alpha that is not multiplied in; 0: round spots, without one */
-    uint32_t columns, rows; /* of tiles, 1..; texture 0: not used */
+    unsigned texture;       /* GL_TEXTURE_2D, sRGB with straight alpha; 0: decals are round spots */
+    uint32_t columns, rows; /* tiles in each direction, from 1; unused if texture is 0 */
 } noh_decal_picture;
 
 typedef struct noh_decal_program noh_decal_program;
@@ -500,28 +502,28 @@ typedef struct noh_stage_decals {
     uint32_t draws; /* draw calls so far */
 } noh_stage_decals;
 
-/* The exact bytes of memory, of a stage with `gpu`. */
+/* The exact bytes of memory. The stage has noh_stage_desc.gpu. */
 size_t noh_stage_decals_size(const noh_stage *stage);
 
-/* memory   [bytes] at least noh_stage_decals_size, aligned to NOH_MEMORY_ALIGN; it stays with the decals
- * device   as the stage was made with
- * picture  NULL: round spots. Its texture must stay
- * out      must stay where it is: shaders know it
- * errors   ARG, MEMORY, DATA, GL as noh_stage_shader_create and noh_gl_texture_create: nothing is left behind */
+/* memory   [bytes] at least noh_stage_decals_size, aligned to NOH_MEMORY_ALIGN; the decals keep it
+ * device   the one that the stage was created with
+ * picture  NULL: round spots. Its texture must outlive the decals
+ * out      must stay where it is: the shaders refer to it
+ * errors   ARG, MEMORY, DATA, GL as noh_stage_shader_create and noh_gl_texture_create. It then has no GL objects */
 noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device, void *memory, size_t bytes,
                                    const noh_decal_picture *picture, noh_stage_decals *out, noh_error *error);
 void noh_stage_decals_delete(noh_stage_decals *decals);
 
-/* Make its GL objects again in a new context (gl_device.h); picture as in noh_stage_decals_create. `log` as in
+/* Create the GL objects again in a new context (gl_device.h). `picture` as in noh_stage_decals_create, `log` as in
  * noh_gl_device.
- * errors  as noh_stage_decals_create: it then has no GL objects */
+ * errors  as noh_stage_decals_create */
 noh_result noh_stage_decals_restore(noh_stage_decals *decals, const noh_decal_picture *picture, char *log,
                                     size_t log_bytes, noh_error *error);
 
-/* After noh_stage_draw of NOH_PASS_OPAQUE or NOH_PASS_COLOR of the same view, into the same framebuffer.
- * ring    of that actor
+/* Draw into the framebuffer of the stage, after noh_stage_draw of NOH_PASS_OPAQUE or NOH_PASS_COLOR of the same view.
+ * ring    the decals of that actor
  * state   as noh_gl_draw_end leaves it
- * errors  NOT_FOUND the actor is gone, or the view did not see it: nothing is drawn; ARG as noh_stage_draw */
+ * errors  NOT_FOUND the actor is gone, or the view did not see it; ARG as noh_stage_draw. Nothing is drawn then */
 noh_result noh_stage_decals_draw(noh_stage_decals *decals, uint32_t view, noh_actor actor, const noh_decals *ring,
                                  noh_error *error);
 
@@ -560,147 +562,110 @@ void noh_stage_floor_draw(const noh_stage_floor *shadow, const noh_gl_light *lig
                           const noh_stage_view *view, const float disc[4]);
 
 /* ======== hair of an actor ========
- * The hair of an actor (modules.h) drawn: all strips in one call for each of its passes.
+ * Hair of the actors of a kind (modules.h) drawn, from one head to a crowd.
  *
  *   noh_stage_hair_size, noh_stage_hair_bytes   exact bytes on the CPU and on the GPU
- *   noh_stage_hair_create                       shaders and the texture of control hairs; _delete, _restore
- *   noh_stage_hair_update                       upload where an actor's control hairs are
- *   noh_stage_hair_draw                         what a view sees of it; noh_stage_hair_draw_shadow
+ *   noh_stage_hair_create                       the GL objects; _delete, _restore
+ *   noh_stage_hair_update                       upload heads and the hair that moves
+ *   noh_stage_hair_draw                         draw the hair that a view sees; noh_stage_hair_draw_shadow
  *
- * The vertex shader makes strips out of their numbers and a texture of control hairs (low_life.h); light is
- * Kajiya's and Kay's in two lobes. The opaque core of strips writes depth, then their fringe is blended.
+ * The vertex shader computes strips from their numbers and a texture of control hairs (low_life.h). Hair that moves has
+ * control hairs of its own in the texture; all other heads share those at rest. Each head has as many strips as its
+ * size in pixels needs; fewer strips are wider. From 50 pixels per metre down hair fades, pixel by pixel, into the
+ * texture of the head; from 25 down nothing is drawn.
+ *
+ * Strips are lit by the model of Kajiya and Kay with two lobes. Their opaque core writes depth, then their fringe is
+ * blended. Each takes one draw call for each group of heads of similar size, NOH_HAIR_GROUPS at most. Fringes of
+ * smaller heads are blended first; within a group the order is arbitrary.
  *
  * Threads: the context's own thread; noh_stage_hair_size and noh_stage_hair_bytes, any.
  * source   Kajiya, Kay: Rendering Fur with Three Dimensional Textures, 1989; Scheuermann: Practical Real-Time Hair
  *          Rendering and Shading, 2004 */
 
+#define NOH_HAIR_GROUPS 5u /* each of heads with at most half as many strips as the group before */
+
+/* The heads of a group follow each other in the texture. */
+typedef struct noh_hair_group {
+    uint32_t first, count;
+    uint32_t strips; /* of the head that has most */
+} noh_hair_group;
+
 typedef struct noh_stage_hair {
-    const noh_gl_api *gl;
-    noh_gl_ledger *ledger;
-    const noh_wig *wig;
-    float *points; /* [hair_count][point_count][3] */
+    noh_gl_drawable drawable; /* a GL_RGB32F texture: control hairs, corners of patches, heads */
+    const noh_actor_hair *hair;
     int lit, encode_srgb;
-    noh_gl_texture texture; /* GL_RGB32F: control hairs, then the corners of patches */
-    unsigned color, depth;  /* programs */
-    unsigned vertex_array;
-    float world[12];        /* from head space */
-    float pixels_per_metre; /* of head space; 0: nothing sees it */
-    uint32_t views;         /* a bit for each that does */
-    uint32_t draws;         /* calls of all noh_stage_hair_draw so far */
-    uint32_t sets, bodies;  /* of a crowd (noh_gl.h): sets of control hairs, heads; 0: one head */
+    float *points; /* control hairs of one head, while they are uploaded */
+    float *table;  /* heads, as in the texture */
+    noh_hair_group groups[NOH_HAIR_GROUPS];
+    uint32_t views;  /* a bit for each view that sees a head */
+    uint32_t strips; /* of all heads */
+    uint32_t draws;  /* draw calls so far */
 } noh_stage_hair;
 
-/* The exact bytes: 12 a control point. */
-size_t noh_stage_hair_size(const noh_haircut *cut);
+/* The exact bytes: 12 for each control point of one head, and 60 for each head, rounded up to whole rows of the
+ * texture. */
+size_t noh_stage_hair_size(const noh_actor_hair_desc *desc);
 
-/* The exact bytes on the GPU: 12 a control point, and as many for each patch as a control hair has where they are
- * fewer than its points, rounded up to whole rows. */
-uint64_t noh_stage_hair_bytes(const noh_haircut *cut);
+/* The exact bytes on the GPU: 12 for each control point of near_max heads, and of one at rest where not all heads move;
+ * 24 for each patch; 60 for each head. Each is rounded up to whole rows. */
+uint64_t noh_stage_hair_bytes(const noh_actor_hair_desc *desc);
 
-/* Make it for one actor of a kind whose part is that of the wig, which must stay.
- * memory       [bytes] at least noh_stage_hair_size, aligned to NOH_MEMORY_ALIGN; it stays with the hair
- * lit          its stage has a light
+/* hair         must outlive `out`
+ * memory       [bytes] at least noh_stage_hair_size, aligned to NOH_MEMORY_ALIGN; `out` keeps it
+ * lit          1: the stage has a light
  * encode_srgb  as in noh_stage_desc
- * errors       ARG memory is NULL or misaligned; MEMORY it is too small; DATA, GL, MEMORY as noh_gl_program_create and
- *              noh_gl_texture_create: nothing is left behind */
-noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_wig *wig, void *memory, size_t bytes, int lit,
-                                 int encode_srgb, noh_stage_hair *out, noh_error *error);
+ * errors       ARG memory is NULL or misaligned; MEMORY `bytes` is too small; DATA, GL, MEMORY as noh_gl_program_create
+ *              and noh_gl_texture_create. It then has no GL objects */
+noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_actor_hair *hair, void *memory, size_t bytes,
+                                 int lit, int encode_srgb, noh_stage_hair *out, noh_error *error);
 void noh_stage_hair_delete(noh_stage_hair *hair);
 
-/* Make its GL objects again in a new context (gl_device.h). `log` as in noh_gl_device.
- * errors  as noh_stage_hair_create: it then has no GL objects */
+/* Create the GL objects again in a new context (gl_device.h). `log` as in noh_gl_device.
+ * errors  as noh_stage_hair_create */
 noh_result noh_stage_hair_restore(noh_stage_hair *hair, char *log, size_t log_bytes, noh_error *error);
 
-/* After noh_stage_frame_end: take over where an actor and its hair are.
- * part    of noh_kind_desc.parts
- * errors  NOT_FOUND the actor is gone or has no such part: nothing is drawn until the next update */
-noh_result noh_stage_hair_update(noh_stage_hair *hair, noh_stage *stage, noh_actor actor, uint32_t part,
-                                 noh_error *error);
+/* Upload the heads that noh_actor_hair_frame found. Call it before the draws of that frame. */
+void noh_stage_hair_update(noh_stage_hair *hair);
 
-/* Draw it into the framebuffer and viewport that are set, after the stage: one draw call for the core, one for the
- * fringe. From 50 pixels a metre down it fades, pixel by pixel, into what is painted on the head; from 25 down nothing
- * is drawn.
- * pass   NOH_PASS_COLOR, or one of its halves, or NOH_PASS_DEPTH
+/* Draw into the current framebuffer and viewport, after the stage.
+ * pass   NOH_PASS_OPAQUE: the core; NOH_PASS_BLENDED: the fringe; NOH_PASS_COLOR: both; NOH_PASS_DEPTH: the core, depth
+ *        alone
  * state  as noh_gl_draw_end leaves it */
 void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t view, noh_pass pass);
 
-/* Add it to the shadow map, after noh_stage_draw_shadow. Framebuffer 0 is bound afterwards. */
+/* Add the hair to the shadow map, after noh_stage_draw_shadow. Framebuffer 0 is bound afterwards. */
 void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, uint32_t view);
 
-/* ======== hair of a crowd ========
- * Hair of a whole kind (modules.h) drawn: at most NOH_HAIRS_GROUPS calls for each of its passes,
- * however many heads there are.
- *
- *   noh_stage_hairs_size, noh_stage_hairs_bytes   exact bytes on the CPU and on the GPU
- *   noh_stage_hairs_create                        _delete, _restore
- *   noh_stage_hairs_update                        upload the hair that moves, and where heads are
- *   noh_stage_hairs_draw                          what a view sees; noh_stage_hairs_draw_shadow
- *
- * All is as in noh_gl.h: each head has as many strips as its size in pixels wants, fewer being wider, and fades
- * into what is painted on it. Hair that moves has control hairs of its own in the texture, all other hair shares those
- * at rest. Fringes of several heads are blended the smaller heads first, within a group of about one size in no order.
- *
- * Threads: as noh_gl.h. */
-
-#define NOH_HAIRS_GROUPS 5u /* each of heads that have half as many strips as those before */
-
-typedef struct noh_stage_hairs {
-    noh_stage_hair hair; /* its shaders, and a texture for all */
-    const noh_wigs *wigs;
-    float *table;                                              /* of heads, as the texture has it */
-    uint32_t first[NOH_HAIRS_GROUPS], count[NOH_HAIRS_GROUPS]; /* heads of each group in it */
-    uint32_t views;                                            /* a bit for each that sees some */
-    uint32_t strips;                                           /* of all heads */
-} noh_stage_hairs;
-
-/* The exact bytes: 12 a control point of one head, 60 a head of actor_max, the latter rounded up to whole rows of the
- * texture. */
-size_t noh_stage_hairs_size(const noh_wigs_desc *desc);
-/* The exact bytes on the GPU: 12 a control point of near_max + 1 heads, 60 a head, each rounded up to whole rows. */
-uint64_t noh_stage_hairs_bytes(const noh_wigs_desc *desc);
-
-/* wigs must stay; all else as noh_stage_hair_create. */
-noh_result noh_stage_hairs_create(const noh_gl_device *device, const noh_wigs *wigs, void *memory, size_t bytes,
-                                  int lit, int encode_srgb, noh_stage_hairs *out, noh_error *error);
-void noh_stage_hairs_delete(noh_stage_hairs *hairs);
-noh_result noh_stage_hairs_restore(noh_stage_hairs *hairs, char *log, size_t log_bytes, noh_error *error);
-
-/* After noh_wigs_frame. */
-void noh_stage_hairs_update(noh_stage_hairs *hairs);
-
-/* As noh_stage_hair_draw and noh_stage_hair_draw_shadow. */
-void noh_stage_hairs_draw(noh_stage_hairs *hairs, const noh_stage *stage, uint32_t view, noh_pass pass);
-void noh_stage_hairs_draw_shadow(noh_stage_hairs *hairs, const noh_stage *stage, uint32_t view);
-
 /* ======== grown decals ========
- * The marks of marks.h drawn as triangles that were grown (decal_grow.h).
+ * Decals on actors (marks.h) drawn as patches of triangles (decal_grow.h).
  *
- *   noh_stage_patches_create   room for the triangles of one ring; _size, _delete, _restore, NOH_STAGE_PATCHES_BYTES
- *   noh_stage_patches_draw     in place of noh_stage_decals_draw
+ *   noh_stage_patches_size, NOH_STAGE_PATCHES_BYTES   exact bytes on the CPU and on the GPU
+ *   noh_stage_patches_create                          room for the triangles of one ring; _delete, _restore
+ *   noh_stage_patches_draw                            in place of noh_stage_decals_draw
  *
- * A mark is on what hangs together with the triangle that was hit, not on a fold that only touches it at rest. Only the
- * triangles that have marks are drawn again, all of a mesh in one draw, out of the mesh's own vertices: so joints,
- * targets and the stage's other ways to move them carry every corner, to the bit. Pixels are looked up as by
- * noh_gl.h, whose programs draw them, among the marks that have grown over their triangle.
+ * A decal covers only the surface connected to the triangle that was hit, not a fold that touches it in the bind pose.
+ * Only triangles with decals are drawn again, all of a mesh in one draw call, from the vertices of the mesh itself:
+ * they move exactly as the mesh does. The programs of noh_gl.h draw them, and test only the decals that have
+ * grown over a triangle.
  *
- * Marks grow when they are first drawn at a level: the triangles of that level are gone through once for each mark.
- * Two levels are kept, so that nothing grows again while one fades into the other. All marks of a ring share room for
- * triangles; one that finds too little is smaller.
+ * A decal grows when it is first drawn at a LOD level: one pass over the triangles of that level for each decal. Two
+ * levels are kept, so that nothing grows again while one fades into the other. All decals of a ring share room for
+ * triangles; a decal that finds too little of it is smaller.
  *
- * Two triangles that touch by one vertex alone, both near a mark, cannot be told apart by it.
+ * Two triangles near a decal that share only one vertex cannot be told apart.
  * Threads: the context's own thread. */
 
 typedef struct noh_stage_patch noh_stage_patch;
 
-/* A level's triangles, of all meshes. */
+/* The triangles of one LOD level, of all meshes. */
 typedef struct noh_stage_patch_level {
     uint32_t level;           /* of the actor; NOH_NONE: nothing has grown */
-    noh_stage_patch *patches; /* [capacity] by their place in the ring */
-    uint32_t *pool;           /* [triangle_room] of patches; `used` of them */
-    uint32_t *numbers;        /* [triangle_room] of the meshes, as they are in the buffer */
+    noh_stage_patch *patches; /* [capacity], one for each decal of the ring */
+    uint32_t *pool;           /* [triangle_room] triangles of the patches, the first `used` of them valid */
+    uint32_t *numbers;        /* [triangle_room] triangles of the meshes, as in the index buffer */
     uint32_t used;
-    uint8_t marks[NOH_DECALS_MAX];   /* [mark_count] that are in the buffer, in order, mesh by mesh */
-    uint32_t counts[NOH_DECALS_MAX]; /* [mark_count] of a mesh's numbers, where its marks begin; else 0 */
+    uint8_t marks[NOH_DECALS_MAX];   /* [mark_count] decals in the index buffer, mesh by mesh */
+    uint32_t counts[NOH_DECALS_MAX]; /* [mark_count] triangles of a mesh, at its first decal; else 0 */
     uint32_t mark_count;
 } noh_stage_patch_level;
 
@@ -709,32 +674,33 @@ typedef struct noh_stage_patches {
                                * of each decal begin, then all corners, in rising order for each decal */
     noh_stage_decals *decals;
     uint32_t capacity, triangle_room;
-    uint32_t kind; /* of the stage, that has grown; NOH_NONE: none */
-    uint32_t last; /* of levels[], that was drawn last */
+    uint32_t kind; /* of the stage; NOH_NONE: nothing has grown */
+    uint32_t last; /* index in levels[] of the level drawn last */
     noh_stage_patch_level levels[2];
     uint32_t *sorted;  /* [triangle_room] while corners are sent */
     uint32_t grown;    /* decals grown so far */
     uint32_t left_out; /* triangles of them that had no room */
 } noh_stage_patches;
 
-/* The exact bytes of memory, as noh_stage_patches_create has its numbers. */
+/* The exact bytes of memory; arguments as in noh_stage_patches_create. */
 size_t noh_stage_patches_size(uint32_t capacity, uint32_t triangles);
 
-/* decals     whose programs draw them; they must stay
- * capacity   of the rings that are drawn, at most; 0: NOH_DECALS_MAX
- * triangles  of all marks together, at one level, up to 2^20; 0: NOH_DECAL_TRIANGLES for each
- * memory     [bytes] at least noh_stage_patches_size, aligned to NOH_MEMORY_ALIGN; it stays with the patches
- * errors     ARG, MEMORY as any init; MEMORY, GL as noh_gl_buffer_create: nothing is left behind */
+/* decals     draw the patches; they must outlive `out`
+ * capacity   of the largest ring that is drawn; 0: NOH_DECALS_MAX
+ * triangles  of all decals together at one level, up to 2^20; 0: NOH_DECAL_TRIANGLES for each decal
+ * memory     [bytes] at least noh_stage_patches_size, aligned to NOH_MEMORY_ALIGN; the patches keep it
+ * errors     ARG, MEMORY as any init; MEMORY, GL as noh_gl_buffer_create. It then has no GL objects */
 noh_result noh_stage_patches_create(noh_stage_decals *decals, uint32_t capacity, uint32_t triangles, void *memory,
                                     size_t bytes, noh_stage_patches *out, noh_error *error);
 void noh_stage_patches_delete(noh_stage_patches *patches);
 
-/* Make their GL objects again in a new context (gl_device.h), after those of their decals.
- * errors  as noh_stage_patches_create: they then have no GL objects */
+/* Create the GL objects again in a new context (gl_device.h), after noh_stage_decals_restore.
+ * errors  as noh_stage_patches_create */
 noh_result noh_stage_patches_restore(noh_stage_patches *patches, noh_error *error);
 
-/* As noh_stage_decals_draw. Rings take turns at the cost of growing all their marks again: give each its own.
- * ring    of that actor; its capacity at most that of the patches */
+/* As noh_stage_decals_draw. Drawing several rings with the same patches grows all decals again at each change of ring:
+ * give each ring patches of its own.
+ * ring    the decals of that actor; its capacity is at most that of the patches */
 noh_result noh_stage_patches_draw(noh_stage_patches *patches, uint32_t view, noh_actor actor, const noh_decals *ring,
                                   noh_error *error);
 
@@ -771,9 +737,9 @@ uint64_t noh_stage_terrain_bytes(const noh_field *field);
 /* field    in the unit of the stage; its heights must outlive the terrain
  * desc     NULL: zeros
  * memory   [bytes] at least noh_stage_terrain_size, aligned to NOH_MEMORY_ALIGN; the terrain keeps it
- * errors   ARG memory is NULL or misaligned, or the field has fewer than 2 x 2 heights; LIMIT a side of the field has more
- *          heights than the largest texture of device->caps has texels; MEMORY `bytes` is too small; DATA, GL, MEMORY as
- *          noh_gl_program_create and noh_gl_texture_create. It then has no GL objects */
+ * errors   ARG memory is NULL or misaligned, or the field has fewer than 2 x 2 heights; LIMIT a side of the field has
+ *          more heights than the largest texture of device->caps has texels; MEMORY `bytes` is too small; DATA, GL,
+ *          MEMORY as noh_gl_program_create and noh_gl_texture_create. It then has no GL objects */
 noh_result noh_stage_terrain_create(const noh_gl_device *device, const noh_field *field,
                                     const noh_stage_terrain_desc *desc, void *memory, size_t bytes,
                                     noh_stage_terrain *out, noh_error *error);

@@ -36,19 +36,18 @@ typedef struct scene {
     noh_gl_light_desc light;
     noh_lighting lighting;
     noh_haircut cut;
-    noh_wig wig;
     noh_stage_part part;
     noh_kind_desc kinds[KINDS];
     noh_stage_desc desc;
     noh_stage_plan plan;
     noh_stage *stage;
-    noh_wigs_desc wigs_desc;
-    noh_wigs *wigs;
-    noh_stage_hairs hairs;
+    noh_actor_hair_desc hair_desc;
+    noh_actor_hair *hair;
+    noh_stage_hair drawn_hair;
     noh_stage_floor level;
     noh_stage_blob blob;
     noh_stage_shader *shader;
-    void *memory, *wigs_memory, *hairs_memory, *shader_memory;
+    void *memory, *hair_memory, *drawn_memory, *shader_memory;
     canvas c;
 } scene;
 
@@ -101,12 +100,14 @@ static void open_stage(scene *s)
 static void open_hair(scene *s)
 {
     const noh_gl_device device = { &s->g->gl, &s->g->caps, &s->g->ledger, NULL, 0 };
-    s->wigs_desc = (noh_wigs_desc){ &s->wig, HEADS, ACTORS, ACTORS };
-    const size_t bytes = noh_wigs_size(&s->wigs_desc), drawn = noh_stage_hairs_size(&s->wigs_desc);
-    s->wigs_memory = test_aligned(NULL, bytes);
-    s->hairs_memory = test_aligned(NULL, drawn);
-    assert_int_equal(noh_wigs_init(s->wigs_memory, bytes, &s->wigs_desc, &s->wigs, NULL), NOH_OK);
-    assert_int_equal(noh_stage_hairs_create(&device, s->wigs, s->hairs_memory, drawn, 1, 0, &s->hairs, NULL), NOH_OK);
+    s->hair_desc.kind = HEADS;
+    s->hair_desc.head_max = s->hair_desc.near_max = ACTORS;
+    const size_t bytes = noh_actor_hair_size(&s->hair_desc), drawn = noh_stage_hair_size(&s->hair_desc);
+    s->hair_memory = test_aligned(NULL, bytes);
+    s->drawn_memory = test_aligned(NULL, drawn);
+    assert_int_equal(noh_actor_hair_init(s->hair_memory, bytes, &s->hair_desc, &s->hair, NULL), NOH_OK);
+    assert_int_equal(noh_stage_hair_create(&device, s->hair, s->drawn_memory, drawn, 1, 0, &s->drawn_hair, NULL),
+                     NOH_OK);
 }
 
 /* It shows where the stage's space is, made coarse: stripes every 25 cm of height. */
@@ -141,7 +142,7 @@ static void open_scene(scene *s)
     open_pack(&s->files[PUPPETS], "demo/puppet.noh");
     open_pack(&s->files[HEADS], "wig.noh");
     assert_int_equal(noh_haircut_open(&s->files[HEADS].pack, &s->cut, NULL), NOH_OK);
-    assert_int_equal(noh_wig_make(&s->cut, &s->files[HEADS].pack, NOH_NONE, &s->wig, NULL), NOH_OK);
+    assert_int_equal(noh_actor_hair_desc_make(&s->cut, &s->files[HEADS].pack, NOH_NONE, &s->hair_desc, NULL), NOH_OK);
     open_light(s);
     open_stage(s);
     open_hair(s);
@@ -157,12 +158,12 @@ static void close_scene(scene *s)
     noh_stage_blob_delete(&s->blob);
     noh_stage_floor_delete(&s->level);
     noh_stage_shader_delete(s->shader);
-    noh_stage_hairs_delete(&s->hairs);
+    noh_stage_hair_delete(&s->drawn_hair);
     noh_stage_delete(s->stage);
     for (uint32_t k = 0; k < KINDS; k++) pack_file_close(&s->files[k]);
     free(s->memory);
-    free(s->wigs_memory);
-    free(s->hairs_memory);
+    free(s->hair_memory);
+    free(s->drawn_memory);
     free(s->shader_memory);
     free(s->texels);
     assert_int_equal(noh_gl_ledger_bytes(&s->g->ledger), 0);
@@ -205,7 +206,7 @@ static uint8_t *picture(scene *s, const noh_stage_view *view, float x, float z, 
     } else {
         assert_int_equal(noh_stage_draw(s->stage, NOH_PASS_DEPTH, 0, NULL, NULL), NOH_OK);
         assert_int_equal(noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
-        noh_stage_hairs_draw(&s->hairs, s->stage, 0, NOH_PASS_COLOR);
+        noh_stage_hair_draw(&s->drawn_hair, s->stage, 0, NOH_PASS_COLOR);
     }
     canvas_resolve(&s->c);
     assert_int_equal(canvas_read(&s->c, rgba), 0);
@@ -225,9 +226,9 @@ static void take(scene *s, float x, float z, uint8_t *out[2])
         assert_int_equal(noh_stage_step(s->stage, TICKS, NULL, NULL, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame_begin(s->stage, views, 2, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame_end(s->stage, NULL), NOH_OK);
-        noh_wigs_frame(s->wigs, s->stage, TICKS);
+        noh_actor_hair_frame(s->hair, s->stage, TICKS);
     }
-    noh_stage_hairs_update(&s->hairs);
+    noh_stage_hair_update(&s->drawn_hair);
     out[0] = picture(s, &views[0], x, z, 0);
     out[1] = picture(s, &views[0], x, z, 1);
     leave(s);

@@ -281,17 +281,14 @@ INIT(hair_init)
     return noh_hair_init(memory, bytes, &desc, &carrier, &hair, error);
 }
 
-INIT(wigs_init)
+INIT(actor_hair_init)
 {
     static const float rest[2][2][3] = { { { 0, 1, 0 }, { 0, 2, 0 } }, { { 1, 1, 0 }, { 1, 2, 0 } } };
     static noh_haircut cut;
-    static noh_wig wig;
-    const noh_hair_desc hair = { rest[0][0], 2, 2, NULL, 0, 1, 0.02f, 0.01f, 2.0f, 0.0f };
-    const noh_wigs_desc desc = { &wig, 0, 5, 3 };
-    noh_wigs *wigs;
-    cut.desc = hair;
-    wig.cut = &cut;
-    return noh_wigs_init(memory, bytes, &desc, &wigs, error);
+    static const noh_actor_hair_desc desc = { .cut = &cut, .head_max = 5, .near_max = 3 };
+    noh_actor_hair *hair;
+    cut.desc = (noh_hair_desc){ rest[0][0], 2, 2, NULL, 0, 1, 0.02f, 0.01f, 2.0f, 0.0f };
+    return noh_actor_hair_init(memory, bytes, &desc, &hair, error);
 }
 
 INIT(springs_init)
@@ -511,7 +508,7 @@ static const struct {
     ROW(spring_init),
     ROW(springs_init),
     ROW(hair_init),
-    ROW(wigs_init),
+    ROW(actor_hair_init),
     ROW(crowd_init),
     ROW(wire_init),
     ROW(smart_init),

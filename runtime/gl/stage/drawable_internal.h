@@ -1,5 +1,5 @@
-/* drawable_internal.h (private to gl/stage/): GL objects of what is drawn together with a stage, from creation to a lost
- * context, and the state around its draws. */
+/* drawable_internal.h (private to gl/stage/): GL objects of what is drawn together with a stage, from creation to a
+ * lost context, and the state around its draws. */
 #ifndef NOH_STAGE_GL_DRAWABLE_INTERNAL_H
 #define NOH_STAGE_GL_DRAWABLE_INTERNAL_H
 

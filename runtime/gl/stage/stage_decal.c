@@ -69,11 +69,11 @@ static void bind(void *user, const noh_gl_api *api, GLuint program, const noh_ma
 /* ---- life cycle ---- */
 
 /* A texture with a row of texels for each decal. */
-static const noh_gl_drawable_desc drawable_desc = {
+static const noh_gl_drawable_desc rows_desc = {
     .texture = { .format = GL_RGBA32F, .width = ROW_TEXELS, .height = NOH_DECALS_MAX }
 };
 
-/* With *decals NULL: the bytes of memory alone. */
+/* d NULL: only measure. */
 static size_t carve(const noh_stage *stage, noh_arena *arena, noh_stage_decals *d, void **shader)
 {
     noh_decal_program *programs = noh_arena_carve(arena, variant_count(stage) * sizeof *programs, 16);
@@ -112,7 +112,7 @@ noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device
     out->stage = stage;
     if (picture) out->picture = *picture;
     (void)carve(stage, &arena, out, &shader);
-    result = noh_gl_drawable_create(device, &drawable_desc, &out->drawable, error);
+    result = noh_gl_drawable_create(device, &rows_desc, &out->drawable, error);
     if (!result) {
         result = noh_stage_shader_create(stage, shader, noh_stage_shader_size(stage), &desc, device->log,
                                          device->log_bytes, &out->shader, error);
@@ -136,7 +136,7 @@ noh_result noh_stage_decals_restore(noh_stage_decals *decals, const noh_decal_pi
     memset(&decals->picture, 0, sizeof decals->picture);
     if (picture) decals->picture = *picture;
     decals->program_count = 0;
-    const noh_result result = noh_gl_drawable_restore(&decals->drawable, &drawable_desc, log, log_bytes, error);
+    const noh_result result = noh_gl_drawable_restore(&decals->drawable, &rows_desc, log, log_bytes, error);
     return result ? result : noh_stage_shader_restore(decals->shader, log, log_bytes, error);
 }
 
@@ -197,7 +197,7 @@ static void unbind(const noh_stage_decals *d)
     }
 }
 
-/* The triangles that have marks, or all. */
+/* Draw the triangles that have decals, or all triangles. */
 static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh,
                        const noh_gl_share *share, const noh_decals *ring)
 {

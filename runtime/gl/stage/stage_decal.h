@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-#define NOH_STAGE_DECALS_BYTES 4096u /* on the GPU */
+#define NOH_STAGE_DECALS_BYTES 4096u /* on the GPU, without the picture */
 
 #ifdef __cplusplus
 }

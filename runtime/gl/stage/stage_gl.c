@@ -1,4 +1,4 @@
-/* stage_gl.c: a stage's objects on the GPU: measured, made, deleted, made again. */
+/* stage_gl.c: the GPU objects of a stage: measured, created, deleted, restored. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -17,14 +17,14 @@
 #include "gl/draw/gl_renderer_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 
-/* ---- what it takes ---- */
+/* ---- memory ---- */
 
 typedef struct measure {
     const noh_stage_desc *desc;
     const noh_stage_plan *plan;
     const noh_gl_caps *caps;
-    noh_arena arena;      /* of the CPU's part */
-    noh_stage_gl *gl;     /* NULL: only measured */
+    noh_arena arena;      /* CPU memory */
+    noh_stage_gl *gl;     /* NULL: only measure */
     noh_stage_list *list; /* NULL: not wanted */
     uint64_t gpu_bytes;
     uint32_t morph_path;
@@ -32,7 +32,7 @@ typedef struct measure {
 
 #define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
 
-/* What was carved since `from` and is made on the GPU. */
+/* Count what was carved since `from`, and GPU bytes. */
 static void add(measure *m, const char *what, uint32_t kind, size_t from, uint64_t gpu_bytes)
 {
     m->gpu_bytes += gpu_bytes;
@@ -50,7 +50,7 @@ static uint32_t count_models(const measure *m)
     return count;
 }
 
-/* The place of an owner's model among all. */
+/* The index of an owner's model. */
 static uint32_t model_index(const measure *m, noh_gl_site owner)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
@@ -63,7 +63,7 @@ static uint32_t model_index(const measure *m, noh_gl_site owner)
     return index;
 }
 
-/* A model whose finer levels come later. */
+/* A model whose finer levels are loaded later. */
 NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse,
                                        void *room, noh_gl_model *model)
 {
@@ -120,7 +120,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
 }
 
-/* The palettes, and the rows of places, of one kind's actors for one mesh. */
+/* Palettes and transform rows for one mesh of all actors of a kind. */
 static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
 {
     const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
@@ -130,7 +130,7 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
     noh_gl_skin_plan plan;
     noh_result result;
     void *memory;
-    (void)noh_gl_site_coarse(m->desc, m->plan, site, &mesh); /* palettes are the same in all levels */
+    (void)noh_gl_site_coarse(m->desc, m->plan, site, &mesh); /* all levels have the same palettes */
     result = noh_gl_skin_plan_make(&d, m->caps, &plan, error);
     if (result != NOH_OK) {
         return result;
@@ -140,7 +140,7 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
     return item ? noh_gl_skin_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &item->skin, error) : NOH_OK;
 }
 
-/* ---- the arrays of objects ---- */
+/* ---- arrays of objects ---- */
 
 static void carve_kinds(measure *m)
 {
@@ -173,7 +173,7 @@ static int may_drop_influences(const noh_stage_desc *desc, const noh_stage_plan 
     return skinned == 1u && fewer == 1u;
 }
 
-/* What a stage's renderer and its shaders are made with, but for the meshes. */
+/* The desc of the stage's renderer and shaders, without meshes. */
 static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_stage_plan *plan)
 {
     noh_gl_renderer_desc d;
@@ -191,7 +191,7 @@ static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_
     return d;
 }
 
-/* Of the renderer of all meshes. Beyond the limit, its create says so. */
+/* Variants of the renderer of all meshes. noh_gl_renderer_create reports too many. */
 NOH_NEVER_INLINE static size_t variants_size(const measure *m)
 {
     const noh_gl_renderer_desc d = renderer_desc(m->desc, m->plan);
@@ -214,7 +214,7 @@ static void carve_head(measure *m)
     const size_t variants_bytes = variants_size(m);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
-    if (m->gl) { /* carved for a real stage: init put the device into a copy */
+    if (m->gl) { /* a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
         gl->models = of;
@@ -244,7 +244,7 @@ static void carve_light(measure *m)
     m->gl->light = light;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole stage ---- */
 
 static noh_mesh mesh_for_renderers(const measure *m, noh_gl_site site, const noh_gl_model *model)
 {
@@ -307,7 +307,7 @@ static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *cap
     (void)visit(&m, NULL);
 }
 
-/* ---- made, deleted, made again ---- */
+/* ---- life cycle ---- */
 
 static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, const noh_gl_shader_desc *own,
                                 const noh_gl_device *device, void *memory, size_t bytes, noh_gl_renderer *out,
@@ -348,7 +348,7 @@ static void destroy(noh_stage *stage)
     let_go_meshes(stage, &gl->device);
 }
 
-/* The context is gone, and with it the objects: only the ledger is told. */
+/* The context is lost with its objects: only update the ledger. */
 static void forget(noh_stage *stage)
 {
     noh_stage_gl *gl = stage->gpu;
@@ -453,7 +453,7 @@ int noh_gl_any_weight(const float *weights, uint32_t count)
     return 0;
 }
 
-/* What its expression wrinkles, for crowds; alone it is given by the draw. */
+/* Wrinkles of an actor's expression, for crowds. For an actor drawn alone the draw sets them. */
 static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
 {
     float regions[NOH_WRINKLE_REGIONS];
@@ -464,7 +464,7 @@ static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, 
     }
 }
 
-/* One actor's mesh: its weights and its place. */
+/* Upload one actor's mesh: its weights and transform. */
 static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, const noh_stage_actor *actor,
                          const noh_stage_shown *shown, int has_user, const float *weights)
 {
@@ -487,7 +487,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     }
 }
 
-/* Palettes of all meshes of one actor. Meshes of one skin take the same matrices. */
+/* Upload palettes for all meshes of one actor. Meshes with the same skin share matrices. */
 static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrices)
 {
     const noh_gl_item *items = ((const noh_stage_gl *)s->gpu)->kinds[k - s->kinds].items;
@@ -526,7 +526,7 @@ static void upload(noh_stage *s)
     }
 }
 
-/* ---- what is on the GPU, for tools ---- */
+/* ---- access to GPU objects ---- */
 
 noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, const noh_stage_plan *plan,
                                 noh_gl_morph_plan *out, noh_error *error)
@@ -560,7 +560,7 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     }
     shown = &stage->shown[a - stage->actors];
     if (index >= k->plan->mesh_count || shown->frame != stage->frame || !shown->views) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "an actor has no such mesh, or no view saw it in the last frame",
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor has no such mesh, or no view of the last frame saw it",
                         index, k->plan->mesh_count);
     }
     item = &((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].items[index];
@@ -578,10 +578,11 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
 const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init,        destroy,   restore,
                                         pose,          upload,     noh_gl_load, noh_gl_use };
 
-/* ---- shaders of a game's own ---- */
+/* ---- shaders of your own ---- */
 
 size_t noh_stage_shader_size(const noh_stage *stage)
 {
+    NOH_ASSERT(stage && stage->gpu);
     const noh_stage_gl *gl = stage->gpu;
     noh_arena arena = noh_arena_measure();
     (void)noh_arena_carve(&arena, sizeof(noh_stage_shader), 16);
@@ -592,13 +593,13 @@ size_t noh_stage_shader_size(const noh_stage *stage)
 noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
                                    char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error)
 {
+    NOH_ASSERT(stage && stage->gpu && desc && shader);
     const noh_stage_gl *gl = stage->gpu;
     noh_gl_device device;
     noh_arena arena;
     noh_stage_shader *made;
     void *variants;
     noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
-    NOH_ASSERT(gl && desc && shader);
     if (result != NOH_OK) {
         return result;
     }

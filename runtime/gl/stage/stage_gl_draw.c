@@ -27,7 +27,7 @@ static const noh_stage_actor *actor_at(const drawing *d, uint32_t place)
     return &d->k->actors[d->k->order[place]];
 }
 
-/* The textures that an actor wears. */
+/* The textures of an actor. */
 static const noh_gl_texture *pictures_of(const drawing *d, uint32_t place)
 {
     return d->on_gl->pictures + (size_t)actor_at(d, place)->look.texture_set * d->k->desc->mesh->texture_count;
@@ -50,7 +50,7 @@ static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
     return d->k->plan->levels[level].mesh_levels[mesh];
 }
 
-/* What an actor's expression wrinkles on a mesh: set for the next draw. */
+/* Set the wrinkles of an actor's expression on a mesh, for the next draw. */
 static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_mesh *m = &d->k->meshes[mesh];
@@ -64,7 +64,7 @@ static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
     noh_gl_draw_wrinkle_look(d->renderer, look->wrinkle_models, look->smoothed);
 }
 
-/* One actor's mesh, at one level, with a share of the pixels. */
+/* Draw one actor's mesh at one level, in a share of the pixels. */
 static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
 {
     const noh_gl_item *item = &d->on_gl->items[mesh];
@@ -80,8 +80,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     memcpy(world, shown->world, sizeof world);
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
-    if (is_morphed && !noh_gl_any_weight(weights, m->mesh.header->target_count))
-        morph.touched = 0; /* nothing is there */
+    if (is_morphed && !noh_gl_any_weight(weights, m->mesh.header->target_count)) morph.touched = 0; /* no deltas */
     noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
     noh_gl_draw_user(d->renderer, d->s->desc.user_values ? actor_at(d, place)->look.user : NULL);
     set_wrinkles(d, mesh, place);
@@ -89,7 +88,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
                      &lod, pictures_of(d, place), d->pass);
 }
 
-/* Of a fading actor: the new level and the old one, each with its share of the pixels. */
+/* Draw a fading actor: the new level and the old one, each in its share of the pixels. */
 static uint32_t shares_of(const drawing *d, uint32_t mesh, uint32_t place, noh_gl_share shares[2])
 {
     const noh_stage_shown *shown = shown_at(d, place);
@@ -109,13 +108,13 @@ static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
     for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, place, shares[i].level, shares[i].from, shares[i].to);
 }
 
-/* Streams are of one instance: no other can be drawn with it. */
+/* Streams belong to one instance: it is drawn alone. */
 static int has_streams(const noh_gl_item *item)
 {
     return item->model->morph && noh_gl_morph_plan_of(item->model->morph)->path == NOH_MORPH_STREAMS;
 }
 
-/* Neighbours of a run that the view sees and that wear the same, in one call. */
+/* Draw visible neighbours of a run with the same textures in one call. */
 static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
 {
     const uint32_t caps = noh_stage_influence_levels(d->k);
@@ -129,7 +128,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
         for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
         return;
     }
-    if (item->model->morph) { /* of any tile: it says where the texture is */
+    if (item->model->morph) { /* of any tile: it names the texture */
         const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool, 0);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
@@ -167,7 +166,7 @@ static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
     }
 }
 
-/* ---- what blends: the meshes of a figure from far to near ---- */
+/* ---- blended meshes, from far to near ---- */
 
 static void move_point(const float *matrix, const float *p, float out[3])
 {
@@ -177,7 +176,7 @@ static void move_point(const float *matrix, const float *p, float out[3])
     }
 }
 
-/* The middle of a mesh's bounds as its joints carry it, each as much as any other. */
+/* The centre of a mesh's bounds, moved by the mean of its joints. */
 static void move_skinned(const noh_character *ch, const noh_skin *skin, const float middle[3], float out[3])
 {
     const float *palette = noh_character_pose_palette(ch, ch->time.to_pose);
@@ -194,7 +193,7 @@ static void move_skinned(const noh_character *ch, const noh_skin *skin, const fl
     for (int i = 0; i < 3; i++) out[i] = sum[i] / (float)count;
 }
 
-/* The square of its distance from the eye. */
+/* The squared distance of a mesh from the eye. */
 static float distance_of(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_mesh *m = &d->k->meshes[mesh];
@@ -214,7 +213,7 @@ static float distance_of(const drawing *d, uint32_t mesh, uint32_t place)
     return square;
 }
 
-/* One actor's meshes of a priority. Of those that are equally far, the first in the pack is drawn first. */
+/* Draw one actor's meshes of a priority. At equal distance the first in the pack is drawn first. */
 static void draw_sorted(const drawing *d, const uint8_t *meshes, uint32_t count, uint32_t place, uint32_t run)
 {
     float distances[NOH_STAGE_MESHES_MAX];
@@ -255,7 +254,7 @@ static void draw_meshes(const drawing *d, const uint8_t *meshes, uint32_t count)
     }
 }
 
-/* By priority; within one, of each actor from far to near, where there are several meshes. A mesh alone is drawn for
+/* Draw by priority, and within a priority each actor's meshes from far to near. A priority with one mesh is drawn for
  * all actors of a run at once. */
 static void draw_blended(const drawing *d)
 {
@@ -304,15 +303,15 @@ static void draw_pass(drawing *d, int pass)
     }
 }
 
-/* What a draw of a view needs. */
+/* Check that a view can be drawn. */
 static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colour, noh_error *error)
 {
     if (stage->phase != NOH_STAGE_IDLE || view >= stage->view_count) {
-        return noh_fail(error, NOH_ERR_ARG, "no such view in the last frame, or a frame has begun and not ended", view,
-                        stage->view_count);
+        return noh_fail(error, NOH_ERR_ARG, "the last frame has no such view, or noh_stage_frame_end was not called",
+                        view, stage->view_count);
     }
     if (stage->desc.light && is_colour && !((const noh_stage_gl *)stage->gpu)->lighting) {
-        return noh_fail(error, NOH_ERR_ARG, "the stage is lit, and noh_stage_set_lighting was not called", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "the stage has a light: call noh_stage_set_lighting before drawing", 0, 0);
     }
     return NOH_OK;
 }
@@ -349,8 +348,7 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
     NOH_ASSERT(stage && stage->gpu);
     if ((stage->desc.without_shader && !shader) || (stage->desc.without_depth && pass == NOH_PASS_DEPTH)) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "the desc of the stage leaves out what this draw needs: without_shader, or "
-                        "without_depth",
+                        "this draw needs shaders that noh_stage_desc excludes: without_shader or without_depth",
                         (uint64_t)pass, 0);
     }
     result = check_draw(stage, view, pass != NOH_PASS_DEPTH, error);
@@ -430,7 +428,7 @@ noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *err
     noh_result result;
     NOH_ASSERT(gl);
     if (!gl->light || !gl->light->framebuffer) {
-        return noh_fail(error, NOH_ERR_ARG, "the desc of the stage has no light with a shadow map", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "the stage has no shadow map: set noh_gl_light_desc.shadow_px", 0, 0);
     }
     noh_gl_light_begin_shadow(gl->light);
     result = noh_stage_draw(stage, NOH_PASS_DEPTH, view, NULL, error);

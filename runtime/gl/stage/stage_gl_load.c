@@ -1,8 +1,8 @@
-/* stage_gl_load.c: levels of a mesh that come later: room for them, their upload, and what is drawn meanwhile.
+/* stage_gl_load.c: LOD levels that are loaded later: room for them, their upload, and what is drawn meanwhile.
  *
- * Buffers and tables have the size of the finest level of the plan. Of a mesh, the coarse levels are a prefix, so that
- * they are drawn while the rest arrives. Of targets they are not, where a level leaves targets out: the coarse level
- * has tables of its own, and the accumulators change over to the fine ones once these are whole. */
+ * Buffers and tables have the size of the finest level of the plan. The coarse levels of a mesh are a prefix, drawn
+ * while the rest is uploaded. Targets are different, since a level may leave some out: the coarse level has tables of
+ * its own, and the accumulators switch to the fine tables once these are complete. */
 #include <string.h>
 
 #include "gl/draw/gl_draw.h"
@@ -27,7 +27,7 @@ size_t noh_gl_room_size(const noh_mesh *mesh)
     return levels_of(mesh) * sizeof *mesh->header + mesh->header->submesh_count * sizeof *mesh->submeshes;
 }
 
-/* A chunk of a mesh with headers and the finest level's submeshes. All else would begin where the chunk does. */
+/* A chunk of a mesh with headers and the submeshes of the finest level. All other offsets are 0. */
 noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory)
 {
     noh_mesh_header *headers = memory;

@@ -1,5 +1,5 @@
-/* stage_gl_pictures.c: the textures of all kinds and of their texture sets. One of a pack is on the GPU once: the first
- * set that has it owns it, the others hold a copy of its name. */
+/* stage_gl_pictures.c: the textures of all kinds and of their texture sets. The GPU holds each texture of a pack
+ * once: the first set that has it owns it, the others copy its name. */
 #include "gl/stage/stage_gl_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
@@ -22,7 +22,7 @@ static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site w
     return &kinds[where.kind].pictures[where.set * desc->kinds[where.kind].mesh->texture_count + where.texture];
 }
 
-/* Whether a set has the texture of this index in a pack; *texture is then the one that it stands for. */
+/* Whether a set has the texture with this index in a pack; *texture is then the one that it replaces. */
 static int has(const noh_kind_desc *kind, uint32_t set, const noh_pack *pack, uint32_t index, uint32_t *texture)
 {
     const noh_pack *from = set && kind->texture_sets[set - 1u].pack ? kind->texture_sets[set - 1u].pack : kind->mesh;
@@ -37,7 +37,7 @@ static int has(const noh_kind_desc *kind, uint32_t set, const noh_pack *pack, ui
     return 0;
 }
 
-/* The first site that has the texture of a site: that one, or one before it. */
+/* The first site with the same texture as a site; may be the site itself. */
 static site owner_of(const noh_stage_desc *desc, site where)
 {
     const noh_pack *pack;
@@ -64,7 +64,7 @@ static int owns(const noh_stage_desc *desc, site where, noh_texture *texture)
     return owner.kind == where.kind && owner.set == where.set && owner.texture == where.texture;
 }
 
-/* The next site of all kinds up to `end`; 0 at the end. Begin with texture UINT32_MAX. */
+/* Advance to the next site of all kinds before `end`; 0 at the end. Begin with texture UINT32_MAX. */
 static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
 {
     where->texture++;

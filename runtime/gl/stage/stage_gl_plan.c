@@ -1,4 +1,4 @@
-/* stage_gl_plan.c: what a stage takes on the GPU, and on the CPU for that; which kinds share a mesh. */
+/* stage_gl_plan.c: memory of a stage on the GPU, and on the CPU for it; which kinds share a mesh. */
 #include <string.h>
 
 #include "gl/stage/stage_gl_internal.h"
@@ -74,7 +74,7 @@ static uint32_t pool_count(const noh_stage_plan *plan, uint32_t kind)
     return noh_stage_pools(&plan->kinds[kind], levels, slots);
 }
 
-/* Pools of all sites that draw a mesh: where there are too many, nobody shares it. */
+/* Pools of all sites that draw a mesh. If there are too many, no site shares it. */
 static uint32_t count_pools(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site of)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
@@ -115,7 +115,7 @@ static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, no
     }
 }
 
-/* Whether the path cpu may finish vertices. One renderer draws all of a stage, so it is all of them or none. */
+/* Whether the path cpu may finish vertices. One renderer draws the whole stage, so it applies to all meshes or none. */
 static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };

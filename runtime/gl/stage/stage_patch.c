@@ -16,17 +16,17 @@
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_patch_internal.h"
 
-#define TRIANGLES_SENT 64u /* at once: what fits on the stack */
+#define TRIANGLES_SENT 64u /* uploaded at a time: they are on the stack */
 #define TRIANGLES_MAX (1u << 20)
 
-/* A mark's triangles at a level. */
+/* The triangles of a decal at a level. */
 struct noh_stage_patch {
-    noh_decal of;          /* mesh NOH_NONE: it has not grown. Of what moves nothing, such as its age, a copy is old */
-    uint32_t mesh_level;   /* that was drawn */
-    uint32_t first, count; /* of the pool, rising */
+    noh_decal of;          /* mesh NOH_NONE: nothing has grown. Its age and colour may be out of date */
+    uint32_t mesh_level;   /* level of the mesh, as it was drawn */
+    uint32_t first, count; /* in the pool, in rising order */
 };
 
-/* ---- what there is ---- */
+/* ---- life cycle ---- */
 
 static size_t carve(noh_stage_patches *p, uint32_t capacity, uint32_t triangles, noh_arena *arena)
 {
@@ -115,7 +115,7 @@ static int is_same_mark(const noh_decal *a, const noh_decal *b)
            memcmp(a->normal, b->normal, sizeof a->normal) == 0;
 }
 
-/* A level and the other one. */
+/* A level, and the other one that is kept. */
 typedef struct growth {
     noh_stage_patches *p;
     noh_stage_patch_level *to, *other;
@@ -143,7 +143,7 @@ static void sort(uint32_t *values, uint32_t count)
     }
 }
 
-/* Where it grows from: at another level it may have grown already. */
+/* The triangle to grow from, found by the patch at the other level if there is one. */
 static uint32_t first_triangle(const growth *g, uint32_t mark, uint32_t item, const noh_mesh *mesh)
 {
     const noh_decal *decal = &g->ring->decals[mark];
@@ -174,7 +174,7 @@ static void grow(const growth *g, uint32_t mark, uint32_t item, const noh_mesh *
     g->p->left_out += patch.left_out;
 }
 
-/* What is no longer of its mark has not grown, also when the same mark is struck again later. */
+/* Forget patches whose decals are gone, so that they do not reappear if the same decal is struck again. */
 static void forget_others(const growth *g)
 {
     for (uint32_t i = 0; i < g->p->capacity; i++) {
@@ -183,7 +183,7 @@ static void forget_others(const growth *g)
     }
 }
 
-/* Only patches that are still of their marks stay in the pool. */
+/* Keep only the patches of present decals in the pool. */
 static void compact(const growth *g)
 {
     uint32_t from = 0;
@@ -204,9 +204,9 @@ static void compact(const growth *g)
     }
 }
 
-/* ---- what is drawn ---- */
+/* ---- index buffer and corners ---- */
 
-/* Both rise; what is in both is there once. numbers: has room for all */
+/* Merge two rising lists, without duplicates, into the first one, which has room for both. */
 static uint32_t merge(uint32_t *numbers, uint32_t count, const uint32_t *more, uint32_t more_count)
 {
     uint32_t common = 0, at = 0, total;
@@ -224,7 +224,7 @@ static uint32_t merge(uint32_t *numbers, uint32_t count, const uint32_t *more, u
     return total;
 }
 
-/* The table of a level, a row at a time. */
+/* The texture of corners of a level, sent row by row. */
 typedef struct table {
     const growth *g;
     uint32_t row[NOH_PATCH_WIDTH];
@@ -249,7 +249,7 @@ static void put(table *t, uint32_t value)
     if (t->at % NOH_PATCH_WIDTH == 0) send_row(t);
 }
 
-/* Of the marks of one mesh: the last corners of their triangles, by which a fragment knows its own. */
+/* For the decals of one mesh: the last corners of their triangles, by which fragments identify triangles. */
 static void put_corners(table *t, uint32_t item, uint32_t first, uint32_t count)
 {
     const growth *g = t->g;
@@ -289,7 +289,7 @@ static void send_corners(const growth *g)
     while (t.at % NOH_PATCH_WIDTH) put(&t, UINT32_MAX);
 }
 
-/* Of the other arrays than a mesh's own: the buffer is bound to vertex array 0. */
+/* With vertex array 0 bound, so that the arrays of meshes keep their index buffers. */
 static void send_indices(const growth *g, const noh_mesh *mesh, uint32_t first, uint32_t count)
 {
     const noh_gl_api *gl = g->p->drawable.gl;
@@ -307,7 +307,7 @@ static void send_indices(const growth *g, const noh_mesh *mesh, uint32_t first, 
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
-/* The marks of one mesh, behind those that are there. first: of the level's numbers. Returns how many triangles. */
+/* Append the decals of one mesh. first: index in the numbers of the level. Returns the number of triangles. */
 static uint32_t add_mesh(const growth *g, uint32_t item, const uint8_t *marks, uint32_t count, uint32_t first)
 {
     const noh_mesh mesh = noh_gl_alone_level(g->alone, item, g->to->level);
@@ -326,7 +326,7 @@ static uint32_t add_mesh(const growth *g, uint32_t item, const uint8_t *marks, u
     return total;
 }
 
-/* Whether a node before draws the same mesh of the pack: its marks are there already. */
+/* Whether an earlier node draws the same mesh of the pack, so that its decals are already in the buffer. */
 static int came_before(const noh_gl_alone *alone, uint32_t item)
 {
     for (uint32_t i = 0; i < item; i++) {
@@ -335,7 +335,7 @@ static int came_before(const noh_gl_alone *alone, uint32_t item)
     return 0;
 }
 
-/* Whether all that is to be drawn is in the buffer. */
+/* Whether the buffer has everything to draw. */
 static int is_current(const growth *g)
 {
     uint8_t marks[NOH_DECALS_MAX];
@@ -369,7 +369,7 @@ static void make_current(const growth *g)
     send_corners(g);
 }
 
-/* The place of an actor's level; what was drawn last keeps its own. */
+/* The index in levels[] for a level of the actor. The level drawn last is not replaced. */
 static uint32_t place_of(noh_stage_patches *p, uint32_t level)
 {
     uint32_t at = p->levels[0].level == level ? 0u : 1u;

@@ -8,11 +8,11 @@
 extern "C" {
 #endif
 
-#define NOH_PATCH_WIDTH 256u /* texels, of the table of corners */
+#define NOH_PATCH_WIDTH 256u /* texels in a row of the texture */
 #define NOH_PATCH_ROWS(capacity, triangles) \
-    (((capacity) + 1u + (triangles) + NOH_PATCH_WIDTH - 1u) / NOH_PATCH_WIDTH) /* of a level */
+    (((capacity) + 1u + (triangles) + NOH_PATCH_WIDTH - 1u) / NOH_PATCH_WIDTH) /* for a level */
 
-/* On the GPU: indices and a table of corners, of two levels. Neither may be 0. */
+/* The exact bytes on the GPU: indices and a texture of corners, for two levels. Neither argument may be 0. */
 #define NOH_STAGE_PATCHES_BYTES(capacity, triangles) \
     (24u * (uint64_t)(triangles) + 8u * NOH_PATCH_WIDTH * NOH_PATCH_ROWS(capacity, triangles))
 

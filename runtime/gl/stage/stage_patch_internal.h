@@ -1,5 +1,5 @@
-/* stage_patch_internal.h (private to stage_gl/): between stage_decal.c, which draws marks, and stage_patch.c, which
- * knows where they have grown. */
+/* stage_patch_internal.h (private to gl/stage/): between stage_decal.c, which draws decals, and stage_patch.c, which
+ * knows the triangles over which they have grown. */
 #ifndef NOH_STAGE_GL_STAGE_PATCH_INTERNAL_H
 #define NOH_STAGE_GL_STAGE_PATCH_INTERNAL_H
 
@@ -10,19 +10,19 @@
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 
-/* The marks of one mesh of the pack that show, the oldest first: marks[returned], places in the ring. */
+/* The visible decals on one mesh of the pack, the oldest first: marks[returned] are indices in the ring. */
 uint32_t noh_gl_decals_of(const noh_decals *ring, uint32_t mesh, uint8_t marks[NOH_DECALS_MAX]);
 
-/* patches  NULL: marks are looked up alone */
+/* patches  NULL: decals are projected */
 noh_result noh_gl_decals_draw(noh_stage_decals *decals, noh_stage_patches *patches, uint32_t view, noh_actor actor,
                               const noh_decals *ring, noh_error *error);
 
-/* Before the meshes of a draw. */
+/* Call it before the meshes of a draw. */
 void noh_gl_patches_begin(noh_stage_patches *patches, const noh_gl_alone *alone);
 
-/* The triangles of one mesh's marks at one of the actor's levels, grown if they were not.
- * row      where the first mark begins in patches->corners
- * returns  0: there are none */
+/* Get the triangles of the decals on one mesh at one LOD level of the actor. They grow now if they have not yet.
+ * row      where the first decal begins in the texture of corners
+ * returns  0: there are no triangles */
 int noh_gl_patches_grow(noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh, uint32_t level,
                         const noh_decals *ring, noh_gl_triangles *out, uint32_t *row);
 

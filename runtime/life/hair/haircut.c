@@ -50,11 +50,6 @@ float noh_haircut_fade(float pixels_per_metre)
     return !(fade > 0.0f) ? 0.0f : fade < 1.0f ? fade : 1.0f;
 }
 
-float noh_haircut_widen(const noh_haircut *cut, uint32_t strips)
-{
-    return strips ? (float)cut->header->strip_count / (float)strips : 1.0f;
-}
-
 /* ---- a vertex ---- */
 
 /* A number in 0..1 for a strip: from a sequence in which any interval is evenly distributed (as in common_fade.glsl),

@@ -16,13 +16,10 @@ uint32_t noh_haircut_strips(const noh_haircut *cut, float pixels_per_metre);
 /* Get the opacity of strips over hair painted on the head: 1 from 50 pixels per metre up, 0 at 25. */
 float noh_haircut_fade(float pixels_per_metre);
 
-/* Get the width factor with which `strips` strips cover as much as all of them. 1 for 0. */
-float noh_haircut_widen(const noh_haircut *cut, uint32_t strips);
-
-/* Compute a point of the centre line of a strip and its tangent, as the vertex shader does (hair.vert), within the
- * precision of the GPU's sines.
- * shapes  points: from noh_hair_points
- * ranges  strip below noh_pack_hair_header.strip_count; along 0 the root, 1 the tip */
+/* A point of the middle line of a strip, and where the strip goes there: what the vertex shader computes (hair.vert),
+ * within the precision of the GPU's sines.
+ * shapes  points: of noh_hair_points
+ * ranges  strip below noh_pack_hair_header.strip_count; along 0 the root to 1 the tip */
 void noh_haircut_vertex(const noh_haircut *cut, const float *points, uint32_t strip, float along, float position[3],
                         float tangent[3]);
 

@@ -13,11 +13,11 @@
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
 
-#define SHARE 0.67f        /* of the light that a disc takes away */
-#define FAINTEST 0.02f     /* darkness that is not worth a spot */
-#define SPREAD 1.6f        /* of a spot to where nothing is left, of the body above it */
-#define HEIGHT_SPREAD 1.0f /* what the height adds to that */
-#define REACH 4.0f         /* of its radius, up to which a body is looked at */
+#define SHARE 0.67f        /* drawn of the light that a disc blocks */
+#define FAINTEST 0.02f     /* blobs below this darkness are left out */
+#define SPREAD 1.6f        /* size of a blob relative to the body above it */
+#define HEIGHT_SPREAD 1.0f /* its growth with the height of the body */
+#define REACH 4.0f         /* greatest height of a body, in radii */
 
 /* ---- the rig ---- */
 
@@ -28,7 +28,7 @@ static float size_of(const noh_blob_body *b)
     return square;
 }
 
-/* Box of a space that a matrix takes to the body's. */
+/* Transform a box (minimum, maximum) to the space of the body. */
 static void set_box(noh_blob_body *b, const float *box, const float matrix[12])
 {
     for (int row = 0; row < 3; row++) {
@@ -41,7 +41,7 @@ static void set_box(noh_blob_body *b, const float *box, const float matrix[12])
     }
 }
 
-/* A larger box replaces one of the same joint, or, where there is no room, the smallest of all. */
+/* Add a box. It replaces a smaller one of the same joint, or the smallest of all if the rig is full. */
 static void keep(noh_blob_rig *rig, const noh_blob_body *body)
 {
     uint32_t to = rig->body_count;
@@ -110,12 +110,12 @@ noh_result noh_blob_rig_make(const noh_kind_desc *kind, noh_blob_rig *rig, noh_e
     for (uint32_t i = 0; !pack->node_count && i < pack->mesh_count; i++) {
         if (is_wanted(kind, i)) keep_node(rig, kind, i, NULL);
     }
-    return rig->body_count ? NOH_OK : noh_fail(error, NOH_ERR_NOT_FOUND, "the kind draws nothing", 0, 0);
+    return rig->body_count ? NOH_OK : noh_fail(error, NOH_ERR_NOT_FOUND, "blobs: the kind has no mesh to draw", 0, 0);
 }
 
 /* ---- blobs ---- */
 
-/* The ellipse of a box from above: the half axes of its moments in x and z. */
+/* The ellipse of a box seen from above: half axes of its second moments in x and z. */
 static void ellipse(const float half[3][3], float along[2], float across[2])
 {
     float xx = 0.0f, xz = 0.0f, zz = 0.0f, mean, root, large, small, axis[2], length;
@@ -140,7 +140,7 @@ static void ellipse(const float half[3][3], float along[2], float across[2])
     across[0] = -axis[1] * small, across[1] = axis[0] * small;
 }
 
-/* A direction of the plane of x and z, of a length grown by `more`, on a slope. */
+/* Put an axis in the xz plane on a slope, `more` longer. */
 static void lay(const float flat[2], float more, const float normal[3], float out[3])
 {
     const float length = noh_sqrt(flat[0] * flat[0] + flat[1] * flat[1]);
@@ -150,7 +150,7 @@ static void lay(const float flat[2], float more, const float normal[3], float ou
     out[1] = -(normal[0] * out[0] + normal[2] * out[2]) / normal[1];
 }
 
-/* 1: there is one. */
+/* Returns 0 if there is no blob. */
 static int blob_of(const float centre[3], const float half[3][3], const noh_ground *ground, noh_blob *out)
 {
     float below = 0.0f, along[2], across[2], normal[3], radius, gap, distance;
@@ -171,7 +171,7 @@ static int blob_of(const float centre[3], const float half[3][3], const noh_grou
     return 1;
 }
 
-/* Into the world. */
+/* Transform a box to the world. */
 static void move_body(const noh_blob_body *b, const float m[12], float centre[3], float half[3][3])
 {
     for (int row = 0; row < 3; row++) {

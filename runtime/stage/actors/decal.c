@@ -11,8 +11,8 @@
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
 
-#define MERGE 0.25f /* of a size: a mark so close to another takes its place */
-#define STEEP 0.98f /* a normal so near to +Y has no up of its own */
+#define MERGE 0.25f /* of a size: a decal replaces another one that close */
+#define STEEP 0.98f /* square of y from which a normal is vertical */
 
 /* ---- the ring ---- */
 
@@ -81,7 +81,7 @@ float noh_decal_alpha(const noh_decals *decals, uint32_t index)
 
 /* ---- striking ---- */
 
-/* Of a triangle of a mesh, as it is shown. 0: there is none of that index, or it has no area. */
+/* The normal of a triangle. Returns 0 if there is no such triangle, or it has no area. */
 static int triangle_normal(const noh_mesh *mesh, uint32_t triangle, float normal[3])
 {
     float a[3], b[3], square;
@@ -96,7 +96,7 @@ static int triangle_normal(const noh_mesh *mesh, uint32_t triangle, float normal
     return 1;
 }
 
-/* Across the normal, so that up is nearest to +Y, or to -Z on what lies flat; then turned. */
+/* Set `right` so that up is nearest to +Y, or to -Z on horizontal surfaces; then roll. */
 static void set_right(noh_decal *d, float roll)
 {
     const float *n = d->normal;
@@ -112,7 +112,7 @@ static void set_right(noh_decal *d, float roll)
     for (int i = 0; i < 3; i++) d->right[i] = c * right[i] + s * up[i];
 }
 
-/* The place of a new mark: that of one close by, or of the oldest. */
+/* The entry for a new decal: a close one, or the oldest. */
 static uint32_t place_of(noh_decals *decals, const noh_decal *mark)
 {
     uint32_t at;
@@ -128,7 +128,7 @@ static uint32_t place_of(noh_decals *decals, const noh_decal *mark)
     return at;
 }
 
-/* The level of a mesh of the pack that the actor was shown at. 0: none. */
+/* A mesh of the pack at the LOD level that was shown. Returns 0 if it was not shown. */
 static int shown_mesh(const noh_stage *s, noh_actor actor, uint32_t pack_mesh, noh_mesh *out)
 {
     noh_stage_kind *k;
@@ -152,11 +152,12 @@ noh_result noh_decals_strike(noh_decals *decals, const noh_stage *stage, const n
     NOH_ASSERT(decals && stage && hit && desc);
     if (!(desc->size > 0.0f && desc->size <= NOH_NUMBER_MAX) || !(desc->roughness >= 0.0f && desc->roughness <= 1.0f) ||
         desc->roll_rad - desc->roll_rad != 0.0f) {
-        return noh_fail(error, NOH_ERR_ARG, "a decal's size, roughness or roll is out of range", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "decal: size, roughness or roll of the desc is out of range", 0, 0);
     }
     memset(&mark, 0, sizeof mark);
     if (!shown_mesh(stage, hit->actor, hit->mesh, &mesh) || !triangle_normal(&mesh, hit->triangle, mark.normal)) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone or was not shown, or it has no such triangle",
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "decal: the hit actor is gone or was not shown in the last frame, or has no such triangle",
                         hit->triangle, 0);
     }
     mark.mesh = hit->mesh;

@@ -8,10 +8,10 @@
 extern "C" {
 #endif
 
-/* What is wrong with a ring that comes from outside, a constant text; NULL: it is good. */
+/* Check a ring from an untrusted source. Returns a constant text that says what is wrong; NULL: nothing. */
 const char *noh_decals_check(const noh_decals *decals);
 
-/* 0..1, by its age. */
+/* 0..1, from the age of the decal. */
 float noh_decal_alpha(const noh_decals *decals, uint32_t index);
 
 #ifdef __cplusplus

@@ -9,9 +9,9 @@
 #include "core/base/math_internal.h"
 #include "life/physics/vector_internal.h"
 
-#define FACING 0.2f        /* as shaders_es/decal_fragment.glsl has it */
-#define SPHERE_SQUARE 2.0f /* of sizes: through the corners of the square */
-#define SHRINKS_MAX 24     /* of the square of the reach, by half, where there is no room */
+#define FACING 0.2f        /* cosine; as in shaders_es/decal_fragment.glsl */
+#define SPHERE_SQUARE 2.0f /* squared radius in sizes: through the corners of the square */
+#define SHRINKS_MAX 24     /* times that the squared reach is halved while there is too little room */
 
 void noh_decal_uv(const noh_decal *decal, const float bind_position[3], float uv[2])
 {
@@ -30,7 +30,7 @@ static void corners_of(const noh_mesh *mesh, uint32_t triangle, const float *p[3
     for (uint32_t i = 0; i < 3; i++) p[i] = mesh->positions + 3u * (size_t)noh_mesh_index(mesh, 3u * triangle + i);
 }
 
-/* From a point to a segment that begins at it plus `from`; squared. */
+/* Squared distance from the origin to a segment that begins at `from`. */
 static float segment_square(const float from[3], const float to[3])
 {
     float along[3], rest[3], square, t;
@@ -42,7 +42,7 @@ static float segment_square(const float from[3], const float to[3])
     return noh_dot3(rest, rest);
 }
 
-/* From the centre to the nearest place of a triangle, squared; -1: it has no area, or faces elsewhere. */
+/* Squared distance from the centre to a triangle; -1: it has no area, or faces elsewhere. */
 static float near_square(const noh_decal *decal, const float *const p[3])
 {
     float to[3][3], ab[3], ac[3], normal[3], length, least, side[3];
@@ -63,7 +63,7 @@ static float near_square(const noh_decal *decal, const float *const p[3])
     return inside ? noh_dot3(to[0], normal) * noh_dot3(to[0], normal) / length : least;
 }
 
-/* Whether a triangle's box meets that of a sphere about the centre: most do not, and need no distance. */
+/* Whether the bounds of a triangle and of a sphere around the centre overlap. Most do not, and need no distance. */
 static int is_about(const noh_decal *decal, float radius, const float *const p[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -75,14 +75,14 @@ static int is_about(const noh_decal *decal, float radius, const float *const p[3
     return 1;
 }
 
-/* ---- what hangs together ---- */
+/* ---- connected triangles ---- */
 
 static int is_same_place(const float *a, const float *b)
 {
     return a == b || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
 }
 
-/* By two corners: one is a point alone. */
+/* Whether two triangles have two places in common. */
 static int share_edge(const noh_mesh *mesh, uint32_t a, uint32_t b)
 {
     const float *p[3], *q[3];
@@ -95,8 +95,7 @@ static int share_edge(const noh_mesh *mesh, uint32_t a, uint32_t b)
     return shared >= 2;
 }
 
-/* Move what hangs together with the first triangle behind it, in the order of steps from it. near_count: of
- * out->triangles */
+/* Move the triangles connected to the first one to the front, in breadth-first order. near_count: of out->triangles */
 static void spread(const noh_mesh *mesh, uint32_t near_count, noh_decal_patch *out)
 {
     uint32_t *t = out->triangles;
@@ -112,8 +111,8 @@ static void spread(const noh_mesh *mesh, uint32_t near_count, noh_decal_patch *o
     out->lone = near_count - out->count;
 }
 
-/* What comes as near as `reach`, as far as there is room, the triangle to grow from first. Returns how many come near;
- * 0: none to grow from. */
+/* Collect triangles within `reach` (squared), as many as there is room for, beginning with the one to grow from.
+ * Returns the number within reach; 0: none to grow from. */
 static uint32_t collect(const noh_decal *decal, const noh_mesh *mesh, uint32_t triangle, float reach,
                         noh_decal_patch *out)
 {
@@ -129,7 +128,8 @@ static uint32_t collect(const noh_decal *decal, const noh_mesh *mesh, uint32_t t
         square = near_square(decal, p);
         if (!(square >= 0.0f && square <= reach)) continue;
         other = t;
-        if (triangle == NOH_NONE && (first == NOH_NONE || square < best)) { /* the first is one of the others now */
+        if (triangle == NOH_NONE &&
+            (first == NOH_NONE || square < best)) { /* the previous best is an ordinary one now */
             other = first;
             first = t, best = square;
         }

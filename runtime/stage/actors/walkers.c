@@ -1,4 +1,4 @@
-/* walkers.c: what walkers know of their clips, and who walks. */
+/* walkers.c: measures the clips of walkers, and ties actors to agents. */
 #include "core/base/assert.h"
 #include "motion/anim/root_motion.h"
 #include "motion/anim/tracks.h"
@@ -24,12 +24,12 @@
 static noh_result check(const noh_walkers_desc *d, noh_error *error)
 {
     if (!d->walker_max || d->walker_max > NOH_CROWD_AGENTS_MAX || d->near_max > d->walker_max) {
-        return noh_fail(error, NOH_ERR_LIMIT, "there are no walkers, or more than the limit", 0, d->walker_max);
+        return noh_fail(error, NOH_ERR_LIMIT, "walker_max is 0 or above NOH_CROWD_AGENTS_MAX", 0, d->walker_max);
     }
     if (!(d->walk_speed >= 0.0f && d->walk_speed <= 1e6f) || !(d->run_speed >= 0.0f && d->run_speed <= 1e6f) ||
         !(d->turn_speed >= 0.0f && d->turn_speed <= 1e3f) || (d->near_max && !d->feet_part)) {
-        return noh_fail(error, NOH_ERR_ARG, "a speed of walkers is out of its range, or near_max is without feet_part",
-                        0, 0);
+        return noh_fail(error, NOH_ERR_ARG,
+                        "a speed of the walkers is out of range, or near_max is set without feet_part", 0, 0);
     }
     return NOH_OK;
 }
@@ -54,7 +54,7 @@ static const noh_stage_kind *kind_of(const noh_stage *stage, const noh_walkers_d
     return l && l->mode == NOH_LAYER_BASE && l->track_count >= clip_count && has_part ? k : NULL;
 }
 
-/* Where the root of a clip is on its way, from its start. */
+/* The displacement of the root of a clip from its start. */
 static void root_at(const noh_stage_kind *k, uint32_t clip, int64_t position, float at[2])
 {
     const noh_root_pose pose = noh_root_between(&k->set, &k->set.roots[clip], clip, NOH_LOOP_REPEAT, 0, position);
@@ -79,7 +79,7 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
     float end[2] = { 0.0f, 0.0f };
     c->clip = noh_clip_set_find(&k->set, noh_hash_name(name));
     if (!k->bank || c->clip == NOH_NONE || c->clip >= noh_stage_clip_count(k)) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of a walker's name", which, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip with the name in noh_walkers_desc", which, 0);
     }
     c->ticks = k->set.clips[c->clip].duration_ticks;
     if (k->set.roots && c->ticks) {
@@ -90,8 +90,8 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
     c->stride = speed > 0.0f ? speed * (float)c->ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) : way;
     if (which == WALKER_IDLE) return NOH_OK;
     if (!(c->stride > 1e-6f)) {
-        return noh_fail(error, NOH_ERR_ARG, "a clip for walkers does not move its root, and no speed is given", which,
-                        0);
+        return noh_fail(error, NOH_ERR_ARG, "the root of a walker's clip does not move: set walk_speed or run_speed",
+                        which, 0);
     }
     if (which == WALKER_WALK && way > 0.01f * c->stride) {
         forward[0] = end[0] / way;
@@ -100,7 +100,7 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
     return NOH_OK;
 }
 
-/* Steps of two clips are told by their markers; without these their phases mean nothing to each other. */
+/* Two clips can be blended only if sync markers show that they are in step. */
 static uint16_t are_in_step(const noh_walkers *w, const noh_stage_kind *k)
 {
     if (w->clips[WALKER_RUN].clip == NOH_NONE) return 0;
@@ -135,7 +135,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     const noh_stage_kind *k = kind_of(stage, desc, 1u + (desc->idle != NULL) + (desc->run != NULL));
     if (!k || (k->set.roots && !k->desc->root_told)) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "walkers want a kind with root_told, a base layer with a track for each clip, and their part",
+                        "walkers need root_told, a base layer with a track for each clip, and feet_part of their kind",
                         desc->kind, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
@@ -156,9 +156,9 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     return NOH_OK;
 }
 
-/* ---- who walks ---- */
+/* ---- actors and agents ---- */
 
-/* share: of a pass, at which clips begin. */
+/* share: the phase, 0..1, at which clips begin. */
 static noh_result start(const noh_walkers *w, const noh_stage_kind *k, noh_controller *c, uint32_t share,
                         noh_error *error)
 {
@@ -189,7 +189,7 @@ noh_result noh_walkers_put(noh_walkers *walkers, uint32_t index, noh_stage *stag
     noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result) return result;
     if (index >= walkers->walker_max || k != &stage->kinds[walkers->kind]) {
-        return noh_fail(error, NOH_ERR_ARG, "there is no such walker, or the actor is of another kind", index, 0);
+        return noh_fail(error, NOH_ERR_ARG, "index is not below walker_max, or the actor is of another kind", index, 0);
     }
     result = start(walkers, k, noh_character_controller(noh_stage_character(k, noh_stage_index(k, a))),
                    index * 2654435769u, error);
@@ -234,6 +234,6 @@ void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3])
 {
     NOH_ASSERT(walkers && by);
     for (uint32_t i = 0; i < walkers->walker_max; i++) {
-        noh_walker_at(walkers, i)->height -= by[1]; /* x and z move with the crowd's home */
+        noh_walker_at(walkers, i)->height -= by[1]; /* x and z count from the crowd's home, which moves */
     }
 }

@@ -1,4 +1,4 @@
-/* walkers_fall.c: walkers who fall, lie and get up, and where their agents are meanwhile. */
+/* walkers_fall.c: walkers that fall, lie and get up, and the places of their agents meanwhile. */
 #include <string.h>
 
 #include "core/base/math_internal.h"
@@ -11,11 +11,12 @@
 #include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
-#define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the clip that it got up by */
+#define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the get-up clip */
 
-/* ---- pushed ---- */
+/* ---- pushes ---- */
 
-/* The nearest that stands, farther off than `beyond` or, as far, later in order; NOH_NONE: none. *square: how far */
+/* The nearest standing walker farther than `beyond`, or as far but later in order; NOH_NONE: none. *square: squared
+ * distance */
 static uint32_t next_nearest(noh_walkers *w, noh_stage *stage, const float point[3], float most, float beyond,
                              uint32_t last, float *square)
 {
@@ -66,9 +67,9 @@ uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float po
     }
 }
 
-/* ---- tended ---- */
+/* ---- after the fall ---- */
 
-/* As it lies or stands: its agent and what is known of where it is. */
+/* Move the agent and the known position to the body. */
 static void bring(walker *r, noh_crowd *crowd, const noh_stage_actor *a)
 {
     const float at[2] = { a->place.position[0], a->place.position[2] };
@@ -79,7 +80,7 @@ static void bring(walker *r, noh_crowd *crowd, const noh_stage_actor *a)
     }
 }
 
-/* It goes on from where it has got up, facing as it does, without a leap. */
+/* Walk on from where it got up, in the direction it faces. */
 static void stand_up(const noh_walkers *w, walker *r, const noh_place *place)
 {
     const float ahead[3] = { w->forward[0], 0.0f, w->forward[1] };
@@ -96,7 +97,7 @@ static void stand_up(const noh_walkers *w, walker *r, const noh_place *place)
     r->begun = WALKER_STANDS_UP;
 }
 
-/* Its agent, as it falls. */
+/* Stop the agent of a walker that falls. */
 static void fall_down(walker *r, noh_crowd *crowd)
 {
     noh_crowd_agent agent;
@@ -112,7 +113,7 @@ static int is_down(const noh_stage *stage, noh_actor actor)
     return body == NOH_BODY_FALLS || body == NOH_BODY_LIES;
 }
 
-/* returns whether it is not on its feet */
+/* Returns whether it is still down. */
 static int tend(noh_walkers *w, walker *r, noh_crowd *crowd, noh_stage *stage, uint32_t layer, uint32_t ticks,
                 noh_error *error)
 {
@@ -141,8 +142,7 @@ uint32_t noh_walkers_tend(noh_walkers *walkers, noh_crowd *crowd, noh_stage *sta
     if (!stage->kinds[walkers->kind].ragdoll) return 0;
     if (stage->phase != NOH_STAGE_IDLE || layer == walkers->layer) {
         (void)noh_fail(error, NOH_ERR_ARG,
-                       "walkers are tended outside of steps and frames, and get up on another layer than they walk on",
-                       layer, 0);
+                       "noh_walkers_tend called during a step or a frame, or with the walkers' own layer", layer, 0);
         return 0;
     }
     for (uint32_t i = 0; i < walkers->walker_max; i++) {

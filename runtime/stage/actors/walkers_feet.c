@@ -1,4 +1,4 @@
-/* walkers_feet.c: feet on the ground for those who are near. */
+/* walkers_feet.c: feet on the ground for the nearest walkers. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -13,20 +13,20 @@
 #include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
-#define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
+#define SKIP_TICKS 24000u /* unseen for longer than this: its feet start afresh */
 #define FADE_PER_S 4.0f
 #define KEPT (1u + 3u * NOH_FEET_LEGS_MAX)
-#define BONUS 0.81f /* of the square of the distance, of one who is near */
+#define BONUS 0.81f /* factor on the squared distance of a chosen walker */
 
-/* The state of the part. */
+/* State of the modifier. */
 typedef struct near_feet {
     noh_feet feet;
-    float part; /* how far its feet are put on the ground */
+    float part; /* 0..1: how far its feet are put on the ground */
     uint32_t is_near;
     uint32_t runs, unused;
 } near_feet;
 
-/* ---- the part ---- */
+/* ---- the modifier ---- */
 
 static uint32_t joints_of(const noh_feet_rig *rig, uint32_t joints[KEPT])
 {
@@ -108,9 +108,9 @@ void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *
     if (n) n->feet.kept = 1u + r->stands / WALKER_PARTS;
 }
 
-/* ---- who is near ---- */
+/* ---- the nearest walkers ---- */
 
-/* The nearest so far, by distance; of equal ones the first. */
+/* Insert into the list of the nearest, by distance; at equal distance the first stays first. */
 static void take(noh_walkers *w, uint32_t index, float square)
 {
     walker_near *near = noh_walkers_nearest(w);
@@ -133,7 +133,7 @@ static void set_near(noh_walkers *w, noh_stage *stage, uint32_t index, uint8_t i
     if (n) n->is_near = is_near;
 }
 
-/* x, z of its agent in the world, by the actor, which moves with the stage's origin. returns 0: the actor is gone */
+/* World x, z of the actor, which moves with the origin of the stage. Returns 0 if the actor is gone. */
 static int agent_of(const noh_stage *stage, const walker *r, float at[2])
 {
     noh_stage_kind *k;

@@ -1,24 +1,24 @@
-/* walkers_gait.c: when walkers lift a foot and put it down. A foot that is on the ground stays where it is: the walk
- * comes and goes, and the body turns, while the other foot is in the air. Who stands has both on the ground, so it
- * begins with a step and ends with one: the walk at the moment at which a leg swings past the other one, blended with
- * standing, is a foot that is lifted on the spot. */
+/* walkers_gait.c: when walkers lift a foot and put it down. A foot on the ground stays where it is: the walk blends
+ * in and out, and the body turns, while the other foot is in the air. A standing walker has both feet on the ground,
+ * so it starts and stops with a step: the walk at the moment when one leg passes the other, blended with standing,
+ * lifts a foot on the spot. */
 #include "stage/actors/walkers_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 
-#define SLOWEST 0.25f    /* of the walk's speed: who goes slower makes a step now and then */
-#define BLEND_PER_S 4.0f /* how fast the walk comes and goes of one whose steps are not known */
-#define LIFT_PER_S 6.0f  /* likewise, on the spot */
-#define TURNS 0.26f      /* radians: who stands and is to turn by less does not */
-#define TURNED 0.02f     /* who turns on the spot makes no further step for less */
-#define ENDS 0.3f        /* or holds its foot up until it is done */
-#define AHEAD 1.0f       /* who has to turn by more first turns on the spot, then goes */
-#define SPIN_SLOW 0.2f   /* passes a second of one who walks and has to turn by more, with a foot in the air, */
-#define SPIN_FAST 1.5f   /* and with both on the ground */
-#define CLOSE_PER_S 0.8f /* passes: how fast the last step is at least */
-#define CLOSE_RATE 5.0f  /* of the way that is left, per second */
-#define CLOSE_SLOW 0.15f /* passes a second, at its end */
-#define CLOSED 0.01f     /* passes: it has come to the end */
+#define SLOWEST 0.25f    /* of the walk's speed: below this, single steps with pauses */
+#define BLEND_PER_S 4.0f /* blend speed of the walk where steps are not known */
+#define LIFT_PER_S 6.0f  /* blend speed of a foot lifted on the spot */
+#define TURNS 0.26f      /* radians: a standing walker ignores smaller turns */
+#define TURNED 0.02f     /* radians: no further step on the spot for less */
+#define ENDS 0.3f        /* radians: keeps its foot up until the turn is done */
+#define AHEAD 1.0f       /* radians: turns on the spot first, then walks */
+#define SPIN_SLOW 0.2f   /* passes per second while a walk has to turn by more: with a foot in the air, */
+#define SPIN_FAST 1.5f   /* with both on the ground */
+#define CLOSE_PER_S 0.8f /* passes per second: least speed of the last step */
+#define CLOSE_RATE 5.0f  /* share of the remaining way per second */
+#define CLOSE_SLOW 0.15f /* passes per second at its end */
+#define CLOSED 0.01f     /* passes: close enough to the end */
 
 float noh_walkers_until_passing(const noh_walkers *w, const walker *r, float share, uint32_t *leg)
 {
@@ -36,7 +36,7 @@ float noh_walkers_until_passing(const noh_walkers *w, const walker *r, float sha
     return least;
 }
 
-/* The first moment of the walk at which a leg swings past the other. */
+/* The first moment of the walk when one leg passes the other. */
 static float first_pass(const noh_walkers *w, uint32_t leg)
 {
     uint32_t i = 0;
@@ -44,7 +44,7 @@ static float first_pass(const noh_walkers *w, uint32_t leg)
     return noh_walkers_pass_at(w, leg, i);
 }
 
-/* It stands on the other leg, at the moment of its walk at which this one swings. */
+/* Stand on the other leg, at the moment of the walk when this one passes it. */
 static float lift(const noh_walkers *w, walker *r)
 {
     r->gait = WALKER_LIFTS;
@@ -52,11 +52,11 @@ static float lift(const noh_walkers *w, walker *r)
     return first_pass(w, r->swings);
 }
 
-/* Who has lifted a foot goes on with its step, or puts it down. */
+/* With a foot lifted: continue the step, or put the foot down. */
 static void lifted(const noh_walkers *w, walker *r, const walker_speed *g, float share)
 {
     const float way = share - first_pass(w, r->swings);
-    if ((g->wants_to_go && g->angle < AHEAD) || way > CLOSED || way < -CLOSED) /* it has begun to go */
+    if ((g->wants_to_go && g->angle < AHEAD) || way > CLOSED || way < -CLOSED) /* it has started to walk */
         r->gait = WALKER_WALKS;
     else if (!(g->angle > TURNED && g->angle < ENDS))
         r->gait = WALKER_LOWERS;
@@ -97,7 +97,7 @@ float noh_walkers_gait(const noh_walkers *w, walker *r, const walker_speed *g, f
     return -1.0f;
 }
 
-/* With a foot in the air it turns, and with both on the ground it goes on to where one is. */
+/* Turn with a foot in the air; with both on the ground, advance until one lifts. */
 static float pace_of_walk(const noh_walkers *w, const walker *r, const walker_speed *g, float rate)
 {
     const float free = (float)r->free * (1.0f / 255.0f);

@@ -1,4 +1,4 @@
-/* walkers_internal.h: the walkers' block. Threads: as crowd.h. */
+/* walkers_internal.h: state of walkers. Threads: as crowd.h. */
 #ifndef NOH_ACTORS_WALKERS_INTERNAL_H
 #define NOH_ACTORS_WALKERS_INTERNAL_H
 
@@ -11,17 +11,17 @@
 #include "stage/cast/stage_internal.h"
 
 enum { WALKER_WALK, WALKER_IDLE, WALKER_RUN, WALKER_CLIPS };
-#define WALKER_SWAY 32u /* equal parts of a pass */
+#define WALKER_SWAY 32u /* equal parts of a pass of the clip */
 #define WALKER_PARTS (NOH_FEET_POINTS / 2u)
 
 typedef struct walker_clip {
     uint32_t clip; /* NOH_NONE: none */
     uint32_t ticks;
-    float stride;                   /* model units that a pass leads on */
-    float sway[WALKER_SWAY + 1][2]; /* of the root about that, x and z */
+    float stride;                   /* model units of a pass */
+    float sway[WALKER_SWAY + 1][2]; /* of the root about the straight way, x and z */
 } walker_clip;
 
-/* Of each foot heel, ball and toes, in model space: see noh_walkers_soles_at. */
+/* Heel, ball and toes of each foot, model space: noh_walkers_soles_at. */
 typedef struct walker_feet {
     float at[NOH_FEET_LEGS_MAX][WALKER_PARTS][3];
 } walker_feet;
@@ -33,21 +33,21 @@ typedef struct walker_soles {
 typedef struct walker {
     uint32_t actor; /* 0: none */
     uint32_t agent;
-    float at[2];         /* of the agent, in the last step, from the crowd's home */
-    float body[2];       /* where it is drawn, likewise: the actor's place less home */
-    float height, climb; /* of the place, and its speed */
+    float at[2];         /* of the agent in the last step, less the crowd's home */
+    float body[2];       /* of the actor, less the crowd's home */
+    float height, climb; /* of the actor, and its speed */
     float heading[2];    /* unit */
     float velocity[2];   /* smoothed, for the heading */
-    float face[2];       /* 0: as it came */
-    float goes, runs;    /* 0..1: how far it walks and does not stand, runs and does not walk */
-    float even;          /* the speed ahead, smoothed less */
+    float face[2];       /* zeros: as it arrived */
+    float goes, runs;    /* 0..1: blend from standing to walking, from walking to running */
+    float even;          /* speed ahead, smoothed less */
     uint32_t stands;     /* leg * WALKER_PARTS + part */
     uint8_t begun, is_near;
-    uint8_t goes_back;    /* 1 */
+    uint8_t goes_back;    /* 1: walks backwards */
     uint8_t fallen;       /* 1: it falls, lies or gets up */
-    uint8_t gait, swings; /* WALKER_STANDS.., and the leg of its next or present step on the spot */
-    uint8_t free, unused; /* 0..255: how far the foot that it does not stand on is in the air */
-    float pace;           /* then: that of its agent before */
+    uint8_t gait, swings; /* WALKER_STANDS..; leg of the next or current step on the spot */
+    uint8_t free, unused; /* 0..255: how far the other foot is in the air */
+    float pace;           /* when fallen: pace of its agent before */
     noh_fall fall;
 } walker;
 NOH_STATIC_ASSERT(sizeof(walker) == 96, walker);
@@ -55,79 +55,78 @@ NOH_STATIC_ASSERT(sizeof(walker) == 96, walker);
 /* walker.gait. All but WALKER_WALKS only where steps are known (noh_walkers.knows_steps). */
 enum {
     WALKER_STANDS,
-    WALKER_LIFTS,  /* a foot, its walk at the moment at which the feet pass each other */
+    WALKER_LIFTS,  /* a foot, with the walk at the moment when the legs pass */
     WALKER_LOWERS, /* that foot */
     WALKER_WALKS,
-    WALKER_CLOSES /* goes on to where the feet pass each other next */
+    WALKER_CLOSES /* walks on until the legs pass */
 };
 
-/* walker.begun: 0 it leaps to its agent, 1 it goes on, or it begins anew where it is. */
+/* walker.begun: 0 teleports to its agent, 1 continues, otherwise starts again where it is. */
 #define WALKER_STANDS_UP 2u
 
 typedef struct walker_near {
-    float square; /* of the distance */
+    float square; /* squared distance */
     uint32_t index;
 } walker_near;
 
-/* Behind it lie walkers, and those that are near. */
+/* Walkers and the list of the nearest follow. */
 struct noh_walkers {
     uint32_t bytes, walker_max, near_max, near_count;
     uint32_t kind, layer, feet_part;
     float turn_speed;
-    float forward[2];     /* of the walk, in model space: unit x, z */
-    uint16_t in_step;     /* 1: markers tell that walk and run may be blended */
-    uint16_t knows_steps; /* 1: the kind has two legs and stands, and `passes` are known */
+    float forward[2];     /* of the walk: unit x, z, model space */
+    uint16_t in_step;     /* 1: walk and run may be blended */
+    uint16_t knows_steps; /* 1: the kind has two legs and an idle clip, and `passes` is valid */
     walker_clip clips[WALKER_CLIPS];
-    uint32_t leg_count; /* 0: nothing is known of feet */
+    uint32_t leg_count; /* 0: feet are not known */
     float leg;          /* its length, model units */
     walker_soles soles[WALKER_CLIPS];
-    uint32_t
-        passes[NOH_FEET_LEGS_MAX]; /* bit i: between samples i and i + 1 of the walk this leg swings past the other */
+    uint32_t passes[NOH_FEET_LEGS_MAX]; /* bit i: this leg passes the other between samples i and i + 1 of the walk */
 };
 NOH_STATIC_ASSERT(sizeof(noh_walkers) == 8016, walkers);
 
-/* The rig of a part of noh_walkers_feet_part; NULL: the part is another one. */
+/* The rig of a modifier made by noh_walkers_feet_part; NULL: another modifier. */
 const noh_feet_rig *noh_walkers_rig(const noh_stage_part *part);
 
-/* Soles of all clips, into w. Not within a step or a frame: a job's scratch is used. */
+/* Measure the soles of all clips. Not during a step or a frame: uses a job's scratch memory. */
 void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage_kind *k, const noh_feet_rig *rig);
 
-/* Soles in the blend of the clips, each at its share of a pass. */
+/* Soles in the blend of the clips, each at its phase. */
 void noh_walkers_soles_at(const noh_walkers *w, const float shares[WALKER_CLIPS], const float weights[WALKER_CLIPS],
                           walker_feet *feet);
 
-/* The share of the walk at which a leg swings past the other between samples i and i + 1. */
+/* The phase of the walk when a leg passes the other between samples i and i + 1. */
 float noh_walkers_pass_at(const noh_walkers *w, uint32_t leg, uint32_t i);
 
-/* Feet of one who is near know which of them is kept still. */
+/* Tell the feet modifier of a near walker which foot stands. */
 void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *r);
 
 /* leg * WALKER_PARTS + part of the lowest sole. */
 uint32_t noh_walkers_stand(const noh_walkers *w, const walker_feet *feet, uint32_t was);
 
-/* How far a foot is in the air that it does not stand on: 0..1. */
+/* How far the other foot is in the air: 0..1. */
 float noh_walkers_free(const noh_walkers *w, const walker_feet *feet, uint32_t stands);
 
 /* ---- gait ---- */
 
-/* Speeds in model units a second. */
+/* Speeds in model units per second. */
 typedef struct walker_speed {
     float walk, run; /* of the clips */
-    float now, even; /* ahead in this step, and smoothed */
-    float angle;     /* between where it faces and where it wants to: 0.. */
+    float now, even; /* speed ahead in this step, and smoothed */
+    float angle;     /* to the wanted direction, at least 0 */
     int wants_to_go;
 } walker_speed;
 
-/* Whether it stands, steps on the spot or walks, after `seconds`. It changes only where no foot on the ground moves.
- * share: of its pass, at which the walk is. returns the share to which the walk leaps, since it does not show; below 0:
- * it does not */
+/* Choose the gait after `seconds`. It changes only while no foot on the ground would move.
+ * share    phase of the walk
+ * returns  the phase to which the walk jumps while it is invisible; below 0: it does not jump */
 float noh_walkers_gait(const noh_walkers *w, walker *r, const walker_speed *g, float seconds, float share);
 
-/* Passes that are left, forwards or backwards as it goes, until a leg swings past the other.
- * leg: which one; NULL: not told */
+/* Passes until a leg next passes the other, in the direction of walking.
+ * leg  which one; NULL: not wanted */
 float noh_walkers_until_passing(const noh_walkers *w, const walker *r, float share, uint32_t *leg);
 
-/* Passes in a second that it makes in its gait, where it wants to make `rate`. */
+/* Passes per second in the current gait, where `rate` is wanted. */
 float noh_walkers_pace(const noh_walkers *w, const walker *r, const walker_speed *g, float rate, float share,
                        float seconds);
 

@@ -1,4 +1,4 @@
-/* walkers_soles.c: where the soles of a walker's clips are, and the foot that it stands on. */
+/* walkers_soles.c: the soles in a walker's clips, and the foot it stands on. */
 #include <string.h>
 
 #include "motion/anim/root_motion.h"
@@ -10,13 +10,13 @@
 #include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
 
-#define LOWER 0.0004f   /* of a leg: lower by so much, and it stands on the other foot */
-#define AIR_FROM 0.002f /* of a leg, above the foot that it stands on: from here on a foot is in the air, */
-#define AIR_TO 0.008f   /* and here it is free */
+#define LOWER 0.0004f   /* leg lengths: changes to the other foot if that is lower by this */
+#define AIR_FROM 0.002f /* leg lengths above the standing foot: a foot starts to be in the air, */
+#define AIR_TO 0.008f   /* and is free */
 
 /* ---- init ---- */
 
-/* The heel, the ball and the toes: the middle of both sides, at the height of the lower one. */
+/* Heel, ball and toes: halfway between both sides, at the height of the lower one. */
 static void parts_of(const noh_feet_leg *leg, const float *model, float parts[WALKER_PARTS][3])
 {
     for (uint32_t p = 0; p < NOH_FEET_POINTS; p++) {
@@ -32,7 +32,7 @@ static void parts_of(const noh_feet_leg *leg, const float *model, float parts[WA
     }
 }
 
-/* Where a leg is ahead of the other, summed over its parts, and above it. */
+/* How far a leg is ahead of the other and above it, summed over its parts. */
 static void ahead_of(const noh_walkers *w, uint32_t clip, uint32_t i, uint32_t leg, float *ahead, float *above)
 {
     float middle[2] = { 0.0f, 0.0f }, low[2] = { 1e30f, 1e30f };
@@ -55,7 +55,7 @@ float noh_walkers_pass_at(const noh_walkers *w, uint32_t leg, uint32_t i)
     return ((float)i + (rest - before) / (after - before)) / (float)WALKER_SWAY;
 }
 
-/* Where in the walk a leg that swings comes to be as far ahead of the other as in standing: once in each of its steps. */
+/* Find where a swinging leg is as far ahead of the other as in standing: once in each of its steps. */
 static uint32_t find_passes(const noh_walkers *w, uint32_t leg)
 {
     uint32_t passes = 0;
@@ -125,8 +125,7 @@ static uint32_t lowest_of(const float parts[WALKER_PARTS][3])
     return lowest;
 }
 
-/* Of the parts that are on the ground the one that is nearest to the body's axis: it turns about that, and stays where
- * it is. */
+/* The part on the ground that is nearest to the axis of the body: the walker turns about it, and it stays in place. */
 static uint32_t pivot_of(const float parts[WALKER_PARTS][3], float slack)
 {
     const uint32_t lowest = lowest_of(parts);

@@ -1,4 +1,4 @@
-/* walkers_step.c: places and clips that follow agents. */
+/* walkers_step.c: moves actors and their clips after their agents. */
 #include <string.h>
 
 #include "motion/anim/root_internal.h"
@@ -18,26 +18,26 @@
 
 #define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */
 #define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */
-#define GOES 0.12f             /* of the walk's speed: slower ones have no direction */
-#define BLEND_PER_S 4.0f       /* how fast the run comes and goes */
-#define ABOUT_M 0.08f          /* of a foot from the axis that it turns about: turning is stepping */
-#define BACK 0.8f              /* of the walk's speed: who wants to go back faster turns */
-#define CATCH_PER_S 3.0f       /* of the way to its agent */
-#define SLACK_M 0.06f          /* of that way: it stands */
-#define STANDING_M 0.2f        /* likewise, of one who stands: it does not set out for less */
-#define LOOKING_M 0.35f        /* likewise, of one who stands and looks somewhere: it turns there, not back */
-#define SLOW 0.12f             /* of the walk's speed: whose agent is slower goes no farther than to it */
-#define LAG_M 0.7f             /* no body is farther from its agent */
-#define RATE_MAX 2.5f          /* of the walk: faster than that is a stumble that does not end */
+#define GOES 0.12f             /* of the walk's speed: below this there is no direction */
+#define BLEND_PER_S 4.0f       /* blend speed of the run */
+#define ABOUT_M 0.08f          /* distance of a foot from the turning axis: turning means stepping */
+#define BACK 0.8f              /* of the walk's speed: turns around to go back faster */
+#define CATCH_PER_S 3.0f       /* share of the way to its agent per second */
+#define SLACK_M 0.06f          /* that near to its agent it stands */
+#define STANDING_M 0.2f        /* a standing walker does not set out for less */
+#define LOOKING_M 0.35f        /* a standing walker with a direction to face turns there for less */
+#define SLOW 0.12f             /* of the walk's speed: goes no farther than to an agent slower than this */
+#define LAG_M 0.7f             /* greatest distance from its agent */
+#define RATE_MAX 2.5f          /* playback rate of the walk: faster looks like stumbling */
 #define CLIMB_RATE 14.0f       /* of the spring that follows the ground, 1/s */
-#define LEAP_M 1.0f            /* in a step: not a way that is walked */
+#define LEAP_M 1.0f            /* in a step: a teleport */
 
 typedef struct step {
     noh_walkers *w;
     noh_stage *stage;
     noh_stage_kind *k;
     const noh_ground *ground;
-    const double *home; /* [2] x, z of the crowd: where agents and walkers count from */
+    const double *home; /* [2] x, z of the crowd: origin of agents and walkers */
     uint32_t ticks;
     float seconds;
 } step;
@@ -54,7 +54,7 @@ static float dot2(const float a[2], const float b[2])
 
 /* ---- heading ---- */
 
-/* Turn to a unit vector, by an angle at most. returns the angle that there was */
+/* Turn towards a unit vector, by at most an angle. Returns the angle before. */
 static float turn(float heading[2], const float to[2], float most)
 {
     const float cross = heading[0] * to[1] - heading[1] * to[0];
@@ -68,8 +68,7 @@ static float turn(float heading[2], const float to[2], float most)
     return angle < 0.0f ? -angle : angle;
 }
 
-/* Where it wants to go, or, standing, where it is asked to look. wish[2]: model units a second.
- */
+/* Turn to the wanted direction or, standing, to the one it should face. wish[2]: model units per second. */
 static void find_heading(const step *s, walker *r, const float wish[2], walker_speed *g)
 {
     const float square = dot2(wish, wish), walk = g->walk, least = GOES * walk, ahead = dot2(wish, r->heading);
@@ -77,7 +76,7 @@ static void find_heading(const step *s, walker *r, const float wish[2], walker_s
     const float most = s->w->turn_speed * s->seconds * free;
     const int turns_back = ahead < 0.0f && ahead * ahead > (r->goes_back ? 0.25f : 0.75f) * square &&
                            square < BACK * BACK * walk * walk;
-    if (r->gait != WALKER_CLOSES) r->goes_back = (uint8_t)turns_back; /* the last step ends as it began */
+    if (r->gait != WALKER_CLOSES) r->goes_back = (uint8_t)turns_back; /* the last step keeps its direction */
     g->wants_to_go = square > least * least;
     if (g->wants_to_go) {
         const float per = (r->goes_back ? -1.0f : 1.0f) / noh_sqrt(square), to[2] = { wish[0] * per, wish[1] * per };
@@ -89,11 +88,11 @@ static void find_heading(const step *s, walker *r, const float wish[2], walker_s
 
 /* ---- clips ---- */
 
-/* What its clips show after the step: each at its share of a pass. */
+/* The clips after the step: the phase of each, 0..1. */
 typedef struct played {
     float before[WALKER_CLIPS], weights[WALKER_CLIPS], shares[WALKER_CLIPS];
-    float way;     /* that they lead on in the step */
-    float sway[2]; /* that the root sways about that, likewise: model units */
+    float way;     /* displacement by the clips in the step */
+    float sway[2]; /* sway of the root about it, model units */
 } played;
 
 static float speed_of(const walker_clip *c)
@@ -101,7 +100,7 @@ static float speed_of(const walker_clip *c)
     return c->clip == NOH_NONE ? 0.0f : c->stride * (float)NOH_TICKS_PER_SECOND / (float)c->ticks;
 }
 
-/* How far it runs. Clips that are not in step are not blended but for the change. */
+/* Blend between walk and run. Clips that are not in step are blended only while they change. */
 static float runs_of(const noh_walkers *w, const walker *r, const walker_speed *g)
 {
     if (!(g->run > g->walk)) return 0.0f;
@@ -110,20 +109,19 @@ static float runs_of(const noh_walkers *w, const walker *r, const walker_speed *
     return part > (r->runs > 0.5f ? 0.3f : 0.6f) ? 1.0f : 0.0f;
 }
 
-/* Passes in a second at which the blend of the clips leads as far as the agent goes; way: model units that they lead.
- */
+/* Passes per second at which the blended clips keep up with the agent. way: model units of a pass. */
 static float pace(const step *s, const walker *r, const walker_speed *g, float share, float *way)
 {
     const walker_clip *walk = &s->w->clips[WALKER_WALK], *run = &s->w->clips[WALKER_RUN];
     const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
-    const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* of the run, too */
+    const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* applies to the run, too */
     const float wanted = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
     const float rate = noh_walkers_pace(s->w, r, g, wanted, share, s->seconds);
     *way = rate * stride * s->seconds;
     return rate;
 }
 
-/* The share of a pass at which a track is, and will be after the step. */
+/* The phase of a track now, and after the step. */
 static float share_of(const walker_clip *c, const noh_track *track, int64_t speed, uint32_t ticks)
 {
     const int64_t pass = noh_position_of(c->ticks);
@@ -131,7 +129,7 @@ static float share_of(const walker_clip *c, const noh_track *track, int64_t spee
     return pass ? (float)(at < 0 ? at + pass : at) / (float)pass : 0.0f;
 }
 
-/* One who walks to an agent that stands stops where its last step brings it next to it. */
+/* Stop a walker whose last step brings it next to a standing agent. */
 static void find_end(const step *s, const walker *r, const noh_controller *c, float scale, walker_speed *g)
 {
     const walker_clip *walk = &s->w->clips[WALKER_WALK];
@@ -143,7 +141,7 @@ static void find_end(const step *s, const walker *r, const noh_controller *c, fl
     g->wants_to_go = ahead > (noh_walkers_until_passing(s->w, r, share, NULL) + 0.25f) * walk->stride * scale;
 }
 
-/* It stands, steps on the spot or walks. */
+/* Stand, step on the spot or walk. */
 static float find_gait(const step *s, walker *r, noh_controller *c, const walker_speed *g)
 {
     const uint32_t track = s->k->layers[s->w->layer].first_track;
@@ -156,7 +154,7 @@ static float find_gait(const step *s, walker *r, noh_controller *c, const walker
     return to;
 }
 
-/* What a root sways about its straight way, in model units. */
+/* Sway of a root about its straight way, model units. */
 static void add_sway(const walker_clip *c, float share, float weight, float sway[2])
 {
     const float at = share * (float)WALKER_SWAY;
@@ -165,12 +163,12 @@ static void add_sway(const walker_clip *c, float share, float weight, float sway
     for (int k = 0; k < 2; k++) sway[k] += weight * (c->sway[i][k] + part * (c->sway[i + 1u][k] - c->sway[i][k]));
 }
 
-/* Weights and speeds of the tracks for this step. */
+/* Set weights and speeds of the tracks for this step. */
 static void play(const step *s, const walker *r, noh_controller *c, float passes, played *p)
 {
     const float weights[WALKER_CLIPS] = { r->goes * (1.0f - r->runs), 1.0f - r->goes, r->goes * r->runs };
     uint32_t track = s->k->layers[s->w->layer].first_track;
-    memset(p->before, 0, sizeof p->before); /* clips that are not there weigh nothing */
+    memset(p->before, 0, sizeof p->before); /* missing clips have no weight */
     memset(p->sway, 0, sizeof p->sway);
     memset(p->shares, 0, sizeof p->shares);
     memcpy(p->weights, weights, sizeof weights);
@@ -193,7 +191,7 @@ static void play(const step *s, const walker *r, noh_controller *c, float passes
     }
 }
 
-/* ---- place ---- */
+/* ---- position ---- */
 
 static float ground_at(const step *s, const walker *r)
 {
@@ -216,7 +214,7 @@ static void climb(const step *s, walker *r)
     r->climb = r->begun ? (r->climb - CLIMB_RATE * part) * shrink : 0.0f;
 }
 
-/* The rotation about y that takes the walk's way to the heading. */
+/* The rotation about y from the walk's direction to the heading. */
 static void rotation_of(const noh_walkers *w, const float heading[2], float rotation[4])
 {
     const float cosine = dot2(w->forward, heading);
@@ -227,7 +225,7 @@ static void rotation_of(const noh_walkers *w, const float heading[2], float rota
     rotation[3] = noh_sqrt(within(0.5f + 0.5f * cosine, 0.0f, 1.0f));
 }
 
-/* From model space, about the root. */
+/* Rotate and scale a horizontal vector. */
 static void turned_by(const float rotation[4], float scale, float x, float z, float out[2])
 {
     const float local[3] = { x, 0.0f, z };
@@ -251,8 +249,7 @@ static void put(const step *s, const walker *r, noh_stage_actor *a, const noh_pl
     if (!r->begun) (void)noh_actor_cut(s->stage, (noh_actor){ r->actor }, NULL);
 }
 
-/* It goes on as its clips do. The foot that it stands on stays where it is while clips come and go, and is what it
- * turns about. */
+/* Move as the clips do. The standing foot stays in place while clips blend; the body turns about it. */
 static void go_on(const step *s, walker *r, const noh_place *was, const float rotation[4], const played *p)
 {
     const uint32_t leg = r->stands / WALKER_PARTS, part = r->stands % WALKER_PARTS;
@@ -272,7 +269,7 @@ static void go_on(const step *s, walker *r, const noh_place *was, const float ro
 
 /* ---- a step ---- */
 
-/* How fast it wants to go: as its agent does, and to where that is. Model units a second. */
+/* Wanted velocity: that of the agent, plus catching up with it. Model units per second. */
 static void find_wish(const noh_walkers *w, const walker *r, float scale, float wish[2])
 {
     const float off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] }, length = noh_sqrt(dot2(off, off));
@@ -283,7 +280,7 @@ static void find_wish(const noh_walkers *w, const walker *r, float scale, float 
     for (int i = 0; i < 2; i++) wish[i] = r->velocity[i] + catch * off[i];
 }
 
-/* No farther from its agent than that. */
+/* Limit the distance to the agent. */
 static void keep_near(walker *r)
 {
     const float off[2] = { r->body[0] - r->at[0], r->body[1] - r->at[1] }, square = dot2(off, off);
@@ -291,7 +288,7 @@ static void keep_near(walker *r)
     for (int i = 0; i < 2; i++) r->body[i] -= by * off[i];
 }
 
-/* From standing. */
+/* Start from standing. */
 static void begin(walker *r)
 {
     r->gait = WALKER_STANDS;
@@ -302,7 +299,7 @@ static void begin(walker *r)
 static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[2])
 {
     const float way[2] = { to[0] - r->at[0], to[1] - r->at[1] }, scale = a->place.scale;
-    const float per = 1.0f / (s->seconds * scale); /* model units a second */
+    const float per = 1.0f / (s->seconds * scale); /* model units per second */
     const float keep = noh_exp2(-s->seconds / TURN_HALF_LIFE_S);
     walker_speed g = { speed_of(&s->w->clips[WALKER_WALK]), speed_of(&s->w->clips[WALKER_RUN]), 0.0f, 0.0f, 0.0f, 0 };
     noh_controller *c = noh_character_controller(noh_stage_character(s->k, noh_stage_index(s->k, a)));
@@ -350,7 +347,7 @@ static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
         r->begun = 0;
         return;
     }
-    if (!noh_crowd_shown(crowd, r->agent, at)) memcpy(at, r->at, sizeof at); /* without its agent it stops */
+    if (!noh_crowd_shown(crowd, r->agent, at)) memcpy(at, r->at, sizeof at); /* no agent: stop */
     follow(s, r, a, at);
 }
 
@@ -366,7 +363,7 @@ noh_result noh_walkers_step(noh_walkers *walkers, const noh_crowd *crowd, noh_st
                      ticks,
                      (float)ticks * (1.0f / (float)NOH_TICKS_PER_SECOND) };
     if (stage->phase != NOH_STAGE_IDLE) {
-        return noh_fail(error, NOH_ERR_ARG, "walkers go on outside of steps and frames", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "noh_walkers_step called during a step or a frame", 0, 0);
     }
     for (uint32_t i = 0; i < walkers->walker_max && ticks; i++) {
         walker *r = noh_walker_at(walkers, i);

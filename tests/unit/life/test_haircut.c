@@ -221,7 +221,6 @@ static void fewer_strips_are_wider(void **state)
     for (float pixels = 26.0f; pixels < 600.0f; pixels += 1.0f) {
         const uint32_t strips = noh_haircut_strips(&w.cut, pixels);
         assert_true(strips >= before && strips >= 1u && strips <= w.cut.header->strip_count);
-        assert_true(fabsf((float)strips * noh_haircut_widen(&w.cut, strips) - 500.0f) < 0.01f);
         before = strips;
     }
     close_wig(&w);

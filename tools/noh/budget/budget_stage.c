@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "budget_args.h"
-#include "crowd/crowd_hair.h"
 #include "crowd/place_people.h"
+#include "draw/drawn_hair.h"
 #include "file/ground_file.h"
 #include "stage_budget.h"
 #include "stage_desc_file.h"
@@ -95,11 +95,14 @@ static int add_place(stage_budget *b, const place_file *place, const place_peopl
 /* Of a pack's characters, as `noh crowd` draws it. */
 static int add_hair(stage_budget *b, const pack_file *file, const noh_kind_desc *kind)
 {
-    crowd_hair hair;
+    drawn_hair hair;
     uint64_t cpu_bytes, gpu_bytes;
-    const int status = crowd_hair_plan(&hair, file, 0, kind->skeleton, kind->actor_count);
-    crowd_hair_bytes(&hair, &cpu_bytes, &gpu_bytes);
-    return status || !hair.is_there ? status : stage_budget_add(b, "hair", cpu_bytes, gpu_bytes);
+    noh_error error = { NOH_OK, "", 0, 0 };
+    if (drawn_hair_plan(&hair, &file->pack, 0, kind->skeleton, kind->actor_count, &error)) {
+        return tool_fail_error(file->path, &error);
+    }
+    drawn_hair_bytes(&hair, &cpu_bytes, &gpu_bytes);
+    return hair.is_there ? stage_budget_add(b, "hair", cpu_bytes, gpu_bytes) : 0;
 }
 
 /* place and people, file NULL: none */

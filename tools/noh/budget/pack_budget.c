@@ -10,7 +10,7 @@
 static int list_parts(pack_budget *b, const noh_gl_caps *caps)
 {
     const figure *f = &b->planned;
-    noh_stage_bytes hair = { .what = "hair", .kind = f->hair_kind };
+    noh_stage_bytes hair = { .what = "hair", .kind = f->hair.desc.kind };
     b->part_count = noh_stage_plan_parts(&f->stage_desc, caps, &f->plan, NULL, 0);
     b->parts = calloc(b->part_count + 1u, sizeof *b->parts);
     if (!b->parts) {

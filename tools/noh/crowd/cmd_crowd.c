@@ -72,7 +72,7 @@ static void print_crowd(const crowd_drawn *d, const crowd_args *a)
 static void take_drawn(const crowd *c, crowd_drawn *d)
 {
     uint64_t cpu, on_gpu;
-    crowd_hair_bytes(&c->hair, &cpu, &on_gpu);
+    drawn_hair_bytes(&c->hair, &cpu, &on_gpu);
     d->stats = *noh_stage_stats_of(c->stage);
     d->level_count = c->plan.kinds[0].level_count;
     d->cpu_bytes = c->plan.cpu_bytes + cpu; /* noh_stage_init takes exactly these */

@@ -198,16 +198,15 @@ int crowd_open(crowd *c, gpu *g, const pack_file *file, const crowd_options *opt
         return status;
     }
     fill_desc(c, file);
-    status = crowd_hair_plan(&c->hair, file, 0, c->kind.skeleton, c->options.count);
-    if (status) return status;
-    result = open_stage(c, g, &error);
+    result = drawn_hair_plan(&c->hair, &file->pack, 0, c->kind.skeleton, c->options.count, &error);
+    if (!result) result = open_stage(c, g, &error);
     for (uint32_t i = 0; i < c->options.count && !result; i++) result = enter(c, i, &error);
     if (result) {
         crowd_close(c);
         return tool_fail_error(file->path, &error);
     }
     if (c->options.view == NOH_VIEW_LIT)
-        status = crowd_hair_open(&c->hair, g, &c->ledger, 0);
+        status = drawn_hair_open(&c->hair, g, &c->ledger, 0);
     else
         c->hair.is_there = 0;
     if (status) crowd_close(c);
@@ -216,7 +215,7 @@ int crowd_open(crowd *c, gpu *g, const pack_file *file, const crowd_options *opt
 
 void crowd_close(crowd *c)
 {
-    crowd_hair_close(&c->hair);
+    drawn_hair_close(&c->hair);
     if (c->shader) noh_stage_shader_delete(c->shader);
     if (c->stage) noh_stage_delete(c->stage);
     free(c->shader_memory);
@@ -242,14 +241,14 @@ static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
 void crowd_frame(crowd *c, uint32_t ticks, const noh_stage_view *view)
 {
     (void)noh_stage_frame(c->stage, ticks, view, on_key, &c->events, NULL); /* a camera of ours is finite */
-    crowd_hair_frame(&c->hair, c->stage, ticks);
+    drawn_hair_frame(&c->hair, c->stage, ticks);
 }
 
 void crowd_draw(crowd *c)
 {
     (void)noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, c->shader, NULL); /* a frame with a view was before */
-    crowd_hair_update(&c->hair);
-    crowd_hair_draw(&c->hair, c->stage, 0);
+    drawn_hair_update(&c->hair);
+    drawn_hair_draw(&c->hair, c->stage, 0, NOH_PASS_COLOR);
 }
 
 /* ---- the camera ---- */

@@ -15,7 +15,7 @@
 
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
-#include "crowd_hair.h"
+#include "draw/drawn_hair.h"
 #include "noh/gl_device.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
@@ -42,7 +42,7 @@ typedef struct crowd {
     noh_kind_desc kind;
     noh_stage_desc desc;
     noh_stage_plan plan;
-    crowd_hair hair;
+    drawn_hair hair;
     noh_gl_ledger ledger; /* of all below */
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's, lit */

@@ -85,7 +85,7 @@ static int paint_all(place_scene *s, gpu *g, const noh_stage_view *view, uint8_t
 static void take_drawn(const place_scene *s, place_drawn *d)
 {
     uint64_t cpu, on_gpu;
-    crowd_hair_bytes(&s->hair, &cpu, &on_gpu);
+    drawn_hair_bytes(&s->hair, &cpu, &on_gpu);
     memset(d, 0, sizeof *d);
     d->stats = *noh_stage_stats_of(s->stage);
     d->agents = place_life_agents(s->life);

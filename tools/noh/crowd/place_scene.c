@@ -154,9 +154,12 @@ static int open_all(place_scene *s, gpu *g)
     if (!status) status = open_stage(s, g);
     if (!status) {
         const noh_kind_desc *k = &s->kinds[PLACE_PEOPLE];
-        status = crowd_hair_plan(&s->hair, s->file, PLACE_PEOPLE, k->skeleton, k->actor_count);
+        noh_error error = { NOH_OK, "", 0, 0 };
+        if (drawn_hair_plan(&s->hair, &s->file->pack, PLACE_PEOPLE, k->skeleton, k->actor_count, &error)) {
+            status = tool_fail_error(s->file->path, &error);
+        }
     }
-    if (!status) status = crowd_hair_open(&s->hair, g, &s->ledger, 1);
+    if (!status) status = drawn_hair_open(&s->hair, g, &s->ledger, 1);
     if (!status) status = open_walkers(s);
     return status ? status : enter_all(s);
 }
@@ -194,7 +197,7 @@ int place_scene_open(place_scene *s, gpu *g, const pack_file *file, const place_
 
 void place_scene_close(place_scene *s)
 {
-    crowd_hair_close(&s->hair);
+    drawn_hair_close(&s->hair);
     noh_backdrop_delete(&s->backdrop);
     noh_stage_terrain_delete(&s->terrain);
     free(s->terrain_memory);
@@ -285,7 +288,7 @@ int place_scene_show(place_scene *s, const noh_stage_view *view)
         noh_stage_frame_end(s->stage, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
-    crowd_hair_frame(&s->hair, s->stage, FRAME_TICKS);
+    drawn_hair_frame(&s->hair, s->stage, FRAME_TICKS);
     return 0;
 }
 
@@ -298,8 +301,8 @@ int place_scene_shadow(place_scene *s, const noh_stage_view *view)
     if (s->terrain.drawable.gl) noh_stage_terrain_choose(&s->terrain, view, s->options->pixels);
     if (s->terrain.drawable.gl && s->light.has_shadow)
         noh_stage_terrain_draw_shadow(&s->terrain, s->stage, &s->shadow_view);
-    crowd_hair_update(&s->hair);
-    if (s->light.has_shadow) crowd_hair_draw_shadow(&s->hair, s->stage, 1);
+    drawn_hair_update(&s->hair);
+    if (s->light.has_shadow) drawn_hair_draw_shadow(&s->hair, s->stage, 1);
     return 0;
 }
 
@@ -312,6 +315,6 @@ int place_scene_draw(place_scene *s, const noh_stage_view *view)
                       noh_stage_light_of(s->stage), &s->light.told, view);
     if (s->terrain.drawable.gl) noh_stage_terrain_draw(&s->terrain, s->stage, view);
     if (noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, &error)) status = tool_fail_error(s->file->path, &error);
-    crowd_hair_draw(&s->hair, s->stage, 0);
+    drawn_hair_draw(&s->hair, s->stage, 0, NOH_PASS_COLOR);
     return status;
 }

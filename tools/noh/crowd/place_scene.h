@@ -9,7 +9,7 @@
 #ifndef NOH_NOH_CROWD_PLACE_SCENE_H
 #define NOH_NOH_CROWD_PLACE_SCENE_H
 
-#include "crowd_hair.h"
+#include "draw/drawn_hair.h"
 #include "draw/lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
@@ -62,7 +62,7 @@ typedef struct place_scene {
     noh_backdrop backdrop;
     noh_stage_terrain terrain; /* drawn where the place has a ground */
     void *terrain_memory;
-    crowd_hair hair;
+    drawn_hair hair;
     noh_actor *actors;
     noh_smart_phase *phases; /* as they are shown */
     size_t walkers_bytes;

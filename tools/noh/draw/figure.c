@@ -320,9 +320,8 @@ void figure_close(figure *f)
     noh_stage_floor_delete(&f->level);
     figure_close_decals(f);
     if (f->desc.body) figure_body_close_gl(f->desc.body);
-    if (f->hair.gl) noh_stage_hair_delete(&f->hair);
+    drawn_hair_close(&f->hair);
     if (f->stage) noh_stage_delete(f->stage);
-    free(f->hair_memory);
     free(f->shader_memory);
     free(f->memory);
     figure_plan_free(f);
@@ -338,7 +337,7 @@ int figure_restore(figure *f)
     if (!result && f->blob.drawable.gl) result = noh_stage_blob_restore(&f->blob, log, sizeof log, &error);
     if (!result && f->level.drawable.gl) result = noh_stage_floor_restore(&f->level, log, sizeof log, &error);
     if (!result && f->decals.drawable.gl) result = figure_restore_decals(f, log, sizeof log, &error);
-    if (!result && f->hair.gl) result = noh_stage_hair_restore(&f->hair, log, sizeof log, &error);
+    if (!result) result = drawn_hair_restore(&f->hair, log, sizeof log, &error);
     if (result) {
         fputs(log, stderr);
         return tool_fail_error(f->desc.file->path, &error);
@@ -366,7 +365,9 @@ int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count)
         for (uint32_t i = 0; i < jobs; i++) noh_stage_job(f->stage, i);
     }
     if (!result) result = noh_stage_frame_end(f->stage, &error);
-    return result ? tool_fail_error(f->desc.file->path, &error) : figure_update_hair(f);
+    if (result) return tool_fail_error(f->desc.file->path, &error);
+    figure_update_hair(f);
+    return 0;
 }
 
 int figure_pose(figure *f)
@@ -414,7 +415,7 @@ int figure_shade(figure *f)
         return 0;
     }
     if (noh_stage_draw_shadow(f->stage, 1, &error)) return tool_fail_error(f->desc.file->path, &error);
-    if (f->hair.gl) noh_stage_hair_draw_shadow(&f->hair, f->stage, 1);
+    drawn_hair_draw_shadow(&f->hair, f->stage, 1);
     return 0;
 }
 
@@ -439,17 +440,17 @@ static void draw_backdrop(const figure *f)
 static noh_result draw_in_parts(figure *f, noh_error *error)
 {
     noh_result result = noh_stage_draw(f->stage, NOH_PASS_OPAQUE, 0, NULL, error);
-    if (!result && figure_draw_decals(f)) return noh_fail(error, NOH_ERR_GL, "cannot draw marks", 0, 0);
-    if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
+    if (!result && figure_draw_decals(f)) return noh_fail(error, NOH_ERR_GL, "marks could not be drawn", 0, 0);
+    if (!result) drawn_hair_draw(&f->hair, f->stage, 0, NOH_PASS_OPAQUE);
     if (!result) result = noh_stage_draw(f->stage, NOH_PASS_BLENDED, 0, NULL, error);
-    if (!result && f->hair.gl) noh_stage_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);
+    if (!result) drawn_hair_draw(&f->hair, f->stage, 0, NOH_PASS_BLENDED);
     return result;
 }
 
 int figure_draw(figure *f)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    const int in_parts = !f->shader && (f->hair.gl || f->decals.drawable.gl);
+    const int in_parts = !f->shader && (f->hair.heads || f->decals.drawable.gl);
     noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);

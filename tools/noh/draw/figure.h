@@ -23,12 +23,12 @@
 
 #include "camera.h"
 #include "cli/args.h"
+#include "drawn_hair.h"
 #include "figure_body.h"
 #include "lighting.h"
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "noh/base.h"
-#include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
@@ -95,11 +95,8 @@ typedef struct figure {
     const noh_pack *packs[FIGURE_ANIM_MAX + 1u]; /* one layer per clip, if there are several */
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
-    noh_haircut cut;      /* of the pack */
-    noh_wig wig;
+    drawn_hair hair;
     noh_stage_part hair_parts[NOH_STAGE_PARTS_MAX]; /* of its kind: the others, then the hair */
-    uint32_t hair_part;                             /* its index */
-    uint32_t hair_kind;                             /* of figure.kinds; NOH_NONE: no hair */
     uint32_t *nodes;                                /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
@@ -118,9 +115,7 @@ typedef struct figure {
     noh_stage_floor level; /* zeros: no shadow falls on a floor */
     int shows_floor;       /* 1: it casts one now */
     float floor;           /* y of the ground where the body has none */
-    noh_stage_hair hair;   /* zeros: none */
-    void *hair_memory;
-    noh_stage_view seen; /* of figure_views */
+    noh_stage_view seen;   /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_look look; /* of all actors */
 } figure;
@@ -211,12 +206,12 @@ noh_result figure_restore_decals(figure *f, char *log, size_t log_bytes, noh_err
 int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32_t height);
 int figure_draw_decals(figure *f);
 
-/* The hair of a figure that is planned, opened, restored, closed; taken over after a frame; drawn. */
+/* The hair of a figure: planned, opened on a driver, updated after a frame. */
 int figure_add_hair(figure *f);
 /* In addition to the stage; 0 without hair. */
 void figure_hair_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 int figure_open_hair(figure *f);
-int figure_update_hair(figure *f);
+void figure_update_hair(figure *f);
 
 /* --push X,Y,Z, newton seconds. */
 int figure_read_push(const char *text, float impulse[3]);

@@ -137,7 +137,7 @@ int figure_play(figure *f, const char *clip, const noh_play *play)
 static int figure_swings(const figure *f)
 {
     noh_springs_desc springs;
-    if (f->hair_kind != NOH_NONE) return 1;
+    if (f->hair.is_there) return 1;
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         if (!f->desc.without_springs && noh_springs_of_pack(f->kinds[k].mesh, f->kinds[k].skeleton, &springs)) return 1;
     }

@@ -100,7 +100,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->body.has_ground;
-    const int hangs = !lives && !a->clips.count && p->figure.hair_kind != NOH_NONE;
+    const int hangs = !lives && !a->clips.count && p->figure.hair.is_there;
     int status = p->shows_bones ? 0 : strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);

@@ -10,6 +10,14 @@
 #include "cli/verbs.h"
 #include "verify.h"
 
+static int is_untouched(const uint8_t *memory, size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i++) {
+        if (memory[i] != 0xa5) return 0;
+    }
+    return 1;
+}
+
 /* init must take a block of the planned size, and must refuse one byte less and leave it untouched. Returns the planned
  * bytes, or 0 if a smaller block was accepted or written to. */
 static uint64_t least_block(verify_job *job, const figure *planned)
@@ -24,33 +32,36 @@ static uint64_t least_block(verify_job *job, const figure *planned)
         memset(memory, 0xa5, bytes);
         ok = noh_stage_init(memory, bytes - 1u, &device, &planned->stage_desc, &planned->plan, &stage, &error) ==
                  NOH_ERR_MEMORY &&
-             error.need == bytes;
-        for (size_t i = 0; i < bytes; i++) ok &= memory[i] == 0xa5;
+             error.need == bytes && is_untouched(memory, bytes);
     }
     free(memory);
     return ok ? bytes : 0;
 }
 
-/* The same of the hair. */
+/* The same for the hair: 0 if it takes another size than it says. */
 static uint64_t least_hair(verify_job *job, const figure *planned)
 {
+    const noh_actor_hair_desc *desc = &planned->hair.desc;
     const noh_gl_device device = { &job->g.gl, &job->g.caps, &job->g.ledger, NULL, 0 };
     noh_error error = { NOH_OK, "", 0, 0 };
-    noh_stage_hair hair;
-    uint64_t bytes, gpu_bytes;
-    figure_hair_bytes(planned, &bytes, &gpu_bytes);
-    if (!bytes) return 0;
-    uint8_t *memory = malloc((size_t)bytes);
-    int ok = memory != NULL;
+    noh_actor_hair *heads;
+    noh_stage_hair drawn;
+    if (!planned->hair.is_there) return 0;
+    const size_t bytes = noh_actor_hair_size(desc), drawn_bytes = noh_stage_hair_size(desc);
+    uint8_t *memory = malloc(bytes), *drawn_memory = malloc(drawn_bytes);
+    int ok = memory && drawn_memory;
     if (ok) {
-        memset(memory, 0xa5, (size_t)bytes);
-        ok = noh_stage_hair_create(&device, &planned->wig, memory, (size_t)bytes - 1u, 0, 0, &hair, &error) ==
+        memset(memory, 0xa5, bytes);
+        memset(drawn_memory, 0xa5, drawn_bytes);
+        ok = noh_actor_hair_init(memory, bytes - 1u, desc, &heads, &error) == NOH_ERR_MEMORY && error.need == bytes &&
+             is_untouched(memory, bytes) && noh_actor_hair_init(memory, bytes, desc, &heads, &error) == NOH_OK &&
+             noh_stage_hair_create(&device, heads, drawn_memory, drawn_bytes - 1u, 0, 0, &drawn, &error) ==
                  NOH_ERR_MEMORY &&
-             error.need == bytes;
-        for (size_t i = 0; i < bytes; i++) ok &= memory[i] == 0xa5;
+             error.need == drawn_bytes && is_untouched(drawn_memory, drawn_bytes);
     }
     free(memory);
-    return ok ? bytes : 0;
+    free(drawn_memory);
+    return ok ? bytes + drawn_bytes : 0;
 }
 
 /* A frame that a camera sees, with the first clip playing. */

@@ -425,8 +425,11 @@ static int draw_surface(view_model *m, overlay *o, const view_over *over, const 
 
 int view_model_draw(view_model *m, canvas *c, overlay *o, const view_over *over, const noh_gl_camera *camera)
 {
-    int status = m->show_bones ? 0 : figure_update_hair(m->figure);
-    if (!status && !m->show_bones) status = figure_shade(m->figure);
+    int status = 0;
+    if (!m->show_bones) {
+        figure_update_hair(m->figure);
+        status = figure_shade(m->figure);
+    }
     if (status) {
         return status;
     }

@@ -1,6 +1,6 @@
 /* modules.h: what the library keeps to itself of runtime/noh/modules.h. */
-#ifndef NOH_ACTORS_WIGS_H
-#define NOH_ACTORS_WIGS_H
+#ifndef NOH_ACTORS_ACTOR_HAIR_H
+#define NOH_ACTORS_ACTOR_HAIR_H
 
 #include "noh/modules.h"
 
@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-#define NOH_WIGS_MOVING_PIXELS 60.0f
+#define NOH_HAIR_MOVING_PIXELS 60.0f
 
 #ifdef __cplusplus
 }
