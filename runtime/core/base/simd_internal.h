@@ -209,10 +209,10 @@
     }
 
 typedef __m128 noh_v4;
-NOH_SIMD_X86_4(noh_v4, static inline)
-static inline noh_v4 noh_v4_make(float x, float y, float z, float w) { return _mm_setr_ps(x, y, z, w); }
-static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return _mm_shuffle_ps(a, b, 0x88); }
-static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
+NOH_SIMD_X86_4(noh_v4, NOH_UNUSED static inline)
+NOH_UNUSED static inline noh_v4 noh_v4_make(float x, float y, float z, float w) { return _mm_setr_ps(x, y, z, w); }
+NOH_UNUSED static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return _mm_shuffle_ps(a, b, 0x88); }
+NOH_UNUSED static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
 {
     const __m128i i = _mm_sub_epi32(_mm_cvttps_epi32(_mm_add_ps(v, _mm_set1_ps(32768.5f))), _mm_set1_epi32(32768));
     _mm_storel_epi64((__m128i *)(void *)to, _mm_packs_epi32(i, i));
@@ -274,15 +274,15 @@ static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
 
 #if defined(NOH_SIMD_V8)
 typedef __m256 noh_v8;
-NOH_SIMD_X86_8(noh_v8, NOH_TARGET_AVX2 NOH_ALWAYS_INLINE)
+NOH_SIMD_X86_8(noh_v8, NOH_TARGET_AVX2 NOH_UNUSED NOH_ALWAYS_INLINE)
 #endif
 
 #if NOH_LANES == 8
 typedef __m256 lanes;
-NOH_SIMD_X86_8(lanes, static inline)
+NOH_SIMD_X86_8(lanes, NOH_UNUSED static inline)
 #else
 typedef __m128 lanes;
-NOH_SIMD_X86_4(lanes, static inline)
+NOH_SIMD_X86_4(lanes, NOH_UNUSED static inline)
 #endif
 
 #elif defined(NOH_SIMD_NEON)
@@ -351,13 +351,13 @@ NOH_SIMD_X86_4(lanes, static inline)
     NOH_SIMD_DOT3(V, T, IN)
 
 typedef float32x4_t noh_v4;
-NOH_SIMD_NEON_4(noh_v4, noh_v4, static inline)
-static inline noh_v4 noh_v4_make(float x, float y, float z, float w)
+NOH_SIMD_NEON_4(noh_v4, noh_v4, NOH_UNUSED static inline)
+NOH_UNUSED static inline noh_v4 noh_v4_make(float x, float y, float z, float w)
 {
     return vsetq_lane_f32(w, vsetq_lane_f32(z, vsetq_lane_f32(y, vdupq_n_f32(x), 1), 2), 3);
 }
-static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return vuzp1q_f32(a, b); }
-static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
+NOH_UNUSED static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return vuzp1q_f32(a, b); }
+NOH_UNUSED static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
 {
     switch (lane) { /* a constant after inlining */
     case 0: return vdupq_laneq_f32(v, 0);
@@ -366,80 +366,80 @@ static inline noh_v4 noh_v4_lane(noh_v4 v, int lane)
     default: return vdupq_laneq_f32(v, 3);
     }
 }
-static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
+NOH_UNUSED static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
 {
     const noh_v4 ab = vaddq_f32(vzip1q_f32(a, b), vzip2q_f32(a, b)), cd = vaddq_f32(vzip1q_f32(c, d), vzip2q_f32(c, d));
     return vaddq_f32(vcombine_f32(vget_low_f32(ab), vget_low_f32(cd)),
                      vcombine_f32(vget_high_f32(ab), vget_high_f32(cd)));
 }
-static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b, noh_v4 *first,
-                                        noh_v4 *second)
+NOH_UNUSED static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b,
+                                               noh_v4 *first, noh_v4 *second)
 {
     const int16x8_t p = vld1q_s16(a), q = vld1q_s16(b);
     const int16_t s = (int16_t)to_a, t = (int16_t)to_b;
     *first = vcvtq_f32_s32(vmlal_n_s16(vmull_n_s16(vget_low_s16(p), s), vget_low_s16(q), t));
     *second = vcvtq_f32_s32(vmlal_n_s16(vmull_n_s16(vget_high_s16(p), s), vget_high_s16(q), t));
 }
-static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
+NOH_UNUSED static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
 {
     vst1_s16(to, vqmovn_s32(vsubq_s32(vcvtq_s32_f32(vaddq_f32(v, vdupq_n_f32(32768.5f))), vdupq_n_s32(32768))));
 }
 
 typedef float32x4_t lanes;
-NOH_SIMD_NEON_4(lanes, lanes, static inline)
+NOH_SIMD_NEON_4(lanes, lanes, NOH_UNUSED static inline)
 
 #else
 
 /* ---- plain C ---- */
 
 typedef float lanes;
-static inline lanes lanes_set(float v) { return v; }
-static inline lanes lanes_add(lanes a, lanes b) { return a + b; }
-static inline lanes lanes_sub(lanes a, lanes b) { return a - b; }
-static inline lanes lanes_mul(lanes a, lanes b) { return a * b; }
-static inline lanes lanes_div(lanes a, lanes b) { return a / b; }
-static inline lanes lanes_sqrt(lanes a) { return noh_sqrt(a); }
-static inline lanes lanes_less(lanes a, lanes b) { return a < b ? 1.0f : 0.0f; }
-static inline lanes lanes_and(lanes a, lanes b) { return a != 0.0f ? b : 0.0f; }
-static inline lanes lanes_or(lanes a, lanes b) { return a != 0.0f ? a : b; }
-static inline int lanes_any(lanes mask) { return mask != 0.0f; }
-static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return mask != 0.0f ? yes : no; }
-static inline lanes lanes_min(lanes a, lanes b) { return lanes_choose(lanes_less(a, b), a, b); }
-static inline lanes lanes_max(lanes a, lanes b) { return lanes_choose(lanes_less(a, b), b, a); }
-static inline lanes lanes_negate(lanes a) { return -a; }
-static inline lanes lanes_abs(lanes a) { return a < 0.0f ? -a : a; }
-static inline lanes lanes_field(lanes words, int left, int right)
+NOH_UNUSED static inline lanes lanes_set(float v) { return v; }
+NOH_UNUSED static inline lanes lanes_add(lanes a, lanes b) { return a + b; }
+NOH_UNUSED static inline lanes lanes_sub(lanes a, lanes b) { return a - b; }
+NOH_UNUSED static inline lanes lanes_mul(lanes a, lanes b) { return a * b; }
+NOH_UNUSED static inline lanes lanes_div(lanes a, lanes b) { return a / b; }
+NOH_UNUSED static inline lanes lanes_sqrt(lanes a) { return noh_sqrt(a); }
+NOH_UNUSED static inline lanes lanes_less(lanes a, lanes b) { return a < b ? 1.0f : 0.0f; }
+NOH_UNUSED static inline lanes lanes_and(lanes a, lanes b) { return a != 0.0f ? b : 0.0f; }
+NOH_UNUSED static inline lanes lanes_or(lanes a, lanes b) { return a != 0.0f ? a : b; }
+NOH_UNUSED static inline int lanes_any(lanes mask) { return mask != 0.0f; }
+NOH_UNUSED static inline lanes lanes_choose(lanes mask, lanes yes, lanes no) { return mask != 0.0f ? yes : no; }
+NOH_UNUSED static inline lanes lanes_min(lanes a, lanes b) { return lanes_choose(lanes_less(a, b), a, b); }
+NOH_UNUSED static inline lanes lanes_max(lanes a, lanes b) { return lanes_choose(lanes_less(a, b), b, a); }
+NOH_UNUSED static inline lanes lanes_negate(lanes a) { return -a; }
+NOH_UNUSED static inline lanes lanes_abs(lanes a) { return a < 0.0f ? -a : a; }
+NOH_UNUSED static inline lanes lanes_field(lanes words, int left, int right)
 {
     uint32_t word;
     memcpy(&word, &words, sizeof word);
     return (float)((int32_t)(word << left) >> right);
 }
-static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
+NOH_UNUSED static inline void lanes_columns(const float *rows, size_t stride, lanes out[4])
 {
     (void)stride;
     memcpy(out, rows, 4 * sizeof *rows);
 }
-static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
+NOH_UNUSED static inline void lanes_rows(const lanes columns[4], float *rows, size_t stride)
 {
     (void)stride;
     memcpy(rows, columns, 4 * sizeof *rows);
 }
-static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
+NOH_UNUSED static inline void lanes_gather(const float *const *rows, size_t first, lanes out[4])
 {
     memcpy(out, rows[0] + first, 4 * sizeof **rows);
 }
-static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
+NOH_UNUSED static inline void lanes_scatter(const lanes columns[4], float *const *rows, size_t first)
 {
     memcpy(rows[0] + first, columns, 4 * sizeof **rows);
 }
-NOH_SIMD_DOT3(lanes, lanes, static inline)
+NOH_SIMD_DOT3(lanes, lanes, NOH_UNUSED static inline)
 
 /* Four of them. Written out: at -O2 compilers keep loops of four. */
 typedef struct noh_v4 {
     float f[4];
 } noh_v4;
 #define NOH_SIMD_BINARY(op)                                                                                            \
-    static inline noh_v4 noh_v4_##op(noh_v4 a, noh_v4 b)                                                               \
+    NOH_UNUSED static inline noh_v4 noh_v4_##op(noh_v4 a, noh_v4 b)                                                    \
     {                                                                                                                  \
         const noh_v4 r = { { lanes_##op(a.f[0], b.f[0]), lanes_##op(a.f[1], b.f[1]), lanes_##op(a.f[2], b.f[2]),       \
                              lanes_##op(a.f[3], b.f[3]) } };                                                           \
@@ -450,27 +450,27 @@ NOH_SIMD_BINARY(sub)
 NOH_SIMD_BINARY(mul)
 NOH_SIMD_BINARY(div)
 NOH_SIMD_BINARY(max)
-static inline noh_v4 noh_v4_sqrt(noh_v4 a)
+NOH_UNUSED static inline noh_v4 noh_v4_sqrt(noh_v4 a)
 {
     const noh_v4 r = { { noh_sqrt(a.f[0]), noh_sqrt(a.f[1]), noh_sqrt(a.f[2]), noh_sqrt(a.f[3]) } };
     return r;
 }
-static inline noh_v4 noh_v4_make(float x, float y, float z, float w)
+NOH_UNUSED static inline noh_v4 noh_v4_make(float x, float y, float z, float w)
 {
     const noh_v4 r = { { x, y, z, w } };
     return r;
 }
-static inline noh_v4 noh_v4_set(float v) { return noh_v4_make(v, v, v, v); }
-static inline noh_v4 noh_v4_load(const float *from)
+NOH_UNUSED static inline noh_v4 noh_v4_set(float v) { return noh_v4_make(v, v, v, v); }
+NOH_UNUSED static inline noh_v4 noh_v4_load(const float *from)
 {
     noh_v4 r;
     memcpy(r.f, from, sizeof r.f);
     return r;
 }
-static inline void noh_v4_store(float *to, noh_v4 v) { memcpy(to, v.f, sizeof v.f); }
-static inline noh_v4 noh_v4_lane(noh_v4 v, int lane) { return noh_v4_set(v.f[lane]); }
-static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return noh_v4_make(a.f[0], a.f[2], b.f[0], b.f[2]); }
-static inline void noh_v4_transpose(const noh_v4 in[4], noh_v4 out[4])
+NOH_UNUSED static inline void noh_v4_store(float *to, noh_v4 v) { memcpy(to, v.f, sizeof v.f); }
+NOH_UNUSED static inline noh_v4 noh_v4_lane(noh_v4 v, int lane) { return noh_v4_set(v.f[lane]); }
+NOH_UNUSED static inline noh_v4 noh_v4_even(noh_v4 a, noh_v4 b) { return noh_v4_make(a.f[0], a.f[2], b.f[0], b.f[2]); }
+NOH_UNUSED static inline void noh_v4_transpose(const noh_v4 in[4], noh_v4 out[4])
 {
     float columns[4][4];
     for (int i = 0; i < 4; i++) {
@@ -478,23 +478,23 @@ static inline void noh_v4_transpose(const noh_v4 in[4], noh_v4 out[4])
     }
     memcpy(out, columns, sizeof columns);
 }
-static inline float noh_v4_sum(noh_v4 v) { return (v.f[0] + v.f[2]) + (v.f[1] + v.f[3]); }
-static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
+NOH_UNUSED static inline float noh_v4_sum(noh_v4 v) { return (v.f[0] + v.f[2]) + (v.f[1] + v.f[3]); }
+NOH_UNUSED static inline noh_v4 noh_v4_sums(noh_v4 a, noh_v4 b, noh_v4 c, noh_v4 d)
 {
     return noh_v4_make(noh_v4_sum(a), noh_v4_sum(b), noh_v4_sum(c), noh_v4_sum(d));
 }
-static inline noh_v4 noh_v4_blend_four(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b)
+NOH_UNUSED static inline noh_v4 noh_v4_blend_four(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b)
 {
     return noh_v4_make((float)(a[0] * to_a + b[0] * to_b), (float)(a[1] * to_a + b[1] * to_b),
                        (float)(a[2] * to_a + b[2] * to_b), (float)(a[3] * to_a + b[3] * to_b));
 }
-static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b, noh_v4 *first,
-                                        noh_v4 *second)
+NOH_UNUSED static inline void noh_v4_blend_i16(const int16_t *a, const int16_t *b, int32_t to_a, int32_t to_b,
+                                               noh_v4 *first, noh_v4 *second)
 {
     *first = noh_v4_blend_four(a, b, to_a, to_b);
     *second = noh_v4_blend_four(a + 4, b + 4, to_a, to_b);
 }
-static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
+NOH_UNUSED static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
 {
     for (int i = 0; i < 4; i++) {
         const int32_t r = (int32_t)(v.f[i] + 32768.5f) - 32768;

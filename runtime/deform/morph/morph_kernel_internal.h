@@ -78,7 +78,7 @@ NOH_NEVER_INLINE static void noh_add_rows_scalar(const noh_morph_rows *r, const 
 #define LANES(name) noh_v4_##name
 #define LANES_TYPE noh_v4
 #define LANES_COUNT 4u
-#define LANES_INLINE NOH_ALWAYS_INLINE
+#define LANES_INLINE NOH_UNUSED NOH_ALWAYS_INLINE
 #include "deform/morph/morph_rows_template.h"
 #endif
 #if defined(NOH_SIMD_V8)
