@@ -1,7 +1,8 @@
 #!/bin/sh
-# check_stack.sh: by gcc's call graph, the deepest stack of any call of the library is at most NOH_STACK_BYTES, and
-# nothing recurses. A call through a pointer counts 256 bytes: it is either a small callback of the library, or a call
-# of the GL driver, whose stack is not counted.
+# check_stack.sh: the deepest stack of any call of the library is at most NOH_STACK_BYTES, and nothing recurses, as
+# gcc's call graph tells. A call of a stage's module counts what the deepest of its functions takes. Any other call
+# through a pointer counts 256 bytes: it is either a small callback of the library, or the GL driver, whose stack is not
+# ours.
 set -u
 build=${NOH_BUILD:-build}
 work=$build/stack
@@ -22,8 +23,34 @@ for source in $(find runtime -name "*.c"); do
     gcc -std=c99 -O2 -ffp-contract=off -fno-math-errno -Iruntime "-I$build/gen" -fcallgraph-info=su -c "$source" -o "$object" || exit 1
 done
 
-# Node lines hold "NAME\nFILE:LINE\nN bytes (static)", edge lines two names.
-cat "$work"/*.ci | awk -v limit="$limit" '
+# The functions of the stage's modules (module_internal.h), as "FIELD FILE:FUNCTION": a call of one of the fields is as
+# deep as the deepest of its functions.
+awk '/^ +\.[a-z_]+ = [a-z_]+,$/ { sub(/,/, ""); print substr($1, 2), FILENAME ":" $3; print substr($1, 2), $3 }' \
+    runtime/stage/cast/*.c >"$work/fields"
+
+# Node lines hold "NAME\nFILE:LINE\nN bytes (static)", edge lines two names and "FILE:LINE:COLUMN" of the call.
+cat "$work"/*.ci | awk -v limit="$limit" -v fields="$work/fields" '
+    BEGIN {
+        while ((getline line < fields) > 0) {
+            split(line, word, " ")
+            functions[word[1]] = functions[word[1]] SUBSEP word[2]
+        }
+    }
+    # A call through a pointer, "->FIELD(" in this line of the source.
+    function indirect(at, where, n, line, list, i, depth, most) {
+        most = 256
+        split(at, where, ":")
+        if (where[1] !~ /^runtime\/stage\/cast\//) return most
+        for (n = 1; (getline line < where[1]) > 0 && n < where[2]; n++) {}
+        close(where[1])
+        if (!match(line, /(type|source)->[a-z_]+\(/)) return most
+        line = substr(line, RSTART, RLENGTH - 1)
+        sub(/.*->/, "", line)
+        n = split(functions[line], list, SUBSEP)
+        for (i = 1; i <= n; i++)
+            if (list[i] in bytes && (depth = deepest(list[i])) > most) most = depth
+        return most
+    }
     function deepest(name, i, n, list, most, depth) {
         if (name in done) return done[name]
         if (open[name]) { recursive = name; return 0 }
@@ -32,7 +59,7 @@ cat "$work"/*.ci | awk -v limit="$limit" '
         n = split(calls[name], list, SUBSEP)
         for (i = 1; i <= n; i++)
             if (list[i] != "") {
-                depth = list[i] == "__indirect_call" ? 256 : deepest(list[i])
+                depth = list[i] ~ /^__indirect_call/ ? indirect(substr(list[i], 16)) : deepest(list[i])
                 if (depth > most) most = depth
             }
         open[name] = 0
@@ -48,7 +75,7 @@ cat "$work"/*.ci | awk -v limit="$limit" '
     }
     /^edge:/ {
         split($0, quoted, "\"")
-        calls[quoted[2]] = calls[quoted[2]] SUBSEP quoted[4]
+        calls[quoted[2]] = calls[quoted[2]] SUBSEP quoted[4] (quoted[4] == "__indirect_call" ? quoted[6] : "")
     }
     END {
         for (name in bytes) {

@@ -35,7 +35,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
     k.mesh = pack;
     k.skeleton = skeleton;
     k.actor_count = wants->actors;
-    k.without_springs = !wants->alive; /* springs depend on earlier frames */
+    if (wants->alive) k.springs = noh_springs_module(); /* what swings depends on what was before */
     k.layers = layers;
     k.layer_count = WEB_LAYERS;
     k.root_axes = NOH_ROOT_GROUND;
@@ -96,7 +96,7 @@ static void add_fall(web_cast *cast)
     static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
     static noh_ragdoll_rig rig;
     (void)noh_kind_can_fall(&cast->kinds[0], &rig, &cast->cannot_fall);
-    if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = &ragdoll;
+    if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
 }
 
 static uint32_t most_skin_joints(const noh_pack *pack)
@@ -130,7 +130,7 @@ static void find_faces(web_cast *cast, void *scratch, size_t scratch_bytes)
     for (uint32_t k = 0; k < cast->desc.kind_count; k++) {
         if (noh_kind_find_eyes(&cast->kinds[k], scratch, scratch_bytes, cast->faces[k].face.eyes, NULL)) continue;
         cast->faces_found |= 1u << k;
-        cast->kinds[k].face = &cast->faces[k];
+        cast->kinds[k].face = noh_face_module(&cast->faces[k]);
     }
 }
 

@@ -357,7 +357,6 @@ void noh_hair_points(const noh_hair *hair, const noh_hair_desc *desc, float *poi
  *   noh_haircut_open     the haircut of a pack
  *   noh_haircut_strips   the number of strips to draw at a screen size
  *   noh_haircut_fade     opacity of strips over painted hair
- *   noh_haircut_widen    width factor when fewer strips are drawn
  *   noh_haircut_vertex   a vertex of a strip, as in the vertex shader
  *
  * A strip lies in a patch of four control hairs, at some point between their curves. Its place, length and curl follow

@@ -63,7 +63,8 @@ typedef struct noh_part_work {
     void *state;                  /* [state_bytes] of this part and actor, aligned to 16; zeros when it is spawned */
     void *scratch;                /* [scratch_bytes] of the job, aligned to 16; undefined */
     const void *user;
-    const void *kind; /* private, as are all below */
+    const struct noh_stage *stage; /* private, as are all below */
+    const void *kind;
     float *floats, *model;
     double home[3]; /* a point near the actor, and its place from there, which is exact far from the origin */
     float near_place[3];
@@ -88,9 +89,11 @@ typedef struct noh_stage_part {
     /* What is wrong with a state that comes from outside (noh_stage_set_state), a constant text; NULL: it is good.
      * Without this function any bytes are good */
     const char *(*check)(const void *user, const void *state);
-    const void *user;       /* for both; read by jobs at the same time; must outlive the stage */
+    const void *user;       /* for all of them; read by jobs at the same time; must outlive the stage */
     uint32_t state_bytes;   /* of each actor */
     uint32_t scratch_bytes; /* of each job; parts of all kinds share it */
+    /* The world's origin moves by `by` (noh_stage_shift_origin): points of the world in a state become less by it */
+    void (*shift)(const void *user, void *state, const float by[3]);
 } noh_stage_part;
 
 /* The state of a part of an actor, to read and to write; part: its index in noh_kind_desc.parts. Valid until the actor
@@ -203,7 +206,7 @@ noh_stage_part noh_stage_feet_part(const noh_kind_feet *feet);
 /* ======== ragdolls of actors ========
  * Actors that fall.
  *
- *   noh_kind_desc.ragdoll   how many actors of a kind may fall at once, and what they collide with
+ *   noh_ragdoll_module      for noh_kind_desc.ragdoll: how many actors of a kind may fall at once, and on what
  *   noh_actor_fall          turn an actor into a ragdoll
  *   noh_actor_hit           an impulse at a point; a standing actor falls
  *   noh_actor_get_up        back to its clips, from where it lies
@@ -235,6 +238,10 @@ typedef struct noh_kind_ragdoll {
     float mass;             /* kilograms; default (0) 70 for a height of 1.75 m, by its cube */
     const noh_world *world; /* metres; read by steps, must outlive the stage. NULL: nothing to collide with */
 } noh_kind_ragdoll;
+
+/* For noh_kind_desc.ragdoll.
+ * ragdoll  read by plans and by init. NULL: none */
+noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
 
 /* Let an actor fall; one that falls already is not changed.
  * errors  also ARG its place has a scale, or it hangs on another actor; LIMIT `count` actors of the kind are down */
@@ -345,12 +352,13 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 /* ======== springs ========
  * Springs of a kind: chains of its joints that swing as its actors move.
  *
- *   noh_springs_of_pack                  the springs of a pack (noh build --springs), which stages run by themselves
+ *   noh_springs_module                   for noh_kind_desc.springs: those of the mesh's pack (noh build --springs)
+ *   noh_springs_of_pack                  what a pack has
  *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors that have it
  *   noh_springs_part                     the part that runs them, for noh_kind_desc.parts
  *
- * A kind whose pack brings springs needs none of these calls: its stage makes them, and runs them after all other
- * parts, unless noh_kind_desc.without_springs. The calls are for springs that the game describes itself.
+ * noh_springs_module is all that the springs of a pack need: the stage makes them, and runs them after everything else
+ * that changes a pose. The other calls are for springs that the game describes itself.
  *
  * All of it is a part (modules.h): what swings is state of the stage, planned, saved, forked and hashed with all else, and
  * has the same bits for any number of jobs. Each chain is a spring of low_life.h, carried by the parent of its first
@@ -374,6 +382,10 @@ typedef struct noh_springs_desc {
     float restitution;       /* noh_spring_desc.restitution of all chains; 0 of a pack's */
 } noh_springs_desc;
 
+/* For noh_kind_desc.springs: the springs that the mesh's pack has for the kind's skeleton swing. At no cost where the
+ * pack has none. */
+noh_module noh_springs_module(void);
+
 /* What a pack has for one of its skeletons; it points into the pack.
  * returns  0: there are none, and *desc is untouched */
 int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc);
@@ -384,7 +396,7 @@ void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size
 /* ======== faces of actors ========
  * Faces of actors: they blink, look, feel, breathe, and are never still.
  *
- *   noh_kind_desc.face        what faces of a kind have in common: one line makes its actors alive
+ *   noh_face_module           for noh_kind_desc.face: one line makes a kind's actors alive
  *   noh_kind_find_eyes        where its eyes are, where no joints say so
  *   noh_actor_look_at         a point of the world; noh_actor_look_at_actor: another actor's eyes
  *   noh_actor_set_emotion     an emotion by name: comes, holds and goes
@@ -397,8 +409,7 @@ void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size
  *   noh_actor_face            what shows
  *
  * A face moves what the kind has: morph targets by recipes (face.h), and joints of head, neck, chest and eyes by
- * name. It is a part of the pose (modules.h) that comes before the parts of the game: over what clips say, below floats
- * that are held. A clip of speech (noh speak) tells it how much of the mouth is taken, by its named floats "speech" and
+ * name. It changes the pose before the parts of the game (modules.h) do: over what clips say, below floats that are held. A clip of speech (noh speak) tells it how much of the mouth is taken, by its named floats "speech" and
  * "lips-shut": an emotion leaves the mouth as far as it says.
  *
  * All of it is state of the stage: 336 bytes an actor (NOH_ACTOR_FACE_BYTES), saved, restored, forked and hashed. A
@@ -419,9 +430,13 @@ typedef struct noh_kind_face {
     noh_face_rules rules;
 } noh_kind_face;
 
+/* For noh_kind_desc.face.
+ * face  read by plans and by init. NULL: none */
+noh_module noh_face_module(const noh_kind_face *face);
+
 /* Where the eyes of a kind are at rest, for noh_kind_face.face.eyes: the joints of the eyes; without these behind what
  * its recipes blink with, or turn eyes with: the middle of what moves on each side, 0.19 of their distance further in.
- * kind     mesh, skeleton, nodes and face (NULL: as zeros) as a stage would be given them
+ * kind     mesh, skeleton, nodes and face (none: as zeros) as a stage would be given them
  * scratch  [scratch_bytes] aligned to NOH_MEMORY_ALIGN, yours again afterwards; noh_kind_find_eyes_size tells how much
  * shapes   eyes: centres of the left and the right one, model space
  * errors   NOT_FOUND nothing tells: no face; ARG scratch is NULL or misaligned; MEMORY it is too small (need: its

@@ -134,8 +134,15 @@ typedef struct noh_texture_set {
 } noh_texture_set;
 
 struct noh_stage_part;
-struct noh_kind_face;
-struct noh_kind_ragdoll;
+struct noh_module_type;
+
+/* What actors of a kind can do beyond layers of clips. A function of the module makes it: noh_graph_module,
+ * noh_face_module, noh_ragdoll_module, noh_springs_module. A program that calls none of these links none of their
+ * code. All zeros: none. */
+typedef struct noh_module {
+    const struct noh_module_type *type; /* private, as `desc` */
+    const void *desc;
+} noh_module;
 
 /* A kind of character: the meshes of one skeleton and the clips that move them. Zero is a good default for every field
  * except mesh and actor_count. */
@@ -168,19 +175,16 @@ typedef struct noh_kind_desc {
     const noh_layer_desc *layers; /* [layer_count] default (NULL) three: "body" (base), "face" (over, floats only),
                                    * "add" (add) */
     uint32_t layer_count;         /* 0..NOH_LAYERS_MAX */
-    /* Names of graphs in the clip packs (noh build --graph) that its actors may play, one at a time, separated by
-     * blanks; '*' at the end matches any ending. Default (NULL) none, at no cost. Read at init */
-    const char *graphs;
-    const struct noh_kind_face *face;       /* blinks, gaze and other face motion (modules.h); default (NULL) none,
-                                             * at no cost */
-    const struct noh_kind_ragdoll *ragdoll; /* ragdolls (modules.h); default (NULL) none, at no cost */
-    /* Modifiers of its poses (modules.h), in the order they run; default (NULL) none, at no cost */
-    const struct noh_stage_part *parts; /* [part_count] the data they point to must outlive the stage */
+    /* Modules; default none, at no cost */
+    noh_module graphs;  /* noh_graph_module: animation graphs that its actors may play */
+    noh_module face;    /* noh_face_module (modules.h): faces that live */
+    noh_module ragdoll; /* noh_ragdoll_module (modules.h): actors that fall */
+    noh_module springs; /* noh_springs_module (modules.h): what the mesh's pack has springs for swings */
+    /* What changes its poses before they are shown (modules.h), in this order; default (NULL) nothing, at no cost */
+    const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
     uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
-    int without_springs;                /* 1: the springs of the mesh's pack (modules.h) are not used; clips move those
-                                         * joints */
-    int weight_rules;                   /* 1: enforces the limits and exclusions of target weights stored in the mesh's
-                                         * pack (low_life.h), wherever the weights come from */
+    int weight_rules;                   /* 1: how far its targets go, and which exclude each other, is kept as the
+                                         * mesh's pack tells it (low_life.h), whoever says the weights */
     uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * 0 */
@@ -260,9 +264,9 @@ typedef struct noh_kind_clips {
 /* The plan of a kind. */
 typedef struct noh_kind_plan {
     uint32_t mesh_count, level_count, finest_level;
-    uint32_t track_count, joint_count, float_count, graph_count;
-    uint32_t cached_segment_count, segment_count; /* of its clips: decoded in the cache; all */
-    noh_kind_clips clips;                         /* of the kind whose clips it uses: itself, or an earlier one */
+    uint32_t track_count, joint_count, float_count;
+    uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
+    noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
 } noh_kind_plan;
 
@@ -512,13 +516,18 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
 
 /* ---- graphs ---- */
 
-/* Play an animation graph (low_motion.h) on a base or over layer, from its beginning, with the parameters stored in the
- * pack. It fades in like a clip, and clips on the layer fade out; noh_actor_play and noh_actor_stop fade it out again.
- * An actor plays one graph at a time: starting another, or the same again, ends it at once, so use NOH_PLAY_INERTIA
- * there. The graph moves the joints and floats of the layer's mask; faces and additive layers play over it.
- * play    NULL: zeros; fade_ticks, weight, NOH_PLAY_KEEP and NOH_PLAY_INERTIA are used; any other is ARG
- * errors  NOT_FOUND the actor is gone, or the kind has no such graph; ARG layer, or an additive layer; a field of play;
- *         called within on_key for a key of a graph; LIMIT as noh_actor_play */
+/* For noh_kind_desc.graphs.
+ * names  of graphs in the kind's packs of clips (noh build --graph), separated by blanks; '*' at the end matches any
+ *        rest. An actor plays one of them at a time. Read by plans and by init. NULL: none */
+noh_module noh_graph_module(const char *names);
+
+/* Play an animation graph (low_motion.h) on a base or over layer, from its beginning: all its parameters as the pack
+ * has them. It fades in as a clip does, and what played on the layer fades out; noh_actor_play and noh_actor_stop fade
+ * it out again. An actor plays one graph at a time: another one, or the same again, ends it at once, so give it
+ * NOH_PLAY_INERTIA there. What the layer's mask lets through is the graph's; faces and additive layers play over it.
+ * play    NULL: zeros; fade_ticks, weight, NOH_PLAY_KEEP and NOH_PLAY_INERTIA are used, all else is ARG
+ * errors  NOT_FOUND the actor is gone, or the kind has no such graph; ARG layer, or one that adds; a field of play;
+ *         within on_key of a key of a graph; LIMIT as noh_actor_play */
 noh_result noh_actor_play_graph(noh_stage *stage, noh_actor actor, uint32_t layer, const char *graph,
                                 const noh_play *play, noh_error *error);
 

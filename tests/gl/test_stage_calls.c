@@ -335,7 +335,7 @@ static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int lose
     g->g.caps.mrt3 = g->g.caps.layered = g->g.caps.render_f32 = g->g.caps.render_f16 = 1;
     g->g.caps.blend_f32 = g->g.caps.blend_f16 = g->g.caps.blend_f32_exact = 1;
     cast_open(&g->c);
-    g->c.kinds[PUPPETS].graphs = "*";
+    g->c.kinds[PUPPETS].graphs = noh_graph_module("*");
     g->c.kinds[PUPPETS].inertia = 1;
     g->c.kinds[MASKS].seen_max = alone ? 1 : 4;
     for (uint32_t i = 0; i < CAST_KINDS; i++) {

@@ -14,6 +14,7 @@
 #include "toon.h"
 #include "noh/clip.h"
 #include "noh/low_gl.h"
+#include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 
@@ -78,6 +79,7 @@ static int open_stage(cast *c, const noh_pack *mesh, const noh_pack *const *clip
         kinds[i].clip_pack_count = clip_count;
         kinds[i].root_axes = NOH_ROOT_GROUND;
         kinds[i].root_up = 1;
+        kinds[i].springs = noh_springs_module(); /* sleeves and hems swing */
     }
     if (noh_stage_plan_make(&desc, &gl.caps, &c->plan, &e)) return start_fail(&gl, "plan", &e);
     for (uint32_t i = 0; i < c->plan.concession_count; i++) {

@@ -18,7 +18,7 @@ typedef struct noh_gl_model {
     noh_gl_mesh mesh;
     noh_gl_morph *morph; /* NULL: no targets */
     uint32_t part_count; /* meshes of its desc */
-    uint32_t load_kind;  /* noh_stage_kind.load_kind where finer levels come later; else NOH_NONE, and the rest is 0 */
+    uint32_t load_kind;  /* noh_stage_kind.finer.kind where finer levels come later; else NOH_NONE, and the rest is 0 */
     uint32_t mesh_index; /* in the packs */
     int loaded;          /* 1: they are used */
     noh_mesh coarse;     /* the finest level that the kind's own pack has */

@@ -71,7 +71,7 @@ noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *mod
 static noh_mesh brought(const noh_stage *s, const noh_gl_model *model)
 {
     noh_mesh mesh;
-    (void)noh_pack_mesh_at(s->kinds[model->load_kind].loaded, model->mesh_index, &mesh, NULL);
+    (void)noh_pack_mesh_at(s->kinds[model->load_kind].finer.from, model->mesh_index, &mesh, NULL);
     mesh.pack = model->coarse.pack;
     return noh_gl_as_lit(&s->desc, &mesh, model->room.header->level);
 }

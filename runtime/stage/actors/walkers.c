@@ -150,7 +150,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     w->layer = desc->layer;
     w->feet_part = desc->feet_part;
     w->turn_speed = desc->turn_speed > 0.0f ? desc->turn_speed : TURN_SPEED;
-    const noh_feet_rig *rig = desc->feet_part ? noh_walkers_rig(&k->parts[desc->feet_part - 1u]) : NULL;
+    const noh_feet_rig *rig = desc->feet_part ? noh_walkers_rig(&noh_stage_parts_of(k)[desc->feet_part - 1u]) : NULL;
     if (rig && stage->phase == NOH_STAGE_IDLE) noh_walkers_measure_soles(w, stage, k, rig);
     *walkers = w;
     return NOH_OK;

@@ -9,6 +9,7 @@
 #include "noh/low_core.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
+#include "stage/cast/stage_ragdoll_internal.h"
 #include "stage/actors/walkers_internal.h"
 
 #define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the get-up clip */
@@ -55,7 +56,7 @@ uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float po
     NOH_ASSERT(walkers && stage && point);
     float beyond = -1.0f;
     uint32_t fell = 0, last = NOH_NONE;
-    if (stage->phase != NOH_STAGE_IDLE || !stage->kinds[walkers->kind].ragdoll) return 0;
+    if (stage->phase != NOH_STAGE_IDLE || !noh_stage_ragdoll_kind_of(&stage->kinds[walkers->kind])) return 0;
     for (;;) {
         float square = 0.0f;
         last = next_nearest(walkers, stage, point, radius * radius, beyond, last, &square);
@@ -139,7 +140,7 @@ uint32_t noh_walkers_tend(noh_walkers *walkers, noh_crowd *crowd, noh_stage *sta
 {
     uint32_t down = 0;
     NOH_ASSERT(walkers && crowd && stage);
-    if (!stage->kinds[walkers->kind].ragdoll) return 0;
+    if (!noh_stage_ragdoll_kind_of(&stage->kinds[walkers->kind])) return 0;
     if (stage->phase != NOH_STAGE_IDLE || layer == walkers->layer) {
         (void)noh_fail(error, NOH_ERR_ARG,
                        "noh_walkers_tend called during a step or a frame, or with the walkers' own layer", layer, 0);

@@ -343,7 +343,7 @@ static void step_walker(const step *s, const noh_crowd *crowd, walker *r)
         r->actor = 0;
         return;
     }
-    if (k->ragdoll && noh_stage_is_carried(noh_stage_body_of(k, noh_stage_index(k, a)))) {
+    if (noh_stage_is_carried(k, noh_stage_index(k, a))) {
         r->begun = 0;
         return;
     }

@@ -9,7 +9,7 @@
 #include "core/base/assert.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_ragdoll_internal.h"
 
 #define CHEST 0.75f /* of the way up */
 
@@ -52,7 +52,7 @@ noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3
     if (point) memcpy(at, point, sizeof at);
     if (!point) result = find_chest(stage, actor, k, at, error);
     if (result != NOH_OK) return result;
-    for (int i = 0; i < 3; i++) at[i] *= k->ragdoll->metres;
+    for (int i = 0; i < 3; i++) at[i] *= noh_stage_ragdoll_kind_of(k)->metres;
     return noh_actor_hit(stage, actor, at, impulse, error);
 }
 

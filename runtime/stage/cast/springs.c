@@ -11,6 +11,7 @@
 #include "noh/low_life.h"
 #include "noh/low_motion.h"
 #include "noh/modules.h"
+#include "noh/noh.h"
 #include "noh/pack.h"
 
 #include <string.h>
@@ -512,6 +513,73 @@ static const char *check(const void *user, const void *state)
         if (what) return what;
     }
     return NULL;
+}
+
+/* ---- the springs of a kind's pack as a module ---- */
+
+static int is_there(const noh_kind_desc *d, const void *desc)
+{
+    noh_springs_desc springs;
+    (void)desc;
+    return noh_springs_of_pack(d->mesh, d->skeleton, &springs);
+}
+
+static const char *bad(const noh_kind_desc *d, const void *desc)
+{
+    noh_springs_desc springs;
+    (void)desc;
+    return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
+                   state_bytes_of(&springs, springs.chain_count) > NOH_STAGE_PART_BYTES_MAX
+               ? "springs of a kind: those of its mesh's pack have more bytes than NOH_STAGE_PART_BYTES_MAX"
+               : NULL;
+}
+
+static uint32_t hash(const noh_kind_desc *d, const void *desc)
+{
+    (void)d, (void)desc;
+    return 1;
+}
+
+static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_stage_needs *n, noh_module_needs *needs,
+                          noh_error *error)
+{
+    noh_springs_desc springs;
+    (void)desc, (void)n, (void)error;
+    if (!noh_springs_of_pack(d->mesh, d->skeleton, &springs)) return NOH_OK;
+    noh_springs_measure(&springs, &needs->actor_bytes, &needs->scratch_bytes);
+    needs->kind_bytes = noh_springs_size(&springs);
+    return NOH_OK;
+}
+
+static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
+{
+    noh_springs_desc of_pack;
+    noh_springs *springs;
+    (void)desc;
+    if (!noh_springs_of_pack(k->desc->mesh, k->desc->skeleton, &of_pack)) return NOH_OK;
+    return noh_springs_init(k->modules[NOH_SLOT_SPRINGS].shared, noh_springs_size(&of_pack), &of_pack, &springs, error);
+}
+
+static noh_result check_module(const noh_stage_kind *k, const void *state, noh_error *error)
+{
+    const char *what = check(k->modules[NOH_SLOT_SPRINGS].shared, state);
+    return what ? noh_fail(error, NOH_ERR_DATA, what, 0, 0) : NOH_OK;
+}
+
+noh_module noh_springs_module(void)
+{
+    static const noh_module_type of_pack = {
+        .slot = NOH_SLOT_SPRINGS,
+        .kind_name = "springs",
+        .hash = hash,
+        .is_there = is_there,
+        .bad = bad,
+        .measure = measure,
+        .init = init,
+        .check = check_module,
+        .modify = modify,
+    };
+    return (noh_module){ &of_pack, NULL };
 }
 
 noh_stage_part noh_springs_part(const noh_springs *springs)

@@ -28,9 +28,9 @@ static void open_actors(noh_stage *s, uint32_t kind)
 static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error)
 {
     noh_stage_kind *k = &s->kinds[kind];
-    uint32_t slots[NOH_LOD_LEVELS_MAX];
-    noh_lod_pools_desc desc = { k->desc->actor_count, 0, k->pool_levels, slots, k->desc->seen_max };
-    desc.pool_count = k->pool_count = noh_stage_pools(k->plan, k->pool_levels, slots);
+    uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
+    noh_lod_pools_desc desc = { k->desc->actor_count, 0, levels, slots, k->desc->seen_max };
+    desc.pool_count = noh_stage_pools(k->plan, levels, slots);
     return noh_lod_pools_init(memory, noh_lod_pools_size(&desc), &desc, &k->pools, error);
 }
 
@@ -43,9 +43,8 @@ static noh_result open_views(noh_stage *s, const noh_stage_blocks *b, noh_error 
         uint8_t *at = b->views + j * b->views_bytes;
         memset(&s->jobs[j], 0, sizeof s->jobs[j]);
         s->jobs[j].scratch = b->scratch + j * b->scratch_bytes;
-        s->jobs[j].graph_scratch = b->graph_scratch_bytes ? b->graph_scratch + j * b->graph_scratch_bytes : NULL;
         s->jobs[j].matrices = b->matrices + j * b->matrices_floats;
-        s->jobs[j].part_scratch = b->part_scratch_bytes ? b->part_scratch + j * b->part_scratch_bytes : NULL;
+        s->jobs[j].module_scratch = b->module_scratch_bytes ? b->module_scratch + j * b->module_scratch_bytes : NULL;
         for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
             if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
                 const size_t bytes = noh_clip_bank_view_size(s->kinds[i].bank);
@@ -77,7 +76,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->events = b->events;
     s->jobs = b->jobs;
     s->scratch_bytes = b->scratch_bytes;
-    s->graph_scratch_bytes = b->graph_scratch_bytes;
+    s->module_scratch_bytes = b->module_scratch_bytes;
     s->pick_scratch = b->pick_scratch;
     s->pick_bytes = b->pick_bytes;
     s->inertia_scratch = b->inertia_scratch;

@@ -11,7 +11,6 @@
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
 #include "noh/noh.h"
-#include "life/physics/ragdoll_internal.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- ids ---- */
@@ -300,8 +299,11 @@ noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *pla
     be_at(a, &normal);
     *actor = id_of(stage, (uint32_t)(a - stage->actors));
     noh_stage_take_floats(&stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a));
-    if (stage->kinds[kind].face) {
-        noh_stage_begin_face(stage, &stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a), actor->id);
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module_type *type = stage->kinds[kind].modules[slot].type;
+        if (type && type->spawn) {
+            type->spawn(stage, &stage->kinds[kind], noh_stage_index(&stage->kinds[kind], a), *actor);
+        }
     }
     return NOH_OK;
 }
@@ -331,14 +333,14 @@ noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error
     }
     for (uint32_t i = 0; i < stage->actor_count; i++) {
         noh_stage_actor *a = &stage->actors[i];
-        noh_stage_kind *k = noh_stage_kind_of(stage, i);
         if (!a->alive) continue;
         if (!a->parent) noh_stage_shift_actor(a, back);
         for (int n = 0; n < 3; n++) a->home[n] -= (double)by[n];
-        noh_stage_shift_parts(k, noh_stage_index(k, a), by);
     }
-    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
-        if (stage->kinds[i].ragdoll) noh_stage_shift_ragdolls(&stage->kinds[i], back);
+    for (uint32_t i = 0; i < stage->desc.kind_count * NOH_SLOT_COUNT; i++) {
+        noh_stage_kind *k = &stage->kinds[i / NOH_SLOT_COUNT];
+        const noh_module_type *type = k->modules[i % NOH_SLOT_COUNT].type;
+        if (type && type->shift) type->shift(k, by);
     }
     for (int n = 0; n < 3; n++) {
         stage->origin[n] -= by[n];
@@ -408,10 +410,11 @@ static void let_go_all(noh_stage *s, uint32_t parent)
 static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
 {
     noh_stage_free *f = &s->head->kinds[k - s->kinds];
+    const noh_stage_module *source = &k->modules[NOH_SLOT_SOURCE];
     const uint32_t own = noh_stage_index(k, a) + 1u, generation = a->generation;
     memset(k->held + (size_t)(own - 1u) * k->desc->held_float_count, 0, k->desc->held_float_count * sizeof *k->held);
-    memset(k->part_states + (size_t)(own - 1u) * k->part_bytes, 0, k->part_bytes);
-    memset(k->graph_slots + (size_t)(own - 1u) * k->slot_bytes, 0, k->slot_bytes);
+    memset(k->modifier_states + (own - 1u) * k->modifier_bytes, 0, k->modifier_bytes);
+    memset(source->states + (own - 1u) * source->stride, 0, source->stride);
     memset(a, 0, sizeof *a);
     a->generation = generation == 0xffffu ? 1u : generation + 1u;
     if (f->last) {

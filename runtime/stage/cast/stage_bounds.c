@@ -300,7 +300,7 @@ static void widen_weights(const noh_stage_kind *k, const float *floats, range *r
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
         for (uint32_t t = 0; t < mesh->mesh.header->target_count; t++) {
-            const uint32_t at = mesh->first_float + t, from = k->sources[at];
+            const uint32_t at = mesh->first_float + t, from = k->named.sources[at];
             float *low = &r->low[mesh->first_weight + t], *high = &r->high[at];
             if (from >= k->set.float_count) continue;
             *high = larger(*high, floats[from]);
@@ -424,6 +424,6 @@ void noh_stage_open_bounds(noh_stage_kind *k, noh_character_scratch *scratch)
     memset(k->reach, 0, sizeof k->reach);
     if (!noh_box_is_empty(box)) sphere_of_box(box, k->reach);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
-        memcpy(k->floats + (size_t)i * k->float_count, k->defaults, k->float_count * sizeof *k->floats);
+        memcpy(k->floats + (size_t)i * k->float_count, k->named.defaults, k->float_count * sizeof *k->floats);
     }
 }

@@ -6,11 +6,9 @@
 #include "stage/character/scheduler.h"
 #include "noh/base.h"
 #include "noh/clip.h"
-#include "noh/face.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "noh/low_stage.h"
-#include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
@@ -45,7 +43,7 @@ static void shape_without_clips(const noh_kind_desc *d, uint32_t weight_count, n
     if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) == NOH_OK) {
         shape->joint_count = skeleton.joint_count;
     }
-    shape->float_count = noh_stage_has_parts(d) && weight_count ? weight_count : shape->joint_count ? 0 : 1;
+    shape->float_count = noh_stage_has_modifiers(d) && weight_count ? weight_count : shape->joint_count ? 0 : 1;
 }
 
 noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
@@ -157,8 +155,8 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
     const noh_clip_bank_desc bank = noh_stage_bank_desc(desc, plan, owner);
     noh_mesh skinned;
     noh_result result;
-    size_t springs_state;
     memset(needs, 0, sizeof *needs);
+    needs->kind = kind;
     measure_meshes(&d, needs, &skinned);
     take_clips(&plan->kinds[kind].clips, &d, owner == kind, needs);
     needs->mask_count = count_masks(&d);
@@ -166,16 +164,9 @@ noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_pl
                          (needs->has_clips && d.mesh->node_count ? 0 : needs->weight_count);
     needs->lod_bytes = desc->full_detail ? 0 : lod_bytes(&bank, needs, skinned.header ? &skinned : NULL);
     measure_actors(&d, needs);
-    result = noh_stage_measure_graphs(&d, kind, needs, error);
+    result = noh_stage_measure_modules(&d, needs, error);
     if (result != NOH_OK) {
         return result;
-    }
-    needs->part_bytes = noh_stage_part_bytes(&d);
-    needs->springs_bytes = noh_stage_springs_bytes(&d, &springs_state, &needs->part_scratch_bytes);
-    needs->face_link_max = d.face ? noh_stage_face_links(&d) : 0;
-    for (uint32_t i = 0; i < d.part_count; i++) {
-        const size_t bytes = d.parts[i].scratch_bytes;
-        needs->part_scratch_bytes = bytes > needs->part_scratch_bytes ? bytes : needs->part_scratch_bytes;
     }
     needs->pools_bytes = pools_bytes(plan, &d, kind);
     if (!needs->character_bytes || !needs->pools_bytes) {
@@ -225,7 +216,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
-    size_t scratch_bytes, graph_scratch_bytes, part_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
+    size_t scratch_bytes, module_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
     uint32_t skin_joints, actors;
 } widest;
 
@@ -237,8 +228,7 @@ static size_t aligned(size_t bytes)
 static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const noh_stage_needs *n)
 {
     if (n->scratch_bytes > most->scratch_bytes) most->scratch_bytes = n->scratch_bytes;
-    if (n->graph_scratch_bytes > most->graph_scratch_bytes) most->graph_scratch_bytes = n->graph_scratch_bytes;
-    if (n->part_scratch_bytes > most->part_scratch_bytes) most->part_scratch_bytes = n->part_scratch_bytes;
+    if (n->module_scratch_bytes > most->module_scratch_bytes) most->module_scratch_bytes = n->module_scratch_bytes;
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
@@ -252,11 +242,13 @@ static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stag
     k->character_bytes = (uint32_t)n->character_bytes;
     k->characters = noh_arena_carve(arena, d->actor_count * n->character_bytes, 16);
     k->held = CARVE(arena, d->actor_count * (size_t)d->held_float_count, noh_stage_held);
-    k->graph_slots = noh_arena_carve(arena, d->actor_count * n->slot_bytes, 16);
-    k->slot_bytes = (uint32_t)n->slot_bytes;
-    k->part_states = noh_arena_carve(arena, d->actor_count * n->part_bytes, 16);
-    k->part_bytes = n->part_bytes;
-    k->dolls = noh_arena_carve(arena, noh_stage_doll_bytes(d), 16);
+    k->modules[NOH_SLOT_SOURCE].states = noh_arena_carve(arena,
+                                                         d->actor_count * n->modules[NOH_SLOT_SOURCE].actor_bytes, 16);
+    k->modifier_states = noh_arena_carve(arena, d->actor_count * n->modifier_bytes, 16);
+    k->modifier_bytes = n->modifier_bytes;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        k->modules[slot].pool = noh_arena_carve(arena, n->modules[slot].pool_bytes, 16);
+    }
     *pools = noh_arena_carve(arena, n->pools_bytes, 16);
 }
 
@@ -264,14 +256,13 @@ static void carve_shared(noh_arena *arena, const noh_kind_desc *d, const noh_kin
                          noh_stage_kind *k)
 {
     k->layers = CARVE(arena, d->layer_count, noh_stage_layer);
-    k->parts = CARVE(arena, d->part_count, noh_stage_part);
     k->meshes = CARVE(arena, n->mesh_count, noh_stage_mesh);
-    k->sources = CARVE(arena, n->float_count, uint32_t);
-    k->name_hashes = CARVE(arena, n->float_count, uint32_t);
-    k->defaults = CARVE(arena, n->float_count, float);
+    k->named.sources = CARVE(arena, n->float_count, uint32_t);
+    k->named.name_hashes = CARVE(arena, n->float_count, uint32_t);
+    k->named.defaults = CARVE(arena, n->float_count, float);
     k->target_radii = CARVE(arena, n->weight_count, float);
-    k->correctives = CARVE(arena, n->corrective_count, noh_corrective_term);
-    k->weight_rules = CARVE(arena, n->weight_rule_count, noh_weight_rule);
+    k->targets.correctives = CARVE(arena, n->corrective_count, noh_corrective_term);
+    k->targets.weight_rules = CARVE(arena, n->weight_rule_count, noh_weight_rule);
     k->masks = CARVE(arena, n->mask_count * (size_t)(n->shape.joint_count + n->shape.float_count), uint8_t);
     k->levels = CARVE(arena, plan->level_count, noh_lod_mesh);
     k->joint_radii = CARVE(arena, n->shape.joint_count, float);
@@ -306,10 +297,8 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->views = noh_arena_carve(arena, filled->job_count * most->views_bytes, 16);
     b->scratch_bytes = aligned(most->scratch_bytes);
     b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
-    b->graph_scratch_bytes = aligned(most->graph_scratch_bytes);
-    b->graph_scratch = noh_arena_carve(arena, filled->job_count * b->graph_scratch_bytes, 16);
-    b->part_scratch_bytes = aligned(most->part_scratch_bytes);
-    b->part_scratch = noh_arena_carve(arena, filled->job_count * b->part_scratch_bytes, 16);
+    b->module_scratch_bytes = aligned(most->module_scratch_bytes);
+    b->module_scratch = noh_arena_carve(arena, filled->job_count * b->module_scratch_bytes, 16);
     b->matrices_floats = 12u * (size_t)most->skin_joints;
     b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
 }
@@ -324,14 +313,24 @@ static NOH_NEVER_INLINE void measure_state(noh_arena *arena, const noh_stage_des
     carve_state(arena, &d, n, &kind, &b->pools[i]);
 }
 
-/* What of a kind's state is for ragdolls: the pool of those that fall at once, and what each actor remembers. */
-static void list_ragdolls(noh_stage_list *list, const noh_kind_desc *d, uint32_t i, size_t *from)
+/* States of modules that are listed by themselves. */
+static void list_states(noh_stage_list *list, const noh_stage_desc *desc, uint32_t kind, const noh_stage_needs *n,
+                        size_t *from)
 {
-    const size_t pool = aligned(noh_stage_doll_bytes(d)), states = d->actor_count * sizeof(noh_stage_body);
-    if (!d->ragdoll) return;
-    noh_stage_add_part(list, "ragdoll pool", i, pool, 0);
-    noh_stage_add_part(list, "ragdoll states", i, states, 0);
-    *from += pool + states;
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module m = noh_stage_wanted(&d, slot);
+        const size_t pool = aligned(n->modules[slot].pool_bytes);
+        const size_t states = d.actor_count * n->modules[slot].actor_bytes;
+        if (m.type && m.type->pool_name) {
+            noh_stage_add_part(list, m.type->pool_name, kind, pool, 0);
+            *from += pool;
+        }
+        if (m.type && m.type->state_name) {
+            noh_stage_add_part(list, m.type->state_name, kind, states, 0);
+            *from += states;
+        }
+    }
 }
 
 /* The first pass: the state, and what it takes to know how large the rest is. */
@@ -355,7 +354,7 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
         }
         measure_state(arena, desc, i, &needs, b);
         widen(most, desc, i, &needs);
-        if (list) list_ragdolls(list, &desc->kinds[i], i, &from);
+        if (list) list_states(list, desc, i, &needs, &from);
         add(list, "characters", i, arena, &from);
     }
     (void)noh_arena_carve(arena, 0, 16);
@@ -371,6 +370,7 @@ static void point_at_state(const noh_stage_desc *desc, const noh_stage_needs *n,
     noh_arena arena = noh_arena_over(*at, SIZE_MAX);
     void *pools;
     carve_state(&arena, &d, n, k, &pools);
+    noh_stage_open_modules(k, n);
     *at += aligned(arena.used);
 }
 
@@ -383,27 +383,18 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
     const noh_kind_desc d = noh_stage_kind_desc(desc, i);
     noh_stage_kind measured, *k = b->kinds ? &b->kinds[i] : &measured;
     size_t from = arena->used;
-    noh_face_link *face_links;
     memset(k, 0, sizeof *k);
     carve_shared(arena, &d, &plan->kinds[i], n, k);
     b->lods[i] = noh_arena_carve(arena, n->lod_bytes, 16);
     carve_frame(arena, &d, n, k);
     add(list, "kind", i, arena, &from);
-    if (d.face) {
-        k->face = CARVE(arena, 1, noh_stage_face_kind);
-        face_links = CARVE(arena, n->face_link_max, noh_face_link);
-        if (k->face) k->face->links = face_links;
-        add(list, "faces", i, arena, &from);
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module m = noh_stage_wanted(&d, slot);
+        if (!m.type) continue;
+        k->modules[slot].type = m.type;
+        k->modules[slot].shared = noh_arena_carve(arena, n->modules[slot].kind_bytes, 16);
+        if (m.type->kind_name) add(list, m.type->kind_name, i, arena, &from);
     }
-    if (d.ragdoll) {
-        k->ragdoll = CARVE(arena, 1, noh_stage_ragdoll_kind);
-        k->doll_scratch = noh_arena_carve(arena, noh_stage_doll_scratch_bytes(&d), 16);
-        add(list, "ragdolls", i, arena, &from);
-    }
-    b->springs[i] = noh_arena_carve(arena, n->springs_bytes, 16);
-    if (n->springs_bytes) add(list, "springs", i, arena, &from);
-    b->graphs[i] = noh_arena_carve(arena, n->graph_bytes, 16);
-    if (n->graph_count) add(list, "graphs", i, arena, &from);
     b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);
     add(list, "clips", i, arena, &from);
     if (*state) point_at_state(desc, n, i, state, k);

@@ -9,7 +9,6 @@
 #include "noh/pack.h"
 #include "noh/clip.h"
 #include "noh/noh.h"
-#include "noh/modules.h"
 
 const noh_layer_desc noh_stage_default_layers[3] = {
     { "body", NOH_LAYER_BASE, NULL, NULL, 0 },
@@ -39,7 +38,6 @@ uint32_t noh_stage_controller_flags(const noh_kind_desc *kind)
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
 {
     noh_kind_desc d = desc->kinds[kind];
-    noh_springs_desc springs;
     if (!d.name) d.name = "";
     if (!d.seen_max) d.seen_max = d.actor_count;
     if (!d.layers) {
@@ -48,7 +46,7 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
     }
     if (!d.clips && !d.clip_packs) d.clips = d.mesh;
     if (d.mesh->skeleton_count == 0) d.skeleton = NOH_NONE;
-    d.without_springs = d.without_springs || !noh_springs_of_pack(d.mesh, d.skeleton, &springs);
+    noh_stage_fill_modules(&d);
     if (!d.change_count) d.change_count = 3u * noh_stage_track_count(&d);
     d.held_float_count = d.held_float_count == NOH_NONE ? 0 : d.held_float_count ? d.held_float_count : 8u;
     return d;
@@ -186,29 +184,6 @@ static const char *bad_layer(const noh_layer_desc *layer)
                                                      : NULL;
 }
 
-static const char *bad_parts(const noh_kind_desc *d)
-{
-    if (d->part_count > NOH_STAGE_PARTS_MAX) return "part_count of a kind is above NOH_STAGE_PARTS_MAX";
-    if (!d->parts && d->part_count) return "parts of a kind is NULL, and part_count is not 0";
-    for (uint32_t i = 0; i < d->part_count; i++) {
-        if (!d->parts[i].modify) return "a part of a kind: modify is NULL";
-        if (d->parts[i].state_bytes > NOH_STAGE_PART_BYTES_MAX || d->parts[i].scratch_bytes > NOH_STAGE_PART_BYTES_MAX)
-            return "a part of a kind: more bytes than NOH_STAGE_PART_BYTES_MAX";
-    }
-    return NULL;
-}
-
-static const char *bad_springs(const noh_kind_desc *d)
-{
-    noh_springs_desc springs;
-    size_t state_bytes, scratch_bytes;
-    if (d->without_springs || !noh_springs_of_pack(d->mesh, d->skeleton, &springs)) return NULL;
-    noh_springs_measure(&springs, &state_bytes, &scratch_bytes);
-    return state_bytes > NOH_STAGE_PART_BYTES_MAX
-               ? "springs of a kind's mesh: more bytes than NOH_STAGE_PART_BYTES_MAX: take without_springs"
-               : NULL;
-}
-
 static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
 {
     const noh_kind_desc *d = &desc->kinds[number];
@@ -234,14 +209,11 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
-    if (bad_parts(d)) return bad_parts(d);
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
         return "skeleton of a kind is none of its mesh pack's";
-    if (filled.ragdoll && noh_stage_bad_ragdoll(&filled)) return noh_stage_bad_ragdoll(&filled);
-    if (filled.face && noh_stage_bad_face(&filled)) return noh_stage_bad_face(&filled);
-    if (bad_springs(&filled)) return bad_springs(&filled);
+    if (noh_stage_bad_modules(&filled)) return noh_stage_bad_modules(&filled);
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;
 }
 

@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_face_internal.h"
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
 #define NECK_SHARE 0.4f
@@ -37,7 +37,8 @@ static void to_model(const noh_part_work *w, const float point[3], float out[3])
 /* Where another actor is looked at, or what hangs on it, counted from `home`. */
 static void eyes_of(const noh_stage_kind *k, const noh_stage_actor *on, const double home[3], float out[3])
 {
-    const float *rest = k->face ? k->face->middle : k->reach;
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
+    const float *rest = shared ? shared->middle : k->reach;
     for (int i = 0; i < 3; i++) out[i] = rest[i] * on->place.scale;
     noh_quat_rotate(on->place.rotation, out, out);
     for (int i = 0; i < 3; i++) out[i] += (float)((double)on->place.position[i] - home[i] + (double)on->rest[i]);
@@ -83,7 +84,7 @@ static int turns(const noh_part_work *w, const noh_stage_face_joint *j)
 
 static void neck_space_of(const noh_stage_kind *k, const noh_part_work *w, neck_space *n)
 {
-    const noh_stage_face_joint *head = &k->face->head;
+    const noh_stage_face_joint *head = &noh_stage_face_kind_of(k)->head;
     memset(n, 0, sizeof *n);
     n->rotation[3] = 1.0f;
     memcpy(n->origin, head->at, sizeof n->origin);
@@ -116,7 +117,7 @@ static void breathe(noh_part_work *w, const noh_stage_face_kind *f, float breath
 static void turn_neck(const noh_stage_kind *k, noh_part_work *w, const neck_space *n, const float share[4],
                       float moved[3])
 {
-    const uint32_t joint = k->face->neck.joint;
+    const uint32_t joint = noh_stage_face_kind_of(k)->neck.joint;
     float own[4], at[3], in_model[4], back[4], way[3];
     noh_stage_joint_at(k, w->local, joint, own, at);
     noh_quat_conjugate(n->rotation, back);
@@ -140,20 +141,20 @@ static void turn_head(const noh_stage_kind *k, noh_part_work *w, const neck_spac
     float share[4], rest[4];
     memset(moved, 0, 3 * sizeof *moved);
     memcpy(rest, head, sizeof rest);
-    if (turns(w, &k->face->neck)) {
+    if (turns(w, &noh_stage_face_kind_of(k)->neck)) {
         noh_quat_nlerp(none, head, NECK_SHARE, share);
         turn_neck(k, w, n, share, moved);
         noh_quat_conjugate(share, rest);
         noh_quat_mul(rest, head, rest);
     }
-    turn(w, &k->face->head, rest);
+    turn(w, &noh_stage_face_kind_of(k)->head, rest);
 }
 
 /* Eyes are the face's: what clips do to them is not kept. */
 static void turn_eyes(const noh_stage_kind *k, noh_part_work *w, const noh_face_pose *pose)
 {
     for (int e = 0; e < 2; e++) {
-        const noh_stage_face_joint *j = &k->face->eyes[e];
+        const noh_stage_face_joint *j = &noh_stage_face_kind_of(k)->eyes[e];
         float yaw[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, pitch[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
         if (!turns(w, j)) continue;
         noh_sin_cos(0.5f * pose->eyes[e][0], &yaw[1], &yaw[3]);
@@ -196,11 +197,12 @@ static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_p
         noh_face_four_visemes(&four, two);
         says = two;
     }
-    noh_face_channels(pose, &k->face->desc, says, NOH_MOUTH_NONE, channels);
-    if (turns(w, &k->face->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
-    noh_face_share(&k->face->rules, float_of(w, k->face->speech), float_of(w, k->face->lips_shut), channels);
-    noh_face_apply(k->face->links, k->face->link_count, channels, w->floats);
-    shut_lids(k->face, f, channels, w->floats);
+    noh_face_channels(pose, &noh_stage_face_kind_of(k)->desc, says, NOH_MOUTH_NONE, channels);
+    if (turns(w, &noh_stage_face_kind_of(k)->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    noh_face_share(&noh_stage_face_kind_of(k)->rules, float_of(w, noh_stage_face_kind_of(k)->speech),
+                   float_of(w, noh_stage_face_kind_of(k)->lips_shut), channels);
+    noh_face_apply(noh_stage_face_kind_of(k)->links, noh_stage_face_kind_of(k)->link_count, channels, w->floats);
+    shut_lids(noh_stage_face_kind_of(k), f, channels, w->floats);
 }
 
 /* ---- all of it ---- */
@@ -211,9 +213,9 @@ static void live(const noh_stage_kind *k, noh_stage_face *f, int64_t clock)
     if (ticks <= 0) return;
     f->clock = clock;
     if (ticks > SKIP_TICKS) {
-        noh_face_skip(&f->face, &k->face->desc, ticks);
+        noh_face_skip(&f->face, &noh_stage_face_kind_of(k)->desc, ticks);
     } else {
-        noh_face_step(&f->face, &k->face->desc, (uint32_t)ticks);
+        noh_face_step(&f->face, &noh_stage_face_kind_of(k)->desc, (uint32_t)ticks);
     }
 }
 
@@ -222,7 +224,7 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
 {
     float point[3], back[4];
     if (!target_of(s, f, w->home, point)) {
-        if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &k->face->desc, NULL, NULL);
+        if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &noh_stage_face_kind_of(k)->desc, NULL, NULL);
         f->looks = NOH_LOOKS_AHEAD; /* whom it looked at may be gone */
         f->fresh = 0;
         return;
@@ -231,30 +233,32 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
     for (int i = 0; i < 3; i++) point[i] -= n->origin[i];
     noh_quat_conjugate(n->rotation, back);
     noh_quat_rotate(back, point, point);
-    hold_point(&k->face->desc, point);
+    hold_point(&noh_stage_face_kind_of(k)->desc, point);
     if (f->fresh) {
-        (void)noh_face_look_at(&f->face, &k->face->desc, point, NULL);
+        (void)noh_face_look_at(&f->face, &noh_stage_face_kind_of(k)->desc, point, NULL);
     } else {
-        (void)noh_face_follow(&f->face, &k->face->desc, point, NULL);
+        (void)noh_face_follow(&f->face, &noh_stage_face_kind_of(k)->desc, point, NULL);
     }
     f->fresh = 0;
 }
 
-void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, noh_part_work *w)
+void noh_stage_run_face(noh_part_work *w)
 {
+    const noh_stage_kind *k = w->kind;
+    noh_stage_face *f = w->state;
     noh_face_pose pose;
     neck_space n;
     float moved[3];
     live(k, f, w->clock);
-    breathe(w, k->face, noh_face_breath(&f->face, &k->face->desc));
+    breathe(w, noh_stage_face_kind_of(k), noh_face_breath(&f->face, &noh_stage_face_kind_of(k)->desc));
     neck_space_of(k, w, &n);
-    look(s, k, f, w, &n);
-    noh_face_pose_of(&f->face, &k->face->desc, &pose);
-    if (turns(w, &k->face->head)) {
+    look(w->stage, k, f, w, &n);
+    noh_face_pose_of(&f->face, &noh_stage_face_kind_of(k)->desc, &pose);
+    if (turns(w, &noh_stage_face_kind_of(k)->head)) {
         noh_face aimed = f->face;
         turn_head(k, w, &n, pose.head, moved);
         for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i];
-        noh_face_pose_of(&aimed, &k->face->desc, &pose);
+        noh_face_pose_of(&aimed, &noh_stage_face_kind_of(k)->desc, &pose);
     }
     turn_eyes(k, w, &pose);
     move_targets(k, f, w, &pose);

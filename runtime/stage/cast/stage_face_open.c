@@ -13,7 +13,7 @@
 #include "noh/pack.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_face_internal.h"
 
 /* ---- joints ---- */
 
@@ -69,26 +69,6 @@ static uint32_t find_usual(const noh_kind_desc *d, uint32_t joint_count, const c
     return NOH_NONE;
 }
 
-/* Where a joint stands in model space. Scales are taken along, shear is not. */
-static void chain(const noh_skeleton *skeleton, const noh_transform *local, uint32_t joint, float rotation[4],
-                  float at[3])
-{
-    memcpy(rotation, local[joint].rotation, 4 * sizeof *rotation);
-    memcpy(at, local[joint].translation, 3 * sizeof *at);
-    for (uint32_t up = skeleton->parents[joint]; up != NOH_JOINT_ROOT; up = skeleton->parents[up]) {
-        for (int i = 0; i < 3; i++) at[i] *= local[up].scale[i];
-        noh_quat_rotate(local[up].rotation, at, at);
-        for (int i = 0; i < 3; i++) at[i] += local[up].translation[i];
-        noh_quat_mul(local[up].rotation, rotation, rotation);
-    }
-}
-
-void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
-                        float at[3])
-{
-    chain(&k->skeleton, local, joint, rotation, at);
-}
-
 /* *out: the joint of that name, or of a usual one. 0: there is none of that name. */
 static int open_joint(const noh_kind_desc *d, const noh_skeleton *skeleton, const char *name, const char *const *usual,
                       noh_stage_face_joint *out)
@@ -106,7 +86,7 @@ static int open_joint(const noh_kind_desc *d, const noh_skeleton *skeleton, cons
         out->joint = find_usual(d, skeleton->joint_count, usual);
     }
     if (out->joint == NOH_NONE) return !name;
-    chain(skeleton, skeleton->bind_pose, out->joint, rotation, out->at);
+    noh_stage_joint_in(skeleton, skeleton->bind_pose, out->joint, rotation, out->at);
     noh_quat_conjugate(rotation, out->axes);
     return 1;
 }
@@ -170,7 +150,7 @@ static const char *bad_rules(const noh_face_rules *r)
 /* 0: one that is named is not there. */
 static int open_joints(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
 {
-    const noh_kind_face *from = d->face;
+    const noh_kind_face *from = d->face.desc;
     return open_joint(d, skeleton, from ? from->head : NULL, heads, &f->head) &&
            open_joint(d, skeleton, from ? from->neck : NULL, necks, &f->neck) &&
            open_joint(d, skeleton, from ? from->chest : NULL, chests, &f->chest) &&
@@ -191,9 +171,9 @@ int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3])
 }
 
 /* All but links and floats. Returns what is wrong. */
-static const char *open_shared(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
+static const char *open_shared(const noh_kind_desc *d, const noh_kind_face *from, const noh_skeleton *skeleton,
+                               noh_stage_face_kind *f)
 {
-    const noh_kind_face *from = d->face;
     noh_face face;
     noh_error error = { NOH_OK, "", 0, 0 };
     float square = 0.0f;
@@ -212,20 +192,22 @@ static const char *open_shared(const noh_kind_desc *d, const noh_skeleton *skele
     return bad_rules(&f->rules);
 }
 
-const char *noh_stage_bad_face(const noh_kind_desc *d)
+static const char *bad(const noh_kind_desc *d, const void *desc)
 {
     noh_skeleton skeleton;
     noh_stage_face_kind f;
     if (noh_pack_skeleton_at(d->mesh, d->skeleton, &skeleton, NULL, NULL) != NOH_OK) skeleton.joint_count = 0;
-    return open_shared(d, &skeleton, &f);
+    return open_shared(d, desc, &skeleton, &f);
 }
 
-uint32_t noh_stage_hash_face(const noh_kind_desc *d)
+static uint32_t hash(const noh_kind_desc *d, const void *desc)
 {
-    uint32_t hash = 2166136261u;
-    const uint8_t *bytes = (const uint8_t *)&d->face->face;
-    for (size_t i = 0; i < sizeof d->face->face; i++) hash = (hash ^ bytes[i]) * 16777619u;
-    return hash;
+    const noh_kind_face *face = desc;
+    const uint8_t *bytes = (const uint8_t *)&face->face;
+    uint32_t sum = 2166136261u;
+    (void)d;
+    for (size_t i = 0; i < sizeof face->face; i++) sum = (sum ^ bytes[i]) * 16777619u;
+    return sum;
 }
 
 /* ---- targets ---- */
@@ -250,12 +232,14 @@ uint32_t noh_stage_face_bind(const noh_kind_desc *d, noh_face_find_fn find, cons
     const noh_face_recipe own = noh_face_recipe_in_pack(d->mesh);
     const noh_face_recipe *const usual[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
                                               &noh_face_recipe_units };
-    const int given = d->face && d->face->recipes;
-    return noh_face_recipe_bind_by(given ? d->face->recipes : usual, given ? d->face->recipe_count : 4u, find, user,
-                                   links, link_max);
+    const noh_kind_face *face = d->face.desc;
+    const int given = face && face->recipes;
+    return noh_face_recipe_bind_by(given ? face->recipes : usual, given ? face->recipe_count : 4u, find, user, links,
+                                   link_max);
 }
 
-uint32_t noh_stage_face_links(const noh_kind_desc *d)
+/* At most so many. */
+static uint32_t count_links(const noh_kind_desc *d)
 {
     return noh_stage_face_bind(d, find_in_pack, d, NULL, 0);
 }
@@ -267,13 +251,13 @@ static uint32_t find_in_kind(const void *user, const char *name, uint32_t nth)
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
         const uint32_t target = noh_mesh_find_target(&mesh->mesh, name), at = mesh->first_float + target;
-        if (target == NOH_NONE || at >= k->set.float_count || k->sources[at] != at) continue;
+        if (target == NOH_NONE || at >= k->set.float_count || k->named.sources[at] != at) continue;
         if (nth-- == 0) return at;
     }
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) { /* one that no clip moves stands for itself, or a namesake */
         const noh_stage_mesh *mesh = &k->meshes[m];
         const uint32_t target = noh_mesh_find_target(&mesh->mesh, name);
-        const uint32_t source = target == NOH_NONE ? NOH_NONE : k->sources[mesh->first_float + target];
+        const uint32_t source = target == NOH_NONE ? NOH_NONE : k->named.sources[mesh->first_float + target];
         if (source == NOH_NONE || source == mesh->first_float + target || source >= k->set.float_count) continue;
         for (uint32_t other = 0; other < k->plan->mesh_count; other++) {
             const uint32_t own = source - k->meshes[other].first_float;
@@ -288,7 +272,7 @@ static uint32_t find_float(const noh_stage_kind *k, const char *name)
 {
     const uint32_t hash = noh_hash_name(name);
     for (uint32_t f = 0; k->bank && f < k->set.float_count; f++) {
-        if (k->name_hashes[f] == hash && k->sources[f] == f) return f;
+        if (k->named.name_hashes[f] == hash && k->named.sources[f] == f) return f;
     }
     return NOH_NONE;
 }
@@ -305,33 +289,64 @@ static void find_lids(noh_stage_face_kind *f)
     }
 }
 
-void noh_stage_open_face(noh_stage_kind *k)
+static noh_face_link *carve(noh_arena *arena, uint32_t links)
 {
-    noh_stage_face_kind *f = k->face;
-    noh_face_link *links = f->links;
-    const uint32_t most = noh_stage_face_links(k->desc);
+    (void)noh_arena_carve(arena, sizeof(noh_stage_face_kind), 16);
+    return noh_arena_carve(arena, links * sizeof(noh_face_link), 16);
+}
+
+static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_stage_needs *n, noh_module_needs *needs,
+                          noh_error *error)
+{
+    noh_arena arena = noh_arena_measure();
+    (void)desc, (void)n, (void)error;
+    (void)carve(&arena, count_links(d));
+    needs->kind_bytes = arena.used;
+    needs->actor_bytes = sizeof(noh_stage_face);
+    return NOH_OK;
+}
+
+static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
+{
+    noh_stage_face_kind *f = k->modules[NOH_SLOT_FACE].shared;
+    noh_arena arena = noh_arena_over((uint8_t *)f, SIZE_MAX);
+    const uint32_t most = count_links(k->desc);
     const char *what;
     memset(f, 0, sizeof *f);
-    what = open_shared(k->desc, &k->skeleton, f);
-    NOH_ASSERT(!what); /* the plan was made of it */
-    (void)what;
-    f->links = links;
-    f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, links, most);
+    f->links = carve(&arena, most);
+    what = open_shared(k->desc, desc, &k->skeleton, f);
+    if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     find_lids(f);
     f->speech = find_float(k, "speech");
     f->lips_shut = find_float(k, "lips-shut");
+    return NOH_OK;
 }
 
 /* ---- a face ---- */
 
-void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed)
+static void begin(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed)
 {
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     noh_stage_face *f = noh_stage_face_of(k, index);
     memset(f, 0, sizeof *f);
-    (void)noh_face_init(&f->face, &k->face->desc, seed, k->face->flags, NULL);
+    (void)noh_face_init(&f->face, &shared->desc, seed, shared->flags, NULL);
     f->clock = s->head->clock;
     f->begun = 1;
+}
+
+static void spawn(const noh_stage *s, const noh_stage_kind *k, uint32_t index, noh_actor actor)
+{
+    begin(s, k, index, actor.id);
+}
+
+static void shift(noh_stage_kind *k, const float by[3])
+{
+    for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+        float *point = noh_stage_face_of(k, a)->point;
+        for (int i = 0; i < 3 && k->actors[a].alive; i++) point[i] -= by[i];
+    }
 }
 
 /* What the arithmetic of a face cannot stand: counts and enumerations out of range, values that are not finite. */
@@ -350,27 +365,47 @@ static int is_sound(const noh_face *f)
            (f->gaze != 2u || f->gaze_ticks);
 }
 
-const char *noh_stage_check_face(const noh_stage_face *f)
+static noh_result check(const noh_stage_kind *k, const void *state, noh_error *error)
 {
+    const noh_stage_face *f = state;
     float sum = f->point[0] + f->point[1] + f->point[2];
+    (void)k;
     for (int i = 0; i < NOH_VISEME_COUNT; i++) sum += f->visemes[i];
     return !noh_is_finite(sum) || f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||
                    !is_sound(&f->face)
-               ? "state: bad face of an actor"
-               : NULL;
+               ? noh_fail(error, NOH_ERR_DATA, "state: bad face of an actor", 0, 0)
+               : NOH_OK;
+}
+
+noh_module noh_face_module(const noh_kind_face *face)
+{
+    static const noh_module_type faces = {
+        .slot = NOH_SLOT_FACE,
+        .kind_name = "faces",
+        .hash = hash,
+        .bad = bad,
+        .measure = measure,
+        .init = init,
+        .spawn = spawn,
+        .shift = shift,
+        .check = check,
+        .modify = noh_stage_run_face,
+    };
+    return (noh_module){ face ? &faces : NULL, face };
 }
 
 /* ---- calls ---- */
 
-/* The face of an actor for a change; NULL after *result. */
-static noh_stage_face *face_for(noh_stage *s, noh_actor actor, noh_stage_kind **kind, noh_result *result,
-                                noh_error *error)
+static const char no_face[] = "the actor's kind has no face: set noh_kind_desc.face";
+
+noh_stage_face *noh_stage_change_face(noh_stage *s, noh_actor actor, noh_stage_kind **kind, noh_result *result,
+                                      noh_error *error)
 {
     noh_stage_actor *a;
     *result = noh_stage_change(s, actor, &a, kind, error);
     if (*result != NOH_OK) return NULL;
-    if (!(*kind)->face) {
-        *result = noh_fail(error, NOH_ERR_ARG, "the kind has no face (noh_kind_desc.face)", 0, 0);
+    if (!noh_stage_face_kind_of(*kind)) {
+        *result = noh_fail(error, NOH_ERR_ARG, no_face, 0, 0);
         return NULL;
     }
     return noh_stage_face_of(*kind, noh_stage_index(*kind, a));
@@ -380,7 +415,7 @@ noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float poin
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if (point && !noh_is_finite(point[0] + point[1] + point[2])) {
         return noh_fail(error, NOH_ERR_ARG, "point to look at: not finite", 0, 0);
@@ -395,7 +430,7 @@ noh_result noh_actor_look_at_actor(noh_stage *stage, noh_actor actor, noh_actor 
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if (!noh_stage_actor_of(stage, other, NULL)) return noh_stage_gone(error, other);
     f->fresh = f->fresh || f->looks != NOH_LOOKS_AT_ACTOR || f->target != other.id;
@@ -409,7 +444,7 @@ noh_result noh_actor_set_emotion(noh_stage *stage, noh_actor actor, const char *
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     NOH_ASSERT(emotion);
     return f ? noh_face_set_emotion(&f->face, noh_emotion_of_name(emotion), amount, onset_ticks, hold_ticks, fade_ticks,
                                     error)
@@ -420,10 +455,10 @@ noh_result noh_actor_set_activity(noh_stage *stage, noh_actor actor, noh_activit
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if ((unsigned)activity >= NOH_ACTIVITY_COUNT) return noh_fail(error, NOH_ERR_ARG, "no such activity", activity, 0);
-    noh_face_set_activity(&f->face, &k->face->desc, activity);
+    noh_face_set_activity(&f->face, &noh_stage_face_kind_of(k)->desc, activity);
     return NOH_OK;
 }
 
@@ -431,7 +466,7 @@ noh_result noh_actor_set_visemes(noh_stage *stage, noh_actor actor, const float 
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     for (uint32_t i = 0; visemes && i < NOH_VISEME_COUNT; i++) {
         if (!(visemes[i] >= 0.0f && visemes[i] <= 1.0f))
@@ -446,10 +481,10 @@ noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t 
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if (flags > NOH_FACE_FLAGS) return noh_fail(error, NOH_ERR_ARG, "flags of a face: unknown bits", 0, 0);
-    noh_face_set_flags(&f->face, &k->face->desc, flags);
+    noh_face_set_flags(&f->face, &noh_stage_face_kind_of(k)->desc, flags);
     return NOH_OK;
 }
 
@@ -457,8 +492,8 @@ noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed,
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
-    if (f) noh_stage_begin_face(stage, k, noh_stage_index(k, noh_stage_actor_of(stage, actor, NULL)), seed);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
+    if (f) begin(stage, k, noh_stage_index(k, noh_stage_actor_of(stage, actor, NULL)), seed);
     return result;
 }
 
@@ -466,8 +501,8 @@ noh_result noh_actor_blink(noh_stage *stage, noh_actor actor, noh_error *error)
 {
     noh_stage_kind *k;
     noh_result result;
-    noh_stage_face *f = face_for(stage, actor, &k, &result, error);
-    if (f) noh_face_blink(&f->face, &k->face->desc);
+    noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
+    if (f) noh_face_blink(&f->face, &noh_stage_face_kind_of(k)->desc);
     return result;
 }
 
@@ -477,7 +512,7 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     NOH_ASSERT(pose);
     if (!a) return noh_stage_gone(error, actor);
-    if (!k->face) return noh_fail(error, NOH_ERR_ARG, "the kind has no face (noh_kind_desc.face)", 0, 0);
-    noh_face_pose_of(&noh_stage_face_of(k, noh_stage_index(k, a))->face, &k->face->desc, pose);
+    if (!noh_stage_face_kind_of(k)) return noh_fail(error, NOH_ERR_ARG, no_face, 0, 0);
+    noh_face_pose_of(&noh_stage_face_of(k, noh_stage_index(k, a))->face, &noh_stage_face_kind_of(k)->desc, pose);
     return NOH_OK;
 }

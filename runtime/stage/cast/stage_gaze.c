@@ -39,7 +39,7 @@ static void look(noh_part_work *w)
     const noh_stage_kind *k = w->kind;
     noh_gaze *g = w->state;
     float target[3];
-    if (k->face || shared->rig.last >= w->joint_count) return;
+    if (k->modules[NOH_SLOT_FACE].type || shared->rig.last >= w->joint_count) return;
     to_model(w, g->point, target);
     noh_gaze_step(g, &shared->rig, &shared->head, w->skeleton, w->local, g->looks ? target : NULL, seconds_of(w),
                   w->cut || w->ticks > SKIP_TICKS);
@@ -51,6 +51,13 @@ static const char *check_gaze(const void *user, const void *state)
     return noh_gaze_check(state);
 }
 
+static void shift_gaze(const void *user, void *state, const float by[3])
+{
+    float *point = ((noh_gaze *)state)->point;
+    (void)user;
+    noh_sub3(point, by, point);
+}
+
 noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze)
 {
     noh_stage_part part;
@@ -59,6 +66,7 @@ noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze)
     part.name = "gaze";
     part.modify = look;
     part.check = check_gaze;
+    part.shift = shift_gaze;
     part.user = gaze;
     part.state_bytes = sizeof(noh_gaze);
     return part;
@@ -82,6 +90,13 @@ static const char *check_reach(const void *user, const void *state)
     return noh_reach_check(state);
 }
 
+static void shift_reach(const void *user, void *state, const float by[3])
+{
+    noh_reach_hand *hands = ((noh_reach *)state)->hands;
+    (void)user;
+    for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) noh_sub3(hands[i].point, by, hands[i].point);
+}
+
 noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig)
 {
     noh_stage_part part;
@@ -90,17 +105,8 @@ noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig)
     part.name = "hands";
     part.modify = reach_out;
     part.check = check_reach;
+    part.shift = shift_reach;
     part.user = rig;
     part.state_bytes = sizeof(noh_reach);
     return part;
-}
-
-void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3])
-{
-    if (part->modify == look) {
-        noh_sub3(((noh_gaze *)state)->point, by, ((noh_gaze *)state)->point);
-    } else if (part->modify == reach_out) {
-        noh_reach_hand *hands = ((noh_reach *)state)->hands;
-        for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) noh_sub3(hands[i].point, by, hands[i].point);
-    }
 }

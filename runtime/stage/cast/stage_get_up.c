@@ -18,7 +18,7 @@
 #include "core/base/assert.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_ragdoll_internal.h"
 
 #define BLEND_TICKS 19200u
 #define SPEED_SECONDS 0.005f /* speeds are differences over so long */
@@ -32,6 +32,7 @@ static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_act
 {
     const noh_character_desc desc = noh_stage_character_desc(k, 0);
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
+    const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
     noh_character_scratch scratch;
     noh_clip_set set = k->set;
     noh_stage_sampler sampler;
@@ -41,15 +42,11 @@ static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_act
         set.sample(set.user, clip, 0, set.joint_count, scratch.local, set.float_count, scratch.floats);
     } else {
         const uint32_t index = noh_stage_index(k, a);
-        if (k->graph_count) {
-            sampler = k->sampler;
-            noh_stage_pose_graph(s, &s->jobs[0], k, index, 0, 0, &sampler);
-            set.user = &sampler;
-        }
+        if (type) type->source->sample(s, &s->jobs[0], k, index, 0, 0, &set, &sampler);
         noh_controller_pose(noh_character_controller(noh_stage_character(k, index)), &set, &scratch.pose, scratch.local,
                             scratch.floats);
     }
-    noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, scratch.local, &frame, bodies);
+    noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, &k->skeleton, scratch.local, &frame, bodies);
     return NOH_OK;
 }
 
@@ -119,15 +116,17 @@ static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_s
 {
     noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     const noh_ragdoll_pose *first = &b->bodies[0][0];
+    const noh_world *world = noh_stage_ragdoll_kind_of(k)->world;
     float ground;
-    noh_ragdoll_place_under(bodies, b->bodies[0], k->ragdoll->rig.body_count, &frame);
-    if (!k->ragdoll->world || !ground_below(k->ragdoll->world, b->origin, first->position,
-                                            first->position[1] + k->ragdoll->rig.bodies[0].radius, &ground)) {
+    noh_ragdoll_place_under(bodies, b->bodies[0], noh_stage_ragdoll_kind_of(k)->rig.body_count, &frame);
+    if (!world || !ground_below(world, b->origin, first->position,
+                                first->position[1] + noh_stage_ragdoll_kind_of(k)->rig.bodies[0].radius, &ground)) {
         ground = frame.position[1] + first->position[1] - bodies[0].position[1];
     }
     frame.position[1] = ground;
     for (int i = 0; i < 3; i++) {
-        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) / (double)k->ragdoll->metres);
+        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) /
+                                       (double)noh_stage_ragdoll_kind_of(k)->metres);
     }
     memcpy(a->place.rotation, frame.rotation, sizeof frame.rotation);
     a->before = a->place;
@@ -158,7 +157,7 @@ typedef struct differences {
 static void differ(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds,
                    differences *d)
 {
-    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
     float weights[NOH_RAGDOLL_BODIES_MAX], before[NOH_RAGDOLL_BODIES_MAX][4], from[3];
@@ -191,7 +190,7 @@ static void keep_joints(const noh_ragdoll_fit *fit, const noh_transform *local, 
 
 static void begin(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w, float seconds)
 {
-    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
     noh_transform kept[NOH_RAGDOLL_BODIES_MAX];
     differences now, then;
     keep_joints(fit, w->local, kept);
@@ -218,7 +217,7 @@ static void shares(float seconds, float duration, float share[2])
 
 static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds)
 {
-    const noh_ragdoll_fit *fit = &k->ragdoll->fit;
+    const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
     float share[2];
     shares(seconds, (float)b->rise_ticks / (float)NOH_TICKS_PER_SECOND, share);
     for (uint32_t i = 0; i < fit->body_count; i++) {
@@ -256,7 +255,7 @@ void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_w
 static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_body *b, uint32_t ticks)
 {
     memset(b->motions, 0, sizeof b->motions);
-    if (b->doll) noh_ragdoll_motions(k->dolls, b->doll - 1u, b->motions);
+    if (b->doll) noh_ragdoll_motions(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->motions);
     b->doll = 0;
     b->state = NOH_BODY_STANDS;
     b->rise = NOH_RISE_BEGINS;
@@ -284,11 +283,11 @@ noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up 
     result = choose_clip(stage, k, a, b, how, &choice, bodies, error);
     if (result == NOH_OK && choice != NOH_NONE) {
         const uint32_t clip = noh_stage_find(stage, (uint32_t)(k - stage->kinds), NOH_NAME_CLIP, how->clips[choice]);
-        result = noh_stage_leap_to(stage, actor, how->layer, clip, ticks, k->ragdoll->fit.joints,
-                                   k->ragdoll->fit.body_count, error);
+        result = noh_stage_leap_to(stage, actor, how->layer, clip, ticks, noh_stage_ragdoll_kind_of(k)->fit.joints,
+                                   noh_stage_ragdoll_kind_of(k)->fit.body_count, error);
     }
     if (result != NOH_OK) return result;
-    if (noh_stage_is_carried(b)) stand_under(k, a, b, bodies);
+    if (noh_stage_falls_free(b)) stand_under(k, a, b, bodies);
     leave_doll(stage, k, b, ticks);
     if (chosen) *chosen = choice;
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));

@@ -11,7 +11,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 #include "core/base/name_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_graph_internal.h"
 
 /* ---- which ---- */
 
@@ -73,12 +73,13 @@ static int add_matches(const noh_kind_desc *d, const noh_stage_word *word, graph
     return found;
 }
 
-static noh_result list_graphs(const noh_kind_desc *d, uint32_t kind, graph_list *list, noh_error *error)
+static noh_result list_graphs(const noh_kind_desc *d, const char *names, uint32_t kind, graph_list *list,
+                              noh_error *error)
 {
-    const char *at = d->graphs;
+    const char *at = names;
     noh_stage_word word;
     memset(list, 0, sizeof *list);
-    while (at && noh_stage_next_word(&at, &word)) {
+    while (noh_stage_next_word(&at, &word)) {
         if (word.takes_out || !add_matches(d, &word, list)) {
             return noh_fail(error, NOH_ERR_NOT_FOUND, "graphs of a kind: a name that no graph of its packs has", kind,
                             0);
@@ -102,6 +103,20 @@ static noh_graph_pack_desc graph_desc(const noh_kind_desc *d, const graph_list *
     return desc;
 }
 
+static int is_there(const noh_kind_desc *d, const void *names)
+{
+    const char *at = names;
+    noh_stage_word word;
+    (void)d;
+    return noh_stage_next_word(&at, &word);
+}
+
+static uint32_t count_graphs(const noh_kind_desc *d, const void *names)
+{
+    graph_list list;
+    return list_graphs(d, names, 0, &list, NULL) == NOH_OK ? list.count : 0;
+}
+
 /* ---- bytes ---- */
 
 static size_t aligned(size_t bytes)
@@ -110,6 +125,7 @@ static size_t aligned(size_t bytes)
 }
 
 typedef struct tables {
+    noh_stage_graphs *shared;
     noh_graph_pack **graphs;
     noh_clip_entry *clips;
     noh_root_track *roots;
@@ -120,6 +136,7 @@ typedef struct tables {
 static size_t carve_tables(noh_arena *arena, uint32_t graphs, uint32_t clips, int has_roots, tables *t)
 {
     const size_t rows = (size_t)clips + graphs;
+    t->shared = noh_arena_carve(arena, sizeof *t->shared, 16);
     t->graphs = noh_arena_carve(arena, graphs * sizeof *t->graphs, 16);
     t->clips = noh_arena_carve(arena, rows * sizeof *t->clips, 16);
     t->roots = noh_arena_carve(arena, has_roots ? rows * sizeof *t->roots : 0u, 16);
@@ -134,101 +151,107 @@ static size_t scratch_size(const noh_clip_set *set, size_t state_bytes, size_t e
            aligned(state_bytes) + aligned(evaluation_bytes);
 }
 
-noh_result noh_stage_measure_graphs(const noh_kind_desc *d, uint32_t number, noh_stage_needs *n, noh_error *error)
+static noh_result measure(const noh_kind_desc *d, const void *names, const noh_stage_needs *n, noh_module_needs *needs,
+                          noh_error *error)
 {
     noh_arena arena = noh_arena_measure();
     size_t state_bytes = 0, evaluation_bytes = 0;
     graph_list list;
     tables unused;
-    noh_result result = list_graphs(d, number, &list, error);
-    if (result != NOH_OK || !list.count) {
+    noh_result result = list_graphs(d, names, n->kind, &list, error);
+    if (result != NOH_OK) {
         return result;
     }
     if (!n->has_clips) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "a kind plays graphs, and none of its packs has clips for them",
-                        number, 0);
+                        n->kind, 0);
     }
-    n->graph_count = list.count;
-    n->graph_bytes = carve_tables(&arena, list.count, n->shape.clip_count, d->root_axes != 0, &unused);
+    needs->kind_bytes = carve_tables(&arena, list.count, n->shape.clip_count, d->root_axes != 0, &unused);
     for (uint32_t i = 0; i < list.count && result == NOH_OK; i++) {
         const noh_graph_pack_desc desc = graph_desc(d, &list, i, &n->shape);
-        noh_graph_pack_needs needs;
-        result = noh_graph_pack_measure(&desc, &needs, error);
+        noh_graph_pack_needs own;
+        result = noh_graph_pack_measure(&desc, &own, error);
         if (result != NOH_OK) break;
-        n->graph_bytes += aligned(needs.bytes);
-        state_bytes = needs.state_bytes > state_bytes ? needs.state_bytes : state_bytes;
-        evaluation_bytes = needs.scratch_bytes > evaluation_bytes ? needs.scratch_bytes : evaluation_bytes;
+        needs->kind_bytes += aligned(own.bytes);
+        state_bytes = own.state_bytes > state_bytes ? own.state_bytes : state_bytes;
+        evaluation_bytes = own.scratch_bytes > evaluation_bytes ? own.scratch_bytes : evaluation_bytes;
     }
-    n->slot_bytes = sizeof(noh_stage_graph_slot) + aligned(state_bytes);
-    n->graph_scratch_bytes = scratch_size(&n->shape, state_bytes, evaluation_bytes);
+    needs->actor_bytes = sizeof(noh_stage_graph_slot) + aligned(state_bytes);
+    needs->scratch_bytes = scratch_size(&n->shape, state_bytes, evaluation_bytes);
     return result;
 }
 
 /* ---- made ---- */
 
 /* The clip that stands for a graph: it never ends, and what no clip of the graph animates is left to others. */
-static void add_clip(noh_stage_kind *k, uint32_t i)
+static void add_clip(noh_stage_kind *k, const noh_graph_pack *g, const tables *t)
 {
-    const noh_graph_pack *g = k->graphs[i];
-    noh_clip_entry *entry = &k->graph_clips[k->set.clip_count];
+    noh_clip_entry *entry = &t->clips[k->set.clip_count];
     uint32_t lacks = NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY;
     for (uint32_t c = 0; c < g->graph.clip_count; c++) lacks &= g->clips.clips[g->graph.clips[c].clip].flags;
     memset(entry, 0, sizeof *entry);
     entry->duration_ticks = NOH_DURATION_MAX;
     entry->loop = NOH_LOOP_REPEAT;
     entry->flags = lacks;
-    if (k->graph_roots) memset(&k->graph_roots[k->set.clip_count], 0, sizeof *k->graph_roots);
+    if (k->set.roots) memset(&t->roots[k->set.clip_count], 0, sizeof *t->roots);
     k->set.clip_count++;
 }
 
-static void join_tables(noh_stage_kind *k, const tables *t)
+static void join_tables(noh_stage_kind *k, uint32_t graph_count, const tables *t)
 {
     const noh_clip_set *clips = &k->bank->clips;
     const size_t row = NOH_UPDATE_RATE_COUNT * sizeof(float);
-    k->graphs = t->graphs;
-    k->graph_clips = t->clips;
-    k->graph_roots = clips->roots ? t->roots : NULL;
     memcpy(t->clips, clips->clips, clips->clip_count * sizeof *t->clips);
     k->set.clips = t->clips;
     if (clips->roots) {
         memcpy(t->roots, clips->roots, clips->clip_count * sizeof *t->roots);
         k->set.roots = t->roots;
     }
-    memset(t->errors, 0, (clips->clip_count + k->graph_count) * row);
+    memset(t->errors, 0, (clips->clip_count + graph_count) * row);
     if (k->table.update_error_m) {
         memcpy(t->errors, k->table.update_error_m, clips->clip_count * row);
         k->table.update_error_m = t->errors;
     }
 }
 
-noh_result noh_stage_open_graphs(noh_stage_kind *k, uint32_t number, void *memory, const noh_stage_needs *n,
-                                 noh_error *error)
+static noh_result init(noh_stage_kind *k, const void *names, noh_error *error)
 {
-    noh_arena arena = noh_arena_over(memory, n->graph_bytes);
-    uint8_t *at = memory;
+    uint8_t *at = k->modules[NOH_SLOT_SOURCE].shared;
+    noh_arena arena = noh_arena_over(at, SIZE_MAX);
     graph_list list;
     tables t;
-    noh_result result = list_graphs(k->desc, number, &list, error);
-    if (result != NOH_OK || !list.count) {
+    noh_result result = list_graphs(k->desc, names, 0, &list, error);
+    if (result != NOH_OK) {
         return result;
     }
     at += carve_tables(&arena, list.count, k->bank->clips.clip_count, k->desc->root_axes != 0, &t);
-    k->graph_count = list.count;
-    join_tables(k, &t);
+    t.shared->count = list.count;
+    t.shared->graphs = t.graphs;
+    join_tables(k, list.count, &t);
     for (uint32_t i = 0; i < list.count && result == NOH_OK; i++) {
         const noh_graph_pack_desc desc = graph_desc(k->desc, &list, i, &k->bank->clips);
         const size_t bytes = noh_graph_pack_size(&desc, error);
-        result = noh_graph_pack_init(at, bytes, &desc, &k->graphs[i], error);
+        result = noh_graph_pack_init(at, bytes, &desc, &t.graphs[i], error);
         at += aligned(bytes);
-        if (result == NOH_OK) add_clip(k, i);
+        if (result == NOH_OK) add_clip(k, t.graphs[i], &t);
     }
-    noh_stage_wrap(k, &k->set, &k->sampler);
+    noh_stage_wrap(k, &k->set, &t.shared->sampler);
     return result;
 }
 
-uint32_t noh_stage_clip_count(const noh_stage_kind *k)
+noh_module noh_graph_module(const char *names)
 {
-    return k->bank ? k->bank->clips.clip_count : 0;
+    static const noh_module_type graphs = {
+        .slot = NOH_SLOT_SOURCE,
+        .kind_name = "graphs",
+        .hash = count_graphs,
+        .is_there = is_there,
+        .measure = measure,
+        .init = init,
+        .check = noh_stage_check_graph,
+        .source = &noh_stage_graph_source,
+    };
+    return (noh_module){ names ? &graphs : NULL, names };
 }
 
 /* ---- names ---- */
@@ -241,8 +264,9 @@ static uint32_t count_in(const noh_graph_pack *g, noh_name what)
 
 int noh_stage_in_graph(const noh_stage_kind *k, noh_name what, uint32_t *index, uint32_t *graph)
 {
-    for (uint32_t g = 0; g < k->graph_count; g++) {
-        const uint32_t count = count_in(k->graphs[g], what);
+    const noh_stage_graphs *all = noh_stage_graphs_of(k);
+    for (uint32_t g = 0; all && g < all->count; g++) {
+        const uint32_t count = count_in(all->graphs[g], what);
         if (*index < count) {
             *graph = g;
             return 1;
@@ -254,19 +278,12 @@ int noh_stage_in_graph(const noh_stage_kind *k, noh_name what, uint32_t *index, 
 
 uint32_t noh_stage_graph_names(const noh_stage_kind *k, noh_name what)
 {
+    const noh_stage_graphs *all = noh_stage_graphs_of(k);
     uint32_t count = 0;
-    if (what == NOH_NAME_GRAPH) return k->graph_count;
-    for (uint32_t g = 0; g < k->graph_count; g++) count += count_in(k->graphs[g], what);
+    if (!all) return 0;
+    if (what == NOH_NAME_GRAPH) return all->count;
+    for (uint32_t g = 0; g < all->count; g++) count += count_in(all->graphs[g], what);
     return count;
-}
-
-const char *noh_stage_graph_name(const noh_stage_kind *k, noh_name what, uint32_t index)
-{
-    uint32_t graph;
-    if (what == NOH_NAME_GRAPH) return index < k->graph_count ? k->graphs[index]->source.name : NULL;
-    if (!noh_stage_in_graph(k, what, &index, &graph)) return NULL;
-    return what == NOH_NAME_PARAMETER ? noh_graph_pack_param_name(k->graphs[graph], index)
-                                      : noh_graph_pack_machine_name(k->graphs[graph], index);
 }
 
 uint32_t noh_stage_find_value(const noh_stage *stage, uint32_t kind, uint32_t parameter, const char *name)
@@ -276,6 +293,6 @@ uint32_t noh_stage_find_value(const noh_stage *stage, uint32_t kind, uint32_t pa
     NOH_ASSERT(stage && name && kind < stage->desc.kind_count);
     k = &stage->kinds[kind];
     return noh_stage_in_graph(k, NOH_NAME_PARAMETER, &index, &graph)
-               ? noh_graph_pack_find_value(k->graphs[graph], index, name)
+               ? noh_graph_pack_find_value(noh_stage_graphs_of(k)->graphs[graph], index, name)
                : NOH_NONE;
 }

@@ -1,9 +1,10 @@
 /* stage_graph_play.c: the graph of an actor: what plays, its pose beside those of clips, its parameters and states. */
 #include <string.h>
 
+#include "core/base/assert.h"
+#include "motion/anim/controller_pose.h"
+#include "motion/anim/tracks.h"
 #include "motion/graph/graph.h"
-#include "stage/character/character.h"
-#include "stage/character/time_lod.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"
@@ -11,13 +12,14 @@
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_graph_internal.h"
 
 /* ---- what plays ---- */
 
 static noh_stage_graph_slot *slot_of(const noh_stage_kind *k, uint32_t index)
 {
-    return (noh_stage_graph_slot *)(void *)(k->graph_slots + (size_t)index * k->slot_bytes);
+    const noh_stage_module *m = &k->modules[NOH_SLOT_SOURCE];
+    return (noh_stage_graph_slot *)(void *)(m->states + index * m->stride);
 }
 
 noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index)
@@ -25,12 +27,12 @@ noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index)
     noh_stage_playing none = { NULL, NULL, NULL }, found = none;
     noh_stage_graph_slot *slot;
     const noh_controller *c;
-    if (!k->graph_count || !slot_of(k, index)->graph) {
+    if (!noh_stage_graphs_of(k) || !slot_of(k, index)->graph) {
         return none;
     }
     slot = slot_of(k, index);
     c = noh_character_controller(noh_stage_character(k, index));
-    found.graph = k->graphs[slot->graph - 1u];
+    found.graph = noh_stage_graphs_of(k)->graphs[slot->graph - 1u];
     found.state = (noh_graph_state *)(void *)(slot + 1);
     for (uint32_t i = 0; i < c->track_count; i++) {
         found.track = noh_controller_track(c, i);
@@ -41,15 +43,71 @@ noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index)
     return none;
 }
 
-void noh_stage_begin_graph(noh_stage_kind *k, uint32_t index, uint32_t graph)
+static size_t instance_bytes(const noh_stage_kind *k)
+{
+    return k->modules[NOH_SLOT_SOURCE].stride - sizeof(noh_stage_graph_slot);
+}
+
+static void begin(noh_stage_kind *k, uint32_t index, uint32_t graph)
 {
     noh_stage_graph_slot *slot = slot_of(k, index);
-    const noh_graph_pack *g = k->graphs[graph];
+    const noh_graph_pack *g = noh_stage_graphs_of(k)->graphs[graph];
     noh_graph_state *made;
-    memset(slot, 0, k->slot_bytes);
-    if (noh_graph_state_init(slot + 1, k->slot_bytes - sizeof *slot, &g->graph, &g->clips, &made, NULL) == NOH_OK) {
+    memset(slot, 0, k->modules[NOH_SLOT_SOURCE].stride);
+    if (noh_graph_state_init(slot + 1, instance_bytes(k), &g->graph, &g->clips, &made, NULL) == NOH_OK) {
         slot->graph = graph + 1u; /* always: the graph was checked, and the slot measured, when the stage was made */
     }
+}
+
+static noh_controller *controller(const noh_stage_kind *k, uint32_t index)
+{
+    const noh_stage_playing p = noh_stage_playing_of(k, index);
+    return p.graph ? noh_graph_controller(p.state) : NULL;
+}
+
+static int root(const noh_stage_kind *k, uint32_t index, noh_given_root *given)
+{
+    const noh_stage_playing p = noh_stage_playing_of(k, index);
+    if (!p.graph) return 0;
+    given->first_clip = noh_stage_clip_count(k);
+    given->moved = noh_graph_root_motion(p.state, &p.graph->graph, &p.graph->clips);
+    return 1;
+}
+
+static const char *bad_play(const noh_stage_player *p, const noh_play *play)
+{
+    if (p->layer->mode == NOH_LAYER_ADD) return "a graph plays on a base or an over layer";
+    if (play->speed || play->start_ticks || play->loop || play->sync_group || play->reference)
+        return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
+    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
+    return p->s->callback_of_source ? "within a key of a graph no graph begins: set a parameter of it, or play after "
+                                      "the step"
+                                    : NULL;
+}
+
+noh_result noh_actor_play_graph(noh_stage *stage, noh_actor actor, uint32_t layer, const char *graph,
+                                const noh_play *play, noh_error *error)
+{
+    static const noh_play plain;
+    const noh_play *how = play ? play : &plain;
+    const char *what;
+    uint32_t index;
+    noh_stage_player p;
+    const noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
+    NOH_ASSERT(graph);
+    if (result != NOH_OK) {
+        return result;
+    }
+    index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_GRAPH, graph);
+    if (index == NOH_NONE) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no graph of that name", (uint64_t)(p.k - stage->kinds),
+                        noh_stage_graph_names(p.k, NOH_NAME_GRAPH));
+    }
+    what = bad_play(&p, how);
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, layer, 0);
+    }
+    return noh_stage_play_clip(&p, noh_stage_clip_count(p.k) + index, how, error);
 }
 
 /* ---- its pose ---- */
@@ -60,7 +118,7 @@ static void sample_with_graphs(void *user, uint32_t clip, uint32_t clip_tick, ui
 {
     const noh_stage_sampler *s = user;
     const int other = s->poses[1] && clip_tick != s->tick;
-    if (clip < s->first_graph_clip) {
+    if (clip < s->first_source_clip) {
         s->sample(s->user, clip, clip_tick, joint_count, pose, float_count, floats);
         return;
     }
@@ -74,17 +132,22 @@ static void sample_with_graphs(void *user, uint32_t clip, uint32_t clip_tick, ui
 
 void noh_stage_wrap(const noh_stage_kind *k, noh_clip_set *set, noh_stage_sampler *sampler)
 {
+    if (set->sample == sample_with_graphs) { /* already: with no pose */
+        *sampler = *(const noh_stage_sampler *)set->user;
+        set->user = sampler;
+        return;
+    }
     memset(sampler, 0, sizeof *sampler);
     sampler->sample = set->sample;
     sampler->user = set->user;
-    sampler->first_graph_clip = noh_stage_clip_count(k);
+    sampler->first_source_clip = noh_stage_clip_count(k);
     sampler->bind_pose = set->bind_pose;
     sampler->float_defaults = set->float_defaults;
     set->sample = sample_with_graphs;
     set->user = sampler;
 }
 
-/* A job's scratch, as noh_stage_measure_graphs counts it. */
+/* A job's scratch, as stage_graph.c counts it. */
 typedef struct work {
     noh_transform *poses[2];
     float *floats[2];
@@ -96,7 +159,7 @@ typedef struct work {
 static noh_result open_work(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_playing *p,
                             const noh_stage_sampler *sampler, work *w)
 {
-    noh_arena arena = noh_arena_over(job->graph_scratch, s->graph_scratch_bytes);
+    noh_arena arena = noh_arena_over(job->module_scratch, s->module_scratch_bytes);
     const size_t bytes = noh_graph_scratch_size(&p->graph->graph, &p->graph->clips);
     w->set = p->graph->clips;
     w->set.sample = sampler->sample;
@@ -110,23 +173,17 @@ static noh_result open_work(const noh_stage *s, const noh_stage_job_part *job, c
                                   NULL);
 }
 
-static void follow_lod(noh_graph_state *state, const noh_controller *c)
-{
-    (void)noh_controller_set_lod(noh_graph_controller(state), c->lod,
-                                 c->lod_joint_count < c->joint_count ? c->lod_joint_count : 0);
-}
-
-void noh_stage_pose_graph(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, uint32_t index,
-                          int64_t ahead, int64_t ago, noh_stage_sampler *sampler)
+static void sample(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                   int64_t ahead, int64_t ago, noh_clip_set *set, noh_stage_sampler *sampler)
 {
     const noh_stage_playing p = noh_stage_playing_of(k, index);
     noh_graph_state *state = p.state;
     work w;
-    sampler->poses[0] = sampler->poses[1] = NULL;
+    noh_stage_wrap(k, set, sampler);
     if (!p.graph || open_work(s, job, &p, sampler, &w) != NOH_OK) {
         return;
     }
-    follow_lod(p.state, noh_character_controller(noh_stage_character(k, index)));
+    noh_stage_follow_lod(noh_graph_controller(p.state), noh_character_controller(noh_stage_character(k, index)));
     if (ahead > 0) { /* what begins now by inertia begins now, and is played on in a copy */
         if (state->inertia_ticks) {
             noh_graph_pose(state, &p.graph->graph, &w.set, &w.evaluation, w.poses[1], w.floats[1]);
@@ -146,60 +203,129 @@ void noh_stage_pose_graph(const noh_stage *s, const noh_stage_job_part *job, noh
     }
 }
 
-/* ---- detail ---- */
+/* ---- time ---- */
 
-noh_due noh_stage_look_graph(noh_stage_kind *k, uint32_t index, const noh_lod_settings *settings,
-                             float pixels_per_metre)
+typedef struct stepper {
+    noh_stage_stepper *of;
+    noh_stage_playing playing;
+    int64_t behind; /* the clock of the actor's controller less that of its graph's */
+} stepper;
+
+/* A key of the actor's clips. */
+static void on_key(void *user, const noh_event *event)
 {
-    const noh_stage_playing p = noh_stage_playing_of(k, index);
-    noh_character *ch = noh_stage_character(k, index);
-    float error_m[NOH_UPDATE_RATE_COUNT], of_graph[NOH_UPDATE_RATE_COUNT];
-    if (!p.graph || !k->table.update_error_m) {
-        return noh_character_look(ch, &k->table, settings, pixels_per_metre);
-    }
-    noh_time_lod_error(noh_character_controller(ch), k->table.update_error_m, error_m);
-    noh_time_lod_error(noh_graph_controller(p.state), k->table.update_error_m, of_graph);
-    for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-        error_m[r] = of_graph[r] > error_m[r] ? of_graph[r] : error_m[r];
-    }
-    return noh_character_look_given(ch, &k->table, settings, pixels_per_metre, error_m);
+    const stepper *t = user;
+    noh_stage_on_key(t->of, event);
 }
 
-void noh_stage_follow_lod(const noh_stage_kind *k, uint32_t index)
+/* A key of the graph's clips, weighed by the track that stands for the graph. */
+static void on_graph_key(void *user, const noh_event *event)
 {
-    const noh_stage_playing p = noh_stage_playing_of(k, index);
-    if (p.graph) follow_lod(p.state, noh_character_controller(noh_stage_character(k, index)));
+    const stepper *t = user;
+    const noh_stage_stepper *of = t->of;
+    const noh_controller *c = noh_character_controller(noh_stage_character(of->k, noh_stage_index(of->k, of->a)));
+    noh_event told = *event;
+    told.weight *= t->playing.track->weight;
+    told.track = (uint32_t)(t->playing.track - noh_controller_track(c, 0));
+    told.clock += t->behind;
+    if (told.weight < event->key->weight_min) {
+        return;
+    }
+    of->s->callback_of_source = 1;
+    noh_stage_on_key(t->of, &told);
+    of->s->callback_of_source = 0;
 }
 
-uint32_t noh_stage_graph_work(const noh_stage_kind *k, uint32_t index)
+/* Ticks until the next key of any track, at most `ticks`. */
+static uint32_t until_key(const noh_controller *c, const noh_clip_set *set, uint32_t ticks)
 {
-    const noh_stage_playing p = noh_stage_playing_of(k, index);
-    const noh_controller *c;
-    uint32_t tracks = 0;
-    if (!p.graph) {
-        return 0;
+    for (uint32_t i = 0; i < c->track_count; i++) {
+        const int64_t next = noh_track_next_event(noh_controller_track(c, i), set, ticks);
+        if (next > 0 && next < (int64_t)ticks) ticks = (uint32_t)next;
     }
-    c = noh_graph_controller(p.state);
-    for (uint32_t i = 0; i < c->track_count; i++) tracks += noh_controller_track(c, i)->mode == NOH_TRACK_ON;
-    return tracks * c->lod_joint_count;
+    return ticks;
+}
+
+/* Transitions of this step. One that is taken shows at once, however seldom the actor is posed. */
+static void decide(noh_character *ch, const noh_stage_playing *p, uint32_t ticks)
+{
+    uint32_t before = 0, after = 0;
+    for (uint32_t i = 0; i < p->graph->graph.machine_count; i++) {
+        before = before * 31u + noh_graph_machine_state(p->state, i);
+    }
+    noh_graph_decide(p->state, &p->graph->graph, &p->graph->clips, ticks);
+    for (uint32_t i = 0; i < p->graph->graph.machine_count; i++) {
+        after = after * 31u + noh_graph_machine_state(p->state, i);
+    }
+    if (before != after) noh_character_wake(ch);
+}
+
+/* Clips and graph move on from key to key, so that all keys come in the order of time, and what a callback changes
+ * holds from that tick on for both. */
+static void step_actor(noh_stage_stepper *of, noh_character *ch, uint32_t ticks)
+{
+    const uint32_t index = noh_stage_index(of->k, of->a);
+    const noh_controller *c = noh_character_controller(ch);
+    stepper t = { of, noh_stage_playing_of(of->k, index), 0 };
+    if (t.playing.graph) decide(ch, &t.playing, ticks);
+    while (ticks) {
+        uint32_t next = ticks;
+        of->s->source_begun = 0;
+        if (t.playing.graph) {
+            next = until_key(c, &of->k->set, ticks);
+            next = until_key(noh_graph_controller(t.playing.state), &t.playing.graph->clips, next);
+        }
+        (void)noh_character_step(ch, &of->k->set, next, on_key, &t);
+        t.playing = noh_stage_playing_of(of->k, index);
+        if (t.playing.graph && !of->s->source_begun) {
+            noh_controller *inner = noh_graph_controller(t.playing.state);
+            t.behind = c->clock - next - inner->clock;
+            (void)noh_controller_step(inner, &t.playing.graph->clips, next, on_graph_key, &t);
+            t.playing = noh_stage_playing_of(of->k, index);
+        }
+        ticks -= next;
+    }
 }
 
 /* ---- a state from outside ---- */
 
 noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *memory, noh_error *error)
 {
+    const noh_stage_graphs *all = noh_stage_graphs_of(k);
     const noh_stage_graph_slot *slot = memory;
     const noh_graph_pack *g;
-    if (!k->graph_count || !slot->graph) {
+    if (!slot->graph) {
         return NOH_OK;
     }
-    if (slot->graph > k->graph_count) {
+    if (slot->graph > all->count) {
         return noh_fail(error, NOH_ERR_DATA, "state: an actor plays a graph that its kind has not", slot->graph,
-                        k->graph_count);
+                        all->count);
     }
-    g = k->graphs[slot->graph - 1u];
-    return noh_graph_state_check(slot + 1, k->slot_bytes - sizeof *slot, &g->graph, &g->clips, error);
+    g = all->graphs[slot->graph - 1u];
+    return noh_graph_state_check(slot + 1, instance_bytes(k), &g->graph, &g->clips, error);
 }
+
+/* ---- names ---- */
+
+static const char *name(const noh_stage_kind *k, noh_name what, uint32_t index)
+{
+    const noh_stage_graphs *all = noh_stage_graphs_of(k);
+    uint32_t graph;
+    if (what == NOH_NAME_GRAPH) return index < all->count ? all->graphs[index]->source.name : NULL;
+    if (!noh_stage_in_graph(k, what, &index, &graph)) return NULL;
+    return what == NOH_NAME_PARAMETER ? noh_graph_pack_param_name(all->graphs[graph], index)
+                                      : noh_graph_pack_machine_name(all->graphs[graph], index);
+}
+
+const noh_source_type noh_stage_graph_source = {
+    .begin = begin,
+    .step_actor = step_actor,
+    .root = root,
+    .controller = controller,
+    .sample = sample,
+    .name_count = noh_stage_graph_names,
+    .name = name,
+};
 
 /* ---- parameters and states ---- */
 
@@ -211,7 +337,7 @@ static uint32_t local_index(const noh_stage_kind *k, noh_name what, const noh_st
     if (!p->graph || !noh_stage_in_graph(k, what, &index, &graph)) {
         return NOH_NONE;
     }
-    of = k->graphs[graph];
+    of = noh_stage_graphs_of(k)->graphs[graph];
     if (of == p->graph) {
         return index;
     }

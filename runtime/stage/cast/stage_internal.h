@@ -10,11 +10,8 @@
  *   stage_names.c    clips, layers, floats and joints by name
  *   stage_actor.c    actors come and go, and stand somewhere
  *   stage_play.c     layers
- *   stage_graph.c    which graphs a kind plays, and their bytes
- *   stage_graph_play.c  the graph of an actor
+ *   stage_module.c   the slots of a kind's modules (module_internal.h)
  *   stage_part.c     what changes a pose before it is shown
- *   stage_face.c     faces, the first of these; stage_face_open.c: their joints, targets and calls
- *   stage_ragdoll.c  actors that fall; stage_get_up.c: and get up again
  *   stage_step.c     time, callback keys, root motion
  *   stage_bounds.c   where an actor may be, and where and how near it is
  *   stage_look.c     phase 1: who is seen, how finely
@@ -27,26 +24,26 @@
  *   stage_state.c    state out and in
  *   view.c           cameras
  *
+ * None of these names a module: stage_graph*.c, stage_face*.c and stage_person.c, stage_ragdoll.c, stage_get_up.c and
+ * fall.c, springs.c; nor stage_feet.c and stage_gaze.c (tests/check_modules.sh).
+ *
  * The block has three parts. The state comes first: all that time or the game changes, without pointers. What is
  * derived from desc and packs follows, then what a frame writes for its own use. */
 #ifndef NOH_STAGE_STAGE_INTERNAL_H
 #define NOH_STAGE_STAGE_INTERNAL_H
 
-#include "stage/cast/stage_face.h"
-#include "stage/cast/stage_ragdoll.h"
+#include "core/base/assert.h"
 #include "stage/character/lod_pools.h"
 #include "stage/character/scheduler.h"
 #include "noh/base.h"
-#include "noh/body.h"
 #include "noh/clip.h"
-#include "noh/face.h"
-#include "noh/graph.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "noh/low_stage.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/pack.h"
+#include "stage/cast/module_internal.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -84,61 +81,12 @@ static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
     return t[0] | t[1] | t[2] | t[3] ? t : NULL;
 }
 
-/* The graph that an actor plays: its instance follows, in as many bytes as the largest of the kind takes. A track of
- * the actor's controller stands for it: graph g plays while one is on the set's clip first_graph_clip + g. */
-typedef struct noh_stage_graph_slot {
-    uint32_t graph; /* 1 + index in the kind's; 0: none was played yet */
-    uint32_t reserved[3];
-} noh_stage_graph_slot;
-
-/* Before the states of an actor's parts. */
-typedef struct noh_stage_part_head {
+/* Before the states of the modules that change an actor's poses. */
+typedef struct noh_stage_modifier_head {
     int64_t posed_clock; /* of the pose that they are at */
     uint32_t was_posed;
     uint32_t reserved;
-} noh_stage_part_head;
-
-#define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
-
-typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;
-
-/* Before the states of its parts, of a kind with faces. */
-typedef struct noh_stage_face {
-    noh_face face;
-    int64_t clock; /* tick of the stage's clock that it is at */
-    float point[3];
-    uint32_t target; /* id of an actor */
-    float visemes[NOH_VISEME_COUNT];
-    uint8_t looks, says, begun; /* noh_stage_looks */
-    uint8_t fresh;              /* 1: what it looks at is new: reached by a saccade */
-    uint16_t
-        shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
-} noh_stage_face;
-
-typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_ON } noh_stage_rise;
-
-/* After it, of a kind with ragdolls. */
-typedef struct noh_stage_body {
-    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* metres from `origin`: of the last pose, and of the one
-                                                         * before; while it falls those of its ragdoll, and where its
-                                                         * clips have them */
-    noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX]; /* RISE_BEGINS: of bodies[0]. RISE_GOES_ON: of each body's joint
-                                                         * how far it is turned from its clips, and how fast: radians */
-    float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit; while
-                                                         * it falls offset: from its first body to its place, metres */
-    float hertz[NOH_RAGDOLL_BODIES_MAX], animated[NOH_RAGDOLL_BODIES_MAX]; /* noh_body_hold */
-    uint32_t held;                                                         /* bit i: body i */
-    uint32_t rise_ticks;                                                   /* for how long it gets up */
-    int64_t rise_clock;                                                    /* since then */
-    int64_t clocks[2];                                                     /* of the two poses */
-    uint32_t doll;                                                         /* 1 + index in the kind's set; 0: none */
-    uint32_t poses;                                                        /* how many of the two there are */
-    uint8_t state;                                                         /* noh_body_state, of the first three */
-    uint8_t rise;                                                          /* noh_stage_rise */
-    uint8_t dead;
-    uint8_t goals;   /* 1: bodies[1] is where its clips have them */
-    float origin[3]; /* world, metres: near to its bodies, so that floats have as many digits everywhere */
-} noh_stage_body;
+} noh_stage_modifier_head;
 
 typedef struct noh_stage_free {
     uint32_t first, last; /* actor index + 1; 0: none. Taken at the front, given back at the end */
@@ -157,10 +105,7 @@ typedef struct noh_stage_head {
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
 NOH_STATIC_ASSERT(sizeof(noh_look) == 48, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 240, stage_actor);
-NOH_STATIC_ASSERT(sizeof(noh_stage_graph_slot) == 16, stage_graph_slot);
-NOH_STATIC_ASSERT(sizeof(noh_stage_part_head) == 16, stage_part_head);
-NOH_STATIC_ASSERT(sizeof(noh_stage_face) == NOH_ACTOR_FACE_BYTES, stage_face);
-NOH_STATIC_ASSERT(sizeof(noh_stage_body) == NOH_ACTOR_RAGDOLL_BYTES, stage_body);
+NOH_STATIC_ASSERT(sizeof(noh_stage_modifier_head) == 16, stage_modifier_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
 
 NOH_STATIC_ASSERT(sizeof(noh_kind_clips) == 48, kind_clips); /* compared as bytes */
@@ -194,113 +139,78 @@ typedef struct noh_stage_layer {
     int moves_joints; /* 0: its mask has no joint */
 } noh_stage_layer;
 
-/* A set some of whose clips stand for graphs: these have the poses that were made of an actor's. */
-typedef struct noh_stage_sampler {
-    noh_clip_sample_fn sample; /* of all other clips */
-    void *user;
-    uint32_t first_graph_clip;
-    uint32_t tick;                 /* of the first pose, where there are two */
-    const noh_transform *poses[2]; /* NULL: none */
-    const float *floats[2];
-    const noh_transform *bind_pose; /* where there is none */
-    const float *float_defaults;
-} noh_stage_sampler;
-
 typedef enum noh_stage_load {
     NOH_STAGE_DROPPED = 0, /* or never brought */
     NOH_STAGE_LOADING,
     NOH_STAGE_LOADED
 } noh_stage_load;
 
-/* A joint that a face turns. */
-typedef struct noh_stage_face_joint {
-    uint32_t joint; /* NOH_NONE: none */
-    float axes[4];  /* from model space at rest to the joint's own axes */
-    float at[3];    /* at rest, model space */
-} noh_stage_face_joint;
-
-/* What the faces of a kind have in common. */
-typedef struct noh_stage_face_kind {
-    noh_face_desc desc; /* neck space */
-    noh_face_rules rules;
-    noh_stage_face_joint head, neck, chest, eyes[2];
-    float middle[3]; /* between the eyes at rest, model space */
-    uint32_t flags;
-    uint32_t speech, lips_shut;           /* floats of clips; NOH_NONE: no clip has them */
-    noh_face_link *links;                 /* to floats of the set */
-    uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
-    uint32_t link_count;
-} noh_stage_face_kind;
-
-/* What the ragdolls of a kind have in common. */
-typedef struct noh_stage_ragdoll_kind {
-    noh_ragdoll_rig rig;
-    noh_ragdoll_fit fit;
-    const noh_world *world;
-    float metres; /* of one unit of the world */
-} noh_stage_ragdoll_kind;
-
-typedef struct noh_stage_kind {
-    noh_kind_desc *desc; /* defaults filled in; `layers` is NULL afterwards */
-    const noh_kind_plan *plan;
-    uint32_t first_actor;
-    uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
-    noh_clip_bank_desc bank_desc;
-    noh_clip_bank *bank; /* NULL: no clip fits */
-    int holds_all;       /* of bank_kind: 1: its cache has all segments of all clips decoded */
-    noh_clip_set set;    /* with the kind's masks; samples through the bank's own cache */
-    noh_skeleton skeleton;
-    noh_stage_layer *layers; /* [layer_count] */
-    uint32_t layer_count;
-    uint32_t slot_bytes;
-    noh_stage_mesh *meshes; /* [plan->mesh_count] */
-    uint32_t float_count;   /* those of the set, then, where the pack has no nodes, one for each target */
-    uint32_t weight_count;  /* targets of all meshes */
+/* Floats of a kind: those of the set, then, where the pack has no nodes, one for each target. */
+typedef struct noh_stage_floats {
     uint32_t *sources;      /* [float_count] the float whose value it takes: itself, or one of the same name that a clip
                              * moves */
     uint32_t first_renamed; /* the first whose source is another; float_count: none */
     uint32_t *name_hashes;  /* [float_count] */
     float *defaults;        /* [float_count] */
-    float *target_radii;    /* [weight_count] */
-    uint8_t *masks;         /* [set.mask_count][joints + floats of the set] */
-    noh_lod_pack lod;       /* of the first skinned mesh */
-    noh_lod_mesh *levels;   /* [plan->level_count] */
-    noh_lod_table table;
-    uint32_t first_there;   /* the finest level that `desc.mesh` has, and the plan */
-    uint32_t load_kind;     /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
-    noh_stage_load loading; /* of load_kind */
-    const noh_pack *loaded; /* the pack they come from; NULL: none */
-    float *joint_radii;     /* [joint_count] with all weights 0; NULL: rigid */
-    float reach[4];         /* centre and radius in model space: holds the actor in any pose of its clips, with their
-                             * weights, and all of 0..1 */
-    float rest[6];          /* a box: what joints move in the bind pose; its smallest above its largest: nothing */
-    uint32_t character_bytes;
-    uint32_t graph_count;        /* 0: the rest is not used */
-    noh_graph_pack **graphs;     /* [graph_count] */
-    noh_clip_entry *graph_clips; /* [set.clip_count] those of the bank, then one for each graph */
-    noh_root_track *graph_roots; /* [set.clip_count] where the bank has roots */
-    float *update_errors;        /* [set.clip_count][NOH_UPDATE_RATE_COUNT] where there are any */
-    noh_stage_part *parts;       /* [desc.part_count] */
-    noh_stage_part springs;      /* of the pack, after these; modify NULL: none */
-    size_t part_bytes;
-    noh_stage_face_kind *face;       /* NULL: none */
-    noh_stage_ragdoll_kind *ragdoll; /* NULL: none */
-    uint8_t *doll_scratch;
-    noh_corrective_term *correctives; /* [corrective_count] to the kind's floats */
-    noh_weight_rule *weight_rules;    /* [weight_rule_count] to the kind's floats */
+} noh_stage_floats;
+
+/* What the meshes of a kind say of their targets, bound to the kind's floats. */
+typedef struct noh_stage_targets {
+    noh_corrective_term *correctives; /* [corrective_count] */
+    noh_weight_rule *weight_rules;    /* [weight_rule_count] */
     uint32_t corrective_count, weight_rule_count;
-    noh_stage_sampler sampler; /* of `set` */
-    noh_clip_entry rest_clip;  /* where no clip fits: a set of one clip that is the bind pose */
-    noh_transform rest_pose;
+} noh_stage_targets;
+
+/* Levels that come later. */
+typedef struct noh_stage_finer {
+    uint32_t kind;        /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
+    noh_stage_load state; /* of `kind` */
+    const noh_pack *from; /* NULL: none */
+} noh_stage_finer;
+
+/* Where no clip fits: a set of one clip that is the bind pose. */
+typedef struct noh_stage_still {
+    noh_clip_entry clip;
+    noh_transform pose; /* of a kind without joints */
+} noh_stage_still;
+
+typedef struct noh_stage_kind {
+    noh_kind_desc *desc; /* defaults filled in; `layers`, `parts` and modules are empty afterwards */
+    const noh_kind_plan *plan;
+    uint32_t first_actor;
+    uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
+    noh_clip_bank_desc bank_desc;
+    noh_clip_bank *bank;   /* NULL: no clip fits */
+    int holds_all;         /* of bank_kind: 1: its cache has all segments of all clips decoded */
+    noh_clip_set set;      /* with the kind's masks; samples through the bank's own cache */
+    noh_stage_still still; /* without a bank: its clip */
+    noh_skeleton skeleton;
+    noh_stage_layer *layers; /* [layer_count] */
+    uint32_t layer_count;
+    noh_stage_mesh *meshes;             /* [plan->mesh_count] */
+    uint32_t float_count, weight_count; /* weights: targets of all meshes */
+    noh_stage_floats named;
+    noh_stage_targets targets;
+    float *target_radii;  /* [weight_count] */
+    uint8_t *masks;       /* [set.mask_count][joints + floats of the set] */
+    noh_lod_pack lod;     /* of the first skinned mesh */
+    noh_lod_mesh *levels; /* [plan->level_count] */
+    noh_lod_table table;
+    uint32_t first_there; /* the finest level that `desc.mesh` has, and the plan */
+    noh_stage_finer finer;
+    float *joint_radii; /* [joint_count] with all weights 0; NULL: rigid */
+    float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips, with their
+                         * weights, and all of 0..1 */
+    float rest[6];      /* what joints move in the bind pose; its smallest above its largest: nothing */
+    uint32_t character_bytes;
+    noh_stage_module modules[NOH_SLOT_COUNT];
+    size_t modifier_bytes; /* of the states of an actor's modules but the source, with their head; 0: none */
     /* state */
     uint8_t *characters; /* [actor_count][character_bytes] */
     noh_stage_actor *actors;
-    noh_stage_held *held; /* [actor_count][held_float_count] */
-    uint8_t *graph_slots; /* [actor_count][slot_bytes] */
-    uint8_t *part_states; /* [actor_count][part_bytes] */
-    noh_ragdolls *dolls;  /* of `ragdoll` */
-    noh_lod_pools *pools; /* NULL: nothing is drawn */
-    uint32_t pool_levels[NOH_LOD_LEVELS_MAX], pool_count;
+    noh_stage_held *held;     /* [actor_count][held_float_count] */
+    uint8_t *modifier_states; /* [actor_count][modifier_bytes] */
+    noh_lod_pools *pools;     /* NULL: nothing is drawn */
     /* a frame's own */
     float *floats;   /* [actor_count][float_count] as shown, or as they would be */
     float *weights;  /* [actor_count][weight_count] the same, without targets too small to see */
@@ -330,7 +240,7 @@ typedef struct noh_stage_shown {
 
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
-    void *scratch, *graph_scratch, *part_scratch;
+    void *scratch, *module_scratch;
     float *matrices; /* [joints of the largest skin][12] */
     uint64_t decoded_late;
     uint32_t updated;
@@ -376,10 +286,10 @@ struct noh_stage {
     uint32_t events_held;
     noh_schedule schedule;
     noh_stage_job_part *jobs; /* [job_count] */
-    size_t scratch_bytes, graph_scratch_bytes;
+    size_t scratch_bytes, module_scratch_bytes;
     uint32_t phase, frame, callback_actor; /* id while on_key runs, else 0 */
-    int callback_of_graph;                 /* the key is one of the actor's graph */
-    int graph_begun;                       /* by a callback of this step */
+    int callback_of_source;                /* the key is one of what the actor's source plays */
+    int source_begun;                      /* by a callback of this step */
     noh_stage_event_fn on_key;
     void *on_key_user;
     noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
@@ -462,15 +372,13 @@ float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level);
 
 /* What a kind's objects need, by the counts of its clips. */
 typedef struct noh_stage_needs {
+    uint32_t kind;
     noh_clip_set shape; /* counts only */
     size_t bank_bytes;  /* 0: it shares another kind's, or no clip fits */
     size_t view_bytes;  /* of that bank */
     size_t character_bytes, scratch_bytes, lod_bytes, pools_bytes, inertia_bytes;
-    size_t graph_bytes, slot_bytes, graph_scratch_bytes; /* 0 without graphs */
-    uint32_t graph_count;
-    size_t part_bytes, part_scratch_bytes; /* 0 without parts */
-    size_t springs_bytes;                  /* 0 without springs of the pack */
-    uint32_t face_link_max;                /* 0 without faces */
+    noh_module_needs modules[NOH_SLOT_COUNT];
+    size_t modifier_bytes, module_scratch_bytes;
     uint32_t corrective_count, weight_rule_count;
     uint32_t cached_segment_count, segment_count;
     uint32_t mesh_count, float_count, weight_count, mask_count;
@@ -500,12 +408,11 @@ typedef struct noh_stage_blocks {
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */
     uint8_t *scratch; /* of all jobs */
-    uint8_t *graph_scratch, *part_scratch;
-    size_t graph_scratch_bytes, part_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
+    uint8_t *module_scratch;
+    size_t module_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
     float *matrices; /* of all jobs */
     size_t matrices_floats;
     void *pick_scratch, *inertia_scratch, *schedule;
-    void *graphs[NOH_STAGE_KINDS_MAX], *springs[NOH_STAGE_KINDS_MAX];
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
 
@@ -559,7 +466,6 @@ uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); 
 void noh_place_matrix(const noh_place *place, float matrix[12]);
 
 uint32_t noh_stage_behind(const noh_stage *s, float alpha); /* ticks behind the last step */
-/* ---- graphs ---- */
 
 /* One word of a list of names. */
 typedef struct noh_stage_word {
@@ -572,119 +478,62 @@ typedef struct noh_stage_word {
 int noh_stage_next_word(const char **list, noh_stage_word *word); /* 0 at the end */
 int noh_stage_word_matches(const noh_stage_word *word, const char *name);
 
-noh_result noh_stage_measure_graphs(const noh_kind_desc *kind, uint32_t number, noh_stage_needs *needs,
-                                    noh_error *error);
-noh_result noh_stage_open_graphs(noh_stage_kind *k, uint32_t number, void *memory, const noh_stage_needs *needs,
-                                 noh_error *error);
-uint32_t noh_stage_graph_names(const noh_stage_kind *k, noh_name what); /* how many */
-const char *noh_stage_graph_name(const noh_stage_kind *k, noh_name what, uint32_t index);
-/* Which graph an index of a parameter or machine belongs to; *index becomes that in the graph. 0: past the last. */
-int noh_stage_in_graph(const noh_stage_kind *k, noh_name what, uint32_t *index, uint32_t *graph);
 uint32_t noh_stage_clip_count(const noh_stage_kind *k); /* of clips that have a name */
 
-/* What an actor plays. graph NULL: none. */
-typedef struct noh_stage_playing {
-    const noh_graph_pack *graph;
-    noh_graph_state *state;
-    const noh_track *track; /* of the actor's controller */
-} noh_stage_playing;
+/* ---- playing ---- */
 
-noh_stage_playing noh_stage_playing_of(const noh_stage_kind *k, uint32_t index);
+typedef struct noh_stage_player {
+    noh_stage *s;
+    noh_stage_kind *k;
+    noh_stage_actor *a;
+    const noh_stage_layer *layer;
+    uint32_t layer_index;
+    uint32_t reference; /* 1 + the clip that an additive one is a difference from; 0: as flags of the play say */
+    noh_controller *c;
+} noh_stage_player;
 
-/* From now on a set samples through `sampler`: what it sampled before, and the poses that are made for graphs. */
-void noh_stage_wrap(const noh_stage_kind *k, noh_clip_set *set, noh_stage_sampler *sampler);
-
-/* The pose of an actor's graph `ahead` ticks from now, and with `ago` that of so many ticks before, into the scratch of
- * a job, for its sampler; none where no graph plays. */
-void noh_stage_pose_graph(const noh_stage *s, const noh_stage_job_part *job, noh_stage_kind *k, uint32_t index,
-                          int64_t ahead, int64_t ago, noh_stage_sampler *sampler);
-void noh_stage_begin_graph(noh_stage_kind *k, uint32_t index, uint32_t graph);
-void noh_stage_follow_lod(const noh_stage_kind *k, uint32_t index); /* so that as many joints are decoded ahead */
-noh_due noh_stage_look_graph(noh_stage_kind *k, uint32_t index, const noh_lod_settings *settings,
-                             float pixels_per_metre);
-uint32_t noh_stage_graph_work(const noh_stage_kind *k, uint32_t index); /* joints times clips in its pose */
-noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *slot, noh_error *error);
-
-/* ---- parts ---- */
-
-size_t noh_stage_part_bytes(const noh_kind_desc *kind); /* of an actor's states */
-/* Bytes of the springs of a kind's pack, of what each actor and each job has of them; 0: it has none. */
-size_t noh_stage_springs_bytes(const noh_kind_desc *kind, size_t *state_bytes, size_t *scratch_bytes);
-noh_result noh_stage_open_springs(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error);
-noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error);
-/* Whether something changes poses before they are shown. */
-static inline int noh_stage_has_parts(const noh_kind_desc *kind)
-{
-    return kind->part_count || kind->face || kind->ragdoll || !kind->without_springs;
-}
-
-const char *noh_stage_bad_ragdoll(const noh_kind_desc *d);
-size_t noh_stage_doll_bytes(const noh_kind_desc *d);
-size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d);
-noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error);
-noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index);
-void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
-void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks);
-void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3]); /* the world's units; places are not moved */
-/* *b stays as it is where the result is not NOH_OK. */
-noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
-                               noh_stage_body **b, noh_error *error);
-/* A place as bodies that count from `origin` have it. */
-noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
-void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
-void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
-/* Whether a ragdoll moves its place. */
-static inline int noh_stage_is_carried(const noh_stage_body *b)
-{
-    return b->state != NOH_BODY_STANDS && !(b->held & 1u);
-}
+noh_result noh_stage_open_player(noh_stage *s, noh_actor actor, uint32_t layer, noh_stage_player *p, noh_error *error);
+/* A clip of the set, those that a source plays among them, with a play that was checked. */
+noh_result noh_stage_play_clip(noh_stage_player *p, uint32_t clip, const noh_play *play, noh_error *error);
 /* A clip alone on a layer from now on; with room for inertia what leaps decays, but for some joints. */
 noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t clip, uint32_t ticks,
                              const uint32_t *but, uint32_t but_count, noh_error *error);
-const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b);
+/* user: a noh_stage_stepper */
+void noh_stage_on_key(void *user, const noh_event *event);
+/* `inner` is posed in the detail of `outer`, and as many joints are decoded ahead. */
+void noh_stage_follow_lod(noh_controller *inner, const noh_controller *outer);
 
 /* What picking a mesh takes: dual quaternions, from *behind on where they draw it (NULL: not wanted), after what
  * noh_pick needs. */
 size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind);
 
-/* Bind those of all meshes; k->correctives has room for term_max, k->weight_rules for rule_max. */
+/* Bind those of all meshes, for which k->targets has room. */
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
 void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
 
-/* What is wrong with the face of a kind; NULL: nothing. */
-const char *noh_stage_bad_face(const noh_kind_desc *kind);
-/* Links by the recipes of the kind's face, or else (face NULL, too) the pack's own and those that are built in. */
-uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, const void *user, noh_face_link *links,
-                             uint32_t link_max);
-/* Where the joints of its eyes are at rest, model space; 0: there are none. */
-int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
-uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
-uint32_t noh_stage_hash_face(const noh_kind_desc *kind);
-void noh_stage_open_face(noh_stage_kind *k);
-/* Where a joint of a local pose stands in model space. */
-void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint, float rotation[4],
+/* Where a joint of a local pose stands in model space. Scales are taken along, shear is not. */
+void noh_stage_joint_in(const noh_skeleton *skeleton, const noh_transform *local, uint32_t joint, float rotation[4],
                         float at[3]);
-/* The state of an actor's face; the kind has one. */
-noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index);
-void noh_stage_begin_face(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t seed);
-const char *noh_stage_check_face(const noh_stage_face *face);
-/* Over the pose and the floats of the work. */
-void noh_stage_run_face(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *face, noh_part_work *w);
-/* What parts are given, between the halves of an update of a character for a tick of the stage's clock; then the kind's
- * own parts, and the springs of its pack. */
-/* Points of the world that parts of modules.h have been told. */
-void noh_stage_shift_points(const noh_stage_part *part, void *state, const float by[3]);
-void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3]);
+static inline void noh_stage_joint_at(const noh_stage_kind *k, const noh_transform *local, uint32_t joint,
+                                      float rotation[4], float at[3])
+{
+    noh_stage_joint_in(&k->skeleton, local, joint, rotation, at);
+}
+/* The work of an update of a character for a tick of the stage's clock, between its halves. */
+void noh_stage_begin_modifiers(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k,
+                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
+extern const noh_module_type noh_stage_parts_type;
+/* [desc->part_count] NULL: none */
+static inline const noh_stage_part *noh_stage_parts_of(const noh_stage_kind *k)
+{
+    return k->modules[NOH_SLOT_PARTS].shared;
+}
 struct noh_kind_feet;
 struct noh_feet;
 /* A pose is put on the ground: noh_feet_step, from the actor's home. */
 void noh_part_feet(noh_part_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds, int cut);
 int noh_part_home_moved(const noh_part_work *w);
-void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
-                           int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
-void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
-void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *work);
 
 /* After the radii of joints, floats and meshes are there. */
 void noh_stage_open_bounds(noh_stage_kind *k, noh_character_scratch *scratch);

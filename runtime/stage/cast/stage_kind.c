@@ -25,15 +25,15 @@ static void sample_rest(void *user, uint32_t clip, uint32_t clip_tick, uint32_t 
 
 static void open_rest(noh_stage_kind *k, const noh_stage_needs *n)
 {
-    memset(&k->rest_clip, 0, sizeof k->rest_clip);
-    k->rest_clip.loop = NOH_LOOP_REPEAT;
+    memset(&k->still, 0, sizeof k->still);
+    k->still.clip.loop = NOH_LOOP_REPEAT;
     k->set.clip_count = 1;
     k->set.joint_count = k->skeleton.joint_count;
     k->set.float_count = n->shape.float_count;
     /* filled in by open_floats */
-    k->set.float_defaults = noh_stage_has_parts(k->desc) && n->weight_count ? k->defaults : NULL;
-    k->set.clips = &k->rest_clip;
-    k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->rest_pose;
+    k->set.float_defaults = k->modifier_bytes && n->weight_count ? k->named.defaults : NULL;
+    k->set.clips = &k->still.clip;
+    k->set.bind_pose = k->skeleton.joint_count ? k->skeleton.bind_pose : &k->still.pose;
     k->set.sample = sample_rest;
     k->set.user = k;
 }
@@ -114,16 +114,16 @@ static void name_floats(noh_stage_kind *k)
     for (uint32_t g = 0; k->bank && g < k->bank->group_count; g++) {
         const noh_clip_group *group = &k->bank->groups[g];
         for (uint32_t i = 0; i < group->width; i++) {
-            k->name_hashes[group->first + i] = group->name_hash;
-            k->sources[group->first + i] = is_moved(k, g) ? group->first + i : NOH_NONE;
+            k->named.name_hashes[group->first + i] = group->name_hash;
+            k->named.sources[group->first + i] = is_moved(k, g) ? group->first + i : NOH_NONE;
         }
     }
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
         for (uint32_t i = 0; i < mesh->mesh.header->target_count; i++) {
             const uint32_t at = mesh->first_float + i;
-            k->name_hashes[at] = mesh->mesh.targets[i].name_hash;
-            k->defaults[at] = mesh->defaults[i];
+            k->named.name_hashes[at] = mesh->mesh.targets[i].name_hash;
+            k->named.defaults[at] = mesh->defaults[i];
         }
     }
 }
@@ -133,27 +133,27 @@ static void name_floats(noh_stage_kind *k)
 static void find_sources(noh_stage_kind *k)
 {
     const uint32_t set_floats = k->bank ? k->set.float_count : 0;
-    k->first_renamed = k->float_count;
+    k->named.first_renamed = k->float_count;
     for (uint32_t f = 0; f < k->float_count; f++) {
         uint32_t from = f;
-        if (f < set_floats && k->sources[f] == f) continue;
+        if (f < set_floats && k->named.sources[f] == f) continue;
         for (uint32_t g = 0; g < set_floats; g++) {
-            if (k->sources[g] == g && k->name_hashes[g] == k->name_hashes[f]) {
+            if (k->named.sources[g] == g && k->named.name_hashes[g] == k->named.name_hashes[f]) {
                 from = g;
                 break;
             }
         }
-        k->sources[f] = from;
-        if (from != f && f < k->first_renamed) k->first_renamed = f;
+        k->named.sources[f] = from;
+        if (from != f && f < k->named.first_renamed) k->named.first_renamed = f;
     }
 }
 
 static void open_floats(noh_stage_kind *k)
 {
     for (uint32_t f = 0; f < k->float_count; f++) {
-        k->sources[f] = NOH_NONE;
-        k->name_hashes[f] = 0;
-        k->defaults[f] = k->set.float_defaults && f < k->set.float_count ? k->set.float_defaults[f] : 0.0f;
+        k->named.sources[f] = NOH_NONE;
+        k->named.name_hashes[f] = 0;
+        k->named.defaults[f] = k->set.float_defaults && f < k->set.float_count ? k->set.float_defaults[f] : 0.0f;
     }
     name_floats(k);
     find_sources(k);
@@ -234,6 +234,7 @@ static noh_result open_bounds(noh_stage *s, noh_stage_kind *k, noh_error *error)
 noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
                                noh_error *error)
 {
+    static const noh_module none;
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_needs needs;
     noh_result result = noh_stage_measure_kind(desc, s->plan, kind, &needs, error);
@@ -248,17 +249,13 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     open_floats(k);
     noh_stage_open_correctives(k, needs.corrective_count);
     noh_stage_open_weight_rules(k, needs.weight_rule_count);
-    if (k->desc->face) noh_stage_open_face(k);
     result = noh_stage_open_layers(k, kind, error);
     if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);
     s->jobs[0].scratch = blocks->scratch;
     if (result == NOH_OK) result = open_bounds(s, k, error);
-    if (result == NOH_OK && k->ragdoll) result = noh_stage_open_ragdoll(k, error);
-    if (result == NOH_OK) result = noh_stage_open_graphs(k, kind, blocks->graphs[kind], &needs, error);
-    if (result == NOH_OK) result = noh_stage_open_springs(k, blocks->springs[kind], needs.springs_bytes, error);
-    if (k->desc->part_count) memcpy(k->parts, k->desc->parts, k->desc->part_count * sizeof *k->parts);
+    if (result == NOH_OK) result = noh_stage_init_modules(k, error);
     k->desc->parts = NULL;
     k->desc->layers = NULL;
-    k->desc->graphs = NULL;
+    k->desc->graphs = k->desc->face = k->desc->ragdoll = k->desc->springs = none;
     return result;
 }

@@ -105,7 +105,7 @@ void noh_stage_open_load(const noh_stage *s, const noh_stage_desc *desc, uint32_
     noh_stage_kind *k = &s->kinds[kind];
     k->first_there = k->plan->finest_level;
     while (k->first_there + 1u < k->plan->level_count && !is_there(k, k->first_there)) k->first_there++;
-    k->load_kind = desc->kinds[kind].finer ? noh_stage_load_kind(desc, kind) : NOH_NONE;
+    k->finer.kind = desc->kinds[kind].finer ? noh_stage_load_kind(desc, kind) : NOH_NONE;
     for (uint32_t m = 0; m < k->plan->mesh_count && desc->kinds[kind].finer; m++) {
         const noh_mesh whole = noh_stage_whole_mesh(k->desc, k->meshes[m].item.mesh);
         k->meshes[m].finer_hash = noh_stage_hash_levels(&whole, k->plan->levels[k->plan->finest_level].mesh_levels[m]);
@@ -116,7 +116,7 @@ static void set_first(noh_stage *s, uint32_t load_kind, int loaded)
 {
     for (uint32_t i = load_kind; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
-        if (k->load_kind == load_kind) k->table.mesh_level_first = loaded ? k->plan->finest_level : k->first_there;
+        if (k->finer.kind == load_kind) k->table.mesh_level_first = loaded ? k->plan->finest_level : k->first_there;
     }
     if (s->gpu) s->desc.gpu->use(s, load_kind, loaded);
 }
@@ -127,9 +127,9 @@ void noh_stage_load_piece(noh_stage *s)
     s->stats.loading = 0;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
-        if (k->loading != NOH_STAGE_LOADING) continue;
+        if (k->finer.state != NOH_STAGE_LOADING) continue;
         if (!s->gpu || s->desc.gpu->load(s, i, 0, &bytes)) {
-            k->loading = NOH_STAGE_LOADED;
+            k->finer.state = NOH_STAGE_LOADED;
             set_first(s, i, 1);
         } else {
             s->stats.loading++;
@@ -178,7 +178,7 @@ static int brings_any(const noh_stage *s, uint32_t load_kind)
 {
     for (uint32_t i = load_kind; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
-        if (k->load_kind == load_kind && k->first_there > k->plan->finest_level) return 1;
+        if (k->finer.kind == load_kind && k->first_there > k->plan->finest_level) return 1;
     }
     return 0;
 }
@@ -191,27 +191,27 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
     NOH_ASSERT(stage && pack);
     result = check_call(stage, kind, error);
     if (result == NOH_OK &&
-        (stage->kinds[kind].load_kind == NOH_NONE || !brings_any(stage, stage->kinds[kind].load_kind))) {
+        (stage->kinds[kind].finer.kind == NOH_NONE || !brings_any(stage, stage->kinds[kind].finer.kind))) {
         result = noh_fail(error, NOH_ERR_UNSUPPORTED, "a kind has no finer levels in the plan: see noh_kind_desc.finer",
                           kind, 0);
     }
     if (result != NOH_OK) {
         return result;
     }
-    of = &stage->kinds[stage->kinds[kind].load_kind];
-    if (of->loaded && of->loaded->bytes == pack->bytes) {
+    of = &stage->kinds[stage->kinds[kind].finer.kind];
+    if (of->finer.from && of->finer.from->bytes == pack->bytes) {
         return NOH_OK;
     }
-    for (uint32_t i = stage->kinds[kind].load_kind; i < stage->desc.kind_count && result == NOH_OK; i++) {
-        if (stage->kinds[i].load_kind == stage->kinds[kind].load_kind) {
+    for (uint32_t i = stage->kinds[kind].finer.kind; i < stage->desc.kind_count && result == NOH_OK; i++) {
+        if (stage->kinds[i].finer.kind == stage->kinds[kind].finer.kind) {
             result = check_pack(&stage->kinds[i], pack, error);
         }
     }
     if (result == NOH_OK) {
         (void)noh_stage_drop_level(stage, kind, NULL);
-        of->loaded = pack;
-        of->loading = NOH_STAGE_LOADING;
-        if (stage->gpu) (void)stage->desc.gpu->load(stage, stage->kinds[kind].load_kind, 1, &none);
+        of->finer.from = pack;
+        of->finer.state = NOH_STAGE_LOADING;
+        if (stage->gpu) (void)stage->desc.gpu->load(stage, stage->kinds[kind].finer.kind, 1, &none);
     }
     return result;
 }
@@ -221,11 +221,11 @@ noh_result noh_stage_drop_level(noh_stage *stage, uint32_t kind, noh_error *erro
     noh_result result;
     NOH_ASSERT(stage);
     result = check_call(stage, kind, error);
-    if (result == NOH_OK && stage->kinds[kind].load_kind != NOH_NONE) {
-        noh_stage_kind *of = &stage->kinds[stage->kinds[kind].load_kind];
-        if (of->loading == NOH_STAGE_LOADED) set_first(stage, stage->kinds[kind].load_kind, 0);
-        of->loading = NOH_STAGE_DROPPED;
-        of->loaded = NULL;
+    if (result == NOH_OK && stage->kinds[kind].finer.kind != NOH_NONE) {
+        noh_stage_kind *of = &stage->kinds[stage->kinds[kind].finer.kind];
+        if (of->finer.state == NOH_STAGE_LOADED) set_first(stage, stage->kinds[kind].finer.kind, 0);
+        of->finer.state = NOH_STAGE_DROPPED;
+        of->finer.from = NULL;
     }
     return result;
 }

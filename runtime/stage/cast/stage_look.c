@@ -6,6 +6,7 @@
 #include "stage/character/character_internal.h"
 #include "stage/cast/part.h"
 #include "stage/character/character.h"
+#include "stage/character/time_lod.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
@@ -116,12 +117,35 @@ static int is_fresh(const noh_stage *s, noh_stage_actor *a)
     return s->cut || a->was_seen < 3u;
 }
 
+void noh_stage_follow_lod(noh_controller *inner, const noh_controller *outer)
+{
+    (void)noh_controller_set_lod(inner, outer->lod,
+                                 outer->lod_joint_count < outer->joint_count ? outer->lod_joint_count : 0);
+}
+
+/* inner  what plays beside its clips; NULL: nothing does */
+static noh_due choose_detail(const noh_stage_kind *k, noh_character *ch, const noh_controller *inner,
+                             const noh_lod_settings *settings, float pixels_per_metre)
+{
+    float error_m[NOH_UPDATE_RATE_COUNT], of_inner[NOH_UPDATE_RATE_COUNT];
+    if (!inner || !k->table.update_error_m) {
+        return noh_character_look(ch, &k->table, settings, pixels_per_metre);
+    }
+    noh_time_lod_error(noh_character_controller(ch), k->table.update_error_m, error_m);
+    noh_time_lod_error(inner, k->table.update_error_m, of_inner);
+    for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
+        error_m[r] = of_inner[r] > error_m[r] ? of_inner[r] : error_m[r];
+    }
+    return noh_character_look_given(ch, &k->table, settings, pixels_per_metre, error_m);
+}
+
 static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
 {
     noh_stage_actor *a = &s->actors[index];
     const uint32_t i = noh_stage_index(k, a);
     noh_stage_shown *shown = &s->shown[index];
     noh_character *ch = noh_stage_character(k, i);
+    noh_controller *inner = noh_stage_inner(k, i);
     const float scale = shown->scale * noh_stage_size(s, a);
     noh_lod_settings settings = s->desc.lod;
     const int was_seen = a->was_seen;
@@ -131,15 +155,14 @@ static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
     noh_character_set_behind(ch, s->head->behind_ticks);
     /* one that is out of view itself is posed in full for what it carries */
     asked = a->look.posed || !shown->views || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
-    shown->due = (uint8_t)(k->graph_count ? noh_stage_look_graph(k, i, &settings, asked)
-                                          : noh_character_look(ch, &k->table, &settings, asked));
+    shown->due = (uint8_t)choose_detail(k, ch, inner, &settings, asked);
     if (shown->due == NOH_DUE_AT_ONCE && was_seen && ch->time.posed) shown->due = NOH_STAGE_DUE_LONG;
     if (noh_stage_is_full(s, a)) {
         const uint32_t level = a->look.level ? a->look.level - 1u : k->plan->finest_level;
         noh_lod_set_mesh(&ch->lod, &k->table, level, scale);
         (void)noh_controller_set_lod(noh_character_controller(ch), ch->lod.mesh, 0);
     }
-    if (k->graph_count) noh_stage_follow_lod(k, i);
+    if (inner) noh_stage_follow_lod(inner, noh_character_controller(ch));
 }
 
 static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrices)

@@ -9,6 +9,16 @@
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_internal.h"
 
+uint32_t noh_stage_clip_count(const noh_stage_kind *k)
+{
+    return k->bank ? k->bank->clips.clip_count : 0;
+}
+
+static const noh_source_type *source_of(const noh_stage_kind *k)
+{
+    return k->modules[NOH_SLOT_SOURCE].type ? k->modules[NOH_SLOT_SOURCE].type->source : NULL;
+}
+
 /* ---- a name by its index ---- */
 
 static const noh_pack *clip_pack(const noh_stage_kind *k, uint32_t clip)
@@ -46,9 +56,11 @@ static const char *set_name(const noh_stage_kind *k, uint32_t index)
 
 const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what, uint32_t index)
 {
+    const noh_source_type *source;
     const noh_stage_kind *k;
     NOH_ASSERT(stage && kind < stage->desc.kind_count);
     k = &stage->kinds[kind];
+    source = source_of(k);
     switch (what) {
     case NOH_NAME_CLIP: return clip_name(k, index);
     case NOH_NAME_LAYER: return index < k->layer_count ? k->layers[index].name : NULL;
@@ -57,7 +69,7 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
         return index < k->skeleton.joint_count ? noh_pack_joint_name(k->desc->mesh, k->desc->skeleton, index) : NULL;
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
-    case NOH_NAME_MACHINE: return noh_stage_graph_name(k, what, index);
+    case NOH_NAME_MACHINE: return source ? source->name(k, what, index) : NULL;
     case NOH_NAME_TEXTURE_SET: return set_name(k, index);
     }
     return NULL;
@@ -67,6 +79,7 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
 
 static uint32_t count_of(const noh_stage_kind *k, noh_name what)
 {
+    const noh_source_type *source = source_of(k);
     switch (what) {
     case NOH_NAME_CLIP: return noh_stage_clip_count(k);
     case NOH_NAME_LAYER: return k->layer_count;
@@ -74,7 +87,7 @@ static uint32_t count_of(const noh_stage_kind *k, noh_name what)
     case NOH_NAME_JOINT: return k->skeleton.joint_count;
     case NOH_NAME_GRAPH:
     case NOH_NAME_PARAMETER:
-    case NOH_NAME_MACHINE: return noh_stage_graph_names(k, what);
+    case NOH_NAME_MACHINE: return source ? source->name_count(k, what) : 0;
     case NOH_NAME_TEXTURE_SET: return k->desc->texture_set_count + 1u;
     }
     return 0;
@@ -91,7 +104,7 @@ uint32_t noh_stage_find(const noh_stage *stage, uint32_t kind, noh_name what, co
     for (uint32_t i = 0; i < count; i++) {
         const char *own;
         if (what == NOH_NAME_CLIP && k->set.clips[i].name_hash != hash) continue;
-        if (what == NOH_NAME_FLOAT && k->name_hashes[i] != hash) continue;
+        if (what == NOH_NAME_FLOAT && k->named.name_hashes[i] != hash) continue;
         own = noh_stage_name(stage, kind, what, i);
         /* of a named float of clips the hash is all there is */
         if (own && (noh_names_equal(own, name) || (what == NOH_NAME_FLOAT && !own[0]))) return i;

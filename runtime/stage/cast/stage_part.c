@@ -1,9 +1,10 @@
-/* stage_part.c: parts: functions that change a pose before it is shown. */
+/* stage_part.c: the parts of a kind, and what all that change a pose are given. */
 #include "core/base/assert.h"
 #include "stage/cast/part.h"
-#include "stage/cast/springs.h"
 #include "noh/base.h"
 #include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "noh/low_stage.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
@@ -19,123 +20,107 @@ static size_t aligned(size_t bytes)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
-/* ---- springs of the pack ---- */
+/* ---- a kind's parts as a module ---- */
 
-size_t noh_stage_springs_bytes(const noh_kind_desc *kind, size_t *state_bytes, size_t *scratch_bytes)
+static const char *bad(const noh_kind_desc *d, const void *desc)
 {
-    noh_springs_desc desc;
-    *state_bytes = *scratch_bytes = 0;
-    if (kind->without_springs || !noh_springs_of_pack(kind->mesh, kind->skeleton, &desc)) {
-        return 0;
+    (void)desc;
+    if (d->part_count > NOH_STAGE_PARTS_MAX) return "part_count of a kind is above NOH_STAGE_PARTS_MAX";
+    if (!d->parts) return "parts of a kind is NULL, and part_count is not 0";
+    for (uint32_t i = 0; i < d->part_count; i++) {
+        if (!d->parts[i].modify) return "a part of a kind: modify is NULL";
+        if (d->parts[i].state_bytes > NOH_STAGE_PART_BYTES_MAX || d->parts[i].scratch_bytes > NOH_STAGE_PART_BYTES_MAX)
+            return "a part of a kind: more bytes than NOH_STAGE_PART_BYTES_MAX";
     }
-    noh_springs_measure(&desc, state_bytes, scratch_bytes);
-    return noh_springs_size(&desc);
+    return NULL;
 }
 
-noh_result noh_stage_open_springs(noh_stage_kind *k, void *memory, size_t bytes, noh_error *error)
+static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_stage_needs *n, noh_module_needs *needs,
+                          noh_error *error)
 {
-    noh_springs_desc desc;
-    noh_springs *springs;
-    if (!bytes || !noh_springs_of_pack(k->desc->mesh, k->desc->skeleton, &desc)) {
-        return NOH_OK;
+    (void)desc, (void)n, (void)error;
+    needs->kind_bytes = d->part_count * sizeof *d->parts;
+    for (uint32_t i = 0; i < d->part_count; i++) {
+        const size_t scratch = d->parts[i].scratch_bytes;
+        needs->actor_bytes += aligned(d->parts[i].state_bytes);
+        needs->scratch_bytes = scratch > needs->scratch_bytes ? scratch : needs->scratch_bytes;
     }
-    const noh_result result = noh_springs_init(memory, bytes, &desc, &springs, error);
-    if (result == NOH_OK) k->springs = noh_springs_part(springs);
-    return result;
+    return NOH_OK;
 }
 
-/* ---- where states lie ---- */
-
-size_t noh_stage_part_bytes(const noh_kind_desc *d)
+static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
-    size_t springs, scratch;
-    size_t bytes = noh_stage_has_parts(d) ? sizeof(noh_stage_part_head) : 0;
-    if (d->face) bytes += sizeof(noh_stage_face);
-    if (d->ragdoll) bytes += sizeof(noh_stage_body);
-    for (uint32_t i = 0; i < d->part_count; i++) bytes += aligned(d->parts[i].state_bytes);
-    (void)noh_stage_springs_bytes(d, &springs, &scratch);
-    return bytes + springs;
+    (void)desc, (void)error;
+    memcpy(k->modules[NOH_SLOT_PARTS].shared, k->desc->parts, k->desc->part_count * sizeof *k->desc->parts);
+    return NOH_OK;
 }
 
-/* The states of an actor: a head, its face, its ragdoll, then each part's, then that of its springs. */
 static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 {
-    return k->part_states + (size_t)index * k->part_bytes;
-}
-
-static size_t body_offset(const noh_stage_kind *k)
-{
-    return sizeof(noh_stage_part_head) + (k->face ? sizeof(noh_stage_face) : 0);
-}
-
-static size_t state_offset(const noh_stage_kind *k, uint32_t part)
-{
-    size_t at = body_offset(k) + (k->ragdoll ? sizeof(noh_stage_body) : 0);
-    for (uint32_t i = 0; i < part; i++) at += aligned(k->parts[i].state_bytes);
-    return at;
+    return k->modules[NOH_SLOT_PARTS].states + index * k->modules[NOH_SLOT_PARTS].stride;
 }
 
 void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
+    uint8_t *state;
     if (!a || part >= k->desc->part_count || stage->phase > NOH_STAGE_STEPPING) {
         return NULL;
     }
-    return states_of(k, noh_stage_index(k, a)) + state_offset(k, part);
+    state = states_of(k, noh_stage_index(k, a));
+    for (uint32_t i = 0; i < part; i++) state += aligned(noh_stage_parts_of(k)[i].state_bytes);
+    return state;
 }
 
-noh_result noh_stage_check_parts(const noh_stage_kind *k, const void *states, noh_error *error)
+/* What counts from an actor's home stays. */
+static void shift(noh_stage_kind *k, const float by[3])
 {
-    const noh_stage_part_head *head = states;
-    if (noh_stage_has_parts(k->desc) && head->was_posed > 1u) {
-        return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
+    for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+        uint8_t *state = states_of(k, a);
+        for (uint32_t i = 0; i < k->desc->part_count; i++) {
+            const noh_stage_part *part = &noh_stage_parts_of(k)[i];
+            if (k->actors[a].alive && part->shift) part->shift(part->user, state, by);
+            state += aligned(part->state_bytes);
+        }
     }
-    if (k->face && noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1))) {
-        return noh_fail(error, NOH_ERR_DATA, noh_stage_check_face((const noh_stage_face *)(const void *)(head + 1)), 0,
-                        0);
-    }
-    if (k->ragdoll) {
-        const void *body = (const uint8_t *)states + body_offset(k);
-        const char *what = noh_stage_check_body(k, body);
-        if (what) return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
-    }
+}
+
+static noh_result check(const noh_stage_kind *k, const void *states, noh_error *error)
+{
+    const uint8_t *state = states;
     for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        const noh_stage_part *part = &k->parts[i];
-        const char *what = part->check ? part->check(part->user, (const uint8_t *)states + state_offset(k, i)) : NULL;
+        const noh_stage_part *part = &noh_stage_parts_of(k)[i];
+        const char *what = part->check ? part->check(part->user, state) : NULL;
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
-    }
-    if (k->springs.modify) {
-        const uint8_t *at = (const uint8_t *)states + state_offset(k, k->desc->part_count);
-        const char *what = k->springs.check(k->springs.user, at);
-        if (what) return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
+        state += aligned(part->state_bytes);
     }
     return NOH_OK;
 }
 
-noh_stage_face *noh_stage_face_of(const noh_stage_kind *k, uint32_t index)
+static void modify(noh_part_work *w)
 {
-    return (noh_stage_face *)(void *)(states_of(k, index) + sizeof(noh_stage_part_head));
-}
-
-noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_t index)
-{
-    return (noh_stage_body *)(void *)(states_of(k, index) + body_offset(k));
-}
-
-/* The origin of the world moves by `by`. What counts from the actor's home stays. */
-void noh_stage_shift_parts(noh_stage_kind *k, uint32_t index, const float by[3])
-{
-    uint8_t *states = states_of(k, index) + state_offset(k, 0);
+    const noh_stage_kind *k = w->kind;
+    uint8_t *state = w->state;
     for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        noh_stage_shift_points(&k->parts[i], states, by);
-        states += aligned(k->parts[i].state_bytes);
-    }
-    if (k->face) {
-        float *point = noh_stage_face_of(k, index)->point;
-        for (int i = 0; i < 3; i++) point[i] -= by[i];
+        const noh_stage_part *part = &noh_stage_parts_of(k)[i];
+        w->state = state;
+        w->user = part->user;
+        part->modify(w);
+        state += aligned(part->state_bytes);
     }
 }
+
+const noh_module_type noh_stage_parts_type = {
+    .slot = NOH_SLOT_PARTS,
+    .kind_name = "parts",
+    .bad = bad,
+    .measure = measure,
+    .init = init,
+    .shift = shift,
+    .check = check,
+    .modify = modify,
+};
 
 /* ---- what a part may ask ---- */
 
@@ -149,11 +134,24 @@ const float *noh_part_model(noh_part_work *work)
     return work->model;
 }
 
+void noh_stage_joint_in(const noh_skeleton *skeleton, const noh_transform *local, uint32_t joint, float rotation[4],
+                        float at[3])
+{
+    memcpy(rotation, local[joint].rotation, 4 * sizeof *rotation);
+    memcpy(at, local[joint].translation, 3 * sizeof *at);
+    for (uint32_t up = skeleton->parents[joint]; up != NOH_JOINT_ROOT; up = skeleton->parents[up]) {
+        for (int i = 0; i < 3; i++) at[i] *= local[up].scale[i];
+        noh_quat_rotate(local[up].rotation, at, at);
+        for (int i = 0; i < 3; i++) at[i] += local[up].translation[i];
+        noh_quat_mul(local[up].rotation, rotation, rotation);
+    }
+}
+
 /* Where a float lies in the set; NOH_NONE: behind it. */
 static uint32_t place_of(const noh_part_work *work, uint32_t index)
 {
     const noh_stage_kind *k = work->kind;
-    return index < k->float_count && k->sources[index] < k->set.float_count ? k->sources[index] : NOH_NONE;
+    return index < k->float_count && k->named.sources[index] < k->set.float_count ? k->named.sources[index] : NOH_NONE;
 }
 
 float noh_part_float(const noh_part_work *work, uint32_t index)
@@ -174,7 +172,7 @@ int noh_part_set_float(noh_part_work *work, uint32_t index, float value)
 
 /* ---- in a job ---- */
 
-static void set_time(noh_part_work *w, noh_stage_part_head *head, int64_t clock, int cut)
+static void set_time(noh_part_work *w, noh_stage_modifier_head *head, int64_t clock, int cut)
 {
     w->clock = clock;
     w->cut = cut || !head->was_posed;
@@ -209,8 +207,8 @@ int noh_part_home_moved(const noh_part_work *w)
     return w->home_moved[0] != 0.0f || w->home_moved[1] != 0.0f || w->home_moved[2] != 0.0f;
 }
 
-void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
-                           int64_t clock, noh_character_scratch *scratch, noh_part_work *w)
+void noh_stage_begin_modifiers(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k,
+                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_part_work *w)
 {
     const noh_character *ch = noh_stage_character(k, index);
     memset(w, 0, sizeof *w);
@@ -222,29 +220,12 @@ void noh_stage_begin_parts(const noh_stage *s, const noh_stage_job_part *job, co
     w->pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
                               ? NOH_PART_FULL_DETAIL
                               : ch->lod.pixels_per_metre;
+    w->stage = s;
     w->kind = k;
     w->floats = scratch->floats;
     w->model = scratch->model;
-    w->scratch = job->part_scratch;
-    set_time(w, (noh_stage_part_head *)(void *)states_of(k, index), clock,
+    w->scratch = job->module_scratch;
+    set_time(w, (noh_stage_modifier_head *)(void *)(k->modifier_states + index * k->modifier_bytes), clock,
              s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
     set_place(s, &k->actors[index], w);
-}
-
-void noh_stage_run_parts(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
-{
-    uint8_t *states = states_of(k, index) + state_offset(k, 0);
-    for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        w->state = states;
-        w->user = k->parts[i].user;
-        k->parts[i].modify(w);
-        states += aligned(k->parts[i].state_bytes);
-    }
-}
-
-void noh_stage_run_springs(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
-{
-    w->state = states_of(k, index) + state_offset(k, k->desc->part_count);
-    w->user = k->springs.user;
-    k->springs.modify(w);
 }

@@ -1,5 +1,5 @@
 /* stage_person.c: an actor as a person: held floats, and lids that shut. */
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_face_internal.h"
 #include "core/base/assert.h"
 #include "life/face/identity.h"
 #include "noh/base.h"
@@ -62,7 +62,7 @@ static void set_lids(const noh_stage *s, noh_actor actor, const noh_identity *id
     for (uint32_t c = 0; weights && c < identity->closing_count; c++) {
         const uint32_t at = float_of(s, actor, mesh, identity->closings[c]);
         for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) {
-            if (k->face->lids[i] != at || at == NOH_NONE) continue;
+            if (noh_stage_face_kind_of(k)->lids[i] != at || at == NOH_NONE) continue;
             f->shut[i] = (uint16_t)(1.5f + noh_identity_shut(identity, weights, c) * NOH_STAGE_SHUT);
         }
     }
@@ -71,13 +71,10 @@ static void set_lids(const noh_stage *s, noh_actor actor, const noh_identity *id
 noh_result noh_actor_set_identity(noh_stage *stage, noh_actor actor, const noh_identity *identity, const noh_mesh *mesh,
                                   const float *weights, noh_error *error)
 {
-    noh_stage_actor *a;
     noh_stage_kind *k;
-    noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    noh_result result;
+    (void)noh_stage_change_face(stage, actor, &k, &result, error);
     NOH_ASSERT(identity && mesh);
-    if (result == NOH_OK && !k->face) {
-        result = noh_fail(error, NOH_ERR_ARG, "the kind has no face (noh_kind_desc.face)", 0, 0);
-    }
     if (result == NOH_OK && identity->target_count > mesh->header->target_count) {
         result = noh_fail(error, NOH_ERR_ARG, "the identity is of another mesh", 0, 0);
     }

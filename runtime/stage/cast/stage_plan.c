@@ -424,7 +424,6 @@ static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
         k->joint_count = needs.shape.joint_count;
         k->float_count = needs.float_count;
         k->segment_count = needs.segment_count;
-        k->graph_count = needs.graph_count;
         k->cached_segment_count = needs.cached_segment_count;
     }
     return result;
@@ -492,10 +491,10 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         hash = mix(hash, d.texture_set_count);
         hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
         hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
-        hash = mix(mix(hash, k->graph_count), d.part_count);
-        hash = mix(hash, d.face ? noh_stage_hash_face(&d) : 0);
-        hash = mix(hash, d.ragdoll ? d.ragdoll->count : 0);
-        if (!d.without_springs) hash = mix(hash, 1);
+        hash = mix(mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SOURCE)), d.part_count);
+        hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_FACE));
+        hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_BODY));
+        if (d.springs.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
         if (d.weight_rules) hash = mix(hash, 2);
         for (uint32_t p = 0; p < d.part_count; p++) hash = mix(hash, d.parts[p].state_bytes);
         for (uint32_t l = 0; l < k->level_count; l++) {

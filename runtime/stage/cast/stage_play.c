@@ -17,17 +17,9 @@
 
 #define FADE_TICKS 9600u
 
-typedef struct player {
-    noh_stage *s;
-    noh_stage_kind *k;
-    noh_stage_actor *a;
-    const noh_stage_layer *layer;
-    uint32_t layer_index;
-    uint32_t reference; /* 1 + the clip that an additive one is a difference from; 0: as flags of the play say */
-    noh_controller *c;
-} player;
+typedef noh_stage_player player;
 
-static noh_result open_player(noh_stage *s, noh_actor actor, uint32_t layer, player *p, noh_error *error)
+noh_result noh_stage_open_player(noh_stage *s, noh_actor actor, uint32_t layer, player *p, noh_error *error)
 {
     const noh_result result = noh_stage_change(s, actor, &p->a, &p->k, error);
     if (result != NOH_OK) {
@@ -203,35 +195,38 @@ static uint32_t free_track(const player *p)
     return lightest;
 }
 
-static int is_graph(const player *p, uint32_t clip)
+/* Whether a clip stands for what the kind's source plays. */
+static int is_source(const player *p, uint32_t clip)
 {
-    return p->k->graph_count && clip >= noh_stage_clip_count(p->k);
+    return p->k->modules[NOH_SLOT_SOURCE].type && clip >= noh_stage_clip_count(p->k);
 }
 
-/* A graph that another one is to replace does not count: it ends at once. */
-static int something_plays(const player *p, uint32_t but, int for_graph)
+/* What a source plays and another one of its kind is to replace does not count: it ends at once. */
+static int something_plays(const player *p, uint32_t but, int for_source)
 {
     for (uint32_t i = 0; i < p->layer->track_count; i++) {
         const noh_track *t = track_at(p, i);
-        if (i != but && t->mode != NOH_TRACK_OFF && t->weight > 0.0f && !(for_graph && is_graph(p, t->clip))) return 1;
+        if (i != but && t->mode != NOH_TRACK_OFF && t->weight > 0.0f && !(for_source && is_source(p, t->clip)))
+            return 1;
     }
     return 0;
 }
 
-/* An actor has one graph: what plays of it ends on all layers, and a new instance begins. */
-static void change_graph(player *p, uint32_t clip)
+/* A source plays one thing at a time: what plays of it ends on all layers, and the new one begins. */
+static void change_source(player *p, uint32_t clip)
 {
     noh_change *changes = (noh_change *)(void *)((uint8_t *)p->c + p->c->changes_offset);
-    if (!is_graph(p, clip)) {
+    if (!is_source(p, clip)) {
         return;
     }
     for (uint32_t i = 0; i < p->c->track_count; i++) {
-        if (!is_graph(p, noh_controller_track(p->c, i)->clip)) continue;
+        if (!is_source(p, noh_controller_track(p->c, i)->clip)) continue;
         noh_changes_drop(changes, p->c->change_count, i);
         (void)noh_controller_set_mode(p->c, i, NOH_TRACK_OFF);
     }
-    noh_stage_begin_graph(p->k, noh_stage_index(p->k, p->a), clip - noh_stage_clip_count(p->k));
-    p->s->graph_begun = 1;
+    p->k->modules[NOH_SLOT_SOURCE].type->source->begin(p->k, noh_stage_index(p->k, p->a),
+                                                       clip - noh_stage_clip_count(p->k));
+    p->s->source_begun = 1;
 }
 
 /* The position of a clip at the same part of its pass as what plays now. */
@@ -239,7 +234,7 @@ static int64_t phase_ticks(const player *p, uint32_t clip)
 {
     const noh_track *from = track_at(p, started(p->a, p->layer_index));
     const noh_clip_entry *old, *next = &p->k->set.clips[clip];
-    if (from->mode == NOH_TRACK_OFF || is_graph(p, from->clip)) {
+    if (from->mode == NOH_TRACK_OFF || is_source(p, from->clip)) {
         return 0;
     }
     old = &p->k->set.clips[from->clip];
@@ -294,15 +289,14 @@ static noh_result make_room(player *p, uint32_t but, noh_error *error)
     return NOH_OK;
 }
 
-/* The kind's set, with the poses of the actor's graph now and a moment ago. */
+/* The kind's set, with the poses of the actor's source now and a moment ago. */
 static noh_clip_set set_for_inertia(const player *p, noh_stage_sampler *sampler)
 {
+    const noh_module_type *type = p->k->modules[NOH_SLOT_SOURCE].type;
     noh_clip_set set = p->k->set;
-    if (p->k->graph_count) {
-        *sampler = p->k->sampler;
-        noh_stage_pose_graph(p->s, &p->s->jobs[0], p->k, noh_stage_index(p->k, p->a), 0, NOH_INERTIA_BEFORE_TICKS,
+    if (type) {
+        type->source->sample(p->s, &p->s->jobs[0], p->k, noh_stage_index(p->k, p->a), 0, NOH_INERTIA_BEFORE_TICKS, &set,
                              sampler);
-        set.user = sampler;
     }
     return set;
 }
@@ -322,7 +316,7 @@ static noh_result leap(player *p, uint32_t clip, const noh_play *play, noh_error
     }
     if (result == NOH_OK) result = noh_controller_inertia_capture(p->c, &set, &scratch, error);
     if (result == NOH_OK) result = make_room(p, track, error);
-    if (result == NOH_OK) change_graph(p, clip);
+    if (result == NOH_OK) change_source(p, clip);
     if (result == NOH_OK) result = fade_others(p, track, 1, error);
     if (result == NOH_OK) {
         result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
@@ -352,13 +346,13 @@ static noh_result begin(player *p, uint32_t clip, const noh_play *play, noh_erro
     const uint32_t ticks = play->fade_ticks ? play->fade_ticks : FADE_TICKS, track = free_track(p);
     const float weight = play->weight > 0.0f ? play->weight : 1.0f;
     const int from_nothing = p->layer->mode == NOH_LAYER_BASE && p->layer->moves_joints &&
-                             !something_plays(p, track, is_graph(p, clip));
+                             !something_plays(p, track, is_source(p, clip));
     const int at_once = ticks <= 1u || from_nothing;
     const noh_track_desc d = track_desc(p, clip, play, !at_once);
     noh_track probe;
     noh_result result = noh_track_start(&probe, &p->k->set, &d, error);
     if (result == NOH_OK) result = beside ? make_room_beside(p, track, error) : make_room(p, track, error);
-    if (result == NOH_OK) change_graph(p, clip);
+    if (result == NOH_OK) change_source(p, clip);
     if (result == NOH_OK) {
         result = noh_controller_start(p->c, &p->k->set, p->layer->first_track + track, &d, error);
     }
@@ -380,7 +374,7 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
     noh_play play = { .fade_ticks = 1, .loop = NOH_LOOP_ONCE };
     noh_inertia_joint *left;
     player p;
-    noh_result result = open_player(stage, actor, layer, &p, error);
+    noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
     if (result != NOH_OK) return result;
     if (!p.k->desc->inertia) return begin(&p, clip, &play, error);
     play.fade_ticks = ticks;
@@ -405,6 +399,18 @@ static int plays(const player *p, uint32_t clip)
     return track->mode != NOH_TRACK_OFF && track->clip == clip && !noh_track_ended(track, &p->k->set.clips[clip]);
 }
 
+noh_result noh_stage_play_clip(player *p, uint32_t clip, const noh_play *play, noh_error *error)
+{
+    if ((play->flags & NOH_PLAY_KEEP) && plays(p, clip)) {
+        return NOH_OK;
+    }
+    if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc->inertia) {
+        return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia: set noh_kind_desc.inertia",
+                        (uint64_t)(p->k - p->s->kinds), 0);
+    }
+    return play->flags & NOH_PLAY_INERTIA ? leap(p, clip, play, error) : begin(p, clip, play, error);
+}
+
 static const char *bad_play(const player *p, const noh_play *play)
 {
     if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE | NOH_PLAY_FROM_BIND))
@@ -426,7 +432,7 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
     const char *what;
     uint32_t index;
     player p;
-    const noh_result result = open_player(stage, actor, layer, &p, error);
+    const noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
     NOH_ASSERT(clip);
     if (result != NOH_OK) {
         return result;
@@ -446,60 +452,13 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
         }
         p.reference = reference + 1u;
     }
-    if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
-        return NOH_OK;
-    }
-    if ((how->flags & NOH_PLAY_INERTIA) && !p.k->desc->inertia) {
-        return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia", (uint64_t)(p.k - stage->kinds), 0);
-    }
-    return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
-}
-
-static const char *bad_graph_play(const player *p, const noh_play *play)
-{
-    if (p->layer->mode == NOH_LAYER_ADD) return "a graph plays on a base or an over layer";
-    if (play->speed || play->start_ticks || play->loop || play->sync_group || play->reference)
-        return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
-    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
-    if ((play->flags & NOH_PLAY_INERTIA) && !p->k->desc->inertia) return "the kind has no room for inertia";
-    return p->s->callback_of_graph ? "within a key of a graph no graph begins: set a parameter of it, or play after "
-                                     "the step"
-                                   : NULL;
-}
-
-noh_result noh_actor_play_graph(noh_stage *stage, noh_actor actor, uint32_t layer, const char *graph,
-                                const noh_play *play, noh_error *error)
-{
-    static const noh_play plain;
-    const noh_play *how = play ? play : &plain;
-    const char *what;
-    uint32_t index;
-    player p;
-    const noh_result result = open_player(stage, actor, layer, &p, error);
-    NOH_ASSERT(graph);
-    if (result != NOH_OK) {
-        return result;
-    }
-    index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_GRAPH, graph);
-    if (index == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no graph of that name", (uint64_t)(p.k - stage->kinds),
-                        p.k->graph_count);
-    }
-    what = bad_graph_play(&p, how);
-    if (what) {
-        return noh_fail(error, NOH_ERR_ARG, what, layer, 0);
-    }
-    index += noh_stage_clip_count(p.k);
-    if ((how->flags & NOH_PLAY_KEEP) && plays(&p, index)) {
-        return NOH_OK;
-    }
-    return how->flags & NOH_PLAY_INERTIA ? leap(&p, index, how, error) : begin(&p, index, how, error);
+    return noh_stage_play_clip(&p, index, how, error);
 }
 
 noh_result noh_actor_stop(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t fade_ticks, noh_error *error)
 {
     player p;
-    noh_result result = open_player(stage, actor, layer, &p, error);
+    noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
     if (result == NOH_OK) result = make_room(&p, NOH_NONE, error);
     if (result == NOH_OK) let_go(&p);
     if (result == NOH_OK) result = fade_others(&p, NOH_NONE, fade_ticks ? fade_ticks : FADE_TICKS, error);

@@ -13,16 +13,13 @@
 #include "noh/modules.h"
 #include "noh/low_stage.h"
 
-/* The set of a kind, sampled by a job's own view; through `sampler` where some clips stand for graphs. */
-static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind, noh_stage_sampler *sampler)
+/* The set of a kind, sampled by a job's own view. */
+static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind *kind)
 {
     noh_clip_set set = kind->set;
     if (kind->bank) {
         set.sample = job->views[kind->bank_kind]->clips.sample;
         set.user = job->views[kind->bank_kind]->clips.user;
-    }
-    if (kind->graph_count) {
-        noh_stage_wrap(kind, &set, sampler);
     }
     return set;
 }
@@ -31,17 +28,17 @@ static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind 
  * the value of its namesake. */
 static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
 {
-    const uint32_t own = k->bank || (noh_stage_has_parts(k->desc) && k->float_count) ? k->set.float_count : 0;
+    const uint32_t own = k->bank || (k->modifier_bytes && k->float_count) ? k->set.float_count : 0;
     if (!ch->time.posed) {
-        memcpy(floats, k->defaults, k->float_count * sizeof *floats);
+        memcpy(floats, k->named.defaults, k->float_count * sizeof *floats);
         return;
     }
     if (own) {
         const float *shown = noh_character_floats(ch, floats);
         if (shown != floats) memcpy(floats, shown, own * sizeof *floats);
     }
-    memcpy(floats + own, k->defaults + own, (k->float_count - own) * sizeof *floats);
-    for (uint32_t f = k->first_renamed; f < k->float_count; f++) floats[f] = floats[k->sources[f]];
+    memcpy(floats + own, k->named.defaults + own, (k->float_count - own) * sizeof *floats);
+    for (uint32_t f = k->named.first_renamed; f < k->float_count; f++) floats[f] = floats[k->named.sources[f]];
 }
 
 static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
@@ -50,7 +47,8 @@ static void hold(const noh_stage_kind *k, uint32_t index, float *floats)
     for (uint32_t h = 0; h < k->desc->held_float_count; h++) {
         if (!(held[h].amount > 0.0f)) continue;
         for (uint32_t f = 0; f < k->float_count; f++) {
-            if (f == held[h].index || (k->name_hashes[f] == k->name_hashes[held[h].index] && k->name_hashes[f])) {
+            if (f == held[h].index ||
+                (k->named.name_hashes[f] == k->named.name_hashes[held[h].index] && k->named.name_hashes[f])) {
                 floats[f] = floats[f] * (1.0f - held[h].amount) + held[h].value * held[h].amount;
             }
         }
@@ -61,9 +59,9 @@ void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
 {
     float *floats = k->floats + (size_t)index * k->float_count;
     take_floats(k, noh_stage_character(k, index), floats);
-    hold(k, index, floats); /* the game's word is over clips, faces and parts */
-    noh_weight_rules_apply(k->weight_rules, k->weight_rule_count, floats);
-    if (k->corrective_count) noh_stage_correct(k, index, floats);
+    hold(k, index, floats); /* the game's word is over clips and modules */
+    noh_weight_rules_keep(k->targets.weight_rules, k->targets.weight_rule_count, floats);
+    if (k->targets.corrective_count) noh_stage_correct(k, index, floats);
 }
 
 /* The weights of all meshes, one after another, without targets whose effect is too small to see. */
@@ -95,7 +93,6 @@ static uint64_t late_of(const noh_stage *s, const noh_stage_job_part *job)
 typedef struct poser {
     noh_stage_kind *k;
     noh_clip_set set;
-    noh_stage_sampler sampler;
     noh_character_scratch scratch;
 } poser;
 
@@ -103,7 +100,7 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
 {
     const noh_character_desc desc = noh_stage_character_desc(k, 0);
     p->k = k;
-    p->set = job_set(job, k, &p->sampler);
+    p->set = job_set(job, k);
     (void)noh_character_scratch_init(job->scratch, s->scratch_bytes, &desc, &p->scratch, NULL);
 }
 
@@ -113,6 +110,19 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
  * (crowd/, crowd.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
  * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
 
+/* Over clips and graphs, in the order of the slots: the face, so that eyes, blinks, breath and speech are there; the
+ * kind's own parts in the order of its desc, such as look-at, feet, hands and hair; the ragdoll over them; springs. */
+static void modify(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
+{
+    for (uint32_t slot = NOH_SLOT_FACE; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_stage_module *m = &k->modules[slot];
+        if (!m->type) continue;
+        w->state = m->states + index * m->stride;
+        w->user = m->shared;
+        m->type->modify(w);
+    }
+}
+
 /* The pose: joints and the floats that go with them. */
 static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
 {
@@ -120,15 +130,15 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     noh_character *ch = noh_stage_character(k, i);
     const int64_t clock = noh_character_pose_clock(ch);
     const int64_t ahead = clock - noh_character_clock(ch);
-    if (k->graph_count) noh_stage_pose_graph(s, job, k, i, ahead, 0, &p->sampler);
-    noh_character_update_begin(ch, &p->set, &p->scratch); /* local poses of clips and graphs, blended */
-    if (noh_stage_has_parts(k->desc)) {
+    const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
+    noh_clip_set set = p->set;
+    noh_stage_sampler sampler;
+    if (type) type->source->sample(s, job, k, i, ahead, 0, &set, &sampler);
+    noh_character_update_begin(ch, &set, &p->scratch); /* local poses, blended */
+    if (k->modifier_bytes) {
         noh_part_work w;
-        noh_stage_begin_parts(s, job, k, i, clock, &p->scratch, &w);
-        if (k->face) noh_stage_run_face(s, k, noh_stage_face_of(k, i), &w); /* eyes, blinks, breath, speech */
-        noh_stage_run_parts(k, i, &w); /* the kind's own order: look-at, feet, hands, hair */
-        if (k->ragdoll) noh_stage_run_ragdoll(k, noh_stage_body_of(k, i), &w); /* over them, who falls */
-        if (k->springs.modify) noh_stage_run_springs(k, i, &w);
+        noh_stage_begin_modifiers(s, job, k, i, clock, &p->scratch, &w);
+        modify(k, i, &w);
     }
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
 }

@@ -3,6 +3,7 @@
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/format.h"
+#include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
@@ -16,13 +17,13 @@
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
-#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_ragdoll_internal.h"
 
 /* ---- made ---- */
 
-const char *noh_stage_bad_ragdoll(const noh_kind_desc *d)
+static const char *bad(const noh_kind_desc *d, const void *desc)
 {
-    const noh_kind_ragdoll *r = d->ragdoll;
+    const noh_kind_ragdoll *r = desc;
     if (!r->count || r->count > NOH_RAGDOLLS_MAX) return "count of a kind's ragdoll is not in 1..NOH_RAGDOLLS_MAX";
     if (r->substeps && (r->substeps < 5u || r->substeps > NOH_RAGDOLL_SUBSTEPS_MAX))
         return "substeps of a kind's ragdoll is not in 5..NOH_RAGDOLL_SUBSTEPS_MAX";
@@ -31,19 +32,34 @@ const char *noh_stage_bad_ragdoll(const noh_kind_desc *d)
     return r->world && noh_world_check(r->world, NULL) ? "world of a kind's ragdoll: see noh_world_check" : NULL;
 }
 
-size_t noh_stage_doll_bytes(const noh_kind_desc *d)
+static uint32_t hash(const noh_kind_desc *d, const void *desc)
 {
-    return d->ragdoll ? noh_ragdolls_state_size(d->ragdoll->count) : 0;
+    (void)d;
+    return ((const noh_kind_ragdoll *)desc)->count;
 }
 
-size_t noh_stage_doll_scratch_bytes(const noh_kind_desc *d)
+static void *carve(noh_arena *arena)
 {
-    return d->ragdoll ? NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u : 0;
+    (void)noh_arena_carve(arena, sizeof(noh_stage_ragdoll_kind), 16);
+    return noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u, 16);
+}
+
+static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_stage_needs *n, noh_module_needs *needs,
+                          noh_error *error)
+{
+    noh_arena arena = noh_arena_measure();
+    (void)d, (void)n, (void)error;
+    (void)carve(&arena);
+    needs->kind_bytes = arena.used;
+    needs->actor_bytes = sizeof(noh_stage_body);
+    needs->pool_bytes = noh_ragdolls_state_size(((const noh_kind_ragdoll *)desc)->count);
+    return NOH_OK;
 }
 
 noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, noh_error *error)
 {
     noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
+    const noh_kind_ragdoll *desc = kind->ragdoll.desc;
     const noh_skeleton_header *header;
     noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
     uint32_t count;
@@ -54,27 +70,36 @@ noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, no
     result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
     if (result != NOH_OK) return result;
     source.metres = header->unit_cm / 100.0f;
-    source.mass = kind->ragdoll ? kind->ragdoll->mass : 0.0f;
+    source.mass = desc ? desc->mass : 0.0f;
     result = noh_ragdoll_find_rows(&source, rows, &count, error);
     return result == NOH_OK ? noh_ragdoll_rig_make(&source, rows, count, rig, error) : result;
 }
 
-noh_result noh_stage_open_ragdoll(noh_stage_kind *k, noh_error *error)
+static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
-    noh_stage_ragdoll_kind *r = k->ragdoll;
+    const noh_kind_ragdoll *from = desc;
+    noh_stage_ragdoll_kind *r = k->modules[NOH_SLOT_BODY].shared;
+    noh_arena arena = noh_arena_over(r, SIZE_MAX);
     const noh_skeleton_header *header;
     noh_skeleton joints;
-    noh_ragdolls_desc desc;
-    noh_result result = noh_kind_can_fall(k->desc, &r->rig, error);
+    noh_ragdolls_desc dolls;
+    uint8_t *scratch;
+    noh_result result;
+    memset(r, 0, sizeof *r);
+    result = noh_kind_can_fall(k->desc, &r->rig, error);
     if (result != NOH_OK) return result;
     (void)noh_pack_skeleton_at(k->desc->mesh, k->desc->skeleton, &joints, &header, NULL);
     r->metres = header->unit_cm / 100.0f;
     noh_ragdoll_fit_make(&r->rig, &k->skeleton, r->metres, &r->fit);
-    r->world = k->desc->ragdoll->world;
-    desc.rig = &r->rig;
-    desc.count = k->desc->ragdoll->count;
-    desc.substeps = k->desc->ragdoll->substeps;
-    (void)noh_ragdolls_begin(k->dolls, &desc);
+    r->world = from->world;
+    r->count = from->count;
+    r->dolls = k->modules[NOH_SLOT_BODY].pool;
+    scratch = carve(&arena);
+    r->scratch = (float *)(void *)(scratch + (32u - (uintptr_t)scratch % 32u) % 32u);
+    dolls.rig = &r->rig;
+    dolls.count = from->count;
+    dolls.substeps = from->substeps;
+    (void)noh_ragdolls_begin(r->dolls, &dolls);
     return NOH_OK;
 }
 
@@ -84,16 +109,17 @@ noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_pla
 {
     noh_ragdoll_frame f;
     for (int i = 0; i < 3; i++) {
-        f.position[i] = (float)((double)place->position[i] * (double)k->ragdoll->metres - (double)origin[i]);
+        f.position[i] = (float)((double)place->position[i] * (double)noh_stage_ragdoll_kind_of(k)->metres -
+                                (double)origin[i]);
     }
     memcpy(f.rotation, place->rotation, sizeof f.rotation);
-    f.metres = k->ragdoll->metres * place->scale;
+    f.metres = noh_stage_ragdoll_kind_of(k)->metres * place->scale;
     return f;
 }
 
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights)
 {
-    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) {
+    for (uint32_t i = 0; i < noh_stage_ragdoll_kind_of(k)->rig.body_count; i++) {
         weights[i] = b->held >> i & 1u ? 0.0f : 1.0f - b->animated[i];
     }
 }
@@ -102,7 +128,7 @@ void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b,
 static void move_origin(const noh_stage_kind *k, noh_stage_body *b, const noh_place *place)
 {
     float at[3], origin[3];
-    for (int i = 0; i < 3; i++) at[i] = place->position[i] * k->ragdoll->metres;
+    for (int i = 0; i < 3; i++) at[i] = place->position[i] * noh_stage_ragdoll_kind_of(k)->metres;
     noh_ragdoll_origin_near(at, origin);
     for (int i = 0; i < 3; i++) {
         const float by = origin[i] - b->origin[i];
@@ -126,14 +152,14 @@ static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_
     }
     if (!b->poses) b->poses = 1;
     b->clocks[0] = w->clock;
-    noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[0]);
+    noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, w->local, &frame, b->bodies[0]);
 }
 
 /* Whether its ragdoll has to know where clips have its bodies. */
 static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
 {
     int some = b->held != 0;
-    for (uint32_t i = 0; i < k->ragdoll->rig.body_count; i++) some |= b->hertz[i] > 0.0f;
+    for (uint32_t i = 0; i < noh_stage_ragdoll_kind_of(k)->rig.body_count; i++) some |= b->hertz[i] > 0.0f;
     return some;
 }
 
@@ -142,13 +168,16 @@ static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     float weights[NOH_RAGDOLL_BODIES_MAX];
     b->goals = b->doll && has_goals(k, b);
-    if (b->goals) noh_ragdoll_from_pose(&k->ragdoll->fit, w->skeleton, w->local, &frame, b->bodies[1]);
+    if (b->goals)
+        noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, w->local, &frame, b->bodies[1]);
     noh_stage_ragdoll_weights(k, b, weights);
-    noh_ragdoll_to_pose(&k->ragdoll->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
+    noh_ragdoll_to_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
 }
 
-void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w)
+static void modify(noh_part_work *w)
 {
+    const noh_stage_kind *k = w->kind;
+    noh_stage_body *b = w->state;
     if (b->state != NOH_BODY_STANDS) {
         show_doll(k, b, w);
         return;
@@ -163,7 +192,7 @@ void noh_stage_run_ragdoll(const noh_stage_kind *k, noh_stage_body *b, noh_part_
 static float carried_to(const noh_stage_kind *k, const noh_stage_body *b, int i)
 {
     const double from = (double)b->bodies[0][0].position[i] + (double)b->offset[i];
-    return (float)(((double)b->origin[i] + from) / (double)k->ragdoll->metres);
+    return (float)(((double)b->origin[i] + from) / (double)noh_stage_ragdoll_kind_of(k)->metres);
 }
 
 /* Where the game has moved a place, or as it begins to fall. */
@@ -179,9 +208,9 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
     int moved = 0;
     for (int i = 0; i < 3; i++) moved |= a->place.position[i] != carried_to(k, b, i);
     if (moved) take_offset(k, b, &a->place);
-    noh_ragdoll_bodies_local(k->dolls, b->doll - 1u, b->origin, b->bodies[0]);
-    for (int i = 0; i < 3 && noh_stage_is_carried(b); i++) a->place.position[i] = carried_to(k, b, i);
-    if (b->dead && noh_ragdoll_sleeps(k->dolls, b->doll - 1u)) {
+    noh_ragdoll_bodies_local(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->origin, b->bodies[0]);
+    for (int i = 0; i < 3 && noh_stage_falls_free(b); i++) a->place.position[i] = carried_to(k, b, i);
+    if (b->dead && noh_ragdoll_sleeps(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u)) {
         b->state = NOH_BODY_LIES;
         b->doll = 0;
     }
@@ -196,31 +225,35 @@ static void tell_dolls(const noh_stage_kind *k)
         const noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive || !b->doll) continue;
         used[b->doll - 1u] = 1;
-        (void)noh_ragdoll_follow_about(k->dolls, b->doll - 1u, b->origin,
+        (void)noh_ragdoll_follow_about(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->origin,
                                        b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
     }
-    for (uint32_t i = 0; i < k->desc->ragdoll->count; i++) {
-        if (!used[i]) noh_ragdoll_dolls(k->dolls)[i].asleep = 1;
+    for (uint32_t i = 0; i < noh_stage_ragdoll_kind_of(k)->count; i++) {
+        if (!used[i]) noh_ragdoll_dolls(noh_stage_ragdoll_kind_of(k)->dolls)[i].asleep = 1;
     }
 }
 
-void noh_stage_step_ragdolls(noh_stage_kind *k, uint32_t ticks)
+static void step(noh_stage_kind *k, uint32_t ticks)
 {
-    uint8_t *scratch = k->doll_scratch;
-    scratch += (32u - (uintptr_t)scratch % 32u) % 32u;
+    const noh_stage_ragdoll_kind *r = noh_stage_ragdoll_kind_of(k);
     tell_dolls(k);
-    (void)noh_ragdolls_step_with(k->dolls, k->ragdoll->world, ticks, (float *)(void *)scratch);
+    (void)noh_ragdolls_step_with(r->dolls, r->world, ticks, r->scratch);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (k->actors[i].alive && b->doll) follow_doll(k, b, &k->actors[i]);
     }
 }
 
-void noh_stage_shift_ragdolls(noh_stage_kind *k, const float by[3])
+static int carries(const noh_stage_kind *k, uint32_t index)
+{
+    return noh_stage_falls_free(noh_stage_body_of(k, index));
+}
+
+static void shift(noh_stage_kind *k, const float by[3])
 {
     float metres[3];
-    for (int i = 0; i < 3; i++) metres[i] = by[i] * k->ragdoll->metres;
-    noh_ragdolls_shift(k->dolls, metres);
+    for (int i = 0; i < 3; i++) metres[i] = -by[i] * noh_stage_ragdoll_kind_of(k)->metres;
+    noh_ragdolls_shift(noh_stage_ragdoll_kind_of(k)->dolls, metres);
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
         noh_stage_body *b = noh_stage_body_of(k, a);
         float lost[3];
@@ -239,7 +272,7 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
 {
     const noh_result result = noh_stage_change(stage, actor, a, k, error);
     if (result != NOH_OK) return result;
-    if (!(*k)->ragdoll) {
+    if (!noh_stage_ragdoll_kind_of(*k)) {
         return noh_fail(error, NOH_ERR_ARG, "the actor's kind has no ragdolls: set noh_kind_desc.ragdoll",
                         (uint64_t)(*k - stage->kinds), 0);
     }
@@ -250,7 +283,7 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
 /* 1 + a doll that no actor has; 0: there is none. */
 static uint32_t free_doll(const noh_stage_kind *k)
 {
-    for (uint32_t doll = 1; doll <= k->desc->ragdoll->count; doll++) {
+    for (uint32_t doll = 1; doll <= noh_stage_ragdoll_kind_of(k)->count; doll++) {
         uint32_t i = 0;
         while (i < k->desc->actor_count && noh_stage_body_of(k, i)->doll != doll) i++;
         if (i == k->desc->actor_count) return doll;
@@ -262,20 +295,22 @@ static uint32_t free_doll(const noh_stage_kind *k)
 static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, uint32_t doll,
                              noh_error *error)
 {
-    const uint32_t count = k->ragdoll->rig.body_count;
+    const uint32_t count = noh_stage_ragdoll_kind_of(k)->rig.body_count;
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
     const int stands = b->state == NOH_BODY_STANDS;
     if (stands && !b->poses) {
         move_origin(k, b, &a->place);
         const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
-        noh_ragdoll_from_pose(&k->ragdoll->fit, &k->skeleton, k->skeleton.bind_pose, &frame, b->bodies[0]);
+        noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, &k->skeleton, k->skeleton.bind_pose, &frame,
+                              b->bodies[0]);
     }
     memset(motions, 0, sizeof motions);
     if (stands && b->poses == 2u) {
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
-    const noh_result result = noh_ragdoll_place_about(k->dolls, doll - 1u, b->origin, b->bodies[0], motions, error);
+    const noh_result result = noh_ragdoll_place_about(noh_stage_ragdoll_kind_of(k)->dolls, doll - 1u, b->origin,
+                                                      b->bodies[0], motions, error);
     if (result == NOH_OK) take_offset(k, b, &a->place);
     return result;
 }
@@ -291,7 +326,7 @@ static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_bo
     doll = free_doll(k);
     if (!doll) {
         return noh_fail(error, NOH_ERR_LIMIT, "all ragdolls of the kind are in use: raise noh_kind_ragdoll.count",
-                        k->desc->ragdoll->count, k->desc->ragdoll->count + 1u);
+                        noh_stage_ragdoll_kind_of(k)->count, noh_stage_ragdoll_kind_of(k)->count + 1u);
     }
     result = place_doll(k, a, b, doll, error);
     if (result != NOH_OK) return result;
@@ -327,7 +362,7 @@ noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3]
             return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not finite", (uint64_t)i, 0);
     }
     result = fall(k, a, b, error);
-    if (result == NOH_OK) noh_ragdoll_push(k->dolls, b->doll - 1u, point, impulse);
+    if (result == NOH_OK) noh_ragdoll_push(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, point, impulse);
     return result;
 }
 
@@ -371,8 +406,8 @@ noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint
     if (!b) return result;
     if (!(hold->hertz >= 0.0f) || !noh_is_finite(hold->hertz) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
         return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is below 0, or animated not in 0..1", joint, 0);
-    for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < k->ragdoll->rig.body_count; i++) {
-        if (!is_below(&k->skeleton, k->ragdoll->fit.joints[i], joint)) continue;
+    for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < noh_stage_ragdoll_kind_of(k)->rig.body_count; i++) {
+        if (!is_below(&k->skeleton, noh_stage_ragdoll_kind_of(k)->fit.joints[i], joint)) continue;
         b->held = (b->held & ~(1u << i)) | (hold->held ? 1u << i : 0u);
         b->hertz[i] = hold->hertz;
         b->animated[i] = hold->animated;
@@ -385,9 +420,10 @@ noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
-    const noh_stage_body *b = a && k->ragdoll ? noh_stage_body_of(k, noh_stage_index(k, a)) : NULL;
+    const noh_stage_body *b = a && noh_stage_ragdoll_kind_of(k) ? noh_stage_body_of(k, noh_stage_index(k, a)) : NULL;
     if (!b) return NOH_BODY_STANDS;
-    if (b->doll) return noh_ragdoll_sleeps(k->dolls, b->doll - 1u) ? NOH_BODY_LIES : NOH_BODY_FALLS;
+    if (b->doll)
+        return noh_ragdoll_sleeps(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u) ? NOH_BODY_LIES : NOH_BODY_FALLS;
     if (b->state == NOH_BODY_LIES) return NOH_BODY_LIES;
     return b->rise && noh_clock_since(stage->head->clock, b->rise_clock) < (int64_t)b->rise_ticks ? NOH_BODY_GETS_UP
                                                                                                   : NOH_BODY_STANDS;
@@ -415,11 +451,12 @@ static int is_finite_hold(const noh_stage_body *b, uint32_t i)
            b->animated[i] <= 1.0f;
 }
 
-const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *b)
+static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
 {
-    if (b->doll > k->desc->ragdoll->count || b->poses > 2u || (b->poses == 2u && b->clocks[0] <= b->clocks[1]) ||
-        b->state > NOH_BODY_LIES || (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->rise > NOH_RISE_GOES_ON ||
-        (b->rise && !b->rise_ticks) || b->dead > 1u || b->goals > 1u) {
+    if (b->doll > noh_stage_ragdoll_kind_of(k)->count || b->poses > 2u ||
+        (b->poses == 2u && b->clocks[0] <= b->clocks[1]) || b->state > NOH_BODY_LIES ||
+        (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->rise > NOH_RISE_GOES_ON || (b->rise && !b->rise_ticks) ||
+        b->dead > 1u || b->goals > 1u) {
         return "state: bad ragdoll of an actor";
     }
     for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
@@ -427,4 +464,38 @@ const char *noh_stage_check_body(const noh_stage_kind *k, const noh_stage_body *
             return "state: an actor's ragdoll is not finite";
     }
     return NULL;
+}
+
+static noh_result check(const noh_stage_kind *k, const void *state, noh_error *error)
+{
+    const char *what = bad_body(k, state);
+    return what ? noh_fail(error, NOH_ERR_DATA, what, 0, 0) : NOH_OK;
+}
+
+static const char *check_pool(const noh_stage_kind *k, const void *pool)
+{
+    return noh_ragdolls_check(noh_stage_ragdoll_kind_of(k)->dolls, pool);
+}
+
+/* ---- the module ---- */
+
+noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll)
+{
+    static const noh_module_type ragdolls = {
+        .slot = NOH_SLOT_BODY,
+        .kind_name = "ragdolls",
+        .state_name = "ragdoll states",
+        .pool_name = "ragdoll pool",
+        .hash = hash,
+        .bad = bad,
+        .measure = measure,
+        .init = init,
+        .shift = shift,
+        .check = check,
+        .check_pool = check_pool,
+        .step = step,
+        .carries = carries,
+        .modify = modify,
+    };
+    return (noh_module){ ragdoll ? &ragdolls : NULL, ragdoll };
 }

@@ -116,6 +116,15 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
 
 /* ---- updates ---- */
 
+/* Joints times clips in the pose of what an actor plays beside its clips. */
+static uint32_t inner_work(const noh_stage_kind *k, uint32_t index)
+{
+    const noh_controller *c = noh_stage_inner(k, index);
+    uint32_t tracks = 0;
+    for (uint32_t i = 0; c && i < c->track_count; i++) tracks += noh_controller_track(c, i)->mode == NOH_TRACK_ON;
+    return c ? tracks * c->lod_joint_count : 0;
+}
+
 /* Without a budget all that are due are posed: nothing is put in order, and no cost is asked for. */
 static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
 {
@@ -127,7 +136,7 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
         shown->updates = shown->due != NOH_DUE_NOT;
         return;
     }
-    cost = noh_cost_ns(&costs, noh_character_joint_work(ch) + noh_stage_graph_work(k, i), 0, 0);
+    cost = noh_cost_ns(&costs, noh_character_joint_work(ch) + inner_work(k, i), 0, 0);
     if (shown->due >= NOH_DUE_AT_ONCE) {
         noh_schedule_spend(&s->schedule, cost);
         shown->updates = 1;
@@ -163,11 +172,9 @@ static void want_clips(noh_stage *s, const noh_stage_kind *k, uint32_t i, int no
 {
     noh_character *ch = noh_stage_character(k, i);
     const uint32_t ahead = now ? ahead_of(s, ch) : AHEAD_TICKS;
-    const noh_stage_playing p = noh_stage_playing_of(k, i);
+    const noh_controller *inner = noh_stage_inner(k, i);
     (void)noh_clip_bank_prefetch(k->bank, noh_character_controller(ch), ahead);
-    if (p.graph) {
-        (void)noh_clip_bank_prefetch(k->bank, noh_graph_controller(p.state), ahead);
-    }
+    if (inner) (void)noh_clip_bank_prefetch(k->bank, inner, ahead);
 }
 
 static void want(noh_stage *s, int now)

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "life/physics/ragdoll_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "core/base/assert.h"
 #include "stage/character/character.h"
@@ -123,6 +122,15 @@ static const char *bad_list(const reader *r, const noh_stage_kind *k, const noh_
                                                                                      : NULL;
 }
 
+static noh_result check_modules(const reader *r, const noh_stage_kind *k, uint32_t index, noh_error *error)
+{
+    const noh_stage_modifier_head *head = in_copy(r, k->modifier_states + index * k->modifier_bytes);
+    if (k->modifier_bytes && head->was_posed > 1u) {
+        return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
+    }
+    return noh_stage_check_modules(k, index, r->s->state, r->state, error);
+}
+
 static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
 {
     const noh_stage_kind *k = &r->s->kinds[kind];
@@ -136,14 +144,9 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
         if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc->held_float_count));
         if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
         if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);
-        if (actors[i].alive && result == NOH_OK) {
-            result = noh_stage_check_graph(k, in_copy(r, k->graph_slots + (size_t)i * k->slot_bytes), error);
-        }
-        if (actors[i].alive && result == NOH_OK) {
-            result = noh_stage_check_parts(k, in_copy(r, k->part_states + (size_t)i * k->part_bytes), error);
-        }
+        if (actors[i].alive && result == NOH_OK) result = check_modules(r, k, i, error);
     }
-    if (k->ragdoll && result == NOH_OK) what = noh_ragdolls_check(k->dolls, in_copy(r, (const uint8_t *)k->dolls));
+    if (result == NOH_OK) what = noh_stage_check_pools(k, r->s->state, r->state);
     if (what) return noh_fail(error, NOH_ERR_DATA, what, kind, 0);
     what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
     if (!what && result == NOH_OK) {

@@ -9,14 +9,14 @@ void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max)
     uint32_t count = 0;
     for (uint32_t m = 0; m < k->plan->mesh_count && rule_max; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        const uint32_t own = noh_weight_rules_bind(&mesh->mesh, k->weight_rules + count, rule_max - count);
+        const uint32_t own = noh_weight_rules_bind(&mesh->mesh, k->targets.weight_rules + count, rule_max - count);
         for (uint32_t i = count; i < count + own; i++) {
-            k->weight_rules[i].target = (uint16_t)(k->weight_rules[i].target + mesh->first_float);
-            k->weight_rules[i].other = (uint16_t)(k->weight_rules[i].other + mesh->first_float);
+            k->targets.weight_rules[i].target = (uint16_t)(k->targets.weight_rules[i].target + mesh->first_float);
+            k->targets.weight_rules[i].other = (uint16_t)(k->targets.weight_rules[i].other + mesh->first_float);
         }
         count += own;
     }
-    k->weight_rule_count = count;
+    k->targets.weight_rule_count = count;
 }
 
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max)
@@ -24,21 +24,21 @@ void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max)
     uint32_t count = 0;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        const uint32_t own = noh_correctives_bind(&mesh->mesh, k->correctives + count, term_max - count);
+        const uint32_t own = noh_correctives_bind(&mesh->mesh, k->targets.correctives + count, term_max - count);
         for (uint32_t i = count; i < count + own; i++) {
-            k->correctives[i].target = (uint16_t)(k->correctives[i].target + mesh->first_float);
-            k->correctives[i].driver = (uint16_t)(k->correctives[i].driver + mesh->first_float);
+            k->targets.correctives[i].target = (uint16_t)(k->targets.correctives[i].target + mesh->first_float);
+            k->targets.correctives[i].driver = (uint16_t)(k->targets.correctives[i].driver + mesh->first_float);
         }
         count += own;
     }
-    k->corrective_count = count;
+    k->targets.corrective_count = count;
 }
 
 static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t target, float value)
 {
     for (uint32_t h = 0; h < k->desc->held_float_count; h++) {
         if (!(held[h].amount > 0.0f)) continue;
-        if (target != held[h].index && k->name_hashes[target] != k->name_hashes[held[h].index]) continue;
+        if (target != held[h].index && k->named.name_hashes[target] != k->named.name_hashes[held[h].index]) continue;
         value = value * (1.0f - held[h].amount) + held[h].value * held[h].amount;
     }
     return value;
@@ -47,10 +47,10 @@ static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t 
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats)
 {
     const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
-    noh_correctives_apply(k->correctives, k->corrective_count, floats);
-    for (uint32_t i = 0; i < k->corrective_count; i++) {
-        const uint32_t target = k->correctives[i].target;
-        if (i && k->correctives[i - 1u].target == target) continue;
+    noh_correct(k->targets.correctives, k->targets.corrective_count, floats);
+    for (uint32_t i = 0; i < k->targets.corrective_count; i++) {
+        const uint32_t target = k->targets.correctives[i].target;
+        if (i && k->targets.correctives[i - 1u].target == target) continue;
         floats[target] = kept(k, held, target, floats[target]);
     }
 }

@@ -144,6 +144,7 @@ static void desc_fields_broken_in_turn(void **state)
     c.kinds[0].actor_count = 65535, bad_plan(&c, NOH_ERR_LIMIT, "actors"), c.kinds[0] = fine[0];
     c.kinds[0].skeleton = 7, bad_plan(&c, NOH_ERR_ARG, "skeleton"), c.kinds[0] = fine[0];
     c.kinds[0].root_axes = 64, bad_plan(&c, NOH_ERR_ARG, "root_axes"), c.kinds[0] = fine[0];
+    c.kinds[0].face = noh_graph_module("*"), bad_plan(&c, NOH_ERR_ARG, "module of another field"), c.kinds[0] = fine[0];
     c.kinds[0].layer_count = 17, bad_plan(&c, NOH_ERR_ARG, "layer_count"), c.kinds[0] = fine[0];
     layers[0].name = NULL, c.kinds[0].layers = layers, c.kinds[0].layer_count = 2, bad_plan(&c, NOH_ERR_ARG, "name");
     layers[0].name = "body", layers[0].track_count = 9, bad_plan(&c, NOH_ERR_ARG, "track_count");

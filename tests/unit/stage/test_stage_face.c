@@ -31,7 +31,7 @@ static void open_cast(cast *c, uint32_t actors, const noh_kind_face *face, uint3
     cast_map(c, MASKS, "mask_levels.noh");
     c->kinds[0].mesh = &c->packs[PUPPETS];
     c->kinds[0].actor_count = actors;
-    c->kinds[0].face = face;
+    c->kinds[0].face = noh_face_module(face);
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     c->desc.job_count = jobs;
@@ -191,7 +191,7 @@ static void eyes_with_joints_turn(void **state)
         }
         face.face.eyes[0][0] += 0.06f; /* the tube's joints stand above each other: the lower one is told exactly */
         c.kinds[0] = c.kinds[TUBES];
-        c.kinds[0].face = &face;
+        c.kinds[0].face = noh_face_module(&face);
         c.desc.kind_count = 1;
         cast_make(&c, NULL);
         actor = enter(&c, NULL, NULL);
@@ -241,7 +241,7 @@ static void eyes_are_found_by_lids_and_by_joints(void **state)
     memset(&joints, 0, sizeof joints);
     joints.head = noh_pack_joint_name(&c.packs[TUBES], 0, 0);
     for (uint32_t e = 0; e < 2; e++) joints.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
-    c.kinds[TUBES].face = &joints;
+    c.kinds[TUBES].face = noh_face_module(&joints);
     assert_int_equal(noh_kind_find_eyes(&c.kinds[TUBES], scratch, sizeof scratch, eyes, &said), NOH_OK);
     assert_true(eyes[0][1] != eyes[1][1]); /* the tube's joints stand above each other */
     cast_close(&c);
@@ -571,7 +571,7 @@ static void a_face_is_planned_to_the_byte(void **state)
     open_cast(&c, 3, NULL, 1);
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
     plain = c.plan.state_bytes;
-    c.kinds[0].face = &face;
+    c.kinds[0].face = noh_face_module(&face);
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
     assert_true(c.plan.state_bytes > plain && c.plan.state_bytes <= plain + 3u * (16u + NOH_ACTOR_FACE_BYTES));
     for (uint32_t i = noh_stage_plan_parts(&c.desc, NULL, &c.plan, list, 64); i-- > 0;) {

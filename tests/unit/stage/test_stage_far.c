@@ -235,7 +235,7 @@ static void world_open(world *w)
     w->ragdoll.count = 1;
     k->parts = w->parts;
     k->part_count = 2;
-    k->ragdoll = &w->ragdoll;
+    k->ragdoll = noh_ragdoll_module(&w->ragdoll);
     cast_make(&w->c, NULL);
     w->walks = walker_at(&w->c, 1.0f, 2.0f);
     assert_int_equal(noh_stage_spawn(w->c.stage, PUPPETS, &aside, &w->falls, NULL), NOH_OK);

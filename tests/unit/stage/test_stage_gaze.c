@@ -209,7 +209,7 @@ static void a_face_owns_head_and_eyes(void **state)
         open_scene(&s);
         s.face.face.eyes[0][0] = 0.04f, s.face.face.eyes[1][0] = -0.04f;
         for (int e = 0; e < 2; e++) s.face.face.eyes[e][1] = 1.6f, s.face.face.eyes[e][2] = 0.1f;
-        s.cast.kinds[0].face = &s.face;
+        s.cast.kinds[0].face = noh_face_module(&s.face);
         make_scene(&s, 1, 1);
         if (looks) {
             noh_gaze *g = noh_actor_part(s.cast.stage, noh_stage_actor_at(s.cast.stage, 0), 0);

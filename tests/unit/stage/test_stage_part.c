@@ -30,7 +30,9 @@ static void close_cast(cast *c)
 
 static noh_stage_part gaze_of(const look_joint *joint)
 {
-    const noh_stage_part part = { "gaze", look_modify, look_check, joint, sizeof(look_state), 0 };
+    const noh_stage_part part = {
+        .name = "gaze", .modify = look_modify, .check = look_check, .user = joint, .state_bytes = sizeof(look_state)
+    };
     return part;
 }
 
@@ -227,7 +229,13 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
     memset(&c, 0, sizeof c);
     cast_map(&c, PUPPETS, "demo/puppet.noh");
     c.kinds[0] = (noh_kind_desc){
-        .mesh = &c.packs[0], .actor_count = 2, .face = &face, .ragdoll = &ragdoll, .parts = &part, .part_count = 1
+        .mesh = &c.packs[0],
+        .actor_count = 2,
+        .face = noh_face_module(&face),
+        .ragdoll = noh_ragdoll_module(&ragdoll),
+        .springs = noh_springs_module(),
+        .parts = &part,
+        .part_count = 1,
     };
     c.desc.kinds = c.kinds;
     c.desc.kind_count = 1;

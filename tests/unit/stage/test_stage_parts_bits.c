@@ -154,7 +154,7 @@ static void open_show(show *s)
     s->kind.inertia = 1;
     s->kind.parts = s->parts;
     s->kind.part_count = PARTS;
-    s->kind.ragdoll = &s->ragdoll;
+    s->kind.ragdoll = noh_ragdoll_module(&s->ragdoll);
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
     s->desc.job_count = 2;

@@ -25,7 +25,7 @@ static void open_cast(cast *c, uint32_t actors, const noh_kind_ragdoll *ragdoll,
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].ragdoll = ragdoll;
+    c->kinds[0].ragdoll = noh_ragdoll_module(ragdoll);
     c->kinds[0].inertia = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
@@ -252,13 +252,13 @@ static void what_cannot_fall_is_told(void **state)
     assert_int_equal(noh_stage_despawn(c.stage, actors[0], NULL), NOH_OK); /* its doll is free again */
     assert_int_equal(noh_actor_fall(c.stage, actors[1], &said), NOH_OK);
     cast_close_stage(&c);
-    c.kinds[0].ragdoll = NULL;
+    c.kinds[0].ragdoll = noh_ragdoll_module(NULL);
     cast_make(&c, NULL);
     actors[0] = enter(&c, 0.0f);
     assert_int_equal(noh_actor_fall(c.stage, actors[0], &said), NOH_ERR_ARG);
     cast_close_stage(&c);
     ragdoll.count = 0;
-    c.kinds[0].ragdoll = &ragdoll;
+    c.kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
     close_cast(&c);
 }

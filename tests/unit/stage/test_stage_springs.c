@@ -265,7 +265,7 @@ static void open_swingers(cast *c, uint32_t actors, int without)
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].without_springs = without;
+    if (!without) c->kinds[0].springs = noh_springs_module();
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     cast_make(c, NULL);

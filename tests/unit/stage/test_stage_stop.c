@@ -24,7 +24,7 @@ static void open_stage(cast *c)
     c->kinds[0].actor_count = 3;
     c->kinds[0].root_axes = NOH_ROOT_GROUND | NOH_ROOT_HEADING;
     c->kinds[0].root_up = 1;
-    c->kinds[0].graphs = "moves";
+    c->kinds[0].graphs = noh_graph_module("moves");
     c->kinds[0].layers = layers;
     c->kinds[0].layer_count = LAYERS;
     c->desc.kinds = c->kinds;

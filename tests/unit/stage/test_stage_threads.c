@@ -69,7 +69,9 @@ static void run_phases(pool *p)
 static void open_cast(cast *c)
 {
     static look_joint joint;
-    static const noh_stage_part gaze = { "gaze", look_modify, look_check, &joint, sizeof(look_state), 0 };
+    static const noh_stage_part gaze = {
+        .name = "gaze", .modify = look_modify, .check = look_check, .user = &joint, .state_bytes = sizeof(look_state)
+    };
     static const uint32_t counts[KINDS] = { 24, 12 };
     memset(c, 0, sizeof *c);
     cast_map(c, PUPPETS, "demo/puppet_levels.noh");
@@ -80,7 +82,7 @@ static void open_cast(cast *c)
     }
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
     c->kinds[PUPPETS].root_up = 1;
-    c->kinds[PUPPETS].graphs = "moves";
+    c->kinds[PUPPETS].graphs = noh_graph_module("moves");
     joint = look_joint_of(&c->packs[PUPPETS], "head");
     c->kinds[PUPPETS].parts = &gaze;
     c->kinds[PUPPETS].part_count = 1;

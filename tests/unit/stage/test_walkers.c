@@ -99,7 +99,7 @@ static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_
     k->layer_count = dolls ? 2u : 1u;
     s->ragdoll.count = dolls;
     s->ragdoll.world = &s->world;
-    k->ragdoll = dolls ? &s->ragdoll : NULL;
+    k->ragdoll = noh_ragdoll_module(dolls ? &s->ragdoll : NULL);
     k->inertia = dolls != 0;
     k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     k->root_up = 1;

@@ -24,6 +24,7 @@
 #include "noh/low_gl.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
+#include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
@@ -64,6 +65,7 @@ static int open_stage(cast *c, gpu *g, const noh_pack *pack, uint32_t actors)
     memset(c, 0, sizeof *c);
     c->kind.mesh = pack;
     c->kind.actor_count = actors;
+    c->kind.springs = noh_springs_module();
     c->desc.kinds = &c->kind;
     c->desc.kind_count = 1;
     c->desc.lod.pixels = 1.0f;

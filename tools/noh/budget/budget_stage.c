@@ -161,6 +161,7 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
         kind = people.kind;
     }
     kind.name = name ? name : a->pack;
+    kind.springs = noh_springs_module();
     kind.mesh = &file->pack;
     kind.clip_packs = a->clips.count ? clips : NULL;
     kind.clip_pack_count = (uint32_t)a->clips.count;
@@ -168,7 +169,7 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
     kind.near_count = (uint32_t)a->counts[NEAR];
     kind.middle_count = (uint32_t)a->counts[MIDDLE];
     kind.finest_level = (uint32_t)a->counts[FINEST];
-    if (ragdoll.count && !place) kind.ragdoll = &ragdoll;
+    if (ragdoll.count && !place) kind.ragdoll = noh_ragdoll_module(&ragdoll);
     desc.kinds = &kind;
     desc.kind_count = 1;
     if (!status) status = budget_of_stage(a, a->pack, &desc, place, &people, file);

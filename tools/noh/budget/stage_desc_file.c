@@ -350,7 +350,7 @@ static int set_number(reader *r, const setting *s, const char *text)
     switch (s->kind) {
     case SET_RAGDOLLS:
         r->file->ragdolls[r->kind - r->file->kinds].count = (uint32_t)value;
-        r->kind->ragdoll = &r->file->ragdolls[r->kind - r->file->kinds];
+        r->kind->ragdoll = noh_ragdoll_module(&r->file->ragdolls[r->kind - r->file->kinds]);
         break;
     case SET_BYTES: *(uint64_t *)(void *)(in + s->at) = value; break;
     case SET_FLAG: *(int *)(void *)(in + s->at) = (int)value; break;
@@ -364,7 +364,7 @@ static int set_number(reader *r, const setting *s, const char *text)
 static int set_face(reader *r)
 {
     noh_kind_face *face = &r->file->faces[r->kind - r->file->kinds];
-    r->kind->face = face;
+    r->kind->face = noh_face_module(face);
     if (r->word_count == 2 && strcmp(r->words[1].text, "joints") == 0) {
         return 0;
     }
@@ -388,7 +388,7 @@ static int set(reader *r, const setting *s)
     case SET_CLIPS: return add_clips(r, text);
     case SET_LAYER: return add_layer(r);
     case SET_FINER: return pack_beside(r, text, &r->kind->finer);
-    case SET_GRAPHS: r->kind->graphs = text; return 0;
+    case SET_GRAPHS: r->kind->graphs = noh_graph_module(text); return 0;
     case SET_FACE: return set_face(r);
     default: return set_number(r, s, text);
     }
@@ -467,6 +467,7 @@ static int begin_kind(reader *r)
     r->kind_line = r->line;
     r->kind->name = r->words[1].text;
     r->kind->root_up = 1; /* y, as packs have it */
+    r->kind->springs = noh_springs_module();
     return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/gl_device.h"
+#include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
@@ -69,6 +70,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->kind.root_up = 1;
     c->kind.root_told = 1;
     c->kind.unpickable = 1;
+    c->kind.springs = noh_springs_module();
     c->desc.kinds = &c->kind;
     c->desc.kind_count = 1;
     c->desc.lod.pixels = o->pixels;

@@ -63,11 +63,12 @@ static void fill_kind(place_people *p, const pack_file *file, uint32_t agents, u
     k->root_up = 1;
     k->root_told = 1;
     k->unpickable = 1;
+    k->springs = noh_springs_module();
     k->parts = p->parts;
     k->part_count = 1;
     p->ragdoll.count = ragdolls;
     p->ragdoll.world = &p->world;
-    k->ragdoll = ragdolls ? &p->ragdoll : NULL;
+    if (ragdolls) k->ragdoll = noh_ragdoll_module(&p->ragdoll);
     k->inertia = ragdolls != 0;
     p->walkers.walker_max = agents;
     p->walkers.near_max = agents < PLACE_NEAR ? agents : PLACE_NEAR;

@@ -56,11 +56,11 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->layers = d->layers ? d->layers : f->own_layers;
     k->layer_count = d->layers ? d->layer_count : d->face_layer ? 2u : 1u;
     k->inertia = d->inertia;
-    k->graphs = d->graphs;
+    k->graphs = noh_graph_module(d->graphs);
     k->root_axes = d->root_axes;
     k->root_up = 1;
     k->unpickable = !d->pickable && !d->marks;
-    k->without_springs = d->without_springs;
+    if (!d->without_springs) k->springs = noh_springs_module();
     k->weight_rules = d->weight_rules;
     f->stage_desc.kind_count++;
     return 0;
@@ -129,7 +129,7 @@ static void add_faces(figure *f)
 {
     f->faces_found = figure_find_faces(f->kinds, f->stage_desc.kind_count, f->faces);
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
-        if (f->faces_found >> k & 1u) f->kinds[k].face = &f->faces[k];
+        if (f->faces_found >> k & 1u) f->kinds[k].face = noh_face_module(&f->faces[k]);
     }
 }
 

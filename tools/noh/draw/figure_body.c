@@ -136,7 +136,7 @@ static int add_face(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *
 {
     if (!figure_find_eyes(kind, &b->faces[k], error)) return 0;
     b->faces[k].flags = NOH_FACE_CALM;
-    kind->face = &b->faces[k];
+    kind->face = noh_face_module(&b->faces[k]);
     b->has_faces = 1;
     return 1;
 }
@@ -152,7 +152,7 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
     if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &source.joints, &header, error)) return 0;
     source.metres = (float)header->unit_cm / 100.0f;
     b->metre = 1.0f / source.metres;
-    if (b->looks && (kind->face || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k].rig, error) ||
+    if (b->looks && (kind->face.type || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k].rig, error) ||
                      add_face(b, kind, k, error))) {
         b->parts[k][count++] = noh_stage_gaze_part(&b->gazes[k]);
     }
@@ -173,7 +173,7 @@ int figure_body_add(figure_body *b, const char *file, noh_kind_desc *kinds, uint
     int can = 0;
     b->metre = 1.0f;
     for (uint32_t k = 0; k < kind_count; k++) {
-        if (kinds[k].skeleton == NOH_NONE && b->looks && (kinds[k].face || add_face(b, &kinds[k], k, &error))) {
+        if (kinds[k].skeleton == NOH_NONE && b->looks && (kinds[k].face.type || add_face(b, &kinds[k], k, &error))) {
             can |= !b->has_ground;
         }
         if (kinds[k].skeleton != NOH_NONE) can |= add_to(b, &kinds[k], k, &error);
@@ -191,10 +191,10 @@ int figure_body_place(const figure_body *b, noh_stage *stage, const noh_kind_des
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t k = 0; k < kind_count; k++) {
         noh_place place;
-        if (b->looks && kinds[k].face && noh_actor_look_at(stage, actors[k], b->point, &error)) {
+        if (b->looks && kinds[k].face.type && noh_actor_look_at(stage, actors[k], b->point, &error)) {
             return tool_fail_error("--look-at", &error);
         }
-        if (b->looks && !kinds[k].face && kinds[k].part_count) {
+        if (b->looks && !kinds[k].face.type && kinds[k].part_count) {
             noh_gaze *g = noh_actor_part(stage, actors[k], 0);
             memcpy(g->point, b->point, sizeof g->point);
             g->looks = 1;

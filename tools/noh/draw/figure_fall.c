@@ -38,7 +38,7 @@ void figure_want_fall(figure *f)
     static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
     static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
     if (!f->desc.falls || f->kinds[0].skeleton == NOH_NONE) return;
-    f->kinds[0].ragdoll = &ragdoll;
+    f->kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
     f->kinds[0].inertia = 1;
 }
 

@@ -25,7 +25,7 @@ static void find_face(session_stage *s)
     const size_t bytes = noh_kind_find_eyes_size(&s->kind);
     void *scratch = malloc(bytes + NOH_MEMORY_ALIGN);
     s->has_face = scratch && !noh_kind_find_eyes(&s->kind, scratch, bytes, s->face.face.eyes, NULL);
-    s->kind.face = s->has_face ? &s->face : NULL;
+    if (s->has_face) s->kind.face = noh_face_module(&s->face);
     free(scratch);
 }
 
@@ -37,20 +37,21 @@ static void fill_desc(session_stage *s, uint32_t actor_count)
     s->kind.inertia = s->pack->skeleton_count != 0;
     if (s->pack->skeleton_count) s->kind.root_axes = NOH_ROOT_GROUND;
     s->kind.root_up = 1;
-    s->kind.graphs = s->pack->graph_count ? "*" : NULL;
+    s->kind.graphs = noh_graph_module(s->pack->graph_count ? "*" : NULL);
+    s->kind.springs = noh_springs_module();
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
     find_face(s);
-    s->kind.ragdoll = s->pack->skeleton_count ? &ragdoll : NULL;
+    s->kind.ragdoll = noh_ragdoll_module(s->pack->skeleton_count ? &ragdoll : NULL);
 }
 
 /* A skeleton that cannot have a ragdoll goes without. */
 static int plan(session_stage *s, noh_error *error)
 {
-    s->has_ragdoll = s->kind.ragdoll != NULL;
+    s->has_ragdoll = s->kind.ragdoll.type != NULL;
     if (!noh_stage_plan_make(&s->desc, NULL, &s->plan, error)) return 0;
     if (!s->has_ragdoll) return 1;
-    s->kind.ragdoll = NULL;
+    s->kind.ragdoll = noh_ragdoll_module(NULL);
     return plan(s, error);
 }
 

@@ -1,0 +1,145 @@
+/* stage_module.c: the slots of a kind's modules: what a desc names, how many bytes that takes, and where these lie. */
+#include <string.h>
+
+#include "stage/cast/stage_internal.h"
+#include "noh/base.h"
+#include "noh/clip.h"
+#include "noh/noh.h"
+
+/* States of an actor lie in this order, after a head: as they always have, so that their hashes stay. */
+static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_PARTS, NOH_SLOT_SPRINGS };
+
+/* ---- of a desc ---- */
+
+noh_module noh_stage_wanted(const noh_kind_desc *d, uint32_t slot)
+{
+    static const noh_module none, parts = { &noh_stage_parts_type, NULL };
+    switch (slot) {
+    case NOH_SLOT_SOURCE: return d->graphs;
+    case NOH_SLOT_FACE: return d->face;
+    case NOH_SLOT_PARTS: return d->part_count ? parts : none;
+    case NOH_SLOT_BODY: return d->ragdoll;
+    default: return d->springs;
+    }
+}
+
+static void fill(noh_module *module, const noh_kind_desc *d)
+{
+    if (module->type && module->type->is_there && !module->type->is_there(d, module->desc)) module->type = NULL;
+}
+
+void noh_stage_fill_modules(noh_kind_desc *d)
+{
+    fill(&d->graphs, d);
+    fill(&d->face, d);
+    fill(&d->ragdoll, d);
+    fill(&d->springs, d);
+}
+
+const char *noh_stage_bad_modules(const noh_kind_desc *d)
+{
+    const char *what = NULL;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && !what; slot++) {
+        const noh_module m = noh_stage_wanted(d, slot);
+        if (!m.type) continue;
+        if (m.type->slot != slot) return "graphs, face, ragdoll or springs of a kind holds the module of another field";
+        what = m.type->bad ? m.type->bad(d, m.desc) : NULL;
+    }
+    return what;
+}
+
+uint32_t noh_stage_hash_module(const noh_kind_desc *d, uint32_t slot)
+{
+    const noh_module m = noh_stage_wanted(d, slot);
+    return m.type ? m.type->hash(d, m.desc) : 0;
+}
+
+int noh_stage_has_modifiers(const noh_kind_desc *d)
+{
+    int some = 0;
+    for (uint32_t slot = NOH_SLOT_SOURCE + 1u; slot < NOH_SLOT_COUNT; slot++) {
+        some |= noh_stage_wanted(d, slot).type != NULL;
+    }
+    return some;
+}
+
+noh_result noh_stage_measure_modules(const noh_kind_desc *d, noh_stage_needs *n, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    n->modifier_bytes = noh_stage_has_modifiers(d) ? sizeof(noh_stage_modifier_head) : 0;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && result == NOH_OK; slot++) {
+        const noh_module m = noh_stage_wanted(d, slot);
+        if (!m.type) continue;
+        result = m.type->measure(d, m.desc, n, &n->modules[slot], error);
+        if (slot != NOH_SLOT_SOURCE) n->modifier_bytes += n->modules[slot].actor_bytes;
+        if (n->modules[slot].scratch_bytes > n->module_scratch_bytes) {
+            n->module_scratch_bytes = n->modules[slot].scratch_bytes;
+        }
+    }
+    return result;
+}
+
+/* ---- of a kind ---- */
+
+void noh_stage_open_modules(noh_stage_kind *k, const noh_stage_needs *n)
+{
+    size_t at = sizeof(noh_stage_modifier_head);
+    k->modules[NOH_SLOT_SOURCE].stride = n->modules[NOH_SLOT_SOURCE].actor_bytes;
+    for (uint32_t i = 0; i < sizeof laid_out; i++) {
+        noh_stage_module *m = &k->modules[laid_out[i]];
+        m->states = k->modifier_states + at;
+        m->stride = k->modifier_bytes;
+        at += n->modules[laid_out[i]].actor_bytes;
+    }
+}
+
+noh_result noh_stage_init_modules(noh_stage_kind *k, noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && result == NOH_OK; slot++) {
+        const noh_module m = noh_stage_wanted(k->desc, slot);
+        if (m.type) result = m.type->init(k, m.desc, error);
+    }
+    return result;
+}
+
+int noh_stage_is_carried(const noh_stage_kind *k, uint32_t index)
+{
+    int is = 0;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module_type *type = k->modules[slot].type;
+        is |= type && type->carries && type->carries(k, index);
+    }
+    return is;
+}
+
+noh_controller *noh_stage_inner(const noh_stage_kind *k, uint32_t index)
+{
+    const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
+    return type ? type->source->controller(k, index) : NULL;
+}
+
+/* ---- a state from outside ---- */
+
+noh_result noh_stage_check_modules(const noh_stage_kind *k, uint32_t index, const uint8_t *state, const uint8_t *copy,
+                                   noh_error *error)
+{
+    noh_result result = NOH_OK;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && result == NOH_OK; slot++) {
+        const noh_stage_module *m = &k->modules[slot];
+        if (m->type && m->type->check) {
+            result = m->type->check(k, copy + (m->states + index * m->stride - state), error);
+        }
+    }
+    return result;
+}
+
+const char *noh_stage_check_pools(const noh_stage_kind *k, const uint8_t *state, const uint8_t *copy)
+{
+    const char *what = NULL;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && !what; slot++) {
+        const noh_stage_module *m = &k->modules[slot];
+        if (m->type && m->type->check_pool) what = m->type->check_pool(k, copy + ((const uint8_t *)m->pool - state));
+    }
+    return what;
+}
